@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the time of a plan goes on arms without an arm angle: random straight paths of 0.5 m at 5 mm, without obstacles, one
-// thread, planner `lazy`.
-//   arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...    default 20 paths that are solved, seed 1, 3 rounds
-// A problem gives robot, roll, limits and cost. A path begins at random joints within the limits and turns by at most 0.5 rad. Of
-// each path the round with the least whole time; medians over paths, ms of the processor: `arcs` is the making of nodes, `sweep`
-// every node against those of the next layer, first and where nodes fell out, `questions` validity, `rest` what is left of the
+// Where the time of a plan goes on arms without an arm angle: random straight paths of 0.5 m at 5
+// mm, without obstacles, one thread, planner `lazy`.
+//   arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...    default 20 paths that are
+//   solved, seed 1, 3 rounds
+// A problem gives robot, roll, limits and cost. A path begins at random joints within the limits
+// and turns by at most 0.5 rad. Of each path the round with the least whole time; medians over
+// paths, ms of the processor: `arcs` is the making of nodes, `sweep` every node against those of
+// the next layer, first and where nodes fell out, `questions` validity, `rest` what is left of the
 // plan. Parts are shares of the wall's time. A hash of all rows tells whether answers changed.
 #include <algorithm>
 #include <array>
@@ -37,7 +39,9 @@ constexpr double kLength = 0.5, kSpacing = 0.005, kLargestTurn = 0.5;  // m, m, 
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53); }
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53);
+  }
   Vector3d direction() {
     const double z = uniform(-1, 1), turn = uniform(-kPi, kPi), r = std::sqrt(1 - z * z);
     return {r * std::cos(turn), r * std::sin(turn), z};
@@ -63,7 +67,8 @@ Problem random_problem(const Problem& base, const Chain& chain, Random& random) 
   const Quaterniond first = Quaterniond(tool.linear()).normalized();
   const Eigen::AngleAxisd turn(random.uniform(0, kLargestTurn), random.direction());
   problem.waypoints = {{tool.translation(), first},
-                       {tool.translation() + kLength * random.direction(), (Quaterniond(turn) * first).normalized()}};
+                       {tool.translation() + kLength * random.direction(),
+                        (Quaterniond(turn) * first).normalized()}};
   problem.resolution.ds = kSpacing;
   return problem;
 }
@@ -83,9 +88,13 @@ Times timed(const PreparedRobot& robot, const Problem& problem, PlanResult& resu
   const std::clock_t clock = std::clock();
   result = plan(robot, problem, options);
   const double processor = 1e3 * static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
-  times.ms["whole"] = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  const std::map<std::string, std::string> kParts = {
-      {"arcs", "arcs"}, {"sweep", "sweep"}, {"repair", "sweep"}, {"nodes asked", "questions"}, {"edges asked", "questions"}};
+  times.ms["whole"] =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const std::map<std::string, std::string> kParts = {{"arcs", "arcs"},
+                                                     {"sweep", "sweep"},
+                                                     {"repair", "sweep"},
+                                                     {"nodes asked", "questions"},
+                                                     {"edges asked", "questions"}};
   for (const auto& [span, part] : kParts) times.ms[part];
   double rest = times.ms["whole"];
   for (const Timeline::Event& event : timeline.events()) {
@@ -126,7 +135,8 @@ void run(const Options& options, const std::string& file) {
     Times best = timed(robot, problem, result);
     if (result.status != PlanStatus::kSolved) continue;
     for (std::uint64_t round = 1; round < options.rounds; ++round)
-      if (Times times = timed(robot, problem, result); times.whole() < best.whole()) best = std::move(times);
+      if (Times times = timed(robot, problem, result); times.whole() < best.whole())
+        best = std::move(times);
     for (const auto& [part, ms] : best.ms) parts[part].push_back(ms);
     nodes += static_cast<double>(result.lattice.nodes) / static_cast<double>(result.lattice.layers);
     for (const TrajectoryRow& row : result.trajectory)
@@ -140,8 +150,10 @@ void run(const Options& options, const std::string& file) {
   std::printf("%s: %llu of %llu paths", file.c_str(), static_cast<unsigned long long>(solved),
               static_cast<unsigned long long>(tries));
   if (solved > 0) {
-    std::printf(", %.0f nodes a layer; ms: whole %.1f", nodes / static_cast<double>(solved), median(parts["whole"]));
-    for (const char* part : {"arcs", "sweep", "questions", "rest"}) std::printf(", %s %.1f", part, median(parts[part]));
+    std::printf(", %.0f nodes a layer; ms: whole %.1f", nodes / static_cast<double>(solved),
+                median(parts["whole"]));
+    for (const char* part : {"arcs", "sweep", "questions", "rest"})
+      std::printf(", %s %.1f", part, median(parts[part]));
     std::printf("; rows %016llx", static_cast<unsigned long long>(hash));
   }
   std::printf("\n");
@@ -152,8 +164,10 @@ void run(const Options& options, const std::string& file) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Where the time of a plan goes on arms without an arm angle: random straight paths without obstacles.",
-               "arc_benchmark");
+  CLI::App app(
+      "Where the time of a plan goes on arms without an arm angle: random straight paths without "
+      "obstacles.",
+      "arc_benchmark");
   app.add_option("problems", options.files, "problem files, for robot, roll, limits and cost")
       ->required()
       ->check(CLI::ExistingFile);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How near refined paths come to the optimum of their basin, on random poses: their cost over that of a fine lattice about them
-// (basin_lattice.hpp).
-//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time] [--about] [--margins]
-// Episodes of seed 1, default 100; a problem without `vary` is planned once. --about: lattices that have the refined path in them;
-// --margins: nodes keep what refinement keeps besides. A second a pose, up to a minute near obstacles. One line for each pose,
-// median and percentiles below.
+// How near refined paths come to the optimum of their basin, on random poses: their cost over that
+// of a fine lattice about them (basin_lattice.hpp).
+//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time] [--about]
+//   [--margins]
+// Episodes of seed 1, default 100; a problem without `vary` is planned once. --about: lattices that
+// have the refined path in them;
+// --margins: nodes keep what refinement keeps besides. A second a pose, up to a minute near
+// obstacles. One line for each pose, median and percentiles below.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -45,7 +47,8 @@ void run(const Options& options) {
   if (options.metric) base.cost.metric = *options.metric;
   const PreparedRobot robot(base);
   std::vector<double> ratios;
-  for (std::uint64_t episode = options.first; episode < options.first + (base.vary.empty() ? 1 : options.episodes); ++episode) {
+  for (std::uint64_t episode = options.first;
+       episode < options.first + (base.vary.empty() ? 1 : options.episodes); ++episode) {
     const Problem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
     PlanOptions lazy;
     lazy.planner = PlannerKind::kLazy;
@@ -53,35 +56,51 @@ void run(const Options& options) {
     if (found.status != PlanStatus::kSolved) continue;
     const Refined refined = refine(robot, problem, found.trajectory);
     const ToolPath path = problem_path(problem, robot.arm().chain);
-    const auto redundancy = make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, {});
+    const auto redundancy =
+        make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, {});
     double sine = 1;
-    for (const TrajectoryRow& row : refined.rows) sine = std::min(sine, redundancy->singular_sine(row.q));
+    for (const TrajectoryRow& row : refined.rows)
+      sine = std::min(sine, redundancy->singular_sine(row.q));
     bench::BasinLattice lattice(robot, problem, *redundancy, refined.rows, options.rules);
     const auto best = lattice.solve();
     ratios.push_back(refined.cost / best.cost);
     std::printf(
-        "%3d: cost %.5f, refined %.5f, fine lattice %.5f%s, ratio %.5f; at most %.4f rad away; sine %.4f and %.4f; %d rounds\n",
-        static_cast<int>(episode), refined.cost_before, refined.cost, best.cost, best.valid ? "" : " (bound)", ratios.back(),
-        best.farthest, sine, best.singular_sine, best.rounds);
+        "%3d: cost %.5f, refined %.5f, fine lattice %.5f%s, ratio %.5f; at most %.4f rad away; "
+        "sine %.4f and %.4f; %d rounds\n",
+        static_cast<int>(episode), refined.cost_before, refined.cost, best.cost,
+        best.valid ? "" : " (bound)", ratios.back(), best.farthest, sine, best.singular_sine,
+        best.rounds);
     std::fflush(stdout);
   }
   if (ratios.empty()) return;
-  std::printf("%zu poses, refined over fine lattice: median %.5f, 90 %% %.5f, 95 %% %.5f, most %.5f; %d above 1.001\n",
-              ratios.size(), percentile(ratios, 0.5), percentile(ratios, 0.9), percentile(ratios, 0.95), percentile(ratios, 1),
-              static_cast<int>(std::count_if(ratios.begin(), ratios.end(), [](double x) { return x > 1.001; })));
+  std::printf(
+      "%zu poses, refined over fine lattice: median %.5f, 90 %% %.5f, 95 %% %.5f, most %.5f; %d "
+      "above 1.001\n",
+      ratios.size(), percentile(ratios, 0.5), percentile(ratios, 0.9), percentile(ratios, 0.95),
+      percentile(ratios, 1),
+      static_cast<int>(
+          std::count_if(ratios.begin(), ratios.end(), [](double x) { return x > 1.001; })));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  const std::map<std::string, CostMetric> metrics{{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}};
-  CLI::App app("How near refined paths come to the optimum of their basin: their cost over that of a fine lattice about them.",
-               "basin_benchmark");
-  app.add_option("problem", options.file, "problem file; without `vary` it is planned once")->required()->check(CLI::ExistingFile);
-  app.add_option("--episodes", options.episodes, "poses of seed 1")->check(CLI::PositiveNumber)->capture_default_str();
+  const std::map<std::string, CostMetric> metrics{
+      {"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}};
+  CLI::App app(
+      "How near refined paths come to the optimum of their basin: their cost over that of a fine "
+      "lattice about them.",
+      "basin_benchmark");
+  app.add_option("problem", options.file, "problem file; without `vary` it is planned once")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--episodes", options.episodes, "poses of seed 1")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--first", options.first, "number of the first pose")->capture_default_str();
-  app.add_option("--metric", options.metric, "in place of the problem's")->transform(CLI::CheckedTransformer(metrics));
+  app.add_option("--metric", options.metric, "in place of the problem's")
+      ->transform(CLI::CheckedTransformer(metrics));
   app.add_flag("--about", options.rules.about_path, "lattices that have the refined path in them");
   app.add_flag("--margins", options.rules.margins, "nodes keep what refinement keeps besides");
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;

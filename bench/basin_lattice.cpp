@@ -19,11 +19,13 @@ template <class Each>
 void BasinLattice::for_edges(std::size_t stride, int layer, const Each& each) const {
   const int w = width(stride);
   for (int b = 0; b < kCells; ++b)
-    for (int a = std::max(0, b - w); a <= std::min(kCells - 1, b + w); ++a) each(Edge{stride, layer, a, b});
+    for (int a = std::max(0, b - w); a <= std::min(kCells - 1, b + w); ++a)
+      each(Edge{stride, layer, a, b});
 }
 
-BasinLattice::BasinLattice(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy,
-                           std::vector<TrajectoryRow> rows, const Rules& rules)
+BasinLattice::BasinLattice(const PreparedRobot& robot, const Problem& problem,
+                           const Redundancy& redundancy, std::vector<TrajectoryRow> rows,
+                           const Rules& rules)
     : problem_(&problem),
       redundancy_(&redundancy),
       lattice_(&redundancy.lattice()),
@@ -69,7 +71,8 @@ BasinLattice::Point BasinLattice::solved_point(int layer, int point) const {
     if (room(*q) < std::min(margin, room(given)) - kLimit) return p;
   }
   const double sine = redundancy_->singular_sine(*q);
-  if (rules_.margins && sine < std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
+  if (rules_.margins && sine < std::min(std::sin(problem_->refinement.singular_margin),
+                                        redundancy_->singular_sine(given) - 1e-9))
     return p;
   if (sine < 1e-6 || !lattice_->manipulable(*q)) return p;
   p.state = State::kUnknown;
@@ -83,13 +86,15 @@ void BasinLattice::price(std::size_t stride, int layer) {
   for_edges(stride, layer, [&](const Edge& e) {
     double sum = 0;
     for (int j = 0; j < over; ++j) {
-      const int from = layer - over + j, a = crossing(e.a, e.b, j, over), b = crossing(e.a, e.b, j + 1, over);
+      const int from = layer - over + j, a = crossing(e.a, e.b, j, over),
+                b = crossing(e.a, e.b, j + 1, over);
       const Point &p = points_[at(from)][at(a)], &q = points_[at(from + 1)][at(b)];
       if (p.state == State::kBad || q.state == State::kBad ||
           std::abs(coordinate(from + 1, b) - coordinate(from, a)) > redundancy_->most_change())
         return;
       const Config move = scale.cwiseProduct(q.q - p.q);
-      sum += lattice_->cost().metric == CostMetric::kL2 ? move.norm() : move.lpNorm<Eigen::Infinity>();
+      sum +=
+          lattice_->cost().metric == CostMetric::kL2 ? move.norm() : move.lpNorm<Eigen::Infinity>();
     }
     cost(e) = static_cast<float>(sum);
   });
@@ -133,9 +138,11 @@ void BasinLattice::trace(std::vector<int>& points, std::vector<Edge>& edges) con
 bool BasinLattice::node_good(int layer, int point) {
   Point& p = points_[at(layer)][at(point)];
   if (p.state == State::kUnknown) {
-    const bool too_near = at_.find_violating_pair_incremental(
-                              p.q, Threshold(ClearanceRule::kNode, rules_.margins ? RefineOptions().extra_clearance : 0)) ||
-                          (rules_.margins && at_.find_violating_pair_incremental(p.q, ClearanceRule::kMidpoint));
+    const bool too_near =
+        at_.find_violating_pair_incremental(
+            p.q, Threshold(ClearanceRule::kNode,
+                           rules_.margins ? RefineOptions().extra_clearance : 0)) ||
+        (rules_.margins && at_.find_violating_pair_incremental(p.q, ClearanceRule::kMidpoint));
     p.state = too_near ? State::kBad : State::kGood;
   }
   return p.state == State::kGood;
@@ -147,13 +154,16 @@ bool BasinLattice::step_good(int layer, int a, int b) {
   const Config &p = points_[at(layer)][at(a)].q, &q = points_[at(layer + 1)][at(b)].q, move = q - p;
   const Limits& limits = lattice_->limits();
   const auto within = [](const std::array<double, 3>& deviation, double limit) {
-    return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
+    return std::all_of(deviation.begin(), deviation.end(),
+                       [limit](double x) { return x <= limit; });
   };
   const Chain& chain = lattice_->chain();
   const ToolPath& path = lattice_->path();
   bool good = lattice_->step_allowed(layer, move);
-  if (limits.tool_path_error) good = good && within(path_deviation(chain, path, layer, p, move), *limits.tool_path_error);
-  if (limits.tool_angle_error) good = good && within(angle_deviation(chain, path, layer, p, move), *limits.tool_angle_error);
+  if (limits.tool_path_error)
+    good = good && within(path_deviation(chain, path, layer, p, move), *limits.tool_path_error);
+  if (limits.tool_angle_error)
+    good = good && within(angle_deviation(chain, path, layer, p, move), *limits.tool_angle_error);
   if (limits.edges == EdgeMode::kContinuous) good = good && !edge_blocked(between_, rule_, p, q);
   return steps_[key] = good;
 }
@@ -161,7 +171,8 @@ bool BasinLattice::step_good(int layer, int a, int b) {
 bool BasinLattice::edge_good(const Edge& e) {
   const int over = kStrides[e.stride];
   for (int j = 0; j < over; ++j) {
-    const int from = e.layer - over + j, a = crossing(e.a, e.b, j, over), b = crossing(e.a, e.b, j + 1, over);
+    const int from = e.layer - over + j, a = crossing(e.a, e.b, j, over),
+              b = crossing(e.a, e.b, j + 1, over);
     if (!node_good(from, a) || !node_good(from + 1, b) || !step_good(from, a, b)) return false;
   }
   return true;
@@ -174,7 +185,8 @@ void BasinLattice::close(int layer) {
       const int end = layer + over - j;
       if (end < over || end >= lattice_->layers()) continue;
       for_edges(s, end, [&](const Edge& e) {
-        if (points_[at(layer)][at(crossing(e.a, e.b, j, over))].state == State::kBad) cost(e) = kNever;
+        if (points_[at(layer)][at(crossing(e.a, e.b, j, over))].state == State::kBad)
+          cost(e) = kNever;
       });
     }
   }
@@ -188,7 +200,9 @@ int BasinLattice::take_out(const std::vector<int>& points, const std::vector<Edg
     const int here = points[at(i)];
     if (node_good(i, here)) continue;
     for (const int by : {-1, 1})
-      for (int m = here + by; m >= 0 && m < kPoints && std::abs(m - here) < kPointsBeside && !node_good(i, m); m += by) {
+      for (int m = here + by;
+           m >= 0 && m < kPoints && std::abs(m - here) < kPointsBeside && !node_good(i, m);
+           m += by) {
       }
     close(i);
     first = std::min(first, std::max(i, 1));
@@ -201,7 +215,9 @@ int BasinLattice::take_out(const std::vector<int>& points, const std::vector<Edg
     for (const int by : {-1, 1})
       for (int d = by; std::abs(d) < kEdgesBeside; d += by) {
         const Edge beside{edge.stride, edge.layer, edge.a + d, edge.b + d};
-        if (std::min(beside.a, beside.b) < 0 || std::max(beside.a, beside.b) >= kCells || edge_good(beside)) break;
+        if (std::min(beside.a, beside.b) < 0 || std::max(beside.a, beside.b) >= kCells ||
+            edge_good(beside))
+          break;
         cost(beside) = kNever;
       }
   }

@@ -13,31 +13,34 @@
 
 namespace swivel::bench {
 
-/// What a refined path is held against: a fine lattice about it, over the same layers, with its labels. Arm angles (or lengths
-/// along the self-motion) up to 0.5 rad from the path's, 0.0025 rad apart; edges to the next layer, and straight over two and four,
-/// so that there are directions between those of the grid. Its cheapest path is valid by docs/model.md.
+/// What a refined path is held against: a fine lattice about it, over the same layers, with its
+/// labels. Arm angles (or lengths along the self-motion) up to 0.5 rad from the path's, 0.0025 rad
+/// apart; edges to the next layer, and straight over two and four, so that there are directions
+/// between those of the grid. Its cheapest path is valid by docs/model.md.
 ///
-/// A dynamic program over all edges, that knows limits alone. Collisions and errors between layers are asked of its path; what
-/// fails is taken out, with what fails beside it, and the program run again: the answer is that of asking all first.
+/// A dynamic program over all edges, that knows limits alone. Collisions and errors between layers
+/// are asked of its path; what fails is taken out, with what fails beside it, and the program run
+/// again: the answer is that of asking all first.
 class BasinLattice {
  public:
   struct Rules {
-    /// The coordinates are the path's own and multiples of the cell from there, so that the path is in the lattice; else multiples
-    /// of the cell.
+    /// The coordinates are the path's own and multiples of the cell from there, so that the path is
+    /// in the lattice; else multiples of the cell.
     bool about_path = false;
-    /// Nodes keep what refinement keeps besides: RefineOptions::extra_clearance, what midpoints keep, Refinement's margins.
+    /// Nodes keep what refinement keeps besides: RefineOptions::extra_clearance, what midpoints
+    /// keep, Refinement's margins.
     bool margins = false;
   };
   /// `rows`: the path refined. All but these must outlive it.
-  BasinLattice(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy, std::vector<TrajectoryRow> rows,
-               const Rules& rules);
+  BasinLattice(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy,
+               std::vector<TrajectoryRow> rows, const Rules& rules);
 
   struct Optimum {
     double cost = std::numeric_limits<double>::infinity();  ///< infinite where no path is left
-    bool valid = false;                                     ///< of a path found valid; else a bound below it, after too many rounds
-    int rounds = 0;                                         ///< of the dynamic program
-    double farthest = 0;                                    ///< rad, from the path refined
-    double singular_sine = 1;                               ///< the least on the way
+    bool valid = false;   ///< of a path found valid; else a bound below it, after too many rounds
+    int rounds = 0;       ///< of the dynamic program
+    double farthest = 0;  ///< rad, from the path refined
+    double singular_sine = 1;  ///< the least on the way
   };
   [[nodiscard]] Optimum solve();
 
@@ -45,10 +48,12 @@ class BasinLattice {
   static constexpr double kCell = 0.0025;  // rad
   static constexpr int kReach = 200;       // cells to both sides of the path
   static constexpr int kCells = 2 * kReach + 1;
-  static constexpr int kParts = 4;  // of a cell, at which edges over several layers cross those in between
+  static constexpr int kParts =
+      4;  // of a cell, at which edges over several layers cross those in between
   static constexpr int kPoints = kParts * 2 * kReach + 1;
   static constexpr std::array<int, 3> kStrides{1, 2, 4};
-  static constexpr int kWindow = 60;  // cells from a layer to the next: more than the lattice's own at its default slope
+  static constexpr int kWindow =
+      60;  // cells from a layer to the next: more than the lattice's own at its default slope
 
   enum class State : std::uint8_t { kUnknown, kGood, kBad };
   struct Point {
@@ -67,11 +72,16 @@ class BasinLattice {
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   /// The point of the j-th layer that an edge over `stride` layers meets.
-  static int crossing(int a, int b, int j, int stride) { return kParts * a + kParts * (b - a) * j / stride; }
+  static int crossing(int a, int b, int j, int stride) {
+    return kParts * a + kParts * (b - a) * j / stride;
+  }
   static int width(std::size_t stride) { return kWindow * kStrides[stride]; }
-  [[nodiscard]] double coordinate(int layer, int point) const { return first_[at(layer)] + kCell / kParts * point; }
+  [[nodiscard]] double coordinate(int layer, int point) const {
+    return first_[at(layer)] + kCell / kParts * point;
+  }
   float& cost(const Edge& e) {
-    return costs_[e.stride][at(e.layer)][at(e.b) * at(2 * width(e.stride) + 1) + at(e.a - e.b + width(e.stride))];
+    return costs_[e.stride][at(e.layer)]
+                 [at(e.b) * at(2 * width(e.stride) + 1) + at(e.a - e.b + width(e.stride))];
   }
   /// Calls each(edge) for those that end in a layer.
   template <class Each>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late a plan ends whose time is over, in time of its thread's processor: experiments of several sizes, solved and infeasible.
+// How late a plan ends whose time is over, in time of its thread's processor: experiments of
+// several sizes, solved and infeasible.
 //   deadlines [TIMES]    default 100, of each size and deadline
 #include <algorithm>
 #include <cstdio>
@@ -25,15 +26,19 @@ double cpu_ms() {
 
 int main(int argc, char** argv) {
   int times = 100;
-  CLI::App app("How late a plan ends whose time is over, in time of its thread's processor.", "deadlines");
-  app.add_option("times", times, "plans of each size and deadline")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI::App app("How late a plan ends whose time is over, in time of its thread's processor.",
+               "deadlines");
+  app.add_option("times", times, "plans of each size and deadline")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   struct Size {
     double ds, dphi;
   };
   for (const char* name : {"experiment_c", "experiment_a_start"})
     for (const Size& size : {Size{0.005, 0.05}, Size{0.001, 0.01}, Size{0.0005, 0.003}}) {
-      Problem problem = io::load_problem(std::string(SWIVEL_DATA_DIR "/problems/") + name + ".yaml");
+      Problem problem =
+          io::load_problem(std::string(SWIVEL_DATA_DIR "/problems/") + name + ".yaml");
       problem.resolution.ds = size.ds;
       problem.resolution.dphi = size.dphi;
       for (const double deadline : {0.002, 0.005, 0.020}) {
@@ -54,9 +59,12 @@ int main(int argc, char** argv) {
           nodes = std::max(nodes, result.lattice.nodes);
         }
         std::sort(late.begin(), late.end());
-        std::printf("%-19s %9lld nodes, %2.0f ms: %3d of %d stopped, %3d with rows; late by %6.2f ms (median), %6.2f (99 %%)\n",
-                    name, static_cast<long long>(nodes), 1e3 * deadline, stopped, times, partial, late[late.size() / 2],
-                    late[static_cast<std::size_t>(0.99 * static_cast<double>(late.size() - 1))]);
+        std::printf(
+            "%-19s %9lld nodes, %2.0f ms: %3d of %d stopped, %3d with rows; late by %6.2f ms "
+            "(median), %6.2f (99 %%)\n",
+            name, static_cast<long long>(nodes), 1e3 * deadline, stopped, times, partial,
+            late[late.size() / 2],
+            late[static_cast<std::size_t>(0.99 * static_cast<double>(late.size() - 1))]);
       }
     }
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given problems have: paths of two to
-// five waypoints, up to four obstacles, meshes among them, with and without a start, with random limits; feasible and not.
+// How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given
+// problems have: paths of two to five waypoints, up to four obstacles, meshes among them, with and
+// without a start, with random limits; feasible and not.
 //   eager_ratios [--count N] [--first N] [--seed N] [--rounds N] PROBLEM.yaml...
-// Default: 500 problems from the first on, robots in turn, three rounds. Prepared robots, one thread, medians of the rounds, in
-// which the planners take turns: until the verdict, and the whole call, which explains why there is no path, the same way for
-// both. Prints each problem on which the verdict of `lazy` comes later, and percentiles.
+// Default: 500 problems from the first on, robots in turn, three rounds. Prepared robots, one
+// thread, medians of the rounds, in which the planners take turns: until the verdict, and the whole
+// call, which explains why there is no path, the same way for both. Prints each problem on which
+// the verdict of `lazy` comes later, and percentiles.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -30,7 +32,9 @@ using namespace swivel;
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53); }
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53);
+  }
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
   bool coin(double p) { return uniform(0, 1) < p; }
   Vector3d direction() {
@@ -50,8 +54,10 @@ MeshPtr dented_ball(double radius) {
   mesh->vertices = {Vector3d(0, 0, radius), Vector3d(0, 0, -radius)};
   for (int i = 1; i < kRings; ++i)
     for (int j = 0; j < kSides; ++j) {
-      const double a = kPi * i / kRings, b = kTwoPi * j / kSides, r = radius * (1 - 0.2 * std::sin(a) * std::cos(3 * b));
-      mesh->vertices.emplace_back(r * std::sin(a) * std::cos(b), r * std::sin(a) * std::sin(b), r * std::cos(a));
+      const double a = kPi * i / kRings, b = kTwoPi * j / kSides,
+                   r = radius * (1 - 0.2 * std::sin(a) * std::cos(3 * b));
+      mesh->vertices.emplace_back(r * std::sin(a) * std::cos(b), r * std::sin(a) * std::sin(b),
+                                  r * std::cos(a));
     }
   const auto at = [](int ring, int side) { return 2 + (ring - 1) * kSides + side % kSides; };
   for (int j = 0; j < kSides; ++j) {
@@ -93,7 +99,8 @@ Problem random_problem(const Problem& robot, const Chain& chain, Random& random)
   Config q;
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-    q[j] = limit.continuous ? random.uniform(-kPi, kPi) : random.uniform(0.9 * limit.lower, 0.9 * limit.upper);
+    q[j] = limit.continuous ? random.uniform(-kPi, kPi)
+                            : random.uniform(0.9 * limit.lower, 0.9 * limit.upper);
   }
   const Config first = q;
   const auto add_waypoint = [&] {
@@ -105,18 +112,22 @@ Problem random_problem(const Problem& robot, const Chain& chain, Random& random)
     for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.25, 0.25);
     add_waypoint();
   }
-  const Vector3d elbow = chain.displacements(first)[4] * chain.point[4], tool = problem.waypoints[0].position;
+  const Vector3d elbow = chain.displacements(first)[4] * chain.point[4],
+                 tool = problem.waypoints[0].position;
   for (int k = random.below(5); k > 0; --k) {
     SceneObject object{"obstacle" + std::to_string(k), random_shape(random), Pose::Identity(), {}};
-    object.pose.translation() = (k % 2 ? elbow : tool) + random.uniform(0.05, 0.45) * random.direction();
-    object.pose.linear() = Eigen::AngleAxisd(random.uniform(-kPi, kPi), random.direction()).toRotationMatrix();
+    object.pose.translation() =
+        (k % 2 ? elbow : tool) + random.uniform(0.05, 0.45) * random.direction();
+    object.pose.linear() =
+        Eigen::AngleAxisd(random.uniform(-kPi, kPi), random.direction()).toRotationMatrix();
     problem.scene.push_back(object);
   }
   problem.resolution.ds = std::array{0.005, 0.01, 0.02}[static_cast<std::size_t>(random.below(3))];
   problem.resolution.dphi = std::array{0.05, 0.1, 0.2}[static_cast<std::size_t>(random.below(3))];
   Limits& limits = problem.limits;
   limits.clearance = random.uniform(0, 0.02);
-  limits.tool_path_error = random.coin(0.5) ? std::optional(random.uniform(0.0005, 0.005)) : std::nullopt;
+  limits.tool_path_error =
+      random.coin(0.5) ? std::optional(random.uniform(0.0005, 0.005)) : std::nullopt;
   limits.step_error = random.coin(0.2) ? std::optional(random.uniform(0.05, 0.5)) : std::nullopt;
   limits.manipulability = random.coin(0.3) ? random.uniform(0, 0.03) : 0;
   limits.edges = random.coin(0.5) ? EdgeMode::kContinuous : EdgeMode::kNodes;
@@ -128,13 +139,15 @@ Problem random_problem(const Problem& robot, const Chain& chain, Random& random)
 struct Times {
   std::vector<double> verdict, whole;  // ms
 };
-PlanResult timed(const PreparedRobot& robot, const Problem& problem, PlannerKind planner, Times& times) {
+PlanResult timed(const PreparedRobot& robot, const Problem& problem, PlannerKind planner,
+                 Times& times) {
   PlanOptions options;
   options.planner = planner;
   options.threads = 1;
   const auto start = std::chrono::steady_clock::now();
   PlanResult result = plan(robot, problem, options);
-  times.whole.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  times.whole.push_back(
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   times.verdict.push_back(result.time_ms.at("plan"));
   return result;
 }
@@ -145,9 +158,11 @@ double median(std::vector<double> values) {
 
 void print(const char* what, std::vector<double> ratios) {
   std::sort(ratios.begin(), ratios.end());
-  const auto share = [&](double of) { return ratios[static_cast<std::size_t>(of * static_cast<double>(ratios.size() - 1))]; };
-  std::printf("eager_dp over lazy, %s: least %.2f, 5 %% %.2f, median %.1f, 95 %% %.1f\n", what, share(0), share(0.05), share(0.5),
-              share(0.95));
+  const auto share = [&](double of) {
+    return ratios[static_cast<std::size_t>(of * static_cast<double>(ratios.size() - 1))];
+  };
+  std::printf("eager_dp over lazy, %s: least %.2f, 5 %% %.2f, median %.1f, 95 %% %.1f\n", what,
+              share(0), share(0.05), share(0.5), share(0.95));
 }
 
 struct Options {
@@ -182,13 +197,17 @@ void run(const Options& options) {
     whole.push_back(median(eager.whole) / median(lazy.whole));
     if (verdict.back() >= 1 && equal) continue;
     slower += verdict.back() < 1;
-    std::printf("%llu %s: %s, lazy %.3f ms, eager_dp %.3f ms%s\n", static_cast<unsigned long long>(k), options.files[which].c_str(),
-                found ? "solved" : "no path", median(lazy.verdict), median(eager.verdict), equal ? "" : ": answers differ");
+    std::printf("%llu %s: %s, lazy %.3f ms, eager_dp %.3f ms%s\n",
+                static_cast<unsigned long long>(k), options.files[which].c_str(),
+                found ? "solved" : "no path", median(lazy.verdict), median(eager.verdict),
+                equal ? "" : ": answers differ");
     std::fflush(stdout);
   }
   if (verdict.empty()) return;
-  std::printf("%zu problems of %zu robots, %d solved, %d with unlike answers, the verdict of lazy later on %d\n", verdict.size(),
-              robots.size(), solved, unequal, slower);
+  std::printf(
+      "%zu problems of %zu robots, %d solved, %d with unlike answers, the verdict of lazy later on "
+      "%d\n",
+      verdict.size(), robots.size(), solved, unequal, slower);
   print("verdict", verdict);
   print("whole call", whole);
 }
@@ -197,11 +216,17 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given problems have.",
-               "eager_ratios");
-  app.add_option("problems", options.files, "problem files, for their robots")->required()->check(CLI::ExistingFile);
-  app.add_option("--count", options.count, "random problems, robots one after the other")->capture_default_str();
-  app.add_option("--first", options.first, "number of the first random problem")->capture_default_str();
+  CLI::App app(
+      "How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the "
+      "given problems have.",
+      "eager_ratios");
+  app.add_option("problems", options.files, "problem files, for their robots")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--count", options.count, "random problems, robots one after the other")
+      ->capture_default_str();
+  app.add_option("--first", options.first, "number of the first random problem")
+      ->capture_default_str();
   app.add_option("--seed", options.seed, "of the random problems")->capture_default_str();
   app.add_option("--rounds", options.rounds, "plans of each, of which the median counts")
       ->check(CLI::PositiveNumber)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Experiment C of the paper: the door at random poses, by every method of Table I and by the planners that the paper has not.
+// Experiment C of the paper: the door at random poses, by every method of Table I and by the
+// planners that the paper has not.
 //   experiment_c OUT.json [EPISODES]    default 100; all methods in turn on each episode
 #include <algorithm>
 #include <chrono>
@@ -34,7 +35,8 @@ constexpr std::uint64_t kSeed = 1;
 [[maybe_unused]] constexpr double kSampledSeconds = 2;
 
 double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 
 /// One row of the table over all episodes.
@@ -55,8 +57,8 @@ json to_json(const PlanResult& result, const Problem& problem) {
   return answer;
 }
 
-PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind planner, const bench::Setting& setting, EdgeMode edges,
-                   int threads) {
+PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind planner,
+                   const bench::Setting& setting, EdgeMode edges, int threads) {
   bench::set_resolution(problem, setting);
   problem.limits.edges = edges;
   PlanOptions options;
@@ -75,23 +77,30 @@ std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
   World::Query query(world);
   for (int slot = 0; slot < lattice.width(); ++slot) {
     const auto q = lattice.exact_config(0, slot);
-    if (q && lattice.manipulable(*q) && !query.find_violating_pair(*q, ClearanceRule::kNode)) return q;
+    if (q && lattice.manipulable(*q) && !query.find_violating_pair(*q, ClearanceRule::kNode))
+      return q;
   }
   return std::nullopt;
 }
 
 /// What a local method did; `possible`: a path from its start exists at #4.
-json to_json(const baselines::TrackResult& result, double ms, const PreparedRobot& robot, const Problem& problem, bool possible) {
-  json answer{{"status", result.finished ? "solved" : "failed"}, {"ms", ms}, {"s", result.s}, {"possible_from_start", possible}};
+json to_json(const baselines::TrackResult& result, double ms, const PreparedRobot& robot,
+             const Problem& problem, bool possible) {
+  json answer{{"status", result.finished ? "solved" : "failed"},
+              {"ms", ms},
+              {"s", result.s},
+              {"possible_from_start", possible}};
   answer["reason"] = result.finished ? "" : std::string(baselines::to_string(result.reason));
   answer["blocking"] = result.blocking;
   if (!result.finished) return answer;
   const baselines::TrackOptions options;
-  const ToolPath path(waypoints_in_base(problem), Resolution{.ds = options.step, .dalpha = options.turn_step}, problem.source);
+  const ToolPath path(waypoints_in_base(problem),
+                      Resolution{.ds = options.step, .dalpha = options.turn_step}, problem.source);
   double sum = 0, most = 0;
   for (int i = 0; i + 1 < path.size(); ++i) {
     const Config& q = result.rows[static_cast<std::size_t>(i)];
-    for (const double error : path_deviation(robot.arm().chain, path, i, q, result.rows[static_cast<std::size_t>(i) + 1] - q)) {
+    for (const double error : path_deviation(robot.arm().chain, path, i, q,
+                                             result.rows[static_cast<std::size_t>(i) + 1] - q)) {
       sum += 1e3 * error;
       most = std::max(most, 1e3 * error);
     }
@@ -102,23 +111,29 @@ json to_json(const baselines::TrackResult& result, double ms, const PreparedRobo
 }
 
 template <class Track>
-json track(const PreparedRobot& robot, const Problem& problem, bool possible, const Track& tracker) {
-  if (!problem.start) return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
+json track(const PreparedRobot& robot, const Problem& problem, bool possible,
+           const Track& tracker) {
+  if (!problem.start)
+    return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
   const auto begin = std::chrono::steady_clock::now();
   const baselines::TrackResult result = tracker(robot, problem);
   return to_json(result, ms_since(begin), robot, problem, possible);
 }
 
 #ifdef SWIVEL_OMPL
-json sample(const PreparedRobot& robot, const Problem& problem, bool possible, baselines::Manifold manifold) {
-  if (!problem.start) return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
-  const baselines::ConstrainedResult result = baselines::plan_constrained(robot, problem, manifold, kSampledSeconds);
+json sample(const PreparedRobot& robot, const Problem& problem, bool possible,
+            baselines::Manifold manifold) {
+  if (!problem.start)
+    return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
+  const baselines::ConstrainedResult result =
+      baselines::plan_constrained(robot, problem, manifold, kSampledSeconds);
   json answer{{"status", result.finished ? "solved" : "failed"},
               {"ms", result.ms},
               {"reason", result.reason},
               {"connected", result.connected},
               {"possible_from_start", possible}};
-  if (result.finished) answer["error_mm"] = result.error_mm, answer["error_max_mm"] = result.error_max_mm;
+  if (result.finished)
+    answer["error_mm"] = result.error_mm, answer["error_max_mm"] = result.error_max_mm;
   return answer;
 }
 #endif
@@ -127,45 +142,58 @@ json run(const Problem& base, std::uint64_t episodes) {
   const PreparedRobot robot(base);
   std::vector<Method> planned;
   const bench::Setting* const settings = bench::kSettings;
-  for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel})
+  for (const PlannerKind planner :
+       {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel})
     for (std::size_t k = 0; k < std::size(bench::kSettings); ++k)
       if (planner == PlannerKind::kLazy || k < bench::kPaperSettings)
-        planned.push_back(
-            {.name = to_string(planner), .setting = settings[k].name, .threads = planner == PlannerKind::kParallel ? 2 : 1});
+        planned.push_back({.name = to_string(planner),
+                           .setting = settings[k].name,
+                           .threads = planner == PlannerKind::kParallel ? 2 : 1});
   for (const PlannerKind planner : {PlannerKind::kLazy, PlannerKind::kParallel})
     planned.push_back({.name = to_string(planner),
                        .setting = "#4",
                        .threads = planner == PlannerKind::kParallel ? 2 : 1,
                        .edges = EdgeMode::kContinuous});
-  Method jacobian{.name = "jacobian", .setting = ""}, null_space{.name = "null_space", .setting = ""};
-  Method projected{.name = "ompl_projected", .setting = ""}, tangent_bundle{.name = "ompl_tangent_bundle", .setting = ""};
+  Method jacobian{.name = "jacobian", .setting = ""},
+      null_space{.name = "null_space", .setting = ""};
+  Method projected{.name = "ompl_projected", .setting = ""},
+      tangent_bundle{.name = "ompl_tangent_bundle", .setting = ""};
   for (std::uint64_t k = 0; k < episodes; ++k) {
     const Problem problem = episode_problem(base, kSeed, k);
     for (Method& method : planned) {
-      const auto* const setting = std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
-                                               [&](const bench::Setting& s) { return s.name == method.setting; });
-      method.episodes.push_back(
-          to_json(plan_at(robot, problem, planner_from_string(method.name), *setting, method.edges, method.threads), problem));
+      const auto* const setting =
+          std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
+                       [&](const bench::Setting& s) { return s.name == method.setting; });
+      method.episodes.push_back(to_json(plan_at(robot, problem, planner_from_string(method.name),
+                                                *setting, method.edges, method.threads),
+                                        problem));
     }
     Problem started = problem;
     started.start = first_start(robot, problem);
-    const bool possible = started.start && plan_at(robot, started, PlannerKind::kLazy, settings[3], EdgeMode::kNodes, 1).status ==
-                                               PlanStatus::kSolved;
-    jacobian.episodes.push_back(
-        track(robot, started, possible, [](const auto& r, const auto& p) { return baselines::track_jacobian(r, p); }));
-    null_space.episodes.push_back(
-        track(robot, started, possible, [](const auto& r, const auto& p) { return baselines::track_null_space(r, p); }));
+    const bool possible =
+        started.start &&
+        plan_at(robot, started, PlannerKind::kLazy, settings[3], EdgeMode::kNodes, 1).status ==
+            PlanStatus::kSolved;
+    jacobian.episodes.push_back(track(robot, started, possible, [](const auto& r, const auto& p) {
+      return baselines::track_jacobian(r, p);
+    }));
+    null_space.episodes.push_back(track(robot, started, possible, [](const auto& r, const auto& p) {
+      return baselines::track_null_space(r, p);
+    }));
 #ifdef SWIVEL_OMPL
     if (k < kSampledEpisodes) {
-      projected.episodes.push_back(sample(robot, started, possible, baselines::Manifold::kProjected));
-      tangent_bundle.episodes.push_back(sample(robot, started, possible, baselines::Manifold::kTangentBundle));
+      projected.episodes.push_back(
+          sample(robot, started, possible, baselines::Manifold::kProjected));
+      tangent_bundle.episodes.push_back(
+          sample(robot, started, possible, baselines::Manifold::kTangentBundle));
     }
 #endif
     std::fprintf(stderr, "\repisode %llu of %llu", static_cast<unsigned long long>(k + 1),
                  static_cast<unsigned long long>(episodes));
   }
   std::fprintf(stderr, "\n");
-  planned.insert(planned.begin(), {std::move(jacobian), std::move(null_space), std::move(projected), std::move(tangent_bundle)});
+  planned.insert(planned.begin(), {std::move(jacobian), std::move(null_space), std::move(projected),
+                                   std::move(tangent_bundle)});
   json rows = json::array();
   for (const Method& method : planned)
     rows.push_back({{"method", method.name},
@@ -182,16 +210,21 @@ int main(int argc, char** argv) {
   std::string file;
   std::uint64_t episodes = 100;
   CLI::App app(
-      "Experiment C of the paper: the door at random poses, by every method of Table I and by the planners of this project.",
+      "Experiment C of the paper: the door at random poses, by every method of Table I and by the "
+      "planners of this project.",
       "experiment_c");
   app.add_option("out", file, "file for the results, JSON")->required();
-  app.add_option("episodes", episodes, "random poses")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("episodes", episodes, "random poses")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
     json out;
     for (const auto& [key, value] : bench::context()) out["context"][key] = value;
     out["seed"] = kSeed;
-    out["rows"] = run(io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems/experiment_c.yaml"), episodes);
+    out["rows"] =
+        run(io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems/experiment_c.yaml"),
+            episodes);
     io::write_file(file, out.dump(1) + "\n");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "experiment_c: %s\n", error.what());

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one plan is made of, piece by piece, on experiment C at resolution #4. Inputs are drawn from a fixed seed into pools that
-// are cycled, so that no branch learns one input. items_per_second counts what the name says: nodes, questions, expansions. Names
-// that end in a vector unit depend on it: SWIVEL_FORCE_ISA=scalar|avx2|avx512 picks one for the whole process.
+// What one plan is made of, piece by piece, on experiment C at resolution #4. Inputs are drawn from
+// a fixed seed into pools that are cycled, so that no branch learns one input. items_per_second
+// counts what the name says: nodes, questions, expansions. Names that end in a vector unit depend
+// on it: SWIVEL_FORCE_ISA=scalar|avx2|avx512 picks one for the whole process.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -30,13 +31,19 @@ constexpr double kAsked = 0.005;  // m, the clearance that pairs are asked about
 
 class Random {
  public:
-  double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53); }
-  Vector3d in_cube(double half) { return {uniform(-half, half), uniform(-half, half), uniform(-half, half)}; }
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53);
+  }
+  Vector3d in_cube(double half) {
+    return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};
+  }
   Pose pose(double half) {
     Pose pose;
     pose.translation() = in_cube(half);
-    pose.linear() = Quaterniond(Eigen::Vector4d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(0.1, 1)).normalized())
-                        .toRotationMatrix();
+    pose.linear() =
+        Quaterniond(Eigen::Vector4d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(0.1, 1))
+                        .normalized())
+            .toRotationMatrix();
     return pose;
   }
 
@@ -60,14 +67,18 @@ struct Fixture {
       if (const auto q = lattice.node(layer, slot)) nodes.push_back({layer, slot, *q});
     }
     while (edges.size() < kPool) {
-      const Node& a = nodes[static_cast<std::size_t>(random.uniform(0, static_cast<double>(nodes.size())))];
-      const int b = lattice.solution_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
+      const Node& a =
+          nodes[static_cast<std::size_t>(random.uniform(0, static_cast<double>(nodes.size())))];
+      const int b =
+          lattice.solution_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
       const auto q = lattice.node(a.layer + 1, b);
-      if (q && lattice.in_window(a.layer, a.slot, b) && lattice.step_allowed(a.layer, lattice.delta(a.q, *q)))
+      if (q && lattice.in_window(a.layer, a.slot, b) &&
+          lattice.step_allowed(a.layer, lattice.delta(a.q, *q)))
         edges.push_back({a, b, *q});
     }
     World::Query query(world);  // FCL's trees of meshes are built at its first question
-    for (const Node& x : nodes) static_cast<void>(query.find_violating_pair(x.q, ClearanceRule::kNode));
+    for (const Node& x : nodes)
+      static_cast<void>(query.find_violating_pair(x.q, ClearanceRule::kNode));
   }
   Fixture(const Fixture&) = delete;
 
@@ -98,17 +109,21 @@ struct Pairs {
   std::vector<Pose> poses;
   Pose origin = Pose::Identity();
 
-  explicit Pairs(const Shape& shape) : capsule(make_fcl_shape(Capsule{0.05, 0.2}, store)), other(make_fcl_shape(shape, store)) {
+  explicit Pairs(const Shape& shape)
+      : capsule(make_fcl_shape(Capsule{0.05, 0.2}, store)), other(make_fcl_shape(shape, store)) {
     Random random;
     PairTest test;
-    // Half of the pool below the asked clearance, half above; nothing further away than a link's length.
+    // Half of the pool below the asked clearance, half above; nothing further away than a link's
+    // length.
     std::size_t below = 0;
     const double half = other.bound.reach + 0.2;
     while (poses.size() < kPool) {
       Pose pose = random.pose(half);
       pose.translation() += other.bound.center;
       const double clearance = test.clearance({&capsule, &pose}, {&other, &origin});
-      if (clearance > 0.2 || (clearance < kAsked ? below >= kPool / 2 : poses.size() - below >= kPool / 2)) continue;
+      if (clearance > 0.2 ||
+          (clearance < kAsked ? below >= kPool / 2 : poses.size() - below >= kPool / 2))
+        continue;
       below += clearance < kAsked;
       poses.push_back(pose);
     }
@@ -151,23 +166,28 @@ void add_kinematics(Fixture& c) {
   add("ik/closed_form_libm", [&](benchmark::State& state) {
     std::vector<std::array<ElbowCircle, 2>> circles;
     for (int i = 0; i < lattice.layers(); ++i)
-      circles.push_back(elbow_circles(lattice.arm(), lattice.plane(i), lattice.path().layer(i).tool));
+      circles.push_back(
+          elbow_circles(lattice.arm(), lattice.plane(i), lattice.path().layer(i).tool));
     cycle(state, c.nodes, [&](const Fixture::Node& x) {
-      return srs_ik(lattice.arm(), circles[static_cast<std::size_t>(x.layer)], lattice.phi(x.layer, x.slot),
-                    lattice.branch_of(x.slot));
+      return srs_ik(lattice.arm(), circles[static_cast<std::size_t>(x.layer)],
+                    lattice.phi(x.layer, x.slot), lattice.branch_of(x.slot));
     });
   });
   const Chain& chain = lattice.chain();
-  add("forward_kinematics",
-      [&](benchmark::State& state) { cycle(state, c.nodes, [&](const Fixture::Node& x) { return chain.tool(x.q); }); });
-  add("jacobian",
-      [&](benchmark::State& state) { cycle(state, c.nodes, [&](const Fixture::Node& x) { return chain.jacobian(x.q); }); });
-  add("manipulability",
-      [&](benchmark::State& state) { cycle(state, c.nodes, [&](const Fixture::Node& x) { return chain.manipulability(x.q); }); });
+  add("forward_kinematics", [&](benchmark::State& state) {
+    cycle(state, c.nodes, [&](const Fixture::Node& x) { return chain.tool(x.q); });
+  });
+  add("jacobian", [&](benchmark::State& state) {
+    cycle(state, c.nodes, [&](const Fixture::Node& x) { return chain.jacobian(x.q); });
+  });
+  add("manipulability", [&](benchmark::State& state) {
+    cycle(state, c.nodes, [&](const Fixture::Node& x) { return chain.manipulability(x.q); });
+  });
   add("step_error", [&](benchmark::State& state) {
     cycle(state, c.edges, [&](const Fixture::Edge& x) {
       const double phi = lattice.phi(x.a.layer, x.a.slot);
-      return step_error(lattice, x.a.layer, 0, lattice.branch_of(x.a.slot), phi, lattice.phi(x.a.layer + 1, x.b) - phi);
+      return step_error(lattice, x.a.layer, 0, lattice.branch_of(x.a.slot), phi,
+                        lattice.phi(x.a.layer + 1, x.b) - phi);
     });
   });
   add("tool_path_error", [&](benchmark::State& state) {
@@ -179,7 +199,8 @@ void add_kinematics(Fixture& c) {
 
 void add_search(Fixture& c) {
   const std::string unit = std::string("/") + to_string(active_isa());
-  for (const auto& [name, what] : {std::pair{"whole", Pruning::kNone}, {"bounded", Pruning::kByBound}}) {
+  for (const auto& [name, what] :
+       {std::pair{"whole", Pruning::kNone}, {"bounded", Pruning::kByBound}}) {
     const auto extent = what;  // a structured binding cannot be captured
     add(std::string("sweep/") + name + unit, [&c, extent](benchmark::State& state) {
       for (auto _ : state) {
@@ -201,12 +222,13 @@ void add_search(Fixture& c) {
 
 void add_collision(Fixture& c, const std::filesystem::path& problems) {
   const auto door = [](const Problem& problem) { return problem.scene.front().shape; };
-  const std::pair<const char*, Shape> shapes[] = {{"sphere", Sphere{0.1}},
-                                                  {"capsule", Capsule{0.05, 0.3}},
-                                                  {"box", Box{Vector3d(0.2, 0.3, 0.4)}},
-                                                  {"cylinder", Cylinder{0.1, 0.4}},
-                                                  {"mesh_2k", door(c.problem)},
-                                                  {"mesh_20k", door(io::load_problem(problems / "experiment_c_20k.yaml"))}};
+  const std::pair<const char*, Shape> shapes[] = {
+      {"sphere", Sphere{0.1}},
+      {"capsule", Capsule{0.05, 0.3}},
+      {"box", Box{Vector3d(0.2, 0.3, 0.4)}},
+      {"cylinder", Cylinder{0.1, 0.4}},
+      {"mesh_2k", door(c.problem)},
+      {"mesh_20k", door(io::load_problem(problems / "experiment_c_20k.yaml"))}};
   for (const auto& [name, shape] : shapes) {
     const auto pairs = std::make_shared<Pairs>(shape);  // shared: three benchmarks read it
     const std::string end = std::string("/capsule-") + name;
@@ -225,29 +247,37 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
     add("certificate" + end, [=](benchmark::State& state) {
       std::size_t undecided = 0;
       cycle(state, pairs->poses, [&](const Pose& pose) {
-        const DistanceProof answer = prove_distance({&pairs->capsule, &pose}, {&pairs->other, &pairs->origin}, kAsked);
+        const DistanceProof answer =
+            prove_distance({&pairs->capsule, &pose}, {&pairs->other, &pairs->origin}, kAsked);
         undecided += answer == DistanceProof::kNone;
         return answer;
       });
-      state.counters["undecided"] = static_cast<double>(undecided) / static_cast<double>(state.iterations());
+      state.counters["undecided"] =
+          static_cast<double>(undecided) / static_cast<double>(state.iterations());
     });
   }
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
-  add("posture/kept", [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {
-    World::Query query(c.world, DistanceProofs::kOn);
-    cycle(state, rows,
-          [&](const TrajectoryRow& row) { return query.find_violating_pair_incremental(row.q, ClearanceRule::kNode); });
-  });
-  for (const auto& [name, distance_proofs] : {std::pair{"fcl", DistanceProofs::kOff}, {"certificates", DistanceProofs::kOn}}) {
+  add("posture/kept",
+      [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {
+        World::Query query(c.world, DistanceProofs::kOn);
+        cycle(state, rows, [&](const TrajectoryRow& row) {
+          return query.find_violating_pair_incremental(row.q, ClearanceRule::kNode);
+        });
+      });
+  for (const auto& [name, distance_proofs] :
+       {std::pair{"fcl", DistanceProofs::kOff}, {"certificates", DistanceProofs::kOn}}) {
     const auto who = distance_proofs;  // a structured binding cannot be captured
     add(std::string("posture/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);
-      cycle(state, c.nodes, [&](const Fixture::Node& x) { return query.find_violating_pair(x.q, ClearanceRule::kNode); });
+      cycle(state, c.nodes, [&](const Fixture::Node& x) {
+        return query.find_violating_pair(x.q, ClearanceRule::kNode);
+      });
     });
     add(std::string("motion/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);
-      cycle(state, c.edges, [&](const Fixture::Edge& x) { return edge_blocked(query, c.rule, x.a.q, x.q); });
+      cycle(state, c.edges,
+            [&](const Fixture::Edge& x) { return edge_blocked(query, c.rule, x.a.q, x.q); });
     });
   }
 }

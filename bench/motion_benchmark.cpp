@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a lattice's path to a motion, on random poses: what refining and timing bring, and what they take.
-//   motion_benchmark PROBLEM.yaml [EPISODES]    default 100 episodes of seed 1; a problem without `vary` is planned once
+// From a lattice's path to a motion, on random poses: what refining and timing bring, and what they
+// take.
+//   motion_benchmark PROBLEM.yaml [EPISODES]    default 100 episodes of seed 1; a problem without
+//   `vary` is planned once
 // One line for each pose, medians and 95th percentiles below.
 #include <algorithm>
 #include <chrono>
@@ -26,7 +28,8 @@ namespace {
 using namespace swivel;
 
 double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 
 double percentile(std::vector<double> values, double share) {
@@ -50,7 +53,8 @@ int run(const std::string& file, std::uint64_t episodes) {
     options.planner = PlannerKind::kLazy;
     Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
     auto start = std::chrono::steady_clock::now();
-    const MotionPlan whole = plan_motion(planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
+    const MotionPlan whole = plan_motion(
+        planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
     if (whole.result.status != PlanStatus::kSolved) continue;
     ++solved;
     all["plan, refine and time ms"].push_back(ms_since(start));
@@ -67,16 +71,19 @@ int run(const std::string& file, std::uint64_t episodes) {
     all["nodes"].push_back(static_cast<double>(one.nodes_asked));
     all["cost over lattice"].push_back(one.cost / one.cost_before);
     all["cost over lattice, two seeds"].push_back(both.cost / both.cost_before);
-    if (both.bend_before > 400) ++kinked, all["smoother, kinked"].push_back(both.bend_before / both.bend);
+    if (both.bend_before > 400)
+      ++kinked, all["smoother, kinked"].push_back(both.bend_before / both.bend);
     const CheckResult check = check_trajectory(robot, problem, both.rows);
-    std::printf("%3d: cost %.4f %.4f %.4f, bend %.0f %.0f, %d rounds, %.1f ms%s%s", static_cast<int>(episode), one.cost_before,
-                one.cost, both.cost, both.bend_before, both.bend, one.rounds, refine_ms, one.refined ? "" : ", NOT REFINED",
+    std::printf("%3d: cost %.4f %.4f %.4f, bend %.0f %.0f, %d rounds, %.1f ms%s%s",
+                static_cast<int>(episode), one.cost_before, one.cost, both.cost, both.bend_before,
+                both.bend, one.rounds, refine_ms, one.refined ? "" : ", NOT REFINED",
                 check.passed ? "" : ", CHECK FAILS");
     for (const std::string& warning : whole.result.warnings)
       if (warning.find("branch") != std::string::npos) std::printf(", %s", warning.c_str());
     if (!check.passed) ++failed, std::printf(": %s", check.failures[0].c_str());
     for (const double speed : {0.05, 0.25}) {
-      const MotionResult timed = time_trajectory(robot, problem, both.rows, {.speed = speed, .turn_speed = {}, .rate = 250});
+      const MotionResult timed = time_trajectory(robot, problem, both.rows,
+                                                 {.speed = speed, .turn_speed = {}, .rate = 250});
       const std::string at = " at " + std::to_string(static_cast<int>(1e3 * speed)) + " mm/s";
       all["timing ms" + at].push_back(timed.time_ms);
       all["proof ms" + at].push_back(timed.check_ms);
@@ -92,7 +99,8 @@ int run(const std::string& file, std::uint64_t episodes) {
       start = std::chrono::steady_clock::now();
       const CheckResult proved = check_motion(robot, problem, motion.rows);
       all["check ms" + at].push_back(ms_since(start));
-      if (!proved.passed) ++failed, std::printf("; CHECK OF MOTION FAILS: %s", proved.failures[0].c_str());
+      if (!proved.passed)
+        ++failed, std::printf("; CHECK OF MOTION FAILS: %s", proved.failures[0].c_str());
       all["time over ideal" + at].push_back(motion.duration / motion.ideal);
       all["worst ratio" + at].push_back(worst);
       all["between, um" + at].push_back(1e6 * motion.between_position);
@@ -101,10 +109,11 @@ int run(const std::string& file, std::uint64_t episodes) {
     }
     std::printf("\n");
   }
-  std::printf("%d solved, %d kinked, %d failures\n%-34s %10s %10s %10s\n", solved, kinked, failed, "", "median", "95 %", "most");
+  std::printf("%d solved, %d kinked, %d failures\n%-34s %10s %10s %10s\n", solved, kinked, failed,
+              "", "median", "95 %", "most");
   for (const auto& [name, values] : all)
-    std::printf("%-34s %10.4g %10.4g %10.4g\n", name.c_str(), percentile(values, 0.5), percentile(values, 0.95),
-                percentile(values, 1));
+    std::printf("%-34s %10.4g %10.4g %10.4g\n", name.c_str(), percentile(values, 0.5),
+                percentile(values, 0.95), percentile(values, 1));
   return failed == 0 ? 0 : 1;
 }
 
@@ -113,10 +122,16 @@ int run(const std::string& file, std::uint64_t episodes) {
 int main(int argc, char** argv) {
   std::string problem;
   std::uint64_t episodes = 100;
-  CLI::App app("From a lattice's path to a motion, on random poses: what refining and timing bring, and what they take.",
-               "motion_benchmark");
-  app.add_option("problem", problem, "problem file; without `vary` it is planned once")->required()->check(CLI::ExistingFile);
-  app.add_option("episodes", episodes, "poses of seed 1")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI::App app(
+      "From a lattice's path to a motion, on random poses: what refining and timing bring, and "
+      "what they take.",
+      "motion_benchmark");
+  app.add_option("problem", problem, "problem file; without `vary` it is planned once")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("episodes", episodes, "poses of seed 1")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
     return run(problem, episodes);

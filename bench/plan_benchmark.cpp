@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole plans on a prepared robot: scene / planner / resolution / edge mode / threads. Scenes are the paper's experiments, an arm
-// without an arm angle (`arcs`), an arm that chooses the roll of its tool as well (`roll`), and an arm whose links are meshes
-// (`meshes`). The planner lazy_fcl_alone is lazy without proofs of our own (PlanOptions::fcl_alone). Report stages are not timed.
-// Rows have counters eager_ms, eager_dp_ms and the speed-ups over both: the eager planners are run on the same problem before and
-// after each repetition, in the same process; a plan of more than a second once for all rows of its problem.
+// Whole plans on a prepared robot: scene / planner / resolution / edge mode / threads. Scenes are
+// the paper's experiments, an arm without an arm angle (`arcs`), an arm that chooses the roll of
+// its tool as well (`roll`), and an arm whose links are meshes
+// (`meshes`). The planner lazy_fcl_alone is lazy without proofs of our own
+// (PlanOptions::fcl_alone). Report stages are not timed. Rows have counters eager_ms, eager_dp_ms
+// and the speed-ups over both: the eager planners are run on the same problem before and after each
+// repetition, in the same process; a plan of more than a second once for all rows of its problem.
 //   plan_benchmark --benchmark_filter=^c/lazy    every argument of google-benchmark applies
-//   plan_benchmark --plan_limit=60               s: rows of which a plan takes longer are not run, and say so
+//   plan_benchmark --plan_limit=60               s: rows of which a plan takes longer are not run,
+//   and say so
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -41,7 +44,8 @@ double plan_limit = 60;                // s
 struct Scene {
   const char* name;
   const char* file;
-  bool of_the_paper;  ///< with every planner and edge mode; else what is needed to compare eager with lazy and parallel
+  bool of_the_paper;  ///< with every planner and edge mode; else what is needed to compare eager
+                      ///< with lazy and parallel
   int settings;       ///< how many of bench::kSettings
   bool mesh_bodies = false;
 };
@@ -63,7 +67,8 @@ struct Prepared {
     const World& world = robot.world();
     world.make_ready([] { return false; });
     World::Query query(world);
-    for (const BodyPair& pair : world.pairs()) benchmark::DoNotOptimize(query.pair_violates(Config::Zero(), pair, kFar));
+    for (const BodyPair& pair : world.pairs())
+      benchmark::DoNotOptimize(query.pair_violates(Config::Zero(), pair, kFar));
   }
 };
 
@@ -71,8 +76,10 @@ const Prepared& prepared(const Scene& scene) {
   static std::map<std::string, std::unique_ptr<const Prepared>> all;
   auto& entry = all[scene.name];
   if (!entry) {
-    Problem problem = io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" / (std::string(scene.file) + ".yaml"));
-    entry = std::make_unique<const Prepared>(scene.mesh_bodies ? bench::with_mesh_bodies(std::move(problem)) : std::move(problem));
+    Problem problem = io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" /
+                                       (std::string(scene.file) + ".yaml"));
+    entry = std::make_unique<const Prepared>(
+        scene.mesh_bodies ? bench::with_mesh_bodies(std::move(problem)) : std::move(problem));
   }
   return *entry;
 }
@@ -86,9 +93,11 @@ struct Case {
 };
 
 std::string label_of(const Scene& scene, const Case& what, const bench::Setting& setting) {
-  std::string label = std::string(scene.name) + "/" + to_string(what.planner) + (what.fcl_alone ? "_fcl_alone" : "") + "/" +
-                      setting.name + (what.edges == EdgeMode::kNodes ? "/nodes" : "/continuous");
-  if (what.planner == PlannerKind::kParallel || what.threads > 1) label += "/threads:" + std::to_string(what.threads);
+  std::string label = std::string(scene.name) + "/" + to_string(what.planner) +
+                      (what.fcl_alone ? "_fcl_alone" : "") + "/" + setting.name +
+                      (what.edges == EdgeMode::kNodes ? "/nodes" : "/continuous");
+  if (what.planner == PlannerKind::kParallel || what.threads > 1)
+    label += "/threads:" + std::to_string(what.threads);
   return label;
 }
 
@@ -104,7 +113,8 @@ bool in_time(const PlanResult& result) {
   return result.status != PlanStatus::kTimeout;
 }
 
-/// Of plans that take longer than a second, by label: they are not repeated for every row that is compared with them.
+/// Of plans that take longer than a second, by label: they are not repeated for every row that is
+/// compared with them.
 struct SlowPlan {
   double s = 0;          ///< the limit where it took more
   bool has_row = false;  ///< it has been measured for its own row
@@ -123,8 +133,10 @@ void note_time(const std::string& label, const PlanResult& result, bool for_its_
 }
 
 /// The milliseconds of one eager plan; none where it takes more than the limit.
-std::optional<double> eager_ms(const std::string& label, const Scene& scene, const Problem& problem, PlannerKind planner) {
-  if (const SlowPlan slow = slow_plan(label); slow.s > 0) return slow.s < plan_limit ? std::optional(1e3 * slow.s) : std::nullopt;
+std::optional<double> eager_ms(const std::string& label, const Scene& scene, const Problem& problem,
+                               PlannerKind planner) {
+  if (const SlowPlan slow = slow_plan(label); slow.s > 0)
+    return slow.s < plan_limit ? std::optional(1e3 * slow.s) : std::nullopt;
   const PlanResult result = plan(prepared(scene).robot, problem, options_for(planner, 1));
   note_time(label, result, false);
   return in_time(result) ? std::optional(result.time_ms.at("plan")) : std::nullopt;
@@ -151,9 +163,12 @@ struct EagerTimes {
   }
 };
 
-void run(benchmark::State& state, const Scene& scene, const Case& what, const bench::Setting& setting) {
+void run(benchmark::State& state, const Scene& scene, const Case& what,
+         const bench::Setting& setting) {
   const std::string label = label_of(scene, what, setting);
-  const auto not_run = [&] { state.SkipWithError(formatted("not run: more than %g s a plan", plan_limit).c_str()); };
+  const auto not_run = [&] {
+    state.SkipWithError(formatted("not run: more than %g s a plan", plan_limit).c_str());
+  };
   if (const SlowPlan slow = slow_plan(label); slow.s >= plan_limit)
     return not_run();
   else if (slow.has_row && slow.s > kOnce)
@@ -163,7 +178,8 @@ void run(benchmark::State& state, const Scene& scene, const Case& what, const be
   bench::set_resolution(problem, setting);
   problem.limits.edges = what.edges;
   const auto eager_times = [&](PlannerKind planner, bool asked) {
-    return EagerTimes{scene, problem, planner, label_of(scene, {planner, what.edges, 1}, setting), asked};
+    return EagerTimes{scene, problem, planner, label_of(scene, {planner, what.edges, 1}, setting),
+                      asked};
   };
   EagerTimes eager = eager_times(PlannerKind::kEager, what.over_eager);
   EagerTimes eager_dp = eager_times(PlannerKind::kEagerDp, what.over_eager_dp);
@@ -211,24 +227,38 @@ std::vector<Case> cases(const Scene& scene, int setting) {
   const bool paper = setting < bench::kPaperSettings;
   const int most_threads = std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
   std::vector<Case> all;
-  // Eager planners with continuous edges take minutes: every edge of the lattice is swept through FCL.
+  // Eager planners with continuous edges take minutes: every edge of the lattice is swept through
+  // FCL.
   if (setting <= bench::kPaperSettings) {
     all.push_back({.planner = PlannerKind::kEager, .edges = EdgeMode::kNodes, .threads = 1});
-    if (scene.of_the_paper) all.push_back({.planner = PlannerKind::kEagerDp, .edges = EdgeMode::kNodes, .threads = 1});
+    if (scene.of_the_paper)
+      all.push_back({.planner = PlannerKind::kEagerDp, .edges = EdgeMode::kNodes, .threads = 1});
   }
   if (paper) {
-    all.push_back({.planner = PlannerKind::kEager, .edges = EdgeMode::kNodes, .threads = 2, .over_eager = true});
-    all.push_back({.planner = PlannerKind::kLazy, .edges = EdgeMode::kNodes, .threads = 1, .fcl_alone = true, .over_eager = true});
+    all.push_back({.planner = PlannerKind::kEager,
+                   .edges = EdgeMode::kNodes,
+                   .threads = 2,
+                   .over_eager = true});
+    all.push_back({.planner = PlannerKind::kLazy,
+                   .edges = EdgeMode::kNodes,
+                   .threads = 1,
+                   .fcl_alone = true,
+                   .over_eager = true});
   }
   for (const EdgeMode edges : {EdgeMode::kNodes, EdgeMode::kContinuous}) {
     if (edges == EdgeMode::kContinuous && !scene.of_the_paper) continue;
-    const bool over_eager = paper && edges == EdgeMode::kNodes, over_eager_dp = over_eager && scene.of_the_paper;
+    const bool over_eager = paper && edges == EdgeMode::kNodes,
+               over_eager_dp = over_eager && scene.of_the_paper;
     const auto add = [&](PlannerKind planner, int threads) {
-      all.push_back(
-          {.planner = planner, .edges = edges, .threads = threads, .over_eager = over_eager, .over_eager_dp = over_eager_dp});
+      all.push_back({.planner = planner,
+                     .edges = edges,
+                     .threads = threads,
+                     .over_eager = over_eager,
+                     .over_eager_dp = over_eager_dp});
     };
     add(PlannerKind::kLazy, 1);
-    for (int threads = scene.of_the_paper ? 1 : 2; threads <= most_threads; threads *= 2) add(PlannerKind::kParallel, threads);
+    for (int threads = scene.of_the_paper ? 1 : 2; threads <= most_threads; threads *= 2)
+      add(PlannerKind::kParallel, threads);
   }
   return all;
 }
@@ -251,7 +281,9 @@ bool take_plan_limit(int& argc, char** argv) {
 
 void print_help() {
   benchmark::PrintDefaultHelp();
-  std::printf("          [--plan_limit=<seconds>]   rows of which a plan takes longer are not run (default 60)\n");
+  std::printf(
+      "          [--plan_limit=<seconds>]   rows of which a plan takes longer are not run (default "
+      "60)\n");
 }
 
 }  // namespace
@@ -263,7 +295,8 @@ int main(int argc, char** argv) {
       const bench::Setting& setting = bench::kSettings[k];
       for (const Case& what : cases(scene, k)) {
         const std::string label = label_of(scene, what, setting);
-        benchmark::RegisterBenchmark(label.c_str(), [&, what](benchmark::State& state) { run(state, scene, what, setting); })
+        benchmark::RegisterBenchmark(
+            label.c_str(), [&, what](benchmark::State& state) { run(state, scene, what, setting); })
             ->Unit(benchmark::kMillisecond)
             ->UseRealTime();
       }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside fresh plans on a prepared robot.
+// Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside fresh
+// plans on a prepared robot.
 //   replanning [STEPS]    default 1000
 #include <algorithm>
 #include <chrono>
@@ -19,7 +20,8 @@ namespace {
 using namespace swivel;
 
 double us_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 double at(std::vector<double> sorted, double share) {
   std::sort(sorted.begin(), sorted.end());
@@ -32,9 +34,10 @@ void walk(const Problem& problem, const char* setting, const std::string& object
   const PreparedRobot robot(problem);
   Planner planner(problem);
   (void)planner.plan(options);
-  const auto k = static_cast<std::size_t>(
-      std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == object; }) -
-      problem.scene.begin());
+  const auto k =
+      static_cast<std::size_t>(std::find_if(problem.scene.begin(), problem.scene.end(),
+                                            [&](const auto& o) { return o.name == object; }) -
+                               problem.scene.begin());
   Problem moved = problem;
   std::mt19937_64 random(7);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53 * 2 - 1; };
@@ -52,23 +55,30 @@ void walk(const Problem& problem, const char* setting, const std::string& object
     const PlanResult alone = plan(robot, moved, options);
     fresh.push_back(us_since(start));
     solved += alone.status == PlanStatus::kSolved;
-    bool equal = again.status == alone.status && again.cost == alone.cost && again.trajectory.size() == alone.trajectory.size();
-    for (std::size_t i = 0; equal && i < alone.trajectory.size(); ++i) equal = again.trajectory[i].q == alone.trajectory[i].q;
+    bool equal = again.status == alone.status && again.cost == alone.cost &&
+                 again.trajectory.size() == alone.trajectory.size();
+    for (std::size_t i = 0; equal && i < alone.trajectory.size(); ++i)
+      equal = again.trajectory[i].q == alone.trajectory[i].q;
     unequal += !equal;
   }
   std::printf(
-      "%-4s %-5s %5d steps, %5d solved, %d unequal; us: remembered %7.0f (99 %% %7.0f), fresh %7.0f (99 %% %7.0f), ratio %.2f\n",
-      setting, object.c_str(), steps, solved, unequal, at(remembered, 0.5), at(remembered, 0.99), at(fresh, 0.5), at(fresh, 0.99),
-      at(remembered, 0.5) / at(fresh, 0.5));
+      "%-4s %-5s %5d steps, %5d solved, %d unequal; us: remembered %7.0f (99 %% %7.0f), fresh "
+      "%7.0f (99 %% %7.0f), ratio %.2f\n",
+      setting, object.c_str(), steps, solved, unequal, at(remembered, 0.5), at(remembered, 0.99),
+      at(fresh, 0.5), at(fresh, 0.99), at(remembered, 0.5) / at(fresh, 0.5));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   int steps = 1000;
-  CLI::App app("Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside fresh plans.",
-               "replanning");
-  app.add_option("steps", steps, "steps of each object")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI::App app(
+      "Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside "
+      "fresh plans.",
+      "replanning");
+  app.add_option("steps", steps, "steps of each object")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   Problem problem = io::load_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
   for (const bench::Setting& setting : bench::kSettings) {

@@ -2,8 +2,9 @@
 // Makes the car-door panel of experiment C and the polishing path on it:
 //   make_door --triangles N OUT.stl      a closed panel of about N triangles, binary STL, metres
 //   make_door --path OUT.csv             tool poses x,y,z,qw,qx,qy,qz in the door's frame
-// Door frame: x along the door (towards its rear), y inwards, z up; the origin lies on the outer surface in the middle of the belt
-// line. Only + - * / and sqrt, all correctly rounded, so that every machine writes the same bytes.
+// Door frame: x along the door (towards its rear), y inwards, z up; the origin lies on the outer
+// surface in the middle of the belt line. Only + - * / and sqrt, all correctly rounded, so that
+// every machine writes the same bytes.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -61,8 +62,10 @@ double slanted(double x, double z) {
   return z > 0 ? x + 0.6 * z * (0.75 - x) / 1.5 : x;
 }
 
-/// Grid coordinates between given lines, about `step` apart; `hole` receives the indices between which the window lies.
-std::vector<double> grid(const std::array<double, 4>& lines, double step, std::pair<int, int>& hole) {
+/// Grid coordinates between given lines, about `step` apart; `hole` receives the indices between
+/// which the window lies.
+std::vector<double> grid(const std::array<double, 4>& lines, double step,
+                         std::pair<int, int>& hole) {
   std::vector<double> result{lines[0]};
   for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
     if (k == 1) hole.first = static_cast<int>(result.size()) - 1;
@@ -96,13 +99,15 @@ Mesh panel(double step) {
   // Outer IK solution: counter-clockwise in (x, z), so that its normals point to -y.
   for (int j = 0; j + 1 < nz; ++j)
     for (int i = 0; i + 1 < nx; ++i) {
-      if (i >= hole_x.first && i < hole_x.second && j >= hole_z.first && j < hole_z.second) continue;
+      if (i >= hole_x.first && i < hole_x.second && j >= hole_z.first && j < hole_z.second)
+        continue;
       const int a = j * nx + i, b = a + 1, c = b + nx, d = a + nx;
       mesh.triangles.push_back({a, b, c});
       mesh.triangles.push_back({a, c, d});
     }
 
-  // Walls along every edge that has a triangle on one side only, and the inner IK solution, turned over.
+  // Walls along every edge that has a triangle on one side only, and the inner IK solution, turned
+  // over.
   std::set<std::pair<int, int>> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
@@ -117,12 +122,14 @@ Mesh panel(double step) {
   return mesh;
 }
 
-/// The coarsest panel of a series of ever finer ones that has at least `count` triangles, or the one before if that is closer.
+/// The coarsest panel of a series of ever finer ones that has at least `count` triangles, or the
+/// one before if that is closer.
 Mesh panel_of(int count) {
   Mesh before = panel(1.5 / 4);
   for (int parts = 5;; ++parts) {
     Mesh mesh = panel(1.5 / parts);
-    const int now = static_cast<int>(mesh.triangles.size()), then = static_cast<int>(before.triangles.size());
+    const int now = static_cast<int>(mesh.triangles.size()),
+              then = static_cast<int>(before.triangles.size());
     if (now >= count) return now - count < count - then ? mesh : before;
     before = std::move(mesh);
   }
@@ -140,10 +147,13 @@ std::string stl(const Mesh& mesh) {
   const std::uint32_t count = static_cast<std::uint32_t>(mesh.triangles.size());
   for (int k = 0; k < 4; ++k) bytes.push_back(static_cast<char>((count >> (8 * k)) & 0xff));
   for (const auto& t : mesh.triangles) {
-    const auto vertex = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    const auto vertex = [&](std::size_t k) {
+      return mesh.vertices[static_cast<std::size_t>(t[k])];
+    };
     const Vec normal = unit(cross(vertex(1) - vertex(0), vertex(2) - vertex(0)));
     for (const Vec& v : {normal, vertex(0), vertex(1), vertex(2)})
-      for (const double c : v) append(bytes, static_cast<float>(c) + 0.0f);  // + 0: no negative zero, which would not weld
+      for (const double c : v)
+        append(bytes, static_cast<float>(c) + 0.0f);  // + 0: no negative zero, which would not weld
     bytes.append(2, '\0');
   }
   return bytes;
@@ -152,7 +162,8 @@ std::string stl(const Mesh& mesh) {
 /// Unit quaternion (w, x, y, z) of the rotation with the given columns. Shepperd 1978.
 std::array<double, 4> quaternion(const Vec& x, const Vec& y, const Vec& z) {
   const double trace = x[0] + y[1] + z[2];
-  const std::array<double, 4> square{1 + trace, 1 + 2 * x[0] - trace, 1 + 2 * y[1] - trace, 1 + 2 * z[2] - trace};  // 4 q_k^2
+  const std::array<double, 4> square{1 + trace, 1 + 2 * x[0] - trace, 1 + 2 * y[1] - trace,
+                                     1 + 2 * z[2] - trace};  // 4 q_k^2
   std::size_t k = 0;
   for (std::size_t m = 1; m < 4; ++m)
     if (square[m] > square[k]) k = m;
@@ -169,7 +180,8 @@ std::array<double, 4> quaternion(const Vec& x, const Vec& y, const Vec& z) {
   }
 }
 
-/// A bow below the window's lower edge, towards the rear. Tool z points into the surface, tool x up the door.
+/// A bow below the window's lower edge, towards the rear. Tool z points into the surface, tool x up
+/// the door.
 std::string path() {
   std::string text = "x,y,z,qw,qx,qy,qz\n";
   std::array<double, 4> last{1, 0, 0, 0};
@@ -186,8 +198,8 @@ std::string path() {
       for (double& c : q) c = -c;
     last = q;
     std::array<char, 200> line;
-    std::snprintf(line.data(), line.size(), "%.12f,%.12f,%.12f,%.12f,%.12f,%.12f,%.12f\n", position[0], position[1], position[2],
-                  q[0], q[1], q[2], q[3]);
+    std::snprintf(line.data(), line.size(), "%.12f,%.12f,%.12f,%.12f,%.12f,%.12f,%.12f\n",
+                  position[0], position[1], position[2], q[0], q[1], q[2], q[3]);
     text += line.data();
   }
   return text;

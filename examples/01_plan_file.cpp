@@ -5,8 +5,11 @@
 #include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
-  const swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+  const swivel::Problem problem =
+      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   const swivel::PlanResult result = swivel::plan(problem);
-  if (result.status != swivel::PlanStatus::kSolved) return std::cerr << words(result.diagnosis.cause) << '\n', 1;
-  for (const swivel::TrajectoryRow& row : result.trajectory) std::cout << row.s << ": " << row.q.transpose() << '\n';
+  if (result.status != swivel::PlanStatus::kSolved)
+    return std::cerr << words(result.diagnosis.cause) << '\n', 1;
+  for (const swivel::TrajectoryRow& row : result.trajectory)
+    std::cout << row.s << ": " << row.q.transpose() << '\n';
 }

@@ -7,10 +7,11 @@
 
 using swivel::Vector3d;
 
-/// Joint axes are z, y, z, y, z, y, z: shoulder 0.34 m above the base, elbow and wrist 0.40 m further each, tool 0.13 m past the
-/// wrist.
+/// Joint axes are z, y, z, y, z, y, z: shoulder 0.34 m above the base, elbow and wrist 0.40 m
+/// further each, tool 0.13 m past the wrist.
 swivel::RobotModel make_arm() {
-  constexpr double kOffset[] = {0.14, 0.20, 0.20, 0.20, 0.20, 0.20, 0.08, 0.05};  // m, from frame to frame
+  constexpr double kOffset[] = {0.14, 0.20, 0.20, 0.20,
+                                0.20, 0.20, 0.08, 0.05};  // m, from frame to frame
   swivel::RobotModel arm;
   arm.links.emplace_back().name = "base";
   for (int k = 0; k < 8; ++k) {
@@ -26,7 +27,8 @@ swivel::RobotModel make_arm() {
     swivel::Link& link = arm.links.emplace_back();
     link.name = k < 7 ? "link_" + std::to_string(k + 1) : "tool";
     link.parent_joint = k;
-    if (k == 2 || k == 4) link.collision = {{.shape = swivel::Capsule{.radius = 0.05, .length = 0.36}}};
+    if (k == 2 || k == 4)
+      link.collision = {{.shape = swivel::Capsule{.radius = 0.05, .length = 0.36}}};
   }
   arm.has_srdf = true;
   arm.disabled_pairs = {{"link_3", "link_5"}};  // they meet at the elbow
@@ -44,9 +46,11 @@ int main() {
   task.limits.clearance = 0.02;
 
   swivel::Planner planner(robot);
-  planner.add({"box", swivel::Box{{0.1, 0.1, 0.1}}, swivel::Pose(Eigen::Translation3d(0.2, 0.1, 0.75))});
+  planner.add(
+      {"box", swivel::Box{{0.1, 0.1, 0.1}}, swivel::Pose(Eigen::Translation3d(0.2, 0.1, 0.75))});
   planner.set_task(task);
   const swivel::PlanResult result = planner.plan();
-  std::cout << to_string(result.status) << ", " << result.trajectory.size() << " rows, cost " << result.cost << '\n';
+  std::cout << to_string(result.status) << ", " << result.trajectory.size() << " rows, cost "
+            << result.cost << '\n';
   return result.status == swivel::PlanStatus::kSolved ? 0 : 1;
 }

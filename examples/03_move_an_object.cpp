@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A planner is built once. An object moves a little at a time, and each plan re-uses what the move did not change.
+// A planner is built once. An object moves a little at a time, and each plan re-uses what the move
+// did not change.
 #include <iostream>
 #include <swivel/io/io.hpp>
 #include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
-  swivel::Planner planner(swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml"));
+  swivel::Planner planner(
+      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml"));
   swivel::PlanOptions options;
   options.planner = swivel::PlannerKind::kLazy;  // on one thread
 
   const swivel::PlanResult first = planner.plan(options);
-  std::cout << to_string(first.status) << ", cost " << first.cost << ", " << first.counters.nodes_checked
-            << " states asked about clearance\n";
+  std::cout << to_string(first.status) << ", cost " << first.cost << ", "
+            << first.counters.nodes_checked << " states asked about clearance\n";
   swivel::Pose rail = planner.problem().scene.back().pose;
   for (int step = 1; step <= 5; ++step) {
     rail.translation().x() += 0.002;

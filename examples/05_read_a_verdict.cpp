@@ -5,7 +5,8 @@
 #include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
-  swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+  swivel::Problem problem =
+      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   swivel::SceneObject& wall = problem.scene.emplace_back();
   wall.name = "wall";
   wall.shape = swivel::Box{{0.3, 0.02, 0.3}};
@@ -16,10 +17,13 @@ int main(int argc, char** argv) {
   const swivel::PlanResult result = swivel::plan(problem, options);
   const swivel::Diagnosis& diagnosis = result.diagnosis;
   std::cout << to_string(result.status) << ": " << words(diagnosis.cause) << '\n';
-  if (diagnosis.reached_s) std::cout << "a valid path reaches s = " << *diagnosis.reached_s << " m\n";
-  if (diagnosis.without_it_s) std::cout << "without that, paths reach s = " << *diagnosis.without_it_s << " m at least\n";
+  if (diagnosis.reached_s)
+    std::cout << "a valid path reaches s = " << *diagnosis.reached_s << " m\n";
+  if (diagnosis.without_it_s)
+    std::cout << "without that, paths reach s = " << *diagnosis.without_it_s << " m at least\n";
   for (const auto& [cause, count] : diagnosis.removed)
     std::cout << count << " nodes or edges are removed there by " << words(cause) << '\n';
   for (const swivel::EmptyLayers& run : diagnosis.empty_layers)
-    std::cout << "layers " << run.first << " to " << run.last << " have no valid node: " << words(run.cause) << '\n';
+    std::cout << "layers " << run.first << " to " << run.last
+              << " have no valid node: " << words(run.cause) << '\n';
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cost of one's own: joints are to stay near the middle of their range. It is added to the cost of the path.
+// A cost of one's own: joints are to stay near the middle of their range. It is added to the cost
+// of the path.
 #include <iostream>
 #include <memory>
 #include <swivel/io/io.hpp>
@@ -18,7 +19,8 @@ class NearTheMiddle : public swivel::StateCost {
 };
 
 int main(int argc, char** argv) {
-  swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+  swivel::Problem problem =
+      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.1};
   for (const double weight : {0.0, 0.02}) {
     swivel::PlanOptions options;
@@ -26,7 +28,8 @@ int main(int argc, char** argv) {
     const swivel::PlanResult result = swivel::plan(problem, options);
     double sum = 0;
     for (const swivel::TrajectoryRow& row : result.trajectory) sum += row.q.norm();
-    std::cout << "weight " << weight << ": cost " << result.cost << ", mean distance from the middle "
+    std::cout << "weight " << weight << ": cost " << result.cost
+              << ", mean distance from the middle "
               << sum / static_cast<double>(result.trajectory.size()) << " rad\n";
   }
 }

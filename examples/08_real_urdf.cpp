@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   problem.model = swivel::io::load_robot(folder / "iiwa14.urdf", folder / "iiwa14.srdf");
   problem.base_link = "base_link", problem.tip_link = "tool0";
   problem.tool.translation().z() = 0.1;  // the tool's point lies 0.1 m past tool0
-  for (const auto& [x, y] : {std::pair{0.45, -0.1}, {0.45, 0.1}, {0.65, 0.1}, {0.65, -0.1}, {0.45, -0.1}})
+  for (const auto& [x, y] :
+       {std::pair{0.45, -0.1}, {0.45, 0.1}, {0.65, 0.1}, {0.65, -0.1}, {0.45, -0.1}})
     problem.waypoints.push_back({{x, y, 0.4}, {0, 1, 0, 0}});  // the tool looks down
   problem.limits.joint_margin = 0.05;
 

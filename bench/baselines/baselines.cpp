@@ -18,8 +18,8 @@ namespace {
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Svd = Eigen::JacobiSVD<Eigen::Matrix<double, 6, kDof>>;
 
-/// Below this least singular value of J the arm counts as singular: the pseudo-inverse would move the joints a thousand times the
-/// tool.
+/// Below this least singular value of J the arm counts as singular: the pseudo-inverse would move
+/// the joints a thousand times the tool.
 constexpr double kSingular = 1e-3;
 constexpr double kLimitTolerance = 1e-9;
 constexpr int kNewtonSteps = 20;
@@ -39,7 +39,8 @@ class Tracker {
         options_(options),
         margin_(problem.limits.joint_margin),
         safe_(problem.limits.clearance),
-        path_(waypoints_in_base(problem), Resolution{.ds = options.step, .dalpha = options.turn_step}, problem.source),
+        path_(waypoints_in_base(problem),
+              Resolution{.ds = options.step, .dalpha = options.turn_step}, problem.source),
         world_(robot.world(), problem.scene),
         query_(world_) {
     if (!problem.start) throw InputError(problem.source + ": start: a local tracker needs one");
@@ -52,7 +53,8 @@ class Tracker {
     for (int i = 0; i < path_.size(); ++i) {
       const Pose& tool = path_.layer(i).tool;
       const auto next = on_tool(tool, q_);
-      if (!next || (*next - q_).cwiseAbs().maxCoeff() > options_.largest_move) return stop(StopReason::kDiverged);
+      if (!next || (*next - q_).cwiseAbs().maxCoeff() > options_.largest_move)
+        return stop(StopReason::kDiverged);
       result_.end = *next;
       if (const int joint = outside(*next); joint >= 0)
         return stop(StopReason::kJointLimit, chain_.joint_names[static_cast<std::size_t>(joint)]);
@@ -93,7 +95,9 @@ class Tracker {
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_.limit[static_cast<std::size_t>(j)];
       if (limit.continuous) continue;
-      if (q[j] < limit.lower + margin_ - kLimitTolerance || q[j] > limit.upper - margin_ + kLimitTolerance) return j;
+      if (q[j] < limit.lower + margin_ - kLimitTolerance ||
+          q[j] > limit.upper - margin_ + kLimitTolerance)
+        return j;
     }
     return -1;
   }
@@ -111,23 +115,28 @@ class Tracker {
            world_.body_names()[static_cast<std::size_t>(nearest_.b)];
   }
 
-  /// Self-motion up the clearance. The null space has one direction n, so (I - J^+ J) grad c = n (dc/dn), and one difference
-  /// quotient to each side says all: where both fall, no self-motion helps. A reason where that leaves q short of the safe
-  /// clearance.
+  /// Self-motion up the clearance. The null space has one direction n, so (I - J^+ J) grad c = n
+  /// (dc/dn), and one difference quotient to each side says all: where both fall, no self-motion
+  /// helps. A reason where that leaves q short of the safe clearance.
   std::optional<StopReason> push_away(const Pose& tool, Config& q) {
     double here = clearance(q);
     for (int k = 0; k < options_.most_pushes && here < options_.influence && here > 0; ++k) {
       if (here >= safe_ && k >= options_.pushes) return std::nullopt;
-      const Config n = Svd(chain_.jacobian(q), Eigen::ComputeFullU | Eigen::ComputeFullV).matrixV().col(kDof - 1);
-      const std::array<double, 2> slopes{(clearance(q + options_.probe * n) - here) / options_.probe,
-                                         (clearance(q - options_.probe * n) - here) / options_.probe};
+      const Config n = Svd(chain_.jacobian(q), Eigen::ComputeFullU | Eigen::ComputeFullV)
+                           .matrixV()
+                           .col(kDof - 1);
+      const std::array<double, 2> slopes{
+          (clearance(q + options_.probe * n) - here) / options_.probe,
+          (clearance(q - options_.probe * n) - here) / options_.probe};
       const double ascent = std::max({0.0, slopes[0], slopes[1]});
       const double sign = slopes[0] >= slopes[1] ? 1 : -1;
-      const double wanted = std::min(options_.largest_push, options_.gain * (1 - here / options_.influence) * ascent);
+      const double wanted =
+          std::min(options_.largest_push, options_.gain * (1 - here / options_.influence) * ascent);
       std::optional<Config> better;
       int held_by = -1;  // joint whose limit ended the push
       if (ascent > options_.vanishing) {
-        // Half the push where it would overshoot the ridge or a limit; the probe itself is known to be higher.
+        // Half the push where it would overshoot the ridge or a limit; the probe itself is known to
+        // be higher.
         for (double push = wanted; !better && push > options_.probe / 4; push /= 2) {
           const auto pushed = on_tool(tool, q + sign * push * n);
           if (!pushed) continue;
@@ -183,11 +192,13 @@ const char* to_string(StopReason reason) {
   return "?";
 }
 
-TrackResult track_jacobian(const PreparedRobot& robot, const Problem& problem, const TrackOptions& options) {
+TrackResult track_jacobian(const PreparedRobot& robot, const Problem& problem,
+                           const TrackOptions& options) {
   return Tracker(robot, problem, options).run(false);
 }
 
-TrackResult track_null_space(const PreparedRobot& robot, const Problem& problem, const TrackOptions& options) {
+TrackResult track_null_space(const PreparedRobot& robot, const Problem& problem,
+                             const TrackOptions& options) {
   return Tracker(robot, problem, options).run(true);
 }
 

@@ -26,10 +26,11 @@ namespace {
 namespace ob = ompl::base;
 
 constexpr int kPlace = kDof;     // index of the path parameter among the coordinates
-constexpr double kLength = 2.0;  // of the path in that coordinate: about as much as joints move, so that distances mean something
+constexpr double kLength = 2.0;  // of the path in that coordinate: about as much as joints move, so
+                                 // that distances mean something
 constexpr double kStep = 0.02;   // between the states of a motion, in the coordinates
-constexpr double kRange =
-    0.3;  // longest motion of a tree, in the coordinates; found on four episodes to serve both better than the default
+constexpr double kRange = 0.3;   // longest motion of a tree, in the coordinates; found on four
+                                 // episodes to serve both better than the default
 constexpr int kGoals = 50;
 
 Config joints(const Eigen::Ref<const Eigen::VectorXd>& x) {
@@ -39,17 +40,20 @@ Config joints(const Eigen::Ref<const Eigen::VectorXd>& x) {
 /// Pose of the tool against the path, and its derivative.
 class OnPath : public ob::Constraint {
  public:
-  OnPath(const Chain& chain, const ToolPath& path) : ob::Constraint(kDof + 1, 6, 1e-6), chain_(chain), path_(path) {}
+  OnPath(const Chain& chain, const ToolPath& path)
+      : ob::Constraint(kDof + 1, 6, 1e-6), chain_(chain), path_(path) {}
 
   [[nodiscard]] Pose at(double place) const {
     const double t = std::clamp(place / kLength, 0.0, 1.0) * (path_.size() - 1);
     const int i = std::min(path_.size() - 2, static_cast<int>(t));
     return path_.at(i, t - i);
   }
-  void function(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> out) const override {
+  void function(const Eigen::Ref<const Eigen::VectorXd>& x,
+                Eigen::Ref<Eigen::VectorXd> out) const override {
     out = error(at(x[kPlace]), chain_.tool(joints(x)));
   }
-  void jacobian(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::MatrixXd> out) const override {
+  void jacobian(const Eigen::Ref<const Eigen::VectorXd>& x,
+                Eigen::Ref<Eigen::MatrixXd> out) const override {
     constexpr double kDifference = 1e-6;
     out.leftCols<kDof>() = chain_.jacobian(joints(x));
     const double from = std::clamp(x[kPlace], kDifference, kLength - kDifference);
@@ -75,12 +79,15 @@ double place_of(const ob::State* state) {
 /// Refuses motions that go back along the path.
 class Forwards : public ob::ConstrainedMotionValidator {
  public:
-  explicit Forwards(ob::ConstrainedSpaceInformation* information) : ob::ConstrainedMotionValidator(information) {}
+  explicit Forwards(ob::ConstrainedSpaceInformation* information)
+      : ob::ConstrainedMotionValidator(information) {}
   bool checkMotion(const ob::State* a, const ob::State* b) const override {
-    if (place_of(b) < place_of(a) || !ob::ConstrainedMotionValidator::checkMotion(a, b)) return false;
+    if (place_of(b) < place_of(a) || !ob::ConstrainedMotionValidator::checkMotion(a, b))
+      return false;
     std::vector<ob::State*> states;
     bool forwards = ss_.discreteGeodesic(a, b, false, &states);
-    for (std::size_t k = 1; k < states.size(); ++k) forwards = forwards && place_of(states[k]) >= place_of(states[k - 1]);
+    for (std::size_t k = 1; k < states.size(); ++k)
+      forwards = forwards && place_of(states[k]) >= place_of(states[k - 1]);
     for (ob::State* const state : states) ss_.freeState(state);
     return forwards;
   }
@@ -95,13 +102,15 @@ Eigen::VectorXd coordinates(const Config& q, double place) {
 
 double distance_to_segment(const Vector3d& x, const Vector3d& a, const Vector3d& b) {
   const Vector3d d = b - a;
-  const double t = d.squaredNorm() < 1e-18 ? 0 : std::clamp((x - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+  const double t =
+      d.squaredNorm() < 1e-18 ? 0 : std::clamp((x - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
   return (x - a - t * d).norm();
 }
 
 /// Fills what only the finished path tells.
-void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const OnPath& on_path, const Problem& problem,
-             const std::function<bool(const Eigen::VectorXd&)>& valid, ConstrainedResult& result) {
+void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const OnPath& on_path,
+             const Problem& problem, const std::function<bool(const Eigen::VectorXd&)>& valid,
+             ConstrainedResult& result) {
   double sum = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (!valid(rows[k]) || !on_path.isSatisfied(rows[k])) {
@@ -121,12 +130,14 @@ void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const
     for (const double t : {0.25, 0.5, 0.75}) {
       const double error =
           1e3 * distance_to_segment(chain.tool(joints(rows[k - 1]) + t * delta).translation(),
-                                    on_path.at(rows[k - 1][kPlace]).translation(), on_path.at(rows[k][kPlace]).translation());
+                                    on_path.at(rows[k - 1][kPlace]).translation(),
+                                    on_path.at(rows[k][kPlace]).translation());
       sum += error;
       result.error_max_mm = std::max(result.error_max_mm, error);
     }
   }
-  if (problem.limits.tool_path_error && result.error_max_mm > 1e3 * *problem.limits.tool_path_error) {
+  if (problem.limits.tool_path_error &&
+      result.error_max_mm > 1e3 * *problem.limits.tool_path_error) {
     result.reason = "leaves the path between its states";
     return;
   }
@@ -136,7 +147,8 @@ void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const
 
 }  // namespace
 
-ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& problem, Manifold manifold, double seconds) {
+ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& problem,
+                                   Manifold manifold, double seconds) {
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   ConstrainedResult result;
   const auto begin = std::chrono::steady_clock::now();
@@ -150,9 +162,11 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
       const double margin = problem.limits.joint_margin - kSlack;
-      if (!limit.continuous && (x[j] < limit.lower + margin || x[j] > limit.upper - margin)) return false;
+      if (!limit.continuous && (x[j] < limit.lower + margin || x[j] > limit.upper - margin))
+        return false;
     }
-    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack && !query.find_violating_pair(joints(x), ClearanceRule::kNode);
+    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack &&
+           !query.find_violating_pair(joints(x), ClearanceRule::kNode);
   };
 
   const auto ambient = std::make_shared<ob::RealVectorStateSpace>(kDof + 1);
@@ -176,15 +190,17 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
     information = std::make_shared<ob::TangentBundleSpaceInformation>(space);
   }
   space->setDelta(kStep);
-  information->setStateValidityChecker(
-      [&](const ob::State* state) { return valid(*state->as<ob::ConstrainedStateSpace::StateType>()); });
+  information->setStateValidityChecker([&](const ob::State* state) {
+    return valid(*state->as<ob::ConstrainedStateSpace::StateType>());
+  });
   information->setMotionValidator(std::make_shared<Forwards>(information.get()));
   information->setup();
 
   const auto state_of = [&](const Eigen::VectorXd& x) {
     ob::ScopedState<> state(space);
     state->as<ob::ConstrainedStateSpace::StateType>()->copy(x);
-    if (manifold == Manifold::kTangentBundle) space->as<ob::AtlasStateSpace>()->anchorChart(state.get());
+    if (manifold == Manifold::kTangentBundle)
+      space->as<ob::AtlasStateSpace>()->anchorChart(state.get());
     return state;
   };
   const auto definition = std::make_shared<ob::ProblemDefinition>(information);
@@ -197,7 +213,9 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
       if (const auto x = coordinates(*q, kLength); valid(x)) ends.push_back(x);
   const std::size_t every = std::max<std::size_t>(1, ends.size() / kGoals);
   for (std::size_t k = 0; k < ends.size(); k += every) goals->addState(state_of(ends[k]));
-  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   if (ends.empty()) {
     result.reason = "no goal";
     result.ms = 1e3 * elapsed();
@@ -208,7 +226,8 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   planner.setProblemDefinition(definition);
   planner.setRange(kRange);
   planner.setup();
-  result.connected = planner.ob::Planner::solve(std::max(0.0, seconds - elapsed())) == ob::PlannerStatus::EXACT_SOLUTION;
+  result.connected = planner.ob::Planner::solve(std::max(0.0, seconds - elapsed())) ==
+                     ob::PlannerStatus::EXACT_SOLUTION;
   result.ms = 1e3 * elapsed();
   if (!result.connected) {
     result.reason = "time";

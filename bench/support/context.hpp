@@ -6,7 +6,8 @@
 
 namespace swivel::bench {
 
-/// What a measured number depends on besides the source: commit, compiler, flags, build type, vector unit, processor, its threads.
+/// What a measured number depends on besides the source: commit, compiler, flags, build type,
+/// vector unit, processor, its threads.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> context();
 
 }  // namespace swivel::bench

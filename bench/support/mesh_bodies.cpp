@@ -21,7 +21,8 @@ MeshPtr mesh_of(const Capsule& capsule) {
     const double a = kPi / 2 * (upper ? ring + 1 : ring) / kRingsOfCap;  // from the upper pole
     for (int side = 0; side < kSides; ++side) {
       const double b = kTwoPi * side / kSides, r = capsule.radius * std::sin(a);
-      mesh->vertices.emplace_back(r * std::cos(b), r * std::sin(b), (upper ? half : -half) + capsule.radius * std::cos(a));
+      mesh->vertices.emplace_back(r * std::cos(b), r * std::sin(b),
+                                  (upper ? half : -half) + capsule.radius * std::cos(a));
     }
   }
   const auto at = [](int ring, int side) { return 2 + ring * kSides + side % kSides; };

@@ -6,11 +6,13 @@ namespace swivel::bench {
 
 struct Setting {
   const char* name;
-  double ds, dphi;  ///< m; rad, of arm angles and rolls, or of self-motion where the arm has no arm angle
+  double ds,
+      dphi;  ///< m; rad, of arm angles and rolls, or of self-motion where the arm has no arm angle
 };
 /// The four resolutions of the paper's Table I, and two finer ones.
-inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},   {"#2", 0.005, 0.2},    {"#3", 0.02, 0.05},
-                                        {"#4", 0.005, 0.05}, {"fine", 0.002, 0.02}, {"finest", 0.001, 0.01}};
+inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},     {"#2", 0.005, 0.2},
+                                        {"#3", 0.02, 0.05},    {"#4", 0.005, 0.05},
+                                        {"fine", 0.002, 0.02}, {"finest", 0.001, 0.01}};
 inline constexpr int kPaperSettings = 4;
 
 inline void set_resolution(Problem& problem, const Setting& setting) {

@@ -40,7 +40,9 @@ struct CampaignArguments {
 class Trajectories {
  public:
   explicit Trajectories(fs::path folder) : folder_(std::move(folder)) {}
-  [[nodiscard]] static bool is_name(const std::string& name) { return name.starts_with("episode_") && name.ends_with(".csv"); }
+  [[nodiscard]] static bool is_name(const std::string& name) {
+    return name.starts_with("episode_") && name.ends_with(".csv");
+  }
   /// Safe to call for several episodes at a time.
   void write(std::uint64_t episode, const PlanResult& result) {
     std::error_code error;
@@ -57,36 +59,47 @@ class Trajectories {
   /// How many of an older campaign are gone.
   [[nodiscard]] std::uint64_t removed() const { return removed_; }
   /// Whether all is there that a row promises.
-  [[nodiscard]] bool has(const EpisodeRow& row) const { return row.status != PlanStatus::kSolved || fs::exists(file(row.episode)); }
+  [[nodiscard]] bool has(const EpisodeRow& row) const {
+    return row.status != PlanStatus::kSolved || fs::exists(file(row.episode));
+  }
 
  private:
-  [[nodiscard]] fs::path file(std::uint64_t episode) const { return folder_ / ("episode_" + std::to_string(episode) + ".csv"); }
+  [[nodiscard]] fs::path file(std::uint64_t episode) const {
+    return folder_ / ("episode_" + std::to_string(episode) + ".csv");
+  }
   fs::path folder_;
   std::atomic<std::uint64_t> removed_{0};
 };
 
-/// Rows of shards are not mixed while they come. Episodes are not in it, so that a campaign may be made longer.
+/// Rows of shards are not mixed while they come. Episodes are not in it, so that a campaign may be
+/// made longer.
 io::RunSettings settings_of(const io::ShardRecord& record) {
   io::RunSettings settings = record.settings;
-  settings.values.emplace_back("shard", std::to_string(record.shard.index) + "/" + std::to_string(record.shard.count));
+  settings.values.emplace_back(
+      "shard", std::to_string(record.shard.index) + "/" + std::to_string(record.shard.count));
   return settings;
 }
 
 /// The rows of --rows in the order of the campaign. Throws InputError where they are not its first.
-std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files, const CampaignOptions& options,
+std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files,
+                                   const CampaignOptions& options,
                                    const std::vector<std::string>& coordinates) {
   std::vector<EpisodeRow> rows;
   for (const std::string& file : files) {
     const io::EpisodeTable found = io::load_rows(file);
     if (found.coordinates != coordinates)
-      throw InputError("--rows: " + file + ": other objects or coordinates vary there: allowed are results of this problem");
+      throw InputError(
+          "--rows: " + file +
+          ": other objects or coordinates vary there: allowed are results of this problem");
     rows.insert(rows.end(), found.rows.begin(), found.rows.end());
   }
-  std::sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) { return a.episode < b.episode; });
+  std::sort(rows.begin(), rows.end(),
+            [](const EpisodeRow& a, const EpisodeRow& b) { return a.episode < b.episode; });
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (k >= options.shard.size(options.episodes) || rows[k].episode != options.shard.episode(k))
-      throw InputError("--rows: the rows from episode " + std::to_string(rows[k].episode) +
-                       " on are not the next of this campaign: allowed are its first rows, each once");
+      throw InputError(
+          "--rows: the rows from episode " + std::to_string(rows[k].episode) +
+          " on are not the next of this campaign: allowed are its first rows, each once");
   return rows;
 }
 
@@ -95,7 +108,8 @@ int run(const CampaignArguments& arguments) {
   options.plan = arguments.search.plan_options();
   constexpr std::uint64_t kMostEpisodes = 10'000'000;
   if (arguments.episodes < 1 || arguments.episodes > kMostEpisodes)
-    throw InputError("--episodes: " + std::to_string(arguments.episodes) + ": allowed are 1 to " + std::to_string(kMostEpisodes));
+    throw InputError("--episodes: " + std::to_string(arguments.episodes) + ": allowed are 1 to " +
+                     std::to_string(kMostEpisodes));
   options.episodes = arguments.episodes;
   options.seed = arguments.seed;
   if (!arguments.shard.empty()) options.shard = shard_from_string(arguments.shard);
@@ -103,7 +117,8 @@ int run(const CampaignArguments& arguments) {
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
   std::vector<io::InputFiles::File> inputs;
   Problem problem = [&] {
-    const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore : io::InputFiles::Contents::kHash);
+    const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
+                                                     : io::InputFiles::Contents::kHash);
     Problem loaded = io::load_problem(arguments.problem);
     inputs = noted.files();
     return loaded;
@@ -115,7 +130,8 @@ int run(const CampaignArguments& arguments) {
   std::vector<io::InputFiles::File> read = inputs;
   const std::vector<EpisodeRow> given = [&] {
     const io::InputFiles noted;
-    std::vector<EpisodeRow> found = given_rows(arguments.rows, options, varied_coordinates(problem.vary));
+    std::vector<EpisodeRow> found =
+        given_rows(arguments.rows, options, varied_coordinates(problem.vary));
     read.insert(read.end(), noted.files().begin(), noted.files().end());
     return found;
   }();
@@ -128,15 +144,17 @@ int run(const CampaignArguments& arguments) {
   if (!arguments.trajectories.empty()) {
     outputs.add_folder("--trajectories", arguments.trajectories, Trajectories::is_name);
     trajectories.emplace(arguments.trajectories);
-    options.planned = [&](std::uint64_t episode, const PlanResult& result) { trajectories->write(episode, result); };
+    options.planned = [&](std::uint64_t episode, const PlanResult& result) {
+      trajectories->write(episode, result);
+    };
   }
-  io::ShardRecord record{
-      "campaign",
-      run_settings(arguments.problem, problem, arguments.search, inputs),
-      options.shard,
-      options.episodes,
-      fs::path(arguments.problem).filename().string(),
-      "swivel plan " + quoted(arguments.problem) + arguments.search.words() + " --seed " + std::to_string(options.seed)};
+  io::ShardRecord record{"campaign",
+                         run_settings(arguments.problem, problem, arguments.search, inputs),
+                         options.shard,
+                         options.episodes,
+                         fs::path(arguments.problem).filename().string(),
+                         "swivel plan " + quoted(arguments.problem) + arguments.search.words() +
+                             " --seed " + std::to_string(options.seed)};
   record.settings.values.emplace_back("seed", std::to_string(options.seed));
   record.held = robot.arm().held;
   record.settings.coordinates = varied_coordinates(problem.vary);
@@ -148,8 +166,9 @@ int run(const CampaignArguments& arguments) {
     for (std::size_t k = file->rows().size(); k < rows.size(); ++k) file->append(rows[k]);
     if (trajectories) {  // the campaign that was killed may have been run without
       const auto& found = file->rows();
-      const auto lacking =
-          std::find_if_not(found.begin(), found.end(), [&](const EpisodeRow& row) { return trajectories->has(row); });
+      const auto lacking = std::find_if_not(found.begin(), found.end(), [&](const EpisodeRow& row) {
+        return trajectories->has(row);
+      });
       file->keep(lacking - found.begin());
     }
     rows = file->rows();
@@ -158,9 +177,12 @@ int run(const CampaignArguments& arguments) {
 
   catch_interrupts();
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
-  auto solved = std::count_if(rows.begin(), rows.end(), [](const EpisodeRow& row) { return row.status == PlanStatus::kSolved; });
+  auto solved = std::count_if(rows.begin(), rows.end(), [](const EpisodeRow& row) {
+    return row.status == PlanStatus::kSolved;
+  });
   const auto show = [&] {
-    progress.show(std::to_string(rows.size()) + " of " + std::to_string(size) + " episodes, " + std::to_string(solved) + " solved");
+    progress.show(std::to_string(rows.size()) + " of " + std::to_string(size) + " episodes, " +
+                  std::to_string(solved) + " solved");
   };
   show();
   run_campaign(robot, problem, options, [&](const EpisodeRow& row) {
@@ -172,34 +194,44 @@ int run(const CampaignArguments& arguments) {
   progress.clear();
 
   const bool complete = rows.size() == size;
-  if (file && complete) outputs.write("--out", (arguments.shard.empty() ? "" : io::to_line(record)) + file->csv());
+  if (file && complete)
+    outputs.write("--out", (arguments.shard.empty() ? "" : io::to_line(record)) + file->csv());
   show_campaign(outputs, rows, record);
   if (file && complete) file->finish();
   if (trajectories && trajectories->removed() > 0)
     complain("swivel: removed %llu earlier trajectories in %s: there is no path now\n",
-             static_cast<unsigned long long>(trajectories->removed()), arguments.trajectories.c_str());
+             static_cast<unsigned long long>(trajectories->removed()),
+             arguments.trajectories.c_str());
   return campaign_exit_code(rows, record);
 }
 
 }  // namespace
 
 void add_campaign(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("campaign", "Plan many episodes: the problem with the objects of 'vary' at random poses");
-  auto arguments = std::make_shared<CampaignArguments>();  // shared: lives as long as the callback that reads it
+  CLI::App* command = app.add_subcommand(
+      "campaign", "Plan many episodes: the problem with the objects of 'vary' at random poses");
+  auto arguments =
+      std::make_shared<CampaignArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
-  command->add_option("--episodes", arguments->episodes, "how many, all shards together")->capture_default_str();
-  command->add_option("--seed", arguments->seed, "what the poses are drawn from")->capture_default_str();
+  command->add_option("--episodes", arguments->episodes, "how many, all shards together")
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "what the poses are drawn from")
+      ->capture_default_str();
   command->add_option("--shard", arguments->shard,
-                      "I/N: plan the episodes I, I + N, I + 2 N, ... alone; auto: the share of this task of a Slurm job array");
+                      "I/N: plan the episodes I, I + N, I + 2 N, ... alone; auto: the share of "
+                      "this task of a Slurm job array");
   arguments->search.add_to(*command);
   command->add_option("--out", arguments->out,
-                      "results file (CSV); an interrupted campaign goes on from FILE.part, which must be of the same settings");
+                      "results file (CSV); an interrupted campaign goes on from FILE.part, which "
+                      "must be of the same settings");
+  command->add_option("--rows", arguments->rows,
+                      "results of a shorter campaign, to go on from; that they are of the same "
+                      "settings is not checked (shards: swivel merge)");
+  command->add_option("--trajectories", arguments->trajectories,
+                      "folder for the trajectories of solved episodes, episode_K.csv");
   command->add_option(
-      "--rows", arguments->rows,
-      "results of a shorter campaign, to go on from; that they are of the same settings is not checked (shards: swivel merge)");
-  command->add_option("--trajectories", arguments->trajectories, "folder for the trajectories of solved episodes, episode_K.csv");
-  command->add_option("--report", arguments->report,
-                      "the campaign as one HTML file: verdicts, times, costs, where and why episodes fail");
+      "--report", arguments->report,
+      "the campaign as one HTML file: verdicts, times, costs, where and why episodes fail");
   command->add_option("--json", arguments->json, "summary file, - for standard output");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

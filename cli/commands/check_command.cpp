@@ -50,7 +50,8 @@ void print_failures(const CheckResult& result) {
   std::vector<const std::string*> first;
   for (const std::string& failure : result.failures) {
     const std::string kind = kind_of(failure);
-    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == kind; });
+    const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](const auto& one) { return one.first == kind; });
     if (known != kinds.end()) {
       ++known->second;
       continue;
@@ -64,33 +65,38 @@ void print_failures(const CheckResult& result) {
     say("\n");
   }
   const auto listed = static_cast<std::int64_t>(result.failures.size());
-  if (result.failure_count > listed) say("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
+  if (result.failure_count > listed)
+    say("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
 }
 
 /// What was proved, and how near to failing.
 void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
-  say("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position, result.worst_angle,
-      1e3 * result.worst_path_error);
+  say("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position,
+      result.worst_angle, 1e3 * result.worst_path_error);
   if (problem.limits.tool_path_error) say(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
   say(" and %.3g rad", result.worst_path_angle);
   if (problem.limits.tool_angle_error) say(" (allowed %.3g)", *problem.limits.tool_angle_error);
   say(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
   if (result.nearest_limit)
-    say(", '%s' %.2f deg from its limit at row %zu", chain.joint_names[result.nearest_limit->joint].c_str(),
+    say(", '%s' %.2f deg from its limit at row %zu",
+        chain.joint_names[result.nearest_limit->joint].c_str(),
         result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
   if (result.min_clearance)
-    say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance, 1e3 * *result.min_margin);
+    say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance,
+        1e3 * *result.min_margin);
   if (const auto& contact = result.deepest_contact) {
-    say(", %s - %s at least %.3f mm", contact->bodies[0].c_str(), contact->bodies[1].c_str(), 1e3 * contact->depth);
+    say(", %s - %s at least %.3f mm", contact->bodies[0].c_str(), contact->bodies[1].c_str(),
+        1e3 * contact->depth);
     if (contact->at_most) say(" and at most %.3f mm", 1e3 * *contact->at_most);
     say(" deep in each other (%s)",
-        contact->allowed ? formatted("allowed %.3f mm", 1e3 * *contact->allowed).c_str() : "allowed however deep");
+        contact->allowed ? formatted("allowed %.3f mm", 1e3 * *contact->allowed).c_str()
+                         : "allowed however deep");
   }
   say(", cost %.9g\n", result.cost);
   if (!result.motion) return;
   const char* const names[] = {"speed", "acceleration", "jerk"};
-  say("motion: %.3f s, tool at most %.6g mm/s and %.4g rad/s", result.motion->duration, 1e3 * result.motion->tool_speed,
-      result.motion->turn_speed);
+  say("motion: %.3f s, tool at most %.6g mm/s and %.4g rad/s", result.motion->duration,
+      1e3 * result.motion->tool_speed, result.motion->turn_speed);
   for (std::size_t k = 0; k < 3; ++k)
     say(", %s at most %.2f %% of what '%s' can do", names[k], 100 * result.motion->peaks[k].ratio,
         chain.joint_names[static_cast<std::size_t>(result.motion->peaks[k].joint)].c_str());
@@ -116,9 +122,11 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
     say("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
     return kNo;
   }
-  say("passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
-      with_held(held).c_str(), result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1],
-      removed_text(certificate).c_str(), static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
+  say("passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld "
+      "nodes and %lld edges asked\n",
+      with_held(held).c_str(), result.complete ? "" : ", among the solutions that were found",
+      result.s[0], result.s[1], removed_text(certificate).c_str(),
+      static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
   return kOk;
 }
 
@@ -126,8 +134,10 @@ int run(const CheckArguments& arguments) {
   Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
   arguments.lattice.apply(problem);
   if (arguments.trajectory.empty() == arguments.certificate.empty())
-    throw InputError(arguments.certificate.empty() ? "trajectory: is missing: allowed is a file, or --certificate FILE"
-                                                   : "--certificate: there is a trajectory as well: allowed is one of the two");
+    throw InputError(
+        arguments.certificate.empty()
+            ? "trajectory: is missing: allowed is a file, or --certificate FILE"
+            : "--certificate: there is a trajectory as well: allowed is one of the two");
   if (!arguments.certificate.empty()) return run_on_certificate(problem, arguments.certificate);
   const PreparedRobot robot(problem);
   const Chain& chain = robot.arm().chain;
@@ -135,13 +145,21 @@ int run(const CheckArguments& arguments) {
   warn_of_held(held);
   const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
   const auto& rows = file.rows;
-  const auto complete = [&](const auto& work) { return in_the_name_of(arguments.trajectory, work); };
+  const auto complete = [&](const auto& work) {
+    return in_the_name_of(arguments.trajectory, work);
+  };
   const CheckResult result =
       file.timed.empty()
-          ? check_trajectory(robot, problem, complete([&] { return complete_rows(robot, problem, rows, file.stated); }))
-          : check_motion(robot, problem, complete([&] { return complete_motion(robot, problem, file.timed, file.stated); }));
+          ? check_trajectory(robot, problem, complete([&] {
+                               return complete_rows(robot, problem, rows, file.stated);
+                             }))
+          : check_motion(robot, problem, complete([&] {
+                           return complete_motion(robot, problem, file.timed, file.stated);
+                         }));
   say("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
-  if (!result.passed) say(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
+  if (!result.passed)
+    say(", %lld failure%s", static_cast<long long>(result.failure_count),
+        result.failure_count == 1 ? "" : "s");
   if (result.rounded) say(", on the path as motions follow it, its corners rounded");
   if (!held.empty()) say(", held: %s", words(held).c_str());
   say("; ");
@@ -153,12 +171,15 @@ int run(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "Verify a trajectory, or that there is none, independently of the planners");
-  auto arguments = std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
+  CLI::App* command = app.add_subcommand(
+      "check", "Verify a trajectory, or that there is none, independently of the planners");
+  auto arguments =
+      std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile);
-  command->add_option("--certificate", arguments->certificate,
-                      "instead of a trajectory: what `plan --certificate` wrote, that there is no path");
+  command->add_option(
+      "--certificate", arguments->certificate,
+      "instead of a trajectory: what `plan --certificate` wrote, that there is no path");
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

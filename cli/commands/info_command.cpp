@@ -38,14 +38,16 @@ std::map<std::string, double> parse_hold(const std::vector<std::string>& items) 
     double value = std::numeric_limits<double>::quiet_NaN();
     const auto read = std::from_chars(std::min(item.data() + equals + 1, end), end, value);
     if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
-      throw InputError("--hold: '" + item + "': allowed is JOINT=POSITION with a number of radians or metres");
+      throw InputError("--hold: '" + item +
+                       "': allowed is JOINT=POSITION with a number of radians or metres");
     hold[item.substr(0, equals)] = value;
   }
   return hold;
 }
 
 /// Joints between two links that move on their own; none where the tip is not below the base.
-std::optional<int> joints_between(const RobotModel& robot, const std::string& base, const std::string& tip) {
+std::optional<int> joints_between(const RobotModel& robot, const std::string& base,
+                                  const std::string& tip) {
   int link = robot.find_link(tip), count = 0;
   while (link >= 0 && robot.links[link].name != base) {
     const int joint = robot.links[link].parent_joint;
@@ -55,8 +57,10 @@ std::optional<int> joints_between(const RobotModel& robot, const std::string& ba
   return link < 0 ? std::nullopt : std::optional(count);
 }
 
-/// Base and tip as asked for; what was not is guessed. Appends the arms that were not taken to `others`.
-ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments, std::vector<ArmGuess>& others) {
+/// Base and tip as asked for; what was not is guessed. Appends the arms that were not taken to
+/// `others`.
+ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments,
+                    std::vector<ArmGuess>& others) {
   const std::string &base = arguments.base, &tip = arguments.tip;
   if (!base.empty()) require_known("--base", base, robot.links, "link", robot.source);
   if (!tip.empty()) {
@@ -66,19 +70,24 @@ ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments, std
     return named;
   }
   ArmGuesses guesses = guess_arms(robot);
-  if (arguments.roll) std::erase_if(guesses.arms, [](const ArmGuess& arm) { return arm.joints != 6; });
+  if (arguments.roll)
+    std::erase_if(guesses.arms, [](const ArmGuess& arm) { return arm.joints != 6; });
   if (!base.empty()) {
-    std::erase_if(guesses.arms, [&](const ArmGuess& arm) { return joints_between(robot, base, arm.tip).value_or(0) < arm.joints; });
+    std::erase_if(guesses.arms, [&](const ArmGuess& arm) {
+      return joints_between(robot, base, arm.tip).value_or(0) < arm.joints;
+    });
     for (ArmGuess& arm : guesses.arms) arm.base = base;
   }
   if (guesses.arms.empty()) {
     const auto& row = guesses.longest_row;
-    throw InputError(robot.source, std::string("no arm of ") + (arguments.roll ? "six" : "seven or six") + " joints" +
-                                       (base.empty() ? "" : " above '" + base + "'") +
-                                       (row.empty() ? ": no joint turns"
-                                                    : ": the longest row of joints that turn has " + std::to_string(row.size()) +
-                                                          ", from '" + row.front() + "' to '" + row.back() + "'") +
-                                       ": allowed are so many joints in a row, or --base and --tip");
+    throw InputError(robot.source,
+                     std::string("no arm of ") + (arguments.roll ? "six" : "seven or six") +
+                         " joints" + (base.empty() ? "" : " above '" + base + "'") +
+                         (row.empty() ? ": no joint turns"
+                                      : ": the longest row of joints that turn has " +
+                                            std::to_string(row.size()) + ", from '" + row.front() +
+                                            "' to '" + row.back() + "'") +
+                         ": allowed are so many joints in a row, or --base and --tip");
   }
   others.assign(guesses.arms.begin() + 1, guesses.arms.end());
   return guesses.arms.front();
@@ -90,7 +99,8 @@ bool meet(const Chain& chain, std::size_t k) {
     return (point - chain.point[j]).cross(chain.axis[j]).norm();
   };
   // The point of the middle axis that is nearest to the first.
-  const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1], d = chain.point[k] - chain.point[k + 1];
+  const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1],
+                 d = chain.point[k] - chain.point[k + 1];
   const double sine2 = a.cross(b).squaredNorm();
   if (sine2 < 1e-12) return false;
   const Vector3d point = chain.point[k + 1] + (d.dot(b) - d.dot(a) * a.dot(b)) / sine2 * b;
@@ -105,11 +115,16 @@ void print_srs(const SrsArm& srs) {
   if (srs.exact)
     say("fit        exact\n");
   else
-    say("fit        axes within %.3f mm and %.3f mrad of the ideal arm\n", 1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
-  if (!srs.exact) say("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.fit_error.maxCoeff());
+    say("fit        axes within %.3f mm and %.3f mrad of the ideal arm\n",
+        1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
+  if (!srs.exact)
+    say("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n",
+        srs.fit_error.maxCoeff());
   say("shoulder   %.6f %.6f %.6f m\n", srs.S.x(), srs.S.y(), srs.S.z());
-  say("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore, srs.wrist_in_tool.norm());
-  say("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore), srs.upper + srs.fore);
+  say("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper,
+      srs.fore, srs.wrist_in_tool.norm());
+  say("reach      shoulder-wrist %.6f to %.6f m before joint limits\n",
+      std::abs(srs.upper - srs.fore), srs.upper + srs.fore);
   say("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi),
       std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
 }
@@ -120,34 +135,43 @@ void print_other(const Chain& chain, const ArmClass& arm) {
   say("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
       meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
   if (!chain.roll) say("not S-R-S  %s\n", arm.not_srs.c_str());
-  if (chain.roll) say("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
+  if (chain.roll)
+    say("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
 }
 
-/// Joints that move on their own and are neither the arm's nor between base and tip: a gripper's, another arm's.
-std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm, const std::map<std::string, double>& hold) {
+/// Joints that move on their own and are neither the arm's nor between base and tip: a gripper's,
+/// another arm's.
+std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
+                                   const std::map<std::string, double>& hold) {
   std::vector<HeldJoint> beside;
   for (const Joint& joint : robot.joints) {
     const auto is_named = [&](const HeldJoint& held) { return held.name == joint.name; };
     const auto& own = arm.chain.joint_names;
-    if (!joint.movable() || joint.mimic || std::find(own.begin(), own.end(), joint.name) != own.end() ||
+    if (!joint.movable() || joint.mimic ||
+        std::find(own.begin(), own.end(), joint.name) != own.end() ||
         std::any_of(arm.held.begin(), arm.held.end(), is_named))
       continue;
     const auto given = hold.find(joint.name);
-    const double nearest = joint.type == Joint::Type::kContinuous ? 0 : std::clamp(0.0, joint.lower, joint.upper);
-    beside.push_back({joint.name, given == hold.end() ? nearest : given->second, joint.type == Joint::Type::kPrismatic,
-                      given != hold.end(), ""});
+    const double nearest =
+        joint.type == Joint::Type::kContinuous ? 0 : std::clamp(0.0, joint.lower, joint.upper);
+    beside.push_back({joint.name, given == hold.end() ? nearest : given->second,
+                      joint.type == Joint::Type::kPrismatic, given != hold.end(), ""});
   }
   return beside;
 }
 
-/// Calls `work`; what it finds wrong in a key of `robot` is said in the name of the option that stands for the key.
+/// Calls `work`; what it finds wrong in a key of `robot` is said in the name of the option that
+/// stands for the key.
 template <class Work>
 auto in_the_options_names(const Work& work) {
   try {
     return work();
   } catch (const RobotKeyError& error) {
     const std::string& key = error.key();
-    const char* const option = key == "hold" ? "--hold" : key == "without" ? "--without" : key == "tip_link" ? "--tip" : "--base";
+    const char* const option = key == "hold"       ? "--hold"
+                               : key == "without"  ? "--without"
+                               : key == "tip_link" ? "--tip"
+                                                   : "--base";
     throw InputError(std::string(option) + ": " + error.fault());
   }
 }
@@ -157,37 +181,48 @@ int run(const InfoArguments& arguments) {
     print_pairs(arguments.urdf);
     return kOk;
   }
-  if (const std::string end = std::filesystem::path(arguments.urdf).extension(); end == ".yaml" || end == ".yml")
-    throw InputError(arguments.urdf + ": is a problem file: allowed is a URDF file, or `swivel info --pairs " + arguments.urdf +
-                     "` for the pairs of bodies and `swivel plan " + arguments.urdf + "` for its path");
+  if (const std::string end = std::filesystem::path(arguments.urdf).extension();
+      end == ".yaml" || end == ".yml")
+    throw InputError(arguments.urdf +
+                     ": is a problem file: allowed is a URDF file, or `swivel info --pairs " +
+                     arguments.urdf + "` for the pairs of bodies and `swivel plan " +
+                     arguments.urdf + "` for its path");
   io::ShapeSurvey shapes;
   const auto robot = in_the_options_names([&] {
-    return io::load_kinematics(arguments.urdf, arguments.srdf, parse_packages(arguments.packages), {arguments.without, true},
-                               shapes);
+    return io::load_kinematics(arguments.urdf, arguments.srdf, parse_packages(arguments.packages),
+                               {arguments.without, true}, shapes);
   });
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
-  for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
+  for (const auto& [name, position] : hold)
+    require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
   const ArmGuess chosen = choose_arm(*robot, arguments, others);
   const std::string &base = chosen.base, &tip = chosen.tip;
   const ArmModel arm = in_the_options_names([&] {
-    return build_arm(*robot, base, tip, hold, Pose::Identity(), chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
+    return build_arm(*robot, base, tip, hold, Pose::Identity(),
+                     chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
   });
   const ArmClass kind = classify(arm.chain, robot->source);
-  say("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
+  say("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(),
+      robot->joints.size());
   if (!shapes.missing_meshes.empty())
     say("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
         shapes.missing_meshes.front().c_str());
   if (shapes.collision == 0)
     say("shapes     none for collision: the robot is kept clear of nothing%s\n",
-        shapes.visual_meshes == 0 ? "" : "; `swivel fit --visual` fits capsules about its visual meshes");
+        shapes.visual_meshes == 0
+            ? ""
+            : "; `swivel fit --visual` fits capsules about its visual meshes");
   say("arm        %s to %s\n", base.c_str(), tip.c_str());
   for (const HeldJoint& held : arm.held) say("held       %s\n", words({held}).c_str());
-  if (const auto beside = held_beside(*robot, arm, hold); !beside.empty()) say("beside     %s\n", words(beside).c_str());
+  if (const auto beside = held_beside(*robot, arm, hold); !beside.empty())
+    say("beside     %s\n", words(beside).c_str());
   for (const Chain::Follower& follower : arm.chain.followers)
-    say("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier, follower.leader + 1);
+    say("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier,
+        follower.leader + 1);
   for (const ArmGuess& other : others)
-    say("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(), other.joints == 6 ? ", six joints" : "");
+    say("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(),
+        other.joints == 6 ? ", six joints" : "");
   kind.srs ? print_srs(*kind.srs) : print_other(arm.chain, kind);
   say("solutions  %s: %s\n", kind.complete() ? "all" : "those that turn up", kind.method().c_str());
   for (std::size_t j = 0; j < kDof - (arm.chain.roll ? 1 : 0); ++j) {
@@ -195,31 +230,47 @@ int run(const InfoArguments& arguments) {
     if (limit.continuous)
       say("joint %zu    %-24s continuous", j + 1, arm.chain.joint_names[j].c_str());
     else
-      say("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1, arm.chain.joint_names[j].c_str(), limit.lower,
-          limit.upper, limit.lower * 180 / kPi, limit.upper * 180 / kPi);
+      say("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1,
+          arm.chain.joint_names[j].c_str(), limit.lower, limit.upper, limit.lower * 180 / kPi,
+          limit.upper * 180 / kPi);
     limit.velocity > 0 ? say(", %.3f rad/s\n", limit.velocity) : say(", no speed limit\n");
   }
-  for (const std::string& warning : limit_warnings(arm.chain)) say("warning    %s\n", warning.c_str());
-  for (const std::string& warning : held_warnings(arm.held)) say("warning    %s\n", warning.c_str());
-  for (const std::string& warning : file_warnings(*robot, arm.chain)) say("warning    %s\n", warning.c_str());
-  if (const std::string rest = joints_at_rest(*robot, arm.chain); !rest.empty()) say("warning    %s\n", rest.c_str());
+  for (const std::string& warning : limit_warnings(arm.chain))
+    say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : held_warnings(arm.held))
+    say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : file_warnings(*robot, arm.chain))
+    say("warning    %s\n", warning.c_str());
+  if (const std::string rest = joints_at_rest(*robot, arm.chain); !rest.empty())
+    say("warning    %s\n", rest.c_str());
   return kOk;
 }
 
 }  // namespace
 
 void add_info(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("info", "Describe an arm: class, dimensions, limits, what was fitted");
-  auto arguments = std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
-  command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")->required();
-  command->add_option("--srdf", arguments->srdf, "SRDF file: which joints are passive, and whether its names are the robot's");
+  CLI::App* command =
+      app.add_subcommand("info", "Describe an arm: class, dimensions, limits, what was fitted");
+  auto arguments =
+      std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
+  command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")
+      ->required();
+  command->add_option("--srdf", arguments->srdf,
+                      "SRDF file: which joints are passive, and whether its names are the robot's");
   command->add_option("--packages", arguments->packages, kPackagesHelp);
-  command->add_option("--without", arguments->without, "links left out, with all that they carry, as robot.without does");
-  command->add_option("--base", arguments->base, "base link (default: the nearest called base_link or the like, else the root)");
-  command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints, else of six)");
+  command->add_option("--without", arguments->without,
+                      "links left out, with all that they carry, as robot.without does");
+  command->add_option(
+      "--base", arguments->base,
+      "base link (default: the nearest called base_link or the like, else the root)");
+  command->add_option("--tip", arguments->tip,
+                      "tip link (default: the end of the first arm of seven joints, else of six)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");
-  command->add_flag("--roll", arguments->roll, "an arm of six joints, for paths with path.roll, even where there are seven");
-  command->add_flag("--pairs", arguments->pairs, "which bodies of the robot are kept apart, and how far")
+  command->add_flag("--roll", arguments->roll,
+                    "an arm of six joints, for paths with path.roll, even where there are seven");
+  command
+      ->add_flag("--pairs", arguments->pairs,
+                 "which bodies of the robot are kept apart, and how far")
       ->excludes("--srdf", "--packages", "--without", "--base", "--tip", "--hold");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

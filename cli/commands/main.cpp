@@ -25,55 +25,70 @@ namespace swivel::cli {
 
 namespace {
 
-/// A closed standard stream would lend its number to the next file that is opened, and what is printed would end up in it.
-/// Opened the wrong way round, so that printing fails as it should.
+/// A closed standard stream would lend its number to the next file that is opened, and what is
+/// printed would end up in it. Opened the wrong way round, so that printing fails as it should.
 void occupy_standard_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(descriptor, F_GETFD) < 0) static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+    if (fcntl(descriptor, F_GETFD) < 0)
+      static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-/// What is wrong with the first word that was not expected, an option before all others; none where each one was.
+/// What is wrong with the first word that was not expected, an option before all others; none where
+/// each one was.
 std::optional<std::string> unexpected_word(const CLI::App& app) {
-  const std::vector<const CLI::App*> parsed = app.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  const std::vector<const CLI::App*> parsed =
+      app.get_subcommands([](const CLI::App* command) { return command->parsed(); });
   const CLI::App& at = parsed.empty() ? app : *parsed.front();
   const std::vector<std::string> left = at.remaining();
   if (left.empty()) return std::nullopt;
-  const auto option =
-      std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+  const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) {
+    return word.size() > 1 && word[0] == '-';
+  });
   const bool command = &at == &app && option == left.end();
-  const std::string name = command ? left.front() : option == left.end() ? "" : option->substr(0, option->find('='));
-  const std::string help = command || &at == &app ? "swivel --help" : "swivel " + at.get_name() + " --help";
-  if (name.empty()) return "unexpected word '" + left.front() + "': allowed is what `" + help + "` lists";
+  const std::string name = command                ? left.front()
+                           : option == left.end() ? ""
+                                                  : option->substr(0, option->find('='));
+  const std::string help =
+      command || &at == &app ? "swivel --help" : "swivel " + at.get_name() + " --help";
+  if (name.empty())
+    return "unexpected word '" + left.front() + "': allowed is what `" + help + "` lists";
   std::vector<std::string> known;
   if (command)
-    for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(one->get_name());
+    for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(one->get_name());
   else
     for (const CLI::Option* one : at.get_options())
       for (const std::string& long_name : one->get_lnames()) known.push_back("--" + long_name);
   const std::string& nearest = nearest_name(name, known);
   const bool alike = edit_distance(name, nearest) <= std::max<std::size_t>(1, nearest.size() / 3);
-  return std::string("unknown ") + (command ? "command " : "option ") + name + (alike ? "; did you mean " + nearest + "?" : "") +
-         " (allowed are those of `" + help + "`)";
+  return std::string("unknown ") + (command ? "command " : "option ") + name +
+         (alike ? "; did you mean " + nearest + "?" : "") + " (allowed are those of `" + help +
+         "`)";
 }
 
-/// Makes all commands refuse values that CLI11 takes and nobody means: an empty one (a variable of a
-/// shell that is not set), which would be passed over, and a negative one of a count or a seed,
+/// Makes all commands refuse values that CLI11 takes and nobody means: an empty one (a variable of
+/// a shell that is not set), which would be passed over, and a negative one of a count or a seed,
 /// which would wrap around.
 void refuse_odd_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
     for (CLI::Option* option : command->get_options()) {
       option->check([name = command->get_name()](const std::string& value) {
-        return value.empty() ? "is empty: allowed is what `swivel " + name + " --help` says" : std::string();
+        return value.empty() ? "is empty: allowed is what `swivel " + name + " --help` says"
+                             : std::string();
       });
       if (option->get_type_name() == "UINT")
         option->check([](const std::string& value) {
-          return value.starts_with('-') ? value + ": allowed are whole numbers from 0" : std::string();
+          return value.starts_with('-') ? value + ": allowed are whole numbers from 0"
+                                        : std::string();
         });
     }
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Swivel plans joint trajectories along tool paths, for arms with a degree of freedom to spare.", "swivel");
+  CLI::App app(
+      "Swivel plans joint trajectories along tool paths, for arms with a degree of freedom to "
+      "spare.",
+      "swivel");
   app.set_version_flag("--version", SWIVEL_VERSION);
   app.require_subcommand(1);
   int exit_code = kOk;
@@ -107,16 +122,19 @@ void flush_standard_output() {
   throw InputError("standard output: " + reason + ": allowed is one that takes what is printed");
 }
 
-void require_table_name(const std::string& option, const std::string& file, const std::string& what, const std::string& instead) {
+void require_table_name(const std::string& option, const std::string& file, const std::string& what,
+                        const std::string& instead) {
   const std::filesystem::path end = std::filesystem::path(file).extension();
   for (const char* other : {".json", ".yaml", ".yml", ".mcap", ".html", ".svg"})
     if (end == other)
-      throw InputError(option + ": " + file + ": " + what + " would be in it as CSV: allowed is a name that ends in .csv, or " +
+      throw InputError(option + ": " + file + ": " + what +
+                       " would be in it as CSV: allowed is a name that ends in .csv, or " +
                        instead);
 }
 
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason) {
-  for (const auto& file : files) complain("swivel: removed the earlier %s: %s\n", file.c_str(), reason.c_str());
+  for (const auto& file : files)
+    complain("swivel: removed the earlier %s: %s\n", file.c_str(), reason.c_str());
 }
 
 }  // namespace swivel::cli
@@ -126,7 +144,8 @@ int main(int argc, char** argv) {
   use_large_pages();
   occupy_standard_streams();
   wrap_standard_output();
-  // A reader that has left, or a file that may not grow, is an error of the write and not the end of the program.
+  // A reader that has left, or a file that may not grow, is an error of the write and not the end
+  // of the program.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {
@@ -139,7 +158,9 @@ int main(int argc, char** argv) {
     complain("swivel: %s\n", error.what());
     return kBadInput;
   } catch (const std::bad_alloc&) {
-    complain("swivel: out of memory: allowed are coarser resolutions or the planners eager_dp, lazy, parallel\n");
+    complain(
+        "swivel: out of memory: allowed are coarser resolutions or the planners eager_dp, lazy, "
+        "parallel\n");
     return kBadInput;
   } catch (const std::exception& error) {
     complain("swivel: internal error: %s\n", error.what());

@@ -24,7 +24,8 @@ struct MergeArguments {
 
 int run(const MergeArguments& arguments) {
   if (!arguments.report.empty()) require_pages();
-  require_table_name("OUT", arguments.out, "the table of rows", "--json, --svg and --report for other formats");
+  require_table_name("OUT", arguments.out, "the table of rows",
+                     "--json, --svg and --report for other formats");
   std::vector<io::InputFiles::File> inputs;
   io::ShardResults whole = [&] {
     const io::InputFiles noted;
@@ -35,12 +36,15 @@ int run(const MergeArguments& arguments) {
   }();
   const io::ShardRecord& record = whole.record;
   const bool places = record.command == "place";
-  if (places && !arguments.json.empty()) throw InputError("--json: these are placements: allowed are shards of a campaign");
-  if (!places && !arguments.svg.empty()) throw InputError("--svg: this is a campaign: allowed are shards of placements");
+  if (places && !arguments.json.empty())
+    throw InputError("--json: these are placements: allowed are shards of a campaign");
+  if (!places && !arguments.svg.empty())
+    throw InputError("--svg: this is a campaign: allowed are shards of placements");
   const PlacementRequest request = places ? PlacementRequest::from(record) : PlacementRequest();
   if (places && request.total() != record.total)
-    throw InputError(whole.file + ":1: of " + std::to_string(record.total) + " cells, where its grid has " +
-                     std::to_string(request.total()) + ": allowed are shards as they were written");
+    throw InputError(whole.file + ":1: of " + std::to_string(record.total) +
+                     " cells, where its grid has " + std::to_string(request.total()) +
+                     ": allowed are shards as they were written");
   require_drawable(request, arguments.svg);
 
   io::OutputFiles outputs(inputs);
@@ -62,16 +66,24 @@ int run(const MergeArguments& arguments) {
 }  // namespace
 
 void add_merge(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("merge", "Join the shards of a campaign, or of placements, into the results of one that was not split");
-  auto arguments = std::make_shared<MergeArguments>();  // shared: lives as long as the callback that reads it
-  command->add_option("out", arguments->out, "results file (CSV), - for standard output")->required();
-  command->add_option("shards", arguments->shards, "what campaign or place wrote with --shard, all of them, in any order")
+  CLI::App* command = app.add_subcommand("merge",
+                                         "Join the shards of a campaign, or of placements, into "
+                                         "the results of one that was not split");
+  auto arguments =
+      std::make_shared<MergeArguments>();  // shared: lives as long as the callback that reads it
+  command->add_option("out", arguments->out, "results file (CSV), - for standard output")
+      ->required();
+  command
+      ->add_option("shards", arguments->shards,
+                   "what campaign or place wrote with --shard, all of them, in any order")
       ->required();
   command->add_option("--report", arguments->report, "the page that campaign or place makes");
-  command->add_option("--json", arguments->json, "of campaigns: summary file, - for standard output");
-  command->add_option("--svg", arguments->svg, "of placements: the map over the first two varied coordinates as a drawing");
-  command->add_option("--top", arguments->top, "of placements: how many of the best are listed")->capture_default_str();
+  command->add_option("--json", arguments->json,
+                      "of campaigns: summary file, - for standard output");
+  command->add_option("--svg", arguments->svg,
+                      "of placements: the map over the first two varied coordinates as a drawing");
+  command->add_option("--top", arguments->top, "of placements: how many of the best are listed")
+      ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

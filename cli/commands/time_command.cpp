@@ -27,11 +27,14 @@ struct TimeArguments {
 };
 
 /// Rows off the nodes of the lattice, on the path that the motion follows.
-std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                                   bool quiet) {
+std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem,
+                                   const std::vector<TrajectoryRow>& rows, bool quiet) {
   const Problem smoothed = with_motion_defaults(problem);
-  const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {}, Budget(std::nullopt, &interrupted));
-  if (!quiet) print_plan_extras({.refinement = &result, .motion = nullptr, .timing = {}}, robot.arm().chain.joint_names);
+  const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {},
+                                Budget(std::nullopt, &interrupted));
+  if (!quiet)
+    print_plan_extras({.refinement = &result, .motion = nullptr, .timing = {}},
+                      robot.arm().chain.joint_names);
   return result.rows;
 }
 
@@ -55,11 +58,14 @@ int run(const TimeArguments& arguments) {
       const Budget budget(std::nullopt, &interrupted);
       // The rows of a motion stand on the rounded path.
       const Problem of_rows = file.timed.empty() ? problem : with_motion_defaults(problem);
-      std::vector<TrajectoryRow> rows = rows_at_layers(robot, of_rows, file.rows, file.stated, budget);
-      if (arguments.refine) rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
+      std::vector<TrajectoryRow> rows =
+          rows_at_layers(robot, of_rows, file.rows, file.stated, budget);
+      if (arguments.refine)
+        rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
       MotionResult result = time_trajectory(robot, problem, rows, options, budget);
       if (result.motion && !arguments.no_check)
-        require_passed(check_motion(robot, problem, result.motion->rows, {.margins = false, .budget = budget}));
+        require_passed(check_motion(robot, problem, result.motion->rows,
+                                    {.margins = false, .budget = budget}));
       return result;
     });
   } catch (const Stopped&) {
@@ -71,7 +77,9 @@ int run(const TimeArguments& arguments) {
     throw;
   }
   if (timed && timed->motion) {
-    if (outputs.wants("--out")) outputs.write("--out", io::motion_text(*timed->motion, names, problem.base_link, arguments.out));
+    if (outputs.wants("--out"))
+      outputs.write("--out",
+                    io::motion_text(*timed->motion, names, problem.base_link, arguments.out));
   } else {
     outputs.remove("--out");
   }
@@ -90,17 +98,22 @@ int run(const TimeArguments& arguments) {
 }  // namespace
 
 void add_time(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
-  auto arguments = std::make_shared<TimeArguments>();  // shared: lives as long as the callback that reads it
+  CLI::App* command =
+      app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
+  auto arguments =
+      std::make_shared<TimeArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile)->required();
   arguments->motion.add_to(*command);
-  command->add_flag("--refine", arguments->refine,
-                    "move the rows off the lattice's nodes first: cheaper and smoother, never dearer");
-  command->add_option("--out", arguments->out, "motion file: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
+  command->add_flag(
+      "--refine", arguments->refine,
+      "move the rows off the lattice's nodes first: cheaper and smoother, never dearer");
+  command->add_option("--out", arguments->out,
+                      "motion file: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
-  command->add_flag("--no-check", arguments->no_check, "leave out the proof of the motion, which `check` would give as well");
+  command->add_flag("--no-check", arguments->no_check,
+                    "leave out the proof of the motion, which `check` would give as well");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

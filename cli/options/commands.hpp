@@ -38,18 +38,21 @@ struct EpisodeChoice {
   [[nodiscard]] std::string words() const;
 };
 
-/// Throws InputError where the text printed so far has not reached standard output: it is full or closed.
+/// Throws InputError where the text printed so far has not reached standard output: it is full or
+/// closed.
 void flush_standard_output();
 
-/// Says on standard error which joints between base and tip stand still though `hold` does not say where.
+/// Says on standard error which joints between base and tip stand still though `hold` does not say
+/// where.
 void warn_of_held(const std::vector<HeldJoint>& held);
 
 /// Says on standard error that earlier files are gone, and why.
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason);
 
-/// Throws InputError where the name of a file that holds CSV ends as another format of Swivel's does. `what` is in it, `instead` is
-/// what else is allowed.
-void require_table_name(const std::string& option, const std::string& file, const std::string& what, const std::string& instead);
+/// Throws InputError where the name of a file that holds CSV ends as another format of Swivel's
+/// does. `what` is in it, `instead` is what else is allowed.
+void require_table_name(const std::string& option, const std::string& file, const std::string& what,
+                        const std::string& instead);
 
 /// Calls `work`; what the library finds wrong there is said in the name of the option.
 template <class Work>

@@ -11,14 +11,14 @@ namespace swivel::cli {
 
 /// Throws InputError in the name of the option where there is no such link or joint.
 template <class Item>
-void require_known(const char* option, const std::string& name, const std::vector<Item>& items, const char* kind,
-                   const std::string& source) {
+void require_known(const char* option, const std::string& name, const std::vector<Item>& items,
+                   const char* kind, const std::string& source) {
   std::vector<std::string> known;
   for (const Item& item : items) known.push_back(item.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
   throw InputError(std::string(option) + ": unknown " + kind + " '" + name + "'" +
-                   (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'") + ": allowed are the " + kind +
-                   "s of " + source);
+                   (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'") +
+                   ": allowed are the " + kind + "s of " + source);
 }
 
 }  // namespace swivel::cli

@@ -9,8 +9,10 @@ std::map<std::string, std::filesystem::path> parse_packages(const std::vector<st
   std::map<std::string, std::filesystem::path> packages;
   for (const std::string& item : items) {
     const std::size_t equals = item.find('=');
-    if (equals == std::string::npos || equals == 0 || !std::filesystem::is_directory(item.substr(equals + 1)))
-      throw InputError("--packages: '" + item + "': allowed is NAME=FOLDER with an existing folder");
+    if (equals == std::string::npos || equals == 0 ||
+        !std::filesystem::is_directory(item.substr(equals + 1)))
+      throw InputError("--packages: '" + item +
+                       "': allowed is NAME=FOLDER with an existing folder");
     packages[item.substr(0, equals)] = item.substr(equals + 1);
   }
   return packages;

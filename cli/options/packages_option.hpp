@@ -10,6 +10,7 @@ namespace swivel::cli {
 inline constexpr const char* kPackagesHelp = "NAME=FOLDER, where meshes of package://NAME/... lie";
 
 /// What --packages says: name -> folder. Throws InputError.
-[[nodiscard]] std::map<std::string, std::filesystem::path> parse_packages(const std::vector<std::string>& items);
+[[nodiscard]] std::map<std::string, std::filesystem::path> parse_packages(
+    const std::vector<std::string>& items);
 
 }  // namespace swivel::cli

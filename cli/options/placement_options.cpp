@@ -15,11 +15,14 @@ namespace swivel::cli {
 
 namespace {
 
-[[noreturn]] void refuse(std::size_t coordinate, const std::string& text, const std::string& what, const std::string& allowed) {
-  throw InputError(std::string("--") + kCoordinates[coordinate] + ": '" + text + "'" + what + ": allowed is " + allowed);
+[[noreturn]] void refuse(std::size_t coordinate, const std::string& text, const std::string& what,
+                         const std::string& allowed) {
+  throw InputError(std::string("--") + kCoordinates[coordinate] + ": '" + text + "'" + what +
+                   ": allowed is " + allowed);
 }
 
-constexpr const char* kValues = "a number, or FROM:TO:STEP with FROM <= TO and STEP > 0, numbers from -1000 to 1000";
+constexpr const char* kValues =
+    "a number, or FROM:TO:STEP with FROM <= TO and STEP > 0, numbers from -1000 to 1000";
 
 double number(std::size_t coordinate, const std::string& text, const std::string& word) {
   double value = 0;
@@ -59,15 +62,18 @@ PlacementAxis axis_from(std::size_t coordinate, const std::string& text) {
 
 void PlacementOptions::add_to(CLI::App& command, const std::string& values) {
   const char* const group = "Placement";
-  command.add_option("--object", object, "move this object of the scene, and the path where it is in its frame")->group(group);
+  command
+      .add_option("--object", object,
+                  "move this object of the scene, and the path where it is in its frame")
+      ->group(group);
   command.add_flag("--path", path, "move the path alone")->group(group);
   command.add_flag("--base", base, "move the robot")->group(group);
   for (std::size_t k = 0; k < kCoordinates.size(); ++k)
     command
-        .add_option(
-            std::string("--") + kCoordinates[k], coordinates[k],
-            (k < 3 ? "along the base frame's axis, m" : "about the base frame's axis, through the thing's own origin, rad") +
-                values)
+        .add_option(std::string("--") + kCoordinates[k], coordinates[k],
+                    (k < 3 ? "along the base frame's axis, m"
+                           : "about the base frame's axis, through the thing's own origin, rad") +
+                        values)
         ->group(group);
 }
 
@@ -101,7 +107,8 @@ Problem PlacementOptions::apply(const Problem& problem) const {
   Offset offset{};
   for (const PlacementAxis& axis : given) {
     const auto k = static_cast<std::size_t>(axis.coordinate);
-    if (axis.count != 1 || axis.step != 0) refuse(k, coordinates[k], "", "one number; swivel place takes FROM:TO:STEP");
+    if (axis.count != 1 || axis.step != 0)
+      refuse(k, coordinates[k], "", "one number; swivel place takes FROM:TO:STEP");
     offset[k] = axis.from;
   }
   return placed_problem(problem, what, offset);

@@ -9,7 +9,8 @@
 
 namespace swivel::cli {
 
-/// What is moved and by how much, the same words for `place` and for the commands that take one placement.
+/// What is moved and by how much, the same words for `place` and for the commands that take one
+/// placement.
 struct PlacementOptions {
   std::string object;
   bool path = false, base = false;
@@ -19,7 +20,8 @@ struct PlacementOptions {
   void add_to(CLI::App& command, const std::string& values);
   /// Throws InputError unless exactly one thing is named, and it is one of the problem's.
   [[nodiscard]] Movable thing(const Problem& problem) const;
-  /// Those that are given, in the order of kCoordinates: FROM:TO:STEP, FROM:TO (count 0) or a number (count 1). Throws InputError.
+  /// Those that are given, in the order of kCoordinates: FROM:TO:STEP, FROM:TO (count 0) or a
+  /// number (count 1). Throws InputError.
   [[nodiscard]] std::vector<PlacementAxis> axes() const;
   /// The problem with one thing moved by one number a coordinate; as it is where nothing is named.
   [[nodiscard]] Problem apply(const Problem& problem) const;

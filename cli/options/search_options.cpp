@@ -16,7 +16,8 @@
 namespace swivel::cli {
 
 void SearchOptions::add_to(CLI::App& command) {
-  command.add_option("--planner", planner, "eager | eager_dp | lazy | parallel")->capture_default_str();
+  command.add_option("--planner", planner, "eager | eager_dp | lazy | parallel")
+      ->capture_default_str();
   command.add_option("--threads", threads, "0: all cores")->capture_default_str();
   LatticeOptions::add_to(command);
 }
@@ -37,7 +38,8 @@ PlanOptions SearchOptions::plan_options() const {
   options.planner = in_the_name_of("--planner", [&] { return planner_from_string(planner); });
   constexpr int kMostThreads = 1024;
   if (threads < 0 || threads > kMostThreads)
-    throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
+    throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " +
+                     std::to_string(kMostThreads));
   options.threads = threads;
   options.cancel = &interrupted;
   return options;
@@ -47,7 +49,8 @@ void LatticeOptions::apply(Problem& problem) const {
   if (ds) problem.resolution.ds = positive(*ds, "--ds");
   if (dphi) {
     problem.resolution.dphi = positive(*dphi, "--dphi");
-    if (problem.resolution.dphi > kTwoPi) throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
+    if (problem.resolution.dphi > kTwoPi)
+      throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
   }
   if (arcs) problem.resolution.arcs = *arcs;
   if (!edges.empty()) {
@@ -67,8 +70,9 @@ std::string shortest(double value) {
 }
 
 std::string quoted(const std::string& word) {
-  if (!word.empty() &&
-      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") == std::string::npos)
+  if (!word.empty() && word.find_first_not_of(
+                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
+                           std::string::npos)
     return word;
   std::string result = "'";
   for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
@@ -89,12 +93,15 @@ std::string SearchOptions::words() const {
 
 void require_pages() {
   if (!page_available())
-    throw InputError("--report: this program was built without reports: allowed is a build with SWIVEL_REPORT=ON");
+    throw InputError(
+        "--report: this program was built without reports: allowed is a build with "
+        "SWIVEL_REPORT=ON");
 }
 
 double positive(double value, const char* option) {
   if (!(value > 0) || !std::isfinite(value))
-    throw InputError(std::string(option) + ": " + shortest(value) + ": allowed are finite numbers above 0");
+    throw InputError(std::string(option) + ": " + shortest(value) +
+                     ": allowed are finite numbers above 0");
   return value;
 }
 

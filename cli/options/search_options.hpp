@@ -27,7 +27,8 @@ struct SearchOptions : LatticeOptions {
   void add_to(CLI::App& command);
   /// Planner and threads, and Ctrl-C as the cancel flag.
   [[nodiscard]] PlanOptions plan_options() const;
-  /// The options that change answers, as words of a command line, with a space before each; the planner always.
+  /// The options that change answers, as words of a command line, with a space before each; the
+  /// planner always.
   [[nodiscard]] std::string words() const;
 };
 

@@ -29,10 +29,12 @@ Shard shard_from_slurm() {
     return number;
   };
   const std::uint64_t task = value("SLURM_ARRAY_TASK_ID"), count = value("SLURM_ARRAY_TASK_COUNT"),
-                      first = value("SLURM_ARRAY_TASK_MIN"), step = value("SLURM_ARRAY_TASK_STEP", 1);
+                      first = value("SLURM_ARRAY_TASK_MIN"),
+                      step = value("SLURM_ARRAY_TASK_STEP", 1);
   if (task < first || step == 0 || (task - first) % step != 0 || (task - first) / step >= count)
-    throw InputError("--shard auto: task " + std::to_string(task) + " is none of " + std::to_string(count) + " from " +
-                     std::to_string(first) + " on: allowed are arrays without gaps, as --array=0-31");
+    throw InputError("--shard auto: task " + std::to_string(task) + " is none of " +
+                     std::to_string(count) + " from " + std::to_string(first) +
+                     " on: allowed are arrays without gaps, as --array=0-31");
   return {(task - first) / step, count};
 }
 
@@ -48,11 +50,13 @@ Shard shard_from_string(const std::string& text) {
     const auto count = std::from_chars(index.ptr + 1, end, shard.count);
     read = count.ec == std::errc() && count.ptr == end && shard.index < shard.count;
   }
-  if (!read) throw InputError("--shard: '" + text + "': allowed is I/N, I from 0 to N - 1, or auto");
+  if (!read)
+    throw InputError("--shard: '" + text + "': allowed is I/N, I from 0 to N - 1, or auto");
   return shard;
 }
 
-io::RunSettings run_settings(const std::string& problem_file, const Problem& problem, const SearchOptions& search,
+io::RunSettings run_settings(const std::string& problem_file, const Problem& problem,
+                             const SearchOptions& search,
                              const std::vector<io::InputFiles::File>& inputs) {
   namespace fs = std::filesystem;
   io::RunSettings settings;
@@ -62,10 +66,13 @@ io::RunSettings run_settings(const std::string& problem_file, const Problem& pro
                      {"dphi", shortest(problem.resolution.dphi)},
                      {"arcs", problem.resolution.arcs ? "true" : "false"},
                      {"edges", problem.limits.edges == EdgeMode::kNodes ? "nodes" : "continuous"}};
-  // The problem file is the first, and may be called otherwise, or come through a pipe. The others by their place beside it.
+  // The problem file is the first, and may be called otherwise, or come through a pipe. The others
+  // by their place beside it.
   const fs::path folder = fs::absolute(problem_file).parent_path();
   for (const io::InputFiles::File& file : inputs)
-    settings.files.emplace_back(settings.files.empty() ? "the problem file" : fs::relative(file.name, folder).string(), file.hash);
+    settings.files.emplace_back(
+        settings.files.empty() ? "the problem file" : fs::relative(file.name, folder).string(),
+        file.hash);
   return settings;
 }
 

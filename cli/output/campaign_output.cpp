@@ -14,24 +14,32 @@ namespace swivel::cli {
 namespace {
 
 void print_summary(const CampaignSummary& summary, const std::vector<HeldJoint>& held) {
-  say("%llu of %llu episodes answered: %llu solved, %llu infeasible", static_cast<unsigned long long>(summary.answered()),
-      static_cast<unsigned long long>(summary.episodes), static_cast<unsigned long long>(summary.solved),
+  say("%llu of %llu episodes answered: %llu solved, %llu infeasible",
+      static_cast<unsigned long long>(summary.answered()),
+      static_cast<unsigned long long>(summary.episodes),
+      static_cast<unsigned long long>(summary.solved),
       static_cast<unsigned long long>(summary.infeasible));
-  if (summary.errors > 0) say(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
+  if (summary.errors > 0)
+    say(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
   if (!held.empty()) say(", held: %s", words(held).c_str());
   say("\n");
   if (summary.answered() == 0) return;
-  say("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL calls %.0f in the median\n",
-      summary.plan_ms.median, summary.plan_ms.p5, summary.plan_ms.p95, summary.nodes_checked.median, summary.fcl_calls.median);
+  say("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL "
+      "calls %.0f in the median\n",
+      summary.plan_ms.median, summary.plan_ms.p5, summary.plan_ms.p95, summary.nodes_checked.median,
+      summary.fcl_calls.median);
 }
 
 }  // namespace
 
-void show_campaign(io::OutputFiles& outputs, const std::vector<EpisodeRow>& rows, const io::ShardRecord& record) {
+void show_campaign(io::OutputFiles& outputs, const std::vector<EpisodeRow>& rows,
+                   const io::ShardRecord& record) {
   const CampaignSummary summary = summarize(rows, record.shard.size(record.total));
   if (outputs.wants("--report"))
-    outputs.write("--report", to_overview(rows, {record.problem, record.total, std::stoull(record.setting("seed")), record.shard,
-                                                 record.setting("planner"), record.plan_command, record.settings.coordinates}));
+    outputs.write("--report", to_overview(rows, {record.problem, record.total,
+                                                 std::stoull(record.setting("seed")), record.shard,
+                                                 record.setting("planner"), record.plan_command,
+                                                 record.settings.coordinates}));
   outputs.write("--json", io::to_json(summary, record.held));
   outputs.stage();
   if (!outputs.takes_standard_output()) print_summary(summary, record.held);

@@ -21,7 +21,8 @@ struct MotionOptions {
   [[nodiscard]] TimingOptions timing(const Problem& problem) const;
 };
 
-/// Throws InputError where io::motion_text() knows no format of that name; nothing is said of an empty name.
+/// Throws InputError where io::motion_text() knows no format of that name; nothing is said of an
+/// empty name.
 void require_motion_format(const std::string& file);
 
 /// What became of a plan's path, in a line each, on standard output; warnings on standard error.

@@ -29,13 +29,15 @@ std::string count_text(const std::vector<PlacementRow>& rows) {
   std::sort(order.begin(), order.end());
   std::string text = std::to_string(solved) + " with a path";
   if (!order.empty())
-    text +=
-        ", " +
-        std::to_string(std::count_if(rows.begin(), rows.end(), [](const auto& r) { return r.status == PlanStatus::kInfeasible; })) +
-        " without:";
+    text += ", " +
+            std::to_string(
+                std::count_if(rows.begin(), rows.end(),
+                              [](const auto& r) { return r.status == PlanStatus::kInfeasible; })) +
+            " without:";
   constexpr std::size_t kMostNames = 6;
   for (std::size_t k = 0; k < std::min(kMostNames, order.size()); ++k)
-    text += std::string(k == 0 ? " " : ", ") + order[k].second + " " + std::to_string(-order[k].first);
+    text +=
+        std::string(k == 0 ? " " : ", ") + order[k].second + " " + std::to_string(-order[k].first);
   if (order.size() > kMostNames) text += ", ...";
   return text;
 }
@@ -62,15 +64,19 @@ constexpr std::uint64_t kMostCells = 1'000'000;
 std::vector<PlacementCriterion> PlacementRequest::criteria() const {
   std::vector<PlacementCriterion> criteria;
   for (const std::string& name : best)
-    criteria.push_back(in_the_name_of("--best", [&] { return placement_criterion_from_string(name); }));
+    criteria.push_back(
+        in_the_name_of("--best", [&] { return placement_criterion_from_string(name); }));
   return criteria;
 }
 
 std::vector<PlacementAxis> PlacementRequest::axes() const {
   std::vector<PlacementAxis> axes = placement.axes();
-  if (axes.empty()) throw InputError("--x, --y, --z, --roll, --pitch, --yaw: none is given: allowed are one to six of them");
+  if (axes.empty())
+    throw InputError(
+        "--x, --y, --z, --roll, --pitch, --yaw: none is given: allowed are one to six of them");
   for (PlacementAxis& axis : axes) {
-    const std::string name = std::string("--") + kCoordinates[static_cast<std::size_t>(axis.coordinate)];
+    const std::string name =
+        std::string("--") + kCoordinates[static_cast<std::size_t>(axis.coordinate)];
     if (sample)
       axis.count = 1;
     else if (axis.count == 0)
@@ -90,8 +96,8 @@ std::vector<std::size_t> PlacementRequest::varied_axes() const {
 std::uint64_t PlacementRequest::total() const {
   const std::uint64_t count = sample ? *sample : PlacementGrid(axes()).size();
   if (count < 1 || count > kMostCells)
-    throw InputError((sample ? "--sample: " : "the grid: ") + std::to_string(count) + " placements: allowed are 1 to " +
-                     std::to_string(kMostCells));
+    throw InputError((sample ? "--sample: " : "the grid: ") + std::to_string(count) +
+                     " placements: allowed are 1 to " + std::to_string(kMostCells));
   return count;
 }
 
@@ -102,7 +108,8 @@ void PlacementRequest::note(io::RunSettings& settings) const {
   add("object", placement.object);
   add("path", placement.path ? "yes" : "");
   add("base", placement.base ? "yes" : "");
-  for (std::size_t k = 0; k < kCoordinates.size(); ++k) add(kCoordinates[k], placement.coordinates[k]);
+  for (std::size_t k = 0; k < kCoordinates.size(); ++k)
+    add(kCoordinates[k], placement.coordinates[k]);
   add("sample", sample ? std::to_string(*sample) : "");
   add("seed", sample ? std::to_string(seed) : "");
   std::string names;
@@ -115,8 +122,10 @@ PlacementRequest PlacementRequest::from(const io::ShardRecord& record) {
   request.placement.object = record.setting("object");
   request.placement.path = !record.setting("path").empty();
   request.placement.base = !record.setting("base").empty();
-  for (std::size_t k = 0; k < kCoordinates.size(); ++k) request.placement.coordinates[k] = record.setting(kCoordinates[k]);
-  if (const std::string sample = record.setting("sample"); !sample.empty()) request.sample = record.total;
+  for (std::size_t k = 0; k < kCoordinates.size(); ++k)
+    request.placement.coordinates[k] = record.setting(kCoordinates[k]);
+  if (const std::string sample = record.setting("sample"); !sample.empty())
+    request.sample = record.total;
   request.best.clear();
   std::istringstream names(record.setting("best"));
   for (std::string name; std::getline(names, name, ',');) request.best.push_back(name);
@@ -125,20 +134,27 @@ PlacementRequest PlacementRequest::from(const io::ShardRecord& record) {
 
 void require_drawable(const PlacementRequest& request, const std::string& svg) {
   if (!svg.empty() && !request.drawable())
-    throw InputError("--svg: fewer than two coordinates take more than one value: allowed is a grid over two or more");
+    throw InputError(
+        "--svg: fewer than two coordinates take more than one value: allowed is a grid over two or "
+        "more");
 }
 
-void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& rows, const PlacementRequest& request,
-                     const io::ShardRecord& record, std::size_t top, const std::string& remark, const PlacementScene& scene) {
+void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& rows,
+                     const PlacementRequest& request, const io::ShardRecord& record,
+                     std::size_t top, const std::string& remark, const PlacementScene& scene) {
   const std::vector<PlacementCriterion> criteria = request.criteria();
-  const std::vector<PlacementRow> best = best_placements(rows, criteria, std::max<std::size_t>(1, top));
+  const std::vector<PlacementRow> best =
+      best_placements(rows, criteria, std::max<std::size_t>(1, top));
   const PlacementGrid grid(request.axes());
   if (outputs.wants("--report")) {
-    const std::string thing = request.placement.path ? "the path" : request.placement.base ? "the robot" : request.placement.object;
+    const std::string thing = request.placement.path   ? "the path"
+                              : request.placement.base ? "the robot"
+                                                       : request.placement.object;
     outputs.write("--report",
                   to_placement_page(rows,
-                                    {record.problem, thing, grid.axes(), request.sample.has_value(), record.total, criteria,
-                                     record.setting("planner"), record.plan_command + request.placement.words({})},
+                                    {record.problem, thing, grid.axes(), request.sample.has_value(),
+                                     record.total, criteria, record.setting("planner"),
+                                     record.plan_command + request.placement.words({})},
                                     scene));
   }
   std::optional<PlacementMap> map;
@@ -149,8 +165,9 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
   if (map && outputs.wants("--svg")) outputs.write("--svg", to_svg(*map));
   outputs.stage();
   if (!outputs.takes_standard_output()) {
-    say("%zu of %llu placements planned, %s%s%s\n", rows.size(), static_cast<unsigned long long>(record.shard.size(record.total)),
-        count_text(rows).c_str(), record.held.empty() ? "" : (", held: " + words(record.held)).c_str(), remark.c_str());
+    say("%zu of %llu placements planned, %s%s%s\n", rows.size(),
+        static_cast<unsigned long long>(record.shard.size(record.total)), count_text(rows).c_str(),
+        record.held.empty() ? "" : (", held: " + words(record.held)).c_str(), remark.c_str());
     if (map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
     if (!best.empty() && top > 0) say("best by %s:\n", to_string(criteria[0]));
     for (std::size_t k = 0; k < std::min(best.size(), top); ++k)
@@ -163,10 +180,12 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
 
 int placement_exit_code(const std::vector<PlacementRow>& rows) {
   const auto with = [&](PlanStatus status) {
-    return std::find_if(rows.begin(), rows.end(), [&](const PlacementRow& row) { return row.status == status; });
+    return std::find_if(rows.begin(), rows.end(),
+                        [&](const PlacementRow& row) { return row.status == status; });
   };
   if (const auto error = with(PlanStatus::kError); error != rows.end()) {
-    complain("swivel: internal error in cell %llu: %s\n", static_cast<unsigned long long>(error->cell), error->reason.c_str());
+    complain("swivel: internal error in cell %llu: %s\n",
+             static_cast<unsigned long long>(error->cell), error->reason.c_str());
     return kInternalError;
   }
   return with(PlanStatus::kSolved) == rows.end() ? kNo : kOk;

@@ -23,16 +23,17 @@ void print_self_times(const Timeline& timeline) {
   };
   const auto ms = [](std::int64_t ns) { return 1e-6 * static_cast<double>(ns); };
   const double all = ms(sum_from(0).self_ns);
-  complain("swivel: self time by stage, %.1f ms on all threads\n  %-26s %9s %11s %7s\n", all, "stage", "calls", "self, ms",
-           "share");
+  complain("swivel: self time by stage, %.1f ms on all threads\n  %-26s %9s %11s %7s\n", all,
+           "stage", "calls", "self, ms", "share");
   const auto print = [&](const std::string& stage, const SelfTime& time) {
     const double own = ms(time.self_ns);
-    complain("  %-26s %9lld %11.3f %5.1f %%\n", stage.c_str(), static_cast<long long>(time.calls), own,
-             all > 0 ? 100 * own / all : 0.0);
+    complain("  %-26s %9lld %11.3f %5.1f %%\n", stage.c_str(), static_cast<long long>(time.calls),
+             own, all > 0 ? 100 * own / all : 0.0);
   };
   const std::size_t shown = times.size() <= kMostLines ? times.size() : kMostLines - 1;
   for (std::size_t k = 0; k < shown; ++k) print(times[k].stage, times[k]);
-  if (shown < times.size()) print(std::to_string(times.size() - shown) + " other stages", sum_from(shown));
+  if (shown < times.size())
+    print(std::to_string(times.size() - shown) + " other stages", sum_from(shown));
 }
 
 }  // namespace swivel::cli

@@ -11,8 +11,8 @@
 
 namespace swivel::cli {
 
-/// One line on a terminal for work that takes more than half a second, redrawn five times a second from a thread of its own, so
-/// that stages which report nothing are seen to run too.
+/// One line on a terminal for work that takes more than half a second, redrawn five times a second
+/// from a thread of its own, so that stages which report nothing are seen to run too.
 class ProgressLine {
  public:
   explicit ProgressLine(bool enabled) {
@@ -35,9 +35,11 @@ class ProgressLine {
     const auto start = std::chrono::steady_clock::now();
     bool shown = false;
     std::unique_lock lock(mutex_);
-    for (auto wait = std::chrono::milliseconds(500); !wake_.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); });
+    for (auto wait = std::chrono::milliseconds(500);
+         !wake_.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); });
          wait = std::chrono::milliseconds(200)) {
-      std::fprintf(stderr, "\r\033[K%.1f s: %s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+      std::fprintf(stderr, "\r\033[K%.1f s: %s",
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                    phrase().c_str());
       shown = true;
     }

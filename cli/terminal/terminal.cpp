@@ -40,7 +40,8 @@ void complain(const char* format, ...) {
   va_start(arguments, format);
   std::string text = shown(formatted_list(format, arguments));
   va_end(arguments);
-  if (isatty(STDERR_FILENO) != 0) text = wrapped_lines(text, static_cast<std::size_t>(terminal_columns(STDERR_FILENO)));
+  if (isatty(STDERR_FILENO) != 0)
+    text = wrapped_lines(text, static_cast<std::size_t>(terminal_columns(STDERR_FILENO)));
   std::fputs(text.c_str(), stderr);
 }
 

@@ -23,7 +23,8 @@ std::size_t width_of(std::string_view word) {
       continue;
     }
     escape = c == '\033';
-    width += !escape && (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // not a later byte of a letter
+    width +=
+        !escape && (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // not a later byte of a letter
   }
   return width;
 }
@@ -40,13 +41,16 @@ bool write_out(std::string_view text) {
 
 /// Whole lines, as a line-buffered stream has them.
 ssize_t write_wrapped(void*, const char* bytes, std::size_t count) {
-  return write_out(wrapped_lines({bytes, count}, static_cast<std::size_t>(terminal_columns()))) ? static_cast<ssize_t>(count) : 0;
+  return write_out(wrapped_lines({bytes, count}, static_cast<std::size_t>(terminal_columns())))
+             ? static_cast<ssize_t>(count)
+             : 0;
 }
 
 }  // namespace
 
 std::string wrapped(std::string_view line, std::size_t columns) {
-  constexpr std::size_t kNarrow = 40;  // where that much is left beside the indent, or not broken at all
+  constexpr std::size_t kNarrow =
+      40;  // where that much is left beside the indent, or not broken at all
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size()) + 4;
   if (width_of(line) <= columns || columns < indent + kNarrow) return std::string(line);
   std::string text;

@@ -30,7 +30,8 @@ struct Arena::Impl {
 Arena::Arena(int threads) : impl_(std::make_unique<Impl>()) {
   impl_->threads = threads;
   if (threads > tbb::info::default_concurrency())
-    impl_->allowed.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    impl_->allowed.emplace(tbb::global_control::max_allowed_parallelism,
+                           static_cast<std::size_t>(threads));
   impl_->arena = std::make_unique<tbb::task_arena>(threads);
 }
 
@@ -44,7 +45,8 @@ Arena::~Arena() {
 
 int Arena::most_helpers() const {
   if (getpid() != impl_->process) return 0;
-  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return std::min(impl_->threads, static_cast<int>(std::min<std::size_t>(allowed, 1 << 20))) - 1;
 }
 
@@ -54,10 +56,12 @@ void Arena::enqueue(std::function<void()> task) {
 
 void Arena::for_each(int count, const std::function<void(int, int)>& body) {
   impl_->arena->execute([&] {
-    tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), [&](const tbb::blocked_range<int>& range) {
-      const int worker = tbb::this_task_arena::current_thread_index();
-      for (int index = range.begin(); index != range.end(); ++index) body(index, worker);
-    });
+    tbb::parallel_for(tbb::blocked_range<int>(0, count, 1),
+                      [&](const tbb::blocked_range<int>& range) {
+                        const int worker = tbb::this_task_arena::current_thread_index();
+                        for (int index = range.begin(); index != range.end(); ++index)
+                          body(index, worker);
+                      });
   });
 }
 

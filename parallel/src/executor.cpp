@@ -37,7 +37,8 @@ struct Executor::Impl {
 };
 
 Executor::Executor(int threads) : impl_(std::make_unique<Impl>()) {
-  impl_->threads = threads >= 1 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  impl_->threads =
+      threads >= 1 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 Executor::~Executor() = default;
 Executor::Executor(Executor&&) noexcept = default;
@@ -59,12 +60,15 @@ void Executor::for_each(int count, const std::function<void(int, int)>& body) {
 void Executor::start_helpers() {
   if (impl_->threads == 1) return;
   if (!impl_->helpers)
-    impl_->helpers = std::make_unique<detail::Helpers>(impl_->in_arena(), std::min(kMostHelpers, impl_->threads - 1));
+    impl_->helpers = std::make_unique<detail::Helpers>(impl_->in_arena(),
+                                                       std::min(kMostHelpers, impl_->threads - 1));
   impl_->helpers->start();
 }
 
-void Executor::for_each_overlapped(int count, const std::function<void(int, int)>& body, const std::function<void()>& work) {
-  if (count > 0 && impl_->helpers && impl_->helpers->any()) return impl_->helpers->share(0, count, body, &work);
+void Executor::for_each_overlapped(int count, const std::function<void(int, int)>& body,
+                                   const std::function<void()>& work) {
+  if (count > 0 && impl_->helpers && impl_->helpers->any())
+    return impl_->helpers->share(0, count, body, &work);
   work();
   for_each_short(count, body);
 }
@@ -79,7 +83,8 @@ void Executor::for_each_short(int count, const std::function<void(int, int)>& bo
   for (int index = 0; index < count; ++index) {
     const Clock::duration lasted = Clock::now() - begin;
     const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
-    if (left > kWorthSharing && impl_->alone + left > (impl_->helpers ? kWorthWaking : kWorthBeginning)) {
+    if (left > kWorthSharing &&
+        impl_->alone + left > (impl_->helpers ? kWorthWaking : kWorthBeginning)) {
       start_helpers();
       impl_->alone = Clock::duration(0);
       return impl_->helpers->share(index, count, body);

@@ -44,7 +44,8 @@ void look_for(const There& there, int yields) {
 struct Open {
   static constexpr int kMost = 0xffff;
   std::uint64_t times = 0, first = 0, last = 0;
-  explicit Open(std::uint64_t word) : times(word >> 32), first(word >> 16 & kMost), last(word & kMost) {}
+  explicit Open(std::uint64_t word)
+      : times(word >> 32), first(word >> 16 & kMost), last(word & kMost) {}
   [[nodiscard]] std::uint64_t word() const { return times << 32 | first << 16 | last; }
   [[nodiscard]] bool any() const { return first < last; }
 };
@@ -114,7 +115,8 @@ struct Helpers::State {
   }
 };
 
-Helpers::Helpers(Arena& arena, int most) : arena_(&arena), process_(getpid()), state_(std::make_shared<State>(most)) {}
+Helpers::Helpers(Arena& arena, int most)
+    : arena_(&arena), process_(getpid()), state_(std::make_shared<State>(most)) {}
 
 Helpers::~Helpers() {
   state_->ended = true;
@@ -124,7 +126,8 @@ Helpers::~Helpers() {
 }
 
 bool Helpers::any() const {
-  return std::any_of(state_->there.begin(), state_->there.end(), [](const std::atomic<bool>& there) { return there.load(); });
+  return std::any_of(state_->there.begin(), state_->there.end(),
+                     [](const std::atomic<bool>& there) { return there.load(); });
 }
 
 std::int64_t Helpers::helped() const {
@@ -143,7 +146,8 @@ void Helpers::start() {
   }
 }
 
-void Helpers::share(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work) {
+void Helpers::share(int first, int count, const std::function<void(int, int)>& body,
+                    const std::function<void()>* work) {
   if (sharing_) throw std::logic_error("work is shared from within shared work");
   struct Shares {
     bool& now;
@@ -154,7 +158,8 @@ void Helpers::share(int first, int count, const std::function<void(int, int)>& b
     share_some(first, std::min(Open::kMost, count - first), body, std::exchange(work, nullptr));
 }
 
-void Helpers::share_some(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work) {
+void Helpers::share_some(int first, int count, const std::function<void(int, int)>& body,
+                         const std::function<void()>* work) {
   State& state = *state_;
   state.first = first;
   state.body = &body;

@@ -37,7 +37,8 @@ class Helpers {
 
  private:
   struct State;
-  void share_some(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work);
+  void share_some(int first, int count, const std::function<void(int, int)>& body,
+                  const std::function<void()>* work);
 
   Arena* arena_;
   pid_t process_;

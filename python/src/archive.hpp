@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems and answers as bytes, for pickle. A struct is taken apart by a structured binding, which does not compile where a member
-// was added and not listed. What is shared within an object, as the mesh of many links, is written once.
+// Problems and answers as bytes, for pickle. A struct is taken apart by a structured binding, which
+// does not compile where a member was added and not listed. What is shared within an object, as the
+// mesh of many links, is written once.
 #pragma once
 #include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/array.hpp>
@@ -94,8 +95,10 @@ void serialize(A& archive, Joint::Range& x) {
 }
 template <class A>
 void serialize(A& archive, Joint& x) {
-  auto& [name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic, hard, passive, line] = x;
-  archive(name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic, hard, passive, line);
+  auto& [name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic,
+         hard, passive, line] = x;
+  archive(name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk,
+          mimic, hard, passive, line);
 }
 template <class A>
 void serialize(A& archive, RobotModel& x) {
@@ -134,12 +137,12 @@ void serialize(A& archive, Refinement& x) {
 }
 template <class A>
 void serialize(A& archive, Limits& x) {
-  auto& [clearance, self_clearance, manipulability, joint_margin, joint_step, arm_slope, roll_slope, step_error, tool_path_error,
-         tool_angle_error, tool_speed, tool_turn_speed, edges, edge_clearance, edge_tolerance, joint_speed, joint_acceleration,
-         joint_jerk] = x;
-  archive(clearance, self_clearance, manipulability, joint_margin, joint_step, arm_slope, roll_slope, step_error, tool_path_error,
-          tool_angle_error, tool_speed, tool_turn_speed, edges, edge_clearance, edge_tolerance, joint_speed, joint_acceleration,
-          joint_jerk);
+  auto& [clearance, self_clearance, manipulability, joint_margin, joint_step, arm_slope, roll_slope,
+         step_error, tool_path_error, tool_angle_error, tool_speed, tool_turn_speed, edges,
+         edge_clearance, edge_tolerance, joint_speed, joint_acceleration, joint_jerk] = x;
+  archive(clearance, self_clearance, manipulability, joint_margin, joint_step, arm_slope,
+          roll_slope, step_error, tool_path_error, tool_angle_error, tool_speed, tool_turn_speed,
+          edges, edge_clearance, edge_tolerance, joint_speed, joint_acceleration, joint_jerk);
 }
 template <class A>
 void serialize(A& archive, Resolution& x) {
@@ -168,8 +171,10 @@ void serialize(A& archive, Robot& x) {
 }
 template <class A>
 void serialize(A& archive, Task& x) {
-  auto& [path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at, start_tolerance, cost, refinement] = x;
-  archive(path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at, start_tolerance, cost, refinement);
+  auto& [path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at, start_tolerance,
+         cost, refinement] = x;
+  archive(path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at,
+          start_tolerance, cost, refinement);
 }
 /// Members of three classes, which no binding takes apart together.
 template <class A>
@@ -192,8 +197,10 @@ void serialize(A& archive, TrajectoryRow& x) {
 }
 template <class A>
 void serialize(A& archive, Counters& x) {
-  auto& [ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, proved_free, proved_colliding, expansions, iterations] = x;
-  archive(ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, proved_free, proved_colliding, expansions, iterations);
+  auto& [ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, proved_free, proved_colliding,
+         expansions, iterations] = x;
+  archive(ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, proved_free, proved_colliding,
+          expansions, iterations);
 }
 template <class A>
 void serialize(A& archive, LatticeInfo::Grid& x) {
@@ -207,8 +214,10 @@ void serialize(A& archive, LatticeInfo& x) {
 }
 template <class A>
 void serialize(A& archive, Cause& x) {
-  auto& [kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit, over, check] = x;
-  archive(kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit, over, check);
+  auto& [kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit,
+         over, check] = x;
+  archive(kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit,
+          over, check);
 }
 template <class A>
 void serialize(A& archive, EmptyLayers& x) {
@@ -227,10 +236,10 @@ void serialize(A& archive, Diagnosis::Unreachable& x) {
 }
 template <class A>
 void serialize(A& archive, Diagnosis& x) {
-  auto& [reached_layer, reached_s, cause, at_s, waypoints, without_it, without_it_s, together, empty_layers, removed, unreachable,
-         complete, layers_known] = x;
-  archive(reached_layer, reached_s, cause, at_s, waypoints, without_it, without_it_s, together, empty_layers, removed, unreachable,
-          complete, layers_known);
+  auto& [reached_layer, reached_s, cause, at_s, waypoints, without_it, without_it_s, together,
+         empty_layers, removed, unreachable, complete, layers_known] = x;
+  archive(reached_layer, reached_s, cause, at_s, waypoints, without_it, without_it_s, together,
+          empty_layers, removed, unreachable, complete, layers_known);
 }
 template <class A>
 void serialize(A& archive, Advice& x) {
@@ -274,10 +283,10 @@ void serialize(A& archive, DeepestContact& x) {
 }
 template <class A>
 void serialize(A& archive, Measures& x) {
-  auto& [nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, deepest_contact,
-         min_manipulability, arm_angle] = x;
-  archive(nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, deepest_contact,
-          min_manipulability, arm_angle);
+  auto& [nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin,
+         deepest_contact, min_manipulability, arm_angle] = x;
+  archive(nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin,
+          deepest_contact, min_manipulability, arm_angle);
 }
 template <class A>
 void serialize(A& archive, HeldJoint& x) {
@@ -305,13 +314,16 @@ void serialize(A& archive, PlanResult& x) {
     std::vector<std::string> warnings;
   };
   static_assert(sizeof(Listed) == sizeof(PlanResult));
-  archive(static_cast<Measures&>(x), x.status, x.cost, x.planner, x.threads, x.lattice, x.counters, x.time_ms, x.trajectory,
-          x.checked, x.partial, x.joint_names, x.held, x.diagnosis, x.dropped_pairs, x.reduced_pairs, x.warnings);
+  archive(static_cast<Measures&>(x), x.status, x.cost, x.planner, x.threads, x.lattice, x.counters,
+          x.time_ms, x.trajectory, x.checked, x.partial, x.joint_names, x.held, x.diagnosis,
+          x.dropped_pairs, x.reduced_pairs, x.warnings);
 }
 template <class A>
 void serialize(A& archive, Refined& x) {
-  auto& [rows, refined, reason, cost_before, cost, bend_before, bend, rounds, nodes_asked, edges_asked, from_second_seed] = x;
-  archive(rows, refined, reason, cost_before, cost, bend_before, bend, rounds, nodes_asked, edges_asked, from_second_seed);
+  auto& [rows, refined, reason, cost_before, cost, bend_before, bend, rounds, nodes_asked,
+         edges_asked, from_second_seed] = x;
+  archive(rows, refined, reason, cost_before, cost, bend_before, bend, rounds, nodes_asked,
+          edges_asked, from_second_seed);
 }
 template <class A>
 void serialize(A& archive, TimingOptions& x) {
@@ -340,10 +352,10 @@ void serialize(A& archive, TimedPath::Stop& x) {
 }
 template <class A>
 void serialize(A& archive, TimedPath& x) {
-  auto& [rows, rate, speed, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position, rounded_angle, between_position,
-         between_angle, rounds, warnings] = x;
-  archive(rows, rate, speed, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position, rounded_angle, between_position,
-          between_angle, rounds, warnings);
+  auto& [rows, rate, speed, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position,
+         rounded_angle, between_position, between_angle, rounds, warnings] = x;
+  archive(rows, rate, speed, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position,
+          rounded_angle, between_position, between_angle, rounds, warnings);
 }
 template <class A>
 void serialize(A& archive, NoMotion& x) {
@@ -381,20 +393,26 @@ void serialize(A& archive, CheckResult::Motion& x) {
 }
 template <class A>
 void serialize(A& archive, CheckResult& x) {
-  auto& [passed, failures, failure_count, worst_position, worst_angle, worst_path_error, worst_path_angle, largest_step, cost,
-         rounded, min_clearance, min_margin, deepest_contact, nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
-  archive(passed, failures, failure_count, worst_position, worst_angle, worst_path_error, worst_path_angle, largest_step, cost,
-          rounded, min_clearance, min_margin, deepest_contact, nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
+  auto& [passed, failures, failure_count, worst_position, worst_angle, worst_path_error,
+         worst_path_angle, largest_step, cost, rounded, min_clearance, min_margin, deepest_contact,
+         nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
+  archive(passed, failures, failure_count, worst_position, worst_angle, worst_path_error,
+          worst_path_angle, largest_step, cost, rounded, min_clearance, min_margin, deepest_contact,
+          nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
 }
 template <class A>
 void serialize(A& archive, PlacementRow& x) {
-  auto& [cell, offset, status, cost, clearance, clearance_margin, joint_margin, tool_speed, failed_s, cause, by, reason] = x;
-  archive(cell, offset, status, cost, clearance, clearance_margin, joint_margin, tool_speed, failed_s, cause, by, reason);
+  auto& [cell, offset, status, cost, clearance, clearance_margin, joint_margin, tool_speed,
+         failed_s, cause, by, reason] = x;
+  archive(cell, offset, status, cost, clearance, clearance_margin, joint_margin, tool_speed,
+          failed_s, cause, by, reason);
 }
 template <class A>
 void serialize(A& archive, EpisodeRow& x) {
-  auto& [episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s, cause, by, reason, offsets] = x;
-  archive(episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s, cause, by, reason, offsets);
+  auto& [episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s,
+         cause, by, reason, offsets] = x;
+  archive(episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s,
+          cause, by, reason, offsets);
 }
 
 namespace python {
@@ -441,8 +459,9 @@ std::uint64_t checksum_of(const std::string& bytes) {
   return fnv1a(bytes, fnv1a(typeid(T).name()));
 }
 
-/// For `def` of a class: Python's module pickle, to other processes, and to machines with the same version of this package. The
-/// state is (version, checksum, bytes): damaged bytes would be read as lengths of lists that fill the memory.
+/// For `def` of a class: Python's module pickle, to other processes, and to machines with the same
+/// version of this package. The state is (version, checksum, bytes): damaged bytes would be read as
+/// lengths of lists that fill the memory.
 template <class T>
 auto pickling() {
   return py::pickle(
@@ -455,12 +474,16 @@ auto pickling() {
       [](const py::tuple& state) {
         const std::string version = state.size() > 0 ? py::str(state[0]).cast<std::string>() : "?";
         if (version != SWIVEL_VERSION)
-          throw py::value_error("pickled by version " + version + " of swivel: allowed is that of this one, " SWIVEL_VERSION);
-        if (state.size() != 3 || !py::isinstance<py::int_>(state[1]) || !py::isinstance<py::bytes>(state[2]))
-          throw py::value_error("not a pickle of swivel: allowed are a version, a checksum and bytes");
+          throw py::value_error("pickled by version " + version +
+                                " of swivel: allowed is that of this one, " SWIVEL_VERSION);
+        if (state.size() != 3 || !py::isinstance<py::int_>(state[1]) ||
+            !py::isinstance<py::bytes>(state[2]))
+          throw py::value_error(
+              "not a pickle of swivel: allowed are a version, a checksum and bytes");
         std::string content = state[2].cast<std::string>();
         if (const py::object told = state[1]; !told.equal(py::int_(checksum_of<T>(content))))
-          throw py::value_error("a damaged pickle of swivel: its checksum is not that of its " + std::to_string(content.size()) +
+          throw py::value_error("a damaged pickle of swivel: its checksum is not that of its " +
+                                std::to_string(content.size()) +
                                 " bytes: allowed is what pickle wrote");
         std::istringstream bytes(std::move(content), std::ios::binary);
         T self;

@@ -28,7 +28,8 @@ struct Mesh {
   MeshPtr mesh;
 };
 
-/// Throws ValueError unless it is one of: 4x4, [x y z qw qx qy qz], and where `position_alone` [x y z].
+/// Throws ValueError unless it is one of: 4x4, [x y z qw qx qy qz], and where `position_alone` [x y
+/// z].
 [[nodiscard]] Waypoint to_waypoint(py::handle source, bool position_alone);
 [[nodiscard]] Pose to_pose(py::handle source);
 [[nodiscard]] std::vector<Waypoint> to_waypoints(py::handle source);
@@ -36,9 +37,11 @@ struct Mesh {
 /// (n, 7) float64, contiguous; (7,) reads as one row. Throws ValueError.
 [[nodiscard]] py::array_t<double> to_joints(py::handle source, const char* what);
 
-/// Read-only numpy array of one member of all rows, without a copy: `first` lies in the first row. Shape (n,), or (n, width).
+/// Read-only numpy array of one member of all rows, without a copy: `first` lies in the first row.
+/// Shape (n,), or (n, width).
 template <class Row, class Number>
-py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Number* first, py::ssize_t width = 0) {
+py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Number* first,
+                 py::ssize_t width = 0) {
   using Owner = std::shared_ptr<const std::vector<Row>>;
   const auto count = static_cast<py::ssize_t>(rows->size());
   std::vector<py::ssize_t> shape{count}, strides{static_cast<py::ssize_t>(sizeof(Row))};
@@ -49,7 +52,8 @@ py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Numb
   return array;
 }
 
-/// A Python enum whose members may be given by name wherever the module takes one, and are equal to it: Status.SOLVED, "solved".
+/// A Python enum whose members may be given by name wherever the module takes one, and are equal to
+/// it: Status.SOLVED, "solved".
 template <class E>
 struct EnumNames {
   static inline std::vector<std::pair<std::string, E>> names;
@@ -61,26 +65,35 @@ struct EnumNames {
   }
 };
 template <class E>
-void bind_enum(py::module_& m, const char* type, const char* doc, std::vector<std::pair<std::string, E>> names) {
-  const std::string told =
-      std::string(doc) + " A member is equal to its name as str() gives it: \"" + names.front().first + "\", and hashes like it.";
+void bind_enum(py::module_& m, const char* type, const char* doc,
+               std::vector<std::pair<std::string, E>> names) {
+  const std::string told = std::string(doc) +
+                           " A member is equal to its name as str() gives it: \"" +
+                           names.front().first + "\", and hashes like it.";
   py::enum_<E> bound(m, type, told.c_str());
   for (const auto& [name, value] : names) {
     std::string upper = name;
-    for (char& letter : upper) letter = static_cast<char>(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
+    for (char& letter : upper)
+      letter = static_cast<char>(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
     bound.value(upper.c_str(), value);
   }
-  // Set in place of pybind11's own, which calls itself "name": an overload of that one would take the place of the property `name`.
-  bound.attr("__str__") = py::cpp_function(&EnumNames<E>::name_of, py::name("__str__"), py::is_method(bound));
+  // Set in place of pybind11's own, which calls itself "name": an overload of that one would take
+  // the place of the property `name`.
+  bound.attr("__str__") =
+      py::cpp_function(&EnumNames<E>::name_of, py::name("__str__"), py::is_method(bound));
   const auto same = [](E value, const py::object& other) {
     if (py::isinstance<E>(other)) return value == other.cast<E>();
-    return py::isinstance<py::str>(other) && other.cast<std::string>() == EnumNames<E>::name_of(value);
+    return py::isinstance<py::str>(other) &&
+           other.cast<std::string>() == EnumNames<E>::name_of(value);
   };
-  bound.attr("__eq__") = py::cpp_function(same, py::name("__eq__"), py::is_method(bound), py::arg("other"));
-  bound.attr("__ne__") = py::cpp_function([same](E value, const py::object& other) { return !same(value, other); },
-                                          py::name("__ne__"), py::is_method(bound), py::arg("other"));
-  bound.attr("__hash__") = py::cpp_function([](E value) { return py::hash(py::str(EnumNames<E>::name_of(value))); },
-                                            py::name("__hash__"), py::is_method(bound));
+  bound.attr("__eq__") =
+      py::cpp_function(same, py::name("__eq__"), py::is_method(bound), py::arg("other"));
+  bound.attr("__ne__") =
+      py::cpp_function([same](E value, const py::object& other) { return !same(value, other); },
+                       py::name("__ne__"), py::is_method(bound), py::arg("other"));
+  bound.attr("__hash__") =
+      py::cpp_function([](E value) { return py::hash(py::str(EnumNames<E>::name_of(value))); },
+                       py::name("__hash__"), py::is_method(bound));
   EnumNames<E>::names = std::move(names);
   EnumNames<E>::type = type;
 }
@@ -92,7 +105,8 @@ E to_enum(py::handle source) {
     if (py::isinstance<py::str>(source) && source.cast<std::string>() == name) return value;
     allowed += (allowed.empty() ? "" : ", ") + name;
   }
-  throw py::value_error(EnumNames<E>::type + ": " + py::repr(source).cast<std::string>() + ": allowed are " + allowed);
+  throw py::value_error(EnumNames<E>::type + ": " + py::repr(source).cast<std::string>() +
+                        ": allowed are " + allowed);
 }
 
 template <class T>
@@ -106,11 +120,13 @@ void make_copyable(py::class_<T, Bases...>& type) {
       "__deepcopy__", [](const T& self, const py::dict&) { return T(self); }, py::arg("memo"));
 }
 
-/// A plain struct: made from keywords, its members are attributes, and its repr names those that are not the default.
+/// A plain struct: made from keywords, its members are attributes, and its repr names those that
+/// are not the default.
 template <class T>
 class PlainStruct {
  public:
-  PlainStruct(py::module_& m, const char* type, const char* doc) : class_(m, type, doc), type_(type) {}
+  PlainStruct(py::module_& m, const char* type, const char* doc)
+      : class_(m, type, doc), type_(type) {}
   template <class Member>
   PlainStruct& member(const char* name, Member T::*member, const char* doc) {
     class_.def_readwrite(name, member, doc);
@@ -134,7 +150,8 @@ class PlainStruct {
       for (const std::pair<py::handle, py::handle> value : values) {
         const std::string name = py::str(value.first);
         if (std::find(names->begin(), names->end(), name) == names->end())
-          throw py::type_error(type + ": unknown keyword '" + name + "', nearest is '" + nearest_name(name, *names) + "'");
+          throw py::type_error(type + ": unknown keyword '" + name + "', nearest is '" +
+                               nearest_name(name, *names) + "'");
         self.attr(value.first) = value.second;
       }
       return made;
@@ -159,7 +176,8 @@ class PlainStruct {
  private:
   py::class_<T> class_;
   std::string type_;
-  std::shared_ptr<std::vector<std::string>> names_ = std::make_shared<std::vector<std::string>>();  // shared: with the functions
+  std::shared_ptr<std::vector<std::string>> names_ =
+      std::make_shared<std::vector<std::string>>();  // shared: with the functions
 };
 
 void bind_problem(py::module_& m);

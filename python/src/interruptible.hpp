@@ -16,8 +16,8 @@
 
 namespace swivel::python {
 
-/// Work under way. Threads that Python leaves behind at its end could not take up an answer, so that work is stopped and waited for
-/// before; then there is no more.
+/// Work under way. Threads that Python leaves behind at its end could not take up an answer, so
+/// that work is stopped and waited for before; then there is no more.
 class UnderWay {
  public:
   /// Throws RuntimeError at Python's end.
@@ -61,11 +61,15 @@ class UnderWay {
 
 /// Whether this is Python's main thread, which alone handles its signals.
 inline bool handles_signals() {
-  return py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>() == PyThread_get_thread_ident();
+  return py::module_::import("threading")
+             .attr("main_thread")()
+             .attr("ident")
+             .cast<unsigned long>() == PyThread_get_thread_ident();
 }
 
-/// work() on a thread of its own, while this one lets Python handle its signals: where a handler raises, as that of Ctrl-C does,
-/// `stop` is told, and what was raised goes on once the work has ended. Begins and ends with the interpreter's lock.
+/// work() on a thread of its own, while this one lets Python handle its signals: where a handler
+/// raises, as that of Ctrl-C does, `stop` is told, and what was raised goes on once the work has
+/// ended. Begins and ends with the interpreter's lock.
 template <class Work>
 void with_signals(const Work& work, std::stop_source& stop) {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
@@ -102,8 +106,9 @@ void with_signals(const Work& work, std::stop_source& stop) {
   if (error) std::rethrow_exception(std::exchange(error, nullptr));
 }
 
-/// work(stop) without the interpreter's lock, interrupted by Python's signals where this thread handles them. What the work throws
-/// is thrown here; Stopped as TimeoutError, since nothing else stops it.
+/// work(stop) without the interpreter's lock, interrupted by Python's signals where this thread
+/// handles them. What the work throws is thrown here; Stopped as TimeoutError, since nothing else
+/// stops it.
 template <class Work>
 auto interruptible(const Work& work) {
   std::optional<std::invoke_result_t<Work, std::stop_token>> result;

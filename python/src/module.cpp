@@ -8,12 +8,15 @@ PYBIND11_MODULE(_swivel, m) {
   namespace py = pybind11;
   m.attr("__version__") = SWIVEL_VERSION;
   py::register_exception<swivel::InputError>(m, "InputError", PyExc_ValueError).doc() =
-      "Bad input from a file or a robot: one line that names the file and line, key or row, what is wrong, and what is allowed.";
+      "Bad input from a file or a robot: one line that names the file and line, key or row, what "
+      "is wrong, and what is allowed.";
   py::register_exception<swivel::InvalidArgument>(m, "InvalidArgument", PyExc_ValueError).doc() =
-      "A value that no problem may have: one line that names the member, its value, and what is allowed.";
+      "A value that no problem may have: one line that names the member, its value, and what is "
+      "allowed.";
   swivel::python::bind_problem(m);
   swivel::python::bind_results(m);
   swivel::python::bind_planner(m);
   swivel::python::bind_runs(m);
-  py::module_::import("atexit").attr("register")(py::cpp_function(&swivel::python::UnderWay::end_all));
+  py::module_::import("atexit").attr("register")(
+      py::cpp_function(&swivel::python::UnderWay::end_all));
 }

@@ -66,20 +66,24 @@ PythonShape from_shape(const Shape& shape) {
 
 Mesh mesh_of_arrays(py::handle vertices, py::handle triangles, const std::string& name) {
   const Array points = to_array(vertices, "vertices of shape (n, 3), m");
-  const auto corners = py::array_t<int, py::array::c_style | py::array::forcecast>::ensure(triangles);
+  const auto corners =
+      py::array_t<int, py::array::c_style | py::array::forcecast>::ensure(triangles);
   if (!corners) throw py::error_already_set();
   if (points.ndim() != 2 || points.shape(1) != 3 || corners.ndim() != 2 || corners.shape(1) != 3)
-    throw py::value_error("Mesh: vertices of shape " + shape_text(points) + " and triangles of shape " +
-                          py::str(corners.attr("shape")).cast<std::string>() + ": allowed are (n, 3) and (m, 3)");
+    throw py::value_error(
+        "Mesh: vertices of shape " + shape_text(points) + " and triangles of shape " +
+        py::str(corners.attr("shape")).cast<std::string>() + ": allowed are (n, 3) and (m, 3)");
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->source = name;
-  for (py::ssize_t k = 0; k < points.shape(0); ++k) mesh->vertices.emplace_back(points.at(k, 0), points.at(k, 1), points.at(k, 2));
+  for (py::ssize_t k = 0; k < points.shape(0); ++k)
+    mesh->vertices.emplace_back(points.at(k, 0), points.at(k, 1), points.at(k, 2));
   for (py::ssize_t k = 0; k < corners.shape(0); ++k) {
     std::array<int, 3> triangle{corners.at(k, 0), corners.at(k, 1), corners.at(k, 2)};
     for (const int corner : triangle)
       if (corner < 0 || corner >= points.shape(0))
-        throw py::value_error("Mesh: triangle " + std::to_string(k) + " names vertex " + std::to_string(corner) +
-                              ": allowed are 0 to " + std::to_string(points.shape(0) - 1));
+        throw py::value_error("Mesh: triangle " + std::to_string(k) + " names vertex " +
+                              std::to_string(corner) + ": allowed are 0 to " +
+                              std::to_string(points.shape(0) - 1));
     mesh->triangles.push_back(triangle);
   }
   mesh->closed = is_closed(*mesh);
@@ -89,7 +93,9 @@ Mesh mesh_of_arrays(py::handle vertices, py::handle triangles, const std::string
 Vector3d to_scale(py::handle scale) {
   const Array values = to_array(scale, "a scale, or one for each axis");
   if (values.size() == 1) return Vector3d::Constant(values.data()[0]);
-  if (values.size() != 3) throw py::value_error("Mesh: scale of shape " + shape_text(values) + ": allowed are a number or 3");
+  if (values.size() != 3)
+    throw py::value_error("Mesh: scale of shape " + shape_text(values) +
+                          ": allowed are a number or 3");
   return {values.data()[0], values.data()[1], values.data()[2]};
 }
 
@@ -102,18 +108,21 @@ std::string number(double value) {
 }
 
 /// 4x4 from position and rpy or quaternion.
-Pose make_pose(const Vector3d& xyz, const std::optional<Vector3d>& rpy, const std::optional<Eigen::Vector4d>& quat) {
+Pose make_pose(const Vector3d& xyz, const std::optional<Vector3d>& rpy,
+               const std::optional<Eigen::Vector4d>& quat) {
   if (rpy && quat) throw py::value_error("pose: rpy and quat: allowed is one of the two");
   Pose pose = Pose::Identity();
   pose.translation() = xyz;
   if (rpy)
-    pose.linear() = (Eigen::AngleAxisd((*rpy)[2], Vector3d::UnitZ()) * Eigen::AngleAxisd((*rpy)[1], Vector3d::UnitY()) *
+    pose.linear() = (Eigen::AngleAxisd((*rpy)[2], Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd((*rpy)[1], Vector3d::UnitY()) *
                      Eigen::AngleAxisd((*rpy)[0], Vector3d::UnitX()))
                         .toRotationMatrix();
   if (quat) {
     if (!(quat->norm() > 0) || !quat->allFinite())
       throw py::value_error("pose: quat of length 0, or not finite: allowed is any other");
-    pose.linear() = Quaterniond((*quat)[0], (*quat)[1], (*quat)[2], (*quat)[3]).normalized().toRotationMatrix();
+    pose.linear() =
+        Quaterniond((*quat)[0], (*quat)[1], (*quat)[2], (*quat)[3]).normalized().toRotationMatrix();
   }
   return pose;
 }
@@ -128,7 +137,8 @@ std::optional<Config> to_start(py::handle joints) {
 
 // --- robot
 
-void choose_links(Robot& robot, const std::optional<std::string>& base, const std::optional<std::string>& tip, bool roll) {
+void choose_links(Robot& robot, const std::optional<std::string>& base,
+                  const std::optional<std::string>& tip, bool roll) {
   const RobotModel& model = *robot.model;
   robot.base_link = base.value_or(model.links[static_cast<std::size_t>(model.root_link)].name);
   if (tip) {
@@ -136,12 +146,14 @@ void choose_links(Robot& robot, const std::optional<std::string>& base, const st
     return;
   }
   const std::vector<ArmGuess> arms = guess_arms(model).arms;
-  // Of six joints where the tool may turn, else of seven; an arm of six without a roll is refused later, which says what to add.
+  // Of six joints where the tool may turn, else of seven; an arm of six without a roll is refused
+  // later, which says what to add.
   const auto fits = [&](const ArmGuess& arm) { return (arm.joints == 6) == roll; };
   const auto found = std::find_if(arms.begin(), arms.end(), fits);
   if (arms.empty() || (roll && found == arms.end()))
-    throw InputError(model.source, std::string("no arm of ") + (roll ? "six" : "seven or six") +
-                                       " joints in a row was found: allowed is one, or base and tip by name");
+    throw InputError(model.source,
+                     std::string("no arm of ") + (roll ? "six" : "seven or six") +
+                         " joints in a row was found: allowed is one, or base and tip by name");
   const ArmGuess& arm = found == arms.end() ? arms.front() : *found;
   robot.tip_link = arm.tip;
   if (!base) robot.base_link = arm.base;
@@ -165,7 +177,8 @@ Robot make_robot(std::shared_ptr<const RobotModel> model, const RobotKeywords& k
 }
 
 ArmModel arm_of(const Robot& robot) {
-  return build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll);
+  return build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool,
+                   robot.roll);
 }
 
 /// (4, 4) of (7,), (n, 4, 4) of (n, 7).
@@ -176,7 +189,8 @@ py::array_t<double> tool_poses(const Robot& robot, py::handle joints) {
   py::array_t<double> poses({count, py::ssize_t{4}, py::ssize_t{4}});
   for (py::ssize_t k = 0; k < count; ++k) {
     const Pose pose = chain.tool(Config(Eigen::Map<const Config>(states.data(k, 0))));
-    Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(poses.mutable_data(k, 0, 0)) = pose.matrix();
+    Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(poses.mutable_data(k, 0, 0)) =
+        pose.matrix();
   }
   if (to_array(joints, "joints").ndim() == 1) return poses.attr("reshape")(4, 4);
   return poses;
@@ -203,11 +217,13 @@ std::string robot_words(const Robot& robot) {
 // --- scene
 
 std::size_t find_object(const Scene& scene, const std::string& name) {
-  const auto found = std::find_if(scene.begin(), scene.end(), [&](const SceneObject& object) { return object.name == name; });
+  const auto found = std::find_if(scene.begin(), scene.end(),
+                                  [&](const SceneObject& object) { return object.name == name; });
   if (found != scene.end()) return static_cast<std::size_t>(found - scene.begin());
   std::vector<std::string> known;
   for (const SceneObject& object : scene) known.push_back(object.name);
-  throw py::key_error("no object '" + name + "'" + (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'"));
+  throw py::key_error("no object '" + name + "'" +
+                      (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'"));
 }
 
 Scene to_scene(const py::iterable& objects) {
@@ -224,10 +240,13 @@ void bind_shapes(py::module_& m) {
       .def("__repr__", [](const Sphere& s) { return "Sphere(" + number(s.radius) + ")"; });
   py::class_<Box>(m, "Box", "A box centred on its frame.")
       .def(pickling<Box>())
-      .def(py::init([](const Vector3d& size) { return Box{size}; }), py::arg("size"), "size: full edge lengths along x, y, z, m.")
+      .def(py::init([](const Vector3d& size) { return Box{size}; }), py::arg("size"),
+           "size: full edge lengths along x, y, z, m.")
       .def_readonly("size", &Box::size, "Full edge lengths, (3,), m.")
-      .def("__repr__",
-           [](const Box& b) { return "Box([" + number(b.size[0]) + ", " + number(b.size[1]) + ", " + number(b.size[2]) + "])"; });
+      .def("__repr__", [](const Box& b) {
+        return "Box([" + number(b.size[0]) + ", " + number(b.size[1]) + ", " + number(b.size[2]) +
+               "])";
+      });
   const auto round = [&](auto shape, const char* name, const char* doc, const char* length) {
     using Round = decltype(shape);
     py::class_<Round>(m, name, doc)
@@ -238,11 +257,13 @@ void bind_shapes(py::module_& m) {
              py::arg("radius"), py::arg("length"))
         .def_readonly("radius", &Round::radius, "m.")
         .def_readonly("length", &Round::length, length)
-        .def("__repr__",
-             [type = std::string(name)](const Round& r) { return type + "(" + number(r.radius) + ", " + number(r.length) + ")"; });
+        .def("__repr__", [type = std::string(name)](const Round& r) {
+          return type + "(" + number(r.radius) + ", " + number(r.length) + ")";
+        });
   };
   round(Cylinder{}, "Cylinder", "A cylinder along z, centred on its frame.", "m.");
-  round(Capsule{}, "Capsule", "A capsule along z, centred on its frame.", "Of the part between the two caps, m.");
+  round(Capsule{}, "Capsule", "A capsule along z, centred on its frame.",
+        "Of the part between the two caps, m.");
   py::class_<Mesh>(m, "Mesh", "Triangles. A closed surface is a solid, an open one has no inside.")
       .def(pickling<Mesh>())
       .def(py::init([](const std::filesystem::path& file, const py::object& scale) {
@@ -250,87 +271,118 @@ void bind_shapes(py::module_& m) {
              return Mesh{io::load_mesh(file, to_scale(scale), cache)};
            }),
            py::arg("file"), py::arg("scale") = 1.0,
-           "file: STL, OBJ, DAE or PLY. scale: a number, or one for each axis; a negative one mirrors. Raises InputError.")
-      .def_static("from_arrays", &mesh_of_arrays, py::arg("vertices"), py::arg("triangles"), py::arg("name") = "mesh",
-                  "vertices: (n, 3), m. triangles: (m, 3) indices of vertices, counter-clockwise as seen from outside.")
+           "file: STL, OBJ, DAE or PLY. scale: a number, or one for each axis; a negative one "
+           "mirrors. Raises InputError.")
+      .def_static("from_arrays", &mesh_of_arrays, py::arg("vertices"), py::arg("triangles"),
+                  py::arg("name") = "mesh",
+                  "vertices: (n, 3), m. triangles: (m, 3) indices of vertices, counter-clockwise "
+                  "as seen from outside.")
       .def_property_readonly(
           "vertices",
           [](const Mesh& mesh) {
             const std::shared_ptr<const std::vector<Vector3d>> all(mesh.mesh, &mesh.mesh->vertices);
-            return column(all, all->empty() ? static_cast<const double*>(nullptr) : all->front().data(), 3);
+            return column(
+                all, all->empty() ? static_cast<const double*>(nullptr) : all->front().data(), 3);
           },
           "(n, 3) float64, m; read-only.")
       .def_property_readonly(
           "closed", [](const Mesh& mesh) { return mesh.mesh->closed; }, "Whether it is a solid.")
       .def("__repr__", [](const Mesh& mesh) {
-        return "<Mesh '" + mesh.mesh->source + "': " + std::to_string(mesh.mesh->triangles.size()) + " triangles, " +
-               (mesh.mesh->closed ? "closed>" : "open>");
+        return "<Mesh '" + mesh.mesh->source + "': " + std::to_string(mesh.mesh->triangles.size()) +
+               " triangles, " + (mesh.mesh->closed ? "closed>" : "open>");
       });
 }
 
 void bind_robot(py::module_& m) {
   PlainStruct<Roll>(m, "Roll",
-                    "How far the tool may stand turned about its own z axis, rad. A turn or more, the default, is a circle.")
+                    "How far the tool may stand turned about its own z axis, rad. A turn or more, "
+                    "the default, is a circle.")
       .member("lower", &Roll::lower, "rad.")
       .member("upper", &Roll::upper, "rad.")
       .finish();
 
-  py::class_<AttachedBody>(m, "AttachedBody", "A tool or a part that the arm carries. It does not change; attach another.")
+  py::class_<AttachedBody>(
+      m, "AttachedBody",
+      "A tool or a part that the arm carries. It does not change; attach another.")
       .def(pickling<AttachedBody>())
-      .def(py::init([](std::string name, const PythonShape& shape, std::string link, const Pose& pose) {
-             return AttachedBody{std::move(name), to_shape(shape), pose, std::move(link)};
-           }),
-           py::arg("name"), py::arg("shape"), py::arg("link"), py::arg("pose") = Pose(Pose::Identity()),
-           "pose: of the shape in the frame of `link`.")
+      .def(py::init(
+               [](std::string name, const PythonShape& shape, std::string link, const Pose& pose) {
+                 return AttachedBody{std::move(name), to_shape(shape), pose, std::move(link)};
+               }),
+           py::arg("name"), py::arg("shape"), py::arg("link"),
+           py::arg("pose") = Pose(Pose::Identity()), "pose: of the shape in the frame of `link`.")
       .def_readonly("name", &AttachedBody::name)
-      .def_property_readonly("shape", [](const AttachedBody& body) { return from_shape(body.shape); })
+      .def_property_readonly("shape",
+                             [](const AttachedBody& body) { return from_shape(body.shape); })
       .def_readonly("link", &AttachedBody::link)
       .def_property_readonly(
-          "pose", [](const AttachedBody& body) { return body.pose; }, "(4, 4), in the frame of `link`.")
+          "pose", [](const AttachedBody& body) { return body.pose; },
+          "(4, 4), in the frame of `link`.")
       .def("__repr__", [](const AttachedBody& body) {
-        return "<AttachedBody '" + body.name + "' on " + body.link + ": " + shape_words(body.shape) + ">";
+        return "<AttachedBody '" + body.name + "' on " + body.link + ": " +
+               shape_words(body.shape) + ">";
       });
 
   const char* const keywords =
-      "base, tip: links that the arm reaches from and to; without them the first arm of seven joints that is found,\n"
-      "with roll of six, as `swivel info` does. tool: pose of the tool in the tip link. hold: positions of other joints by\n"
-      "name, rad or m. packages: name -> folder, for package:// names of meshes. roll: of arms of six joints whose tool may turn "
-      "about its own z axis. without: links left out, with all that they carry. soft_limits: whether joints keep the soft limits\n"
+      "base, tip: links that the arm reaches from and to; without them the first arm of seven "
+      "joints that is found,\n"
+      "with roll of six, as `swivel info` does. tool: pose of the tool in the tip link. hold: "
+      "positions of other joints by\n"
+      "name, rad or m. packages: name -> folder, for package:// names of meshes. roll: of arms of "
+      "six joints whose tool may turn "
+      "about its own z axis. without: links left out, with all that they carry. soft_limits: "
+      "whether joints keep the soft limits\n"
       "of the URDF's <safety_controller>.\n"
       "Raises InputError.";
-  py::class_<Robot> type(m, "Robot", "The arm that plans: a chain of a robot model, and what it carries.");
+  py::class_<Robot> type(m, "Robot",
+                         "The arm that plans: a chain of a robot model, and what it carries.");
   make_copyable(type);
   type.def(pickling<Robot>());
-  type.def(py::init([](const std::filesystem::path& urdf, const std::optional<std::filesystem::path>& srdf,
-                       std::optional<std::string> base, std::optional<std::string> tip, const std::optional<Pose>& tool,
-                       std::map<std::string, double> hold, const Packages& packages, const std::optional<Roll>& roll,
+  type.def(py::init([](const std::filesystem::path& urdf,
+                       const std::optional<std::filesystem::path>& srdf,
+                       std::optional<std::string> base, std::optional<std::string> tip,
+                       const std::optional<Pose>& tool, std::map<std::string, double> hold,
+                       const Packages& packages, const std::optional<Roll>& roll,
                        std::vector<std::string> without, bool soft_limits) {
-             return make_robot(io::load_robot(urdf, srdf.value_or(""), packages, {std::move(without), soft_limits}),
+             return make_robot(io::load_robot(urdf, srdf.value_or(""), packages,
+                                              {std::move(without), soft_limits}),
                                {std::move(base), std::move(tip), tool, std::move(hold), roll});
            }),
-           py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("base") = py::none(), py::arg("tip") = py::none(),
-           py::arg("tool") = py::none(), py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
-           py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{}, py::arg("soft_limits") = true, keywords)
+           py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(),
+           py::arg("base") = py::none(), py::arg("tip") = py::none(), py::arg("tool") = py::none(),
+           py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
+           py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{},
+           py::arg("soft_limits") = true, keywords)
       .def_static(
           "from_string",
-          [](const std::string& urdf, const std::optional<std::string>& srdf, std::optional<std::string> base,
-             std::optional<std::string> tip, const std::optional<Pose>& tool, std::map<std::string, double> hold,
-             const Packages& packages, const std::optional<Roll>& roll, std::vector<std::string> without, bool soft_limits) {
-            return make_robot(io::parse_robot(urdf, srdf.value_or(""), packages, {std::move(without), soft_limits}),
+          [](const std::string& urdf, const std::optional<std::string>& srdf,
+             std::optional<std::string> base, std::optional<std::string> tip,
+             const std::optional<Pose>& tool, std::map<std::string, double> hold,
+             const Packages& packages, const std::optional<Roll>& roll,
+             std::vector<std::string> without, bool soft_limits) {
+            return make_robot(io::parse_robot(urdf, srdf.value_or(""), packages,
+                                              {std::move(without), soft_limits}),
                               {std::move(base), std::move(tip), tool, std::move(hold), roll});
           },
-          py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("base") = py::none(), py::arg("tip") = py::none(),
-          py::arg("tool") = py::none(), py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
-          py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{}, py::arg("soft_limits") = true,
-          (std::string("The same of the texts of a URDF and an SRDF, as ROS 2's robot_description has them.\n") + keywords).c_str())
+          py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(),
+          py::arg("base") = py::none(), py::arg("tip") = py::none(), py::arg("tool") = py::none(),
+          py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
+          py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{},
+          py::arg("soft_limits") = true,
+          (std::string("The same of the texts of a URDF and an SRDF, as ROS 2's robot_description "
+                       "has them.\n") +
+           keywords)
+              .c_str())
       .def_property_readonly(
           "name", [](const Robot& robot) { return robot.model->name; }, "Of the URDF.")
       .def_readonly("base", &Robot::base_link, "Name of the base link: the frame of everything.")
       .def_readonly("tip", &Robot::tip_link, "Name of the link that carries the tool.")
       .def_property(
-          "tool", [](const Robot& robot) { return robot.tool; }, [](Robot& robot, const Pose& tool) { robot.tool = tool; },
+          "tool", [](const Robot& robot) { return robot.tool; },
+          [](Robot& robot, const Pose& tool) { robot.tool = tool; },
           "(4, 4): tool frame in the tip link.")
-      .def_readonly("hold", &Robot::hold, "Positions of joints that the arm leaves out, rad or m (a copy).")
+      .def_readonly("hold", &Robot::hold,
+                    "Positions of joints that the arm leaves out, rad or m (a copy).")
       .def_property_readonly(
           "held",
           [](const Robot& robot) {
@@ -338,7 +390,8 @@ void bind_robot(py::module_& m) {
             for (const HeldJoint& joint : arm_of(robot).held) held[joint.name] = joint.position;
             return held;
           },
-          "Joints between base and tip that are not planned -> where they stand, rad or m: where `hold` says, else at 0 or at the "
+          "Joints between base and tip that are not planned -> where they stand, rad or m: where "
+          "`hold` says, else at 0 or at the "
           "limit nearest to it.")
       .def_readonly("roll", &Robot::roll, "None where the tool stands as the waypoints have it.")
       .def_property_readonly(
@@ -350,30 +403,37 @@ void bind_robot(py::module_& m) {
           },
           "Names of all links.")
       .def_property_readonly(
-          "attached", [](const Robot& robot) { return robot.attached; }, "What it carries (a copy).")
+          "attached", [](const Robot& robot) { return robot.attached; },
+          "What it carries (a copy).")
       .def(
-          "attach", [](Robot& robot, AttachedBody body) { robot.attached.push_back(std::move(body)); }, py::arg("body"))
+          "attach",
+          [](Robot& robot, AttachedBody body) { robot.attached.push_back(std::move(body)); },
+          py::arg("body"))
       .def(
           "detach",
           [](Robot& robot, const std::string& name) {
-            if (std::erase_if(robot.attached, [&](const AttachedBody& body) { return body.name == name; }) == 0)
+            if (std::erase_if(robot.attached,
+                              [&](const AttachedBody& body) { return body.name == name; }) == 0)
               throw py::key_error("no attached body '" + name + "'");
           },
           py::arg("name"))
       .def_property_readonly(
           "joint_names", [](const Robot& robot) { return arm_of(robot).chain.joint_names; },
           "Seven, base to tip; with `roll` the last one is the roll.")
-      .def_property_readonly("joint_limits", &joint_limits, "(7, 2): lower and upper, rad; infinite for continuous joints.")
+      .def_property_readonly("joint_limits", &joint_limits,
+                             "(7, 2): lower and upper, rad; infinite for continuous joints.")
       .def_property_readonly(
           "method", [](const Robot& robot) { return planning_arm(robot).kind.method(); },
           "How solutions of a pose are found, in a line.")
       .def("tool_pose", &tool_poses, py::arg("joints"),
-           "Pose of the tool in the base frame. joints: (7,) or (n, 7), rad. Returns (4, 4) or (n, 4, 4).")
+           "Pose of the tool in the base frame. joints: (7,) or (n, 7), rad. Returns (4, 4) or (n, "
+           "4, 4).")
       .def("__repr__", [](const Robot& robot) { return "<Robot " + robot_words(robot) + ">"; });
 }
 
 /// Names, or how deep each may be, m.
-using AllowedBodies = std::variant<std::vector<std::string>, std::map<std::string, std::optional<double>>>;
+using AllowedBodies =
+    std::variant<std::vector<std::string>, std::map<std::string, std::optional<double>>>;
 std::vector<Allowed> to_allowed(const AllowedBodies& bodies) {
   if (const auto* names = std::get_if<0>(&bodies)) return {names->begin(), names->end()};
   std::vector<Allowed> allowed;
@@ -382,18 +442,25 @@ std::vector<Allowed> to_allowed(const AllowedBodies& bodies) {
 }
 
 void bind_scene(py::module_& m) {
-  py::class_<SceneObject>(m, "SceneObject", "A body fixed in the base frame. It does not change: scenes and planners have move().")
+  py::class_<SceneObject>(
+      m, "SceneObject",
+      "A body fixed in the base frame. It does not change: scenes and planners have move().")
       .def(pickling<SceneObject>())
-      .def(py::init([](std::string name, const PythonShape& shape, const Pose& pose, const AllowedBodies& allow) {
+      .def(py::init([](std::string name, const PythonShape& shape, const Pose& pose,
+                       const AllowedBodies& allow) {
              return SceneObject{std::move(name), to_shape(shape), pose, to_allowed(allow)};
            }),
-           py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()), py::arg("allow") = AllowedBodies{},
-           "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: how deep, m}; None: however "
+           py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()),
+           py::arg("allow") = AllowedBodies{},
+           "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: "
+           "how deep, m}; None: however "
            "deep.")
       .def_readonly("name", &SceneObject::name)
-      .def_property_readonly("shape", [](const SceneObject& object) { return from_shape(object.shape); })
+      .def_property_readonly("shape",
+                             [](const SceneObject& object) { return from_shape(object.shape); })
       .def_property_readonly(
-          "pose", [](const SceneObject& object) { return object.pose; }, "(4, 4), in the base frame.")
+          "pose", [](const SceneObject& object) { return object.pose; },
+          "(4, 4), in the base frame.")
       .def_property_readonly(
           "allow",
           [](const SceneObject& object) {
@@ -410,30 +477,42 @@ void bind_scene(py::module_& m) {
               if (allowed.depth) depths[allowed.body] = *allowed.depth;
             return depths;
           },
-          "How deep bodies may be in it, m, by name; those of `allow` that are not here may be however deep.")
+          "How deep bodies may be in it, m, by name; those of `allow` that are not here may be "
+          "however deep.")
       .def("__repr__", [](const SceneObject& object) {
         const Vector3d at = object.pose.translation();
         const std::string text = formatted(" at %.4g %.4g %.4g>", at.x(), at.y(), at.z());
         return "<SceneObject '" + object.name + "': " + shape_words(object.shape) + text;
       });
 
-  py::class_<Scene> type(m, "Scene", "Bodies in the base frame, by name, in the order in which they were added.");
+  py::class_<Scene> type(
+      m, "Scene", "Bodies in the base frame, by name, in the order in which they were added.");
   make_copyable(type);
   type.def(pickling<Scene>());
-  type.def(py::init(&to_scene), py::arg("objects") = py::tuple(), "objects: SceneObjects, as a scene or in any sequence.")
+  type.def(py::init(&to_scene), py::arg("objects") = py::tuple(),
+           "objects: SceneObjects, as a scene or in any sequence.")
       .def(
           "add",
-          [](Scene& scene, std::string name, const PythonShape& shape, const Pose& pose, const AllowedBodies& allow) {
-            if (std::any_of(scene.begin(), scene.end(), [&](const SceneObject& object) { return object.name == name; }))
-              throw InvalidArgument("'" + name + "' is in the scene already: allowed is a name of its own");
+          [](Scene& scene, std::string name, const PythonShape& shape, const Pose& pose,
+             const AllowedBodies& allow) {
+            if (std::any_of(scene.begin(), scene.end(),
+                            [&](const SceneObject& object) { return object.name == name; }))
+              throw InvalidArgument("'" + name +
+                                    "' is in the scene already: allowed is a name of its own");
             scene.push_back({std::move(name), to_shape(shape), pose, to_allowed(allow)});
           },
-          py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()), py::arg("allow") = AllowedBodies{},
-          "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: how deep, m}; None: however "
+          py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()),
+          py::arg("allow") = AllowedBodies{},
+          "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: "
+          "how deep, m}; None: however "
           "deep.")
       .def(
-          "move", [](Scene& scene, const std::string& name, const Pose& pose) { scene[find_object(scene, name)].pose = pose; },
-          py::arg("name"), py::arg("pose"), "pose: in the base frame. Raises KeyError for an unknown name.")
+          "move",
+          [](Scene& scene, const std::string& name, const Pose& pose) {
+            scene[find_object(scene, name)].pose = pose;
+          },
+          py::arg("name"), py::arg("pose"),
+          "pose: in the base frame. Raises KeyError for an unknown name.")
       .def(
           "remove",
           [](Scene& scene, const std::string& name) {
@@ -441,12 +520,16 @@ void bind_scene(py::module_& m) {
           },
           py::arg("name"), "Raises KeyError for an unknown name.")
       .def(
-          "__getitem__", [](const Scene& scene, const std::string& name) { return scene[find_object(scene, name)]; },
+          "__getitem__",
+          [](const Scene& scene, const std::string& name) {
+            return scene[find_object(scene, name)];
+          },
           py::arg("name"))
       .def(
           "__contains__",
           [](const Scene& scene, const std::string& name) {
-            return std::any_of(scene.begin(), scene.end(), [&](const SceneObject& object) { return object.name == name; });
+            return std::any_of(scene.begin(), scene.end(),
+                               [&](const SceneObject& object) { return object.name == name; });
           },
           py::arg("name"))
       .def("__len__", [](const Scene& scene) { return scene.size(); })
@@ -458,7 +541,8 @@ void bind_scene(py::module_& m) {
            })
       .def("__repr__", [](const Scene& scene) {
         std::string text;
-        for (const SceneObject& object : scene) text += (text.empty() ? ": '" : ", '") + object.name + "'";
+        for (const SceneObject& object : scene)
+          text += (text.empty() ? ": '" : ", '") + object.name + "'";
         return "<Scene of " + std::to_string(scene.size()) + " objects" + text + ">";
       });
 }
@@ -466,19 +550,23 @@ void bind_scene(py::module_& m) {
 void bind_task(py::module_& m) {
   bind_enum<EdgeMode>(m, "EdgeMode", "What is proved of motions between layers.",
                       {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
-  bind_enum<CostMetric>(m, "CostMetric", "What a step costs: docs/formats.md, `cost`.",
-                        {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
+  bind_enum<CostMetric>(
+      m, "CostMetric", "What a step costs: docs/formats.md, `cost`.",
+      {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
   PlainStruct<Resolution>(m, "Resolution", "Steps of the lattice, as keywords.")
       .member("ds", &Resolution::ds, "Along the path, m.")
       .member("dphi", &Resolution::dphi, "Of the arm angle, rad.")
       .member("dalpha", &Resolution::dalpha, "Of tool rotation, rad.")
-      .member("arc", &Resolution::arc, "Self-motion between nodes, of arms that have no arm angle, rad.")
+      .member("arc", &Resolution::arc,
+              "Self-motion between nodes, of arms that have no arm angle, rad.")
       .member("arcs", &Resolution::arcs, "Nodes on arcs of arm angles that the grid misses.")
       .member("droll", &Resolution::droll, "Of the roll, of arms of seven joints, rad.")
-      .member("knot", &Resolution::knot, "m, between layers at which such arms choose roll and arm angle anew.")
+      .member("knot", &Resolution::knot,
+              "m, between layers at which such arms choose roll and arm angle anew.")
       .finish();
   PlainStruct<Limits>(m, "Limits",
-                      "What is to be kept, as keywords: docs/formats.md. None: no such limit, or the default named there.")
+                      "What is to be kept, as keywords: docs/formats.md. None: no such limit, or "
+                      "the default named there.")
       .member("clearance", &Limits::clearance, "m, between bodies at layers.")
       .member("self_clearance", &Limits::self_clearance, "m, between bodies of the robot.")
       .member("manipulability", &Limits::manipulability, "Least sqrt(det(J J^T)).")
@@ -501,14 +589,18 @@ void bind_task(py::module_& m) {
   PlainStruct<Cost>(m, "Cost", "What is summed over the steps of a path, as keywords.")
       .choice("metric", &Cost::metric, "CostMetric, or its name.")
       .member("weights", &Cost::weights, "Seven, each 0 or 1e-6 to 1e6.")
-      .member("roll", &Cost::roll, "Per metre and rad that the tool stands turned from the waypoints' own; 0 or 1e-6 to 1e6.")
+      .member("roll", &Cost::roll,
+              "Per metre and rad that the tool stands turned from the waypoints' own; 0 or 1e-6 to "
+              "1e6.")
       .finish();
-  PlainStruct<PathSmoothing>(m, "PathSmoothing", "How far the tool may leave the polyline of its waypoints, as keywords.")
+  PlainStruct<PathSmoothing>(
+      m, "PathSmoothing", "How far the tool may leave the polyline of its waypoints, as keywords.")
       .member("position", &PathSmoothing::position, "m.")
       .member("angle", &PathSmoothing::angle, "rad.")
       .finish();
   PlainStruct<Refinement>(m, "Refinement", "What refining keeps, as keywords.")
-      .member("smoothing", &Refinement::smoothing, "m, the length over which a bend costs as much as a way of its size.")
+      .member("smoothing", &Refinement::smoothing,
+              "m, the length over which a bend costs as much as a way of its size.")
       .member("joint_margin", &Refinement::joint_margin, "rad, kept from limits besides.")
       .member("singular_margin", &Refinement::singular_margin, "rad, kept from singular angles.")
       .finish();
@@ -516,37 +608,44 @@ void bind_task(py::module_& m) {
   py::class_<Task> type(m, "Task", "What the tool is to do, and within which limits.");
   make_copyable(type);
   type.def(pickling<Task>());
-  type.def(
-          py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits, const Resolution& resolution,
-                      py::handle start, std::optional<double> start_at, double start_tolerance, const Cost& cost,
-                      const std::optional<PathSmoothing>& smooth, const Refinement& refinement) {
-            Task task;
-            task.waypoints = std::move(waypoints);
-            task.path_frame = std::move(frame);
-            task.limits = limits, task.resolution = resolution, task.cost = cost;
-            task.start = to_start(start), task.start_at = start_at, task.start_tolerance = start_tolerance;
-            task.smooth = smooth, task.refinement = refinement;
-            return task;
-          }),
-          py::arg("waypoints"), py::kw_only(), py::arg("frame") = "", py::arg_v("limits", Limits(), "Limits()"),
-          py::arg_v("resolution", Resolution(), "Resolution()"), py::arg("start") = py::none(), py::arg("start_at") = py::none(),
-          py::arg("start_tolerance") = Task().start_tolerance, py::arg_v("cost", Cost(), "Cost()"), py::arg("smooth") = py::none(),
-          py::arg_v("refinement", Refinement(), "Refinement()"),
-          "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of either; or (n, 9) rows, "
-          "with the least and the most roll there, rad. frame: the "
-          "base\n"
-          "link (also empty) or the name of a scene object. start: (7,) joints to begin with, rad. start_at: m along the path "
-          "where\n"
-          "the start stands.")
-      .def_readwrite("frame", &Task::path_frame, "Base link (also empty) or the name of a scene object.")
-      .def_readwrite(
-          "waypoints", &Task::waypoints,
-          "(n, 7): x y z (m) qw qx qy qz, in `frame`; with roll_min and roll_max (rad) (n, 9). A copy; assign to change it.")
+  type.def(py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits,
+                       const Resolution& resolution, py::handle start,
+                       std::optional<double> start_at, double start_tolerance, const Cost& cost,
+                       const std::optional<PathSmoothing>& smooth, const Refinement& refinement) {
+             Task task;
+             task.waypoints = std::move(waypoints);
+             task.path_frame = std::move(frame);
+             task.limits = limits, task.resolution = resolution, task.cost = cost;
+             task.start = to_start(start), task.start_at = start_at,
+             task.start_tolerance = start_tolerance;
+             task.smooth = smooth, task.refinement = refinement;
+             return task;
+           }),
+           py::arg("waypoints"), py::kw_only(), py::arg("frame") = "",
+           py::arg_v("limits", Limits(), "Limits()"),
+           py::arg_v("resolution", Resolution(), "Resolution()"), py::arg("start") = py::none(),
+           py::arg("start_at") = py::none(), py::arg("start_tolerance") = Task().start_tolerance,
+           py::arg_v("cost", Cost(), "Cost()"), py::arg("smooth") = py::none(),
+           py::arg_v("refinement", Refinement(), "Refinement()"),
+           "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or "
+           "a list of either; or (n, 9) rows, "
+           "with the least and the most roll there, rad. frame: the "
+           "base\n"
+           "link (also empty) or the name of a scene object. start: (7,) joints to begin with, "
+           "rad. start_at: m along the path "
+           "where\n"
+           "the start stands.")
+      .def_readwrite("frame", &Task::path_frame,
+                     "Base link (also empty) or the name of a scene object.")
+      .def_readwrite("waypoints", &Task::waypoints,
+                     "(n, 7): x y z (m) qw qx qy qz, in `frame`; with roll_min and roll_max (rad) "
+                     "(n, 9). A copy; assign to change it.")
       .def_readwrite("smooth", &Task::smooth, "None: the polyline as it is.")
       .def_readwrite("resolution", &Task::resolution)
       .def_readwrite("limits", &Task::limits)
       .def_property(
-          "start", [](const Task& task) { return task.start; }, [](Task& task, py::handle start) { task.start = to_start(start); },
+          "start", [](const Task& task) { return task.start; },
+          [](Task& task, py::handle start) { task.start = to_start(start); },
           "(7,) joints to begin with, rad, or None. A copy; assign to change it.")
       .def_readwrite("start_at", &Task::start_at, "m along the path, or None.")
       .def_readwrite("start_tolerance", &Task::start_tolerance, "m and rad.")
@@ -554,18 +653,24 @@ void bind_task(py::module_& m) {
       .def_readwrite("refinement", &Task::refinement)
       .def(
           "__eq__", [](const Task& a, const Task& b) { return a == b; }, py::is_operator())
-      .def("__repr__", [](const Task& task) { return "<Task of " + std::to_string(task.waypoints.size()) + " waypoints>"; })
+      .def("__repr__",
+           [](const Task& task) {
+             return "<Task of " + std::to_string(task.waypoints.size()) + " waypoints>";
+           })
       .attr("__hash__") = py::none();
 }
 
 }  // namespace
 
 Waypoint to_waypoint(py::handle source, bool position_alone) {
-  const char* const allowed = position_alone ? "a pose: (4, 4), [x y z qw qx qy qz] or [x y z]"
-                                             : "poses: (4, 4), [x y z qw qx qy qz] or [x y z qw qx qy qz roll_min roll_max]";
+  const char* const allowed =
+      position_alone
+          ? "a pose: (4, 4), [x y z qw qx qy qz] or [x y z]"
+          : "poses: (4, 4), [x y z qw qx qy qz] or [x y z qw qx qy qz roll_min roll_max]";
   const Array values = to_array(source, allowed);
   const double* const v = values.data();
-  if (values.ndim() == 1 && values.shape(0) == 7) return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
+  if (values.ndim() == 1 && values.shape(0) == 7)
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
   if (values.ndim() == 1 && values.shape(0) == 9 && !position_alone)
     return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, Roll{v[7], v[8]}};
   if (values.ndim() == 1 && values.shape(0) == 3 && position_alone) return {{v[0], v[1], v[2]}};
@@ -573,9 +678,12 @@ Waypoint to_waypoint(py::handle source, bool position_alone) {
     throw py::value_error("pose of shape " + shape_text(values) + ": allowed are " + allowed);
   const Eigen::Matrix4d X = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(v);
   const Matrix3d R = X.topLeftCorner<3, 3>();
-  if (!X.allFinite() || !((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6) || R.determinant() <= 0 ||
-      X.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    throw py::value_error("pose is no rigid transform: allowed are a rotation within 1e-6, a finite translation, 0 0 0 1 below");
+  if (!X.allFinite() ||
+      !((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6) ||
+      R.determinant() <= 0 || X.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+    throw py::value_error(
+        "pose is no rigid transform: allowed are a rotation within 1e-6, a finite translation, 0 0 "
+        "0 1 below");
   return {X.topRightCorner<3, 1>(), Quaterniond(R)};
 }
 
@@ -583,21 +691,24 @@ Pose to_pose(py::handle source) {
   const Waypoint waypoint = to_waypoint(source, true);
   const double norm = waypoint.orientation.norm();
   if (!(std::abs(norm - 1) <= 1e-3)) {
-    const std::string text = formatted("pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
+    const std::string text =
+        formatted("pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
     throw py::value_error(text);
   }
   Pose pose = Pose::Identity();
   pose.translation() = waypoint.position;
   const Array values = Array::ensure(source);
   if (values.ndim() == 2)
-    pose.linear() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data()).topLeftCorner<3, 3>();
+    pose.linear() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data())
+                        .topLeftCorner<3, 3>();
   else
     pose.linear() = waypoint.orientation.normalized().toRotationMatrix();
   return pose;
 }
 
 std::vector<Waypoint> to_waypoints(py::handle source) {
-  if (!py::isinstance<py::iterable>(source)) throw py::value_error("waypoints: allowed are (n, 7), (n, 4, 4) or a list of poses");
+  if (!py::isinstance<py::iterable>(source))
+    throw py::value_error("waypoints: allowed are (n, 7), (n, 4, 4) or a list of poses");
   std::vector<Waypoint> waypoints;
   for (const py::handle item : source) {
     try {
@@ -606,19 +717,22 @@ std::vector<Waypoint> to_waypoints(py::handle source) {
       throw py::value_error("waypoints[" + std::to_string(waypoints.size()) + "]: " + error.what());
     }
     if (waypoints.back().roll.has_value() != waypoints.front().roll.has_value())
-      throw py::value_error(
-          "waypoints[" + std::to_string(waypoints.size() - 1) +
-          "]: roll_min and roll_max are not given at all waypoints: allowed are rows that all have them, or none");
+      throw py::value_error("waypoints[" + std::to_string(waypoints.size() - 1) +
+                            "]: roll_min and roll_max are not given at all waypoints: allowed are "
+                            "rows that all have them, or none");
   }
   return waypoints;
 }
 
 py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints) {
   const bool rolls = !waypoints.empty() && waypoints.front().roll;
-  py::array_t<double> array({static_cast<py::ssize_t>(waypoints.size()), py::ssize_t{rolls ? 9 : 7}});
+  py::array_t<double> array(
+      {static_cast<py::ssize_t>(waypoints.size()), py::ssize_t{rolls ? 9 : 7}});
   double* out = array.mutable_data();
   for (const auto& [position, q, roll] : waypoints) {
-    for (const double value : {position.x(), position.y(), position.z(), q.w(), q.x(), q.y(), q.z()}) *out++ = value;
+    for (const double value :
+         {position.x(), position.y(), position.z(), q.w(), q.x(), q.y(), q.z()})
+      *out++ = value;
     if (rolls) *out++ = roll->lower, *out++ = roll->upper;
   }
   return array;
@@ -628,21 +742,24 @@ py::array_t<double> to_joints(py::handle source, const char* what) {
   Array array = to_array(source, "joints: (7,) or (n, 7), rad");
   if (array.ndim() == 1 && array.shape(0) == kDof) array = array.reshape({1, kDof});
   if (array.ndim() != 2 || array.shape(1) != kDof)
-    throw py::value_error(std::string(what) + " of shape " + shape_text(array) + ": allowed are (7,) and (n, 7)");
+    throw py::value_error(std::string(what) + " of shape " + shape_text(array) +
+                          ": allowed are (7,) and (n, 7)");
   return array;
 }
 
 void bind_problem(py::module_& m) {
-  m.def(
-      "pose", &make_pose, py::arg("xyz") = Vector3d(Vector3d::Zero()), py::arg("rpy") = py::none(), py::arg("quat") = py::none(),
-      "A pose as a (4, 4) array. xyz: m. rpy: roll, pitch, yaw about the fixed axes x, y, z, rad, as in a URDF. quat: w x y z, of\n"
-      "any length but 0.");
+  m.def("pose", &make_pose, py::arg("xyz") = Vector3d(Vector3d::Zero()),
+        py::arg("rpy") = py::none(), py::arg("quat") = py::none(),
+        "A pose as a (4, 4) array. xyz: m. rpy: roll, pitch, yaw about the fixed axes x, y, z, "
+        "rad, as in a URDF. quat: w x y z, of\n"
+        "any length but 0.");
   bind_shapes(m);
   bind_robot(m);
   bind_scene(m);
   bind_task(m);
 
-  py::class_<Problem, Robot, Task> type(m, "Problem", "A robot, its task and the scene: what a problem file says.");
+  py::class_<Problem, Robot, Task> type(
+      m, "Problem", "A robot, its task and the scene: what a problem file says.");
   make_copyable(type);
   type.def(pickling<Problem>());
   type.def(py::init([](const Robot& robot, const Task& task, const py::iterable& scene) {
@@ -664,25 +781,29 @@ void bind_problem(py::module_& m) {
           "Raises InvalidArgument, which names the member, for what no problem may have.")
       .def(
           "placed",
-          [](const Problem& problem, const Offset& offset, const std::optional<std::string>& object, bool path, bool base) {
-            return placed_problem(problem, to_movable(object, path, base), offset);
-          },
-          py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false, py::arg("base") = false,
-          "The problem of one placement: an object of the scene, the path or the robot moved by x y z (m) roll pitch yaw (rad) in "
+          [](const Problem& problem, const Offset& offset, const std::optional<std::string>& object,
+             bool path,
+             bool base) { return placed_problem(problem, to_movable(object, path, base), offset); },
+          py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
+          py::arg("base") = false,
+          "The problem of one placement: an object of the scene, the path or the robot moved by x "
+          "y z (m) roll pitch yaw (rad) in "
           "the\n"
           "base frame, about its own origin.")
       .def("episode", &episode_problem, py::arg("seed"), py::arg("episode"),
            "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
       .def("__repr__", [](const Problem& problem) {
-        return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " + robot_words(problem) + "; " +
-               std::to_string(problem.waypoints.size()) + " waypoints, " + std::to_string(problem.scene.size()) + " objects>";
+        return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " +
+               robot_words(problem) + "; " + std::to_string(problem.waypoints.size()) +
+               " waypoints, " + std::to_string(problem.scene.size()) + " objects>";
       });
   m.def(
       "load_problem",
       [](const std::filesystem::path& file) {
         return interruptible([&](const std::stop_token&) { return io::load_problem(file); });
       },
-      py::arg("file"), "A problem file, docs/formats.md. Raises InputError, which names file and line.");
+      py::arg("file"),
+      "A problem file, docs/formats.md. Raises InputError, which names file and line.");
 }
 
 }  // namespace swivel::python

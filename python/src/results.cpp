@@ -43,7 +43,8 @@ io::JointNames to_joint_names(const std::vector<std::string>& names) {
   io::JointNames all;
   if (!names.empty() && names.size() != kDof)
     throw py::value_error("joint_names: " + std::to_string(names.size()) + ": allowed are 7");
-  for (std::size_t k = 0; k < kDof; ++k) all[k] = names.empty() ? "joint_" + std::to_string(k + 1) : names[k];
+  for (std::size_t k = 0; k < kDof; ++k)
+    all[k] = names.empty() ? "joint_" + std::to_string(k + 1) : names[k];
   return all;
 }
 
@@ -55,7 +56,8 @@ Trajectory make_trajectory(py::handle joints, py::handle s, py::handle phi, py::
     const Doubles array = Doubles::ensure(source);
     if (!array || array.ndim() != 1 || array.shape(0) != q.shape(0)) {
       PyErr_Clear();
-      throw py::value_error(std::string(name) + ": allowed is one number for each of the " + std::to_string(q.shape(0)) + " rows");
+      throw py::value_error(std::string(name) + ": allowed is one number for each of the " +
+                            std::to_string(q.shape(0)) + " rows");
     }
     return array;
   };
@@ -71,7 +73,8 @@ Trajectory make_trajectory(py::handle joints, py::handle s, py::handle phi, py::
     if (!branch.is_none()) {
       const double value = label.at(k);
       if (!(value >= 0 && value <= 7) || value != static_cast<int>(value))
-        throw py::value_error("branch[" + std::to_string(k) + "]: allowed are whole numbers from 0 to 7");
+        throw py::value_error("branch[" + std::to_string(k) +
+                              "]: allowed are whole numbers from 0 to 7");
       row.branch = static_cast<int>(value);
     }
   }
@@ -85,13 +88,15 @@ void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& 
   io::write_trajectory(csv, result);
 }
 
-py::object load_trajectory(const std::filesystem::path& name, const std::vector<std::string>& names, const Problem* problem) {
+py::object load_trajectory(const std::filesystem::path& name, const std::vector<std::string>& names,
+                           const Problem* problem) {
   const io::JointNames joint_names = to_joint_names(names);
   io::TrajectoryFile file = io::load_trajectory_file(name, joint_names);
   const bool timed = !file.timed.empty();
   if (!(timed ? file.stated.motions() : file.stated.rows())) {
     if (problem == nullptr)
-      throw InputError(name.string() + ": does not state all of s, phi, branch, " + (timed ? "speeds and accelerations" : "roll") +
+      throw InputError(name.string() + ": does not state all of s, phi, branch, " +
+                       (timed ? "speeds and accelerations" : "roll") +
                        ": allowed is a problem as well, by which they can be worked out");
     const PreparedRobot robot(*problem);
     if (timed)
@@ -99,7 +104,8 @@ py::object load_trajectory(const std::filesystem::path& name, const std::vector<
     else
       file.rows = complete_rows(robot, *problem, std::move(file.rows), file.stated);
   }
-  if (!timed) return py::cast(Trajectory{std::make_shared<const Rows>(std::move(file.rows)), joint_names});
+  if (!timed)
+    return py::cast(Trajectory{std::make_shared<const Rows>(std::move(file.rows)), joint_names});
   auto timing = std::make_shared<TimingResult>();
   TimedPath& path = timing->motion.emplace();
   path.duration = file.timed.back().t;
@@ -121,9 +127,11 @@ py::dict peaks_of(const Motion& motion) {
 
 std::string motion_words(const Motion& motion) {
   if (motion.timing->failure)
-    return formatted("not executable at s = %.4f m: ", motion.timing->failure->s) + motion.timing->failure->reason;
+    return formatted("not executable at s = %.4f m: ", motion.timing->failure->s) +
+           motion.timing->failure->reason;
   const TimedPath& path = motion.path();
-  std::string text = formatted("%.3f s, %zu samples at %.6g Hz", path.duration, path.rows.size(), path.rate);
+  std::string text =
+      formatted("%.3f s, %zu samples at %.6g Hz", path.duration, path.rows.size(), path.rate);
   if (path.ideal > 0) text += formatted(" (%.3f s at the speed asked throughout)", path.ideal);
   if (!path.stops.empty()) text += formatted(", %zu stops", path.stops.size());
   return text;
@@ -144,7 +152,8 @@ std::string plan_words(const Plan& plan) {
   if (plan.plan->refinement) after = refined_words(*plan.plan->refinement);
   if (plan.plan->motion)
     after +=
-        (after.empty() ? "" : "; ") + motion_words({std::shared_ptr<const TimingResult>(plan.plan, &*plan.plan->motion), {}, ""});
+        (after.empty() ? "" : "; ") +
+        motion_words({std::shared_ptr<const TimingResult>(plan.plan, &*plan.plan->motion), {}, ""});
   return text + (after.empty() ? "" : "\n      " + after);
 }
 
@@ -185,7 +194,8 @@ py::object pair_or_none(int first, int last) {
 }
 
 void bind_measures(py::module_& m) {
-  py::class_<LeastMargin>(m, "LeastMargin", "The row and pair that come nearest to what must be kept there.")
+  py::class_<LeastMargin>(m, "LeastMargin",
+                          "The row and pair that come nearest to what must be kept there.")
       .def(pickling<LeastMargin>())
       .def_readonly("margin", &LeastMargin::margin, "clearance - required, m.")
       .def_readonly("clearance", &LeastMargin::clearance, "m.")
@@ -193,21 +203,25 @@ void bind_measures(py::module_& m) {
       .def_property_readonly("bodies", [](const LeastMargin& x) { return bodies_of(x.bodies); })
       .def_readonly("row", &LeastMargin::row)
       .def("__repr__", [](const LeastMargin& x) {
-        return formatted("<LeastMargin %.3f mm: %.3f mm of %.3f asked, ", 1e3 * x.margin, 1e3 * x.clearance, 1e3 * x.required) +
+        return formatted("<LeastMargin %.3f mm: %.3f mm of %.3f asked, ", 1e3 * x.margin,
+                         1e3 * x.clearance, 1e3 * x.required) +
                x.bodies[0] + " - " + x.bodies[1] + formatted(", row %d>", x.row);
       });
-  py::class_<DeepestContact>(m, "DeepestContact", "The deepest contact of bodies that a scene object allows to touch it.")
+  py::class_<DeepestContact>(
+      m, "DeepestContact", "The deepest contact of bodies that a scene object allows to touch it.")
       .def(pickling<DeepestContact>())
-      .def_readonly("depth", &DeepestContact::depth, "m, found at a row or between two: the bodies are at least so deep.")
-      .def_readonly("at_most", &DeepestContact::at_most, "m, proved for all rows and moves between them, or None.")
+      .def_readonly("depth", &DeepestContact::depth,
+                    "m, found at a row or between two: the bodies are at least so deep.")
+      .def_readonly("at_most", &DeepestContact::at_most,
+                    "m, proved for all rows and moves between them, or None.")
       .def_readonly("allowed", &DeepestContact::allowed, "m, or None: however deep.")
       .def_property_readonly("bodies", [](const DeepestContact& x) { return bodies_of(x.bodies); })
       .def_readonly("row", &DeepestContact::row, "At it, or on the way from it to the next.")
       .def("__repr__", [](const DeepestContact& x) {
         return formatted("<DeepestContact %.3f mm", 1e3 * x.depth) +
                (x.at_most ? formatted(", at most %.3f", 1e3 * *x.at_most) : "") +
-               (x.allowed ? formatted(", allowed %.3f", 1e3 * *x.allowed) : "") + ", " + x.bodies[0] + " - " + x.bodies[1] +
-               formatted(", row %d>", x.row);
+               (x.allowed ? formatted(", allowed %.3f", 1e3 * *x.allowed) : "") + ", " +
+               x.bodies[0] + " - " + x.bodies[1] + formatted(", row %d>", x.row);
       });
   py::class_<NearestLimit>(m, "NearestLimit", "How near the rows come to a joint's limit.")
       .def(pickling<NearestLimit>())
@@ -218,64 +232,85 @@ void bind_measures(py::module_& m) {
       .def_readonly("row", &NearestLimit::row)
       .def("__repr__", [](const NearestLimit& x) {
         return "<NearestLimit " + x.joint +
-               formatted(", %.2f deg from its %s limit, row %d>", x.margin * 180 / kPi, to_string(x.side), x.row);
+               formatted(", %.2f deg from its %s limit, row %d>", x.margin * 180 / kPi,
+                         to_string(x.side), x.row);
       });
-  py::class_<TopToolSpeed>(m, "TopToolSpeed",
-                           "The highest constant speed of the tool at which no joint need turn faster than it can.")
+  py::class_<TopToolSpeed>(
+      m, "TopToolSpeed",
+      "The highest constant speed of the tool at which no joint need turn faster than it can.")
       .def(pickling<TopToolSpeed>())
       .def_readonly("speed", &TopToolSpeed::speed, "m/s.")
       .def_readonly("joint", &TopToolSpeed::joint, "That bounds it.")
       .def_readonly("row", &TopToolSpeed::row, "On the step from it.")
       .def("__repr__", [](const TopToolSpeed& x) {
-        return formatted("<TopToolSpeed %.4g m/s, ", x.speed) + x.joint + formatted(", row %d>", x.row);
+        return formatted("<TopToolSpeed %.4g m/s, ", x.speed) + x.joint +
+               formatted(", row %d>", x.row);
       });
   using ToolPathError = decltype(Measures::tool_path_error_mm);
-  py::class_<ToolPathError>(m, "ToolPathError", "How far the tool leaves its path between layers, mm.")
+  py::class_<ToolPathError>(m, "ToolPathError",
+                            "How far the tool leaves its path between layers, mm.")
       .def(pickling<ToolPathError>())
       .def_readonly("mean", &ToolPathError::mean, "mm.")
       .def_readonly("max", &ToolPathError::max, "mm.")
       .def_readonly("row", &ToolPathError::row, "The step from it has the largest.")
       .def_readonly("allowed", &ToolPathError::allowed, "limits.tool_path_error, m, or None.")
-      .def("__repr__",
-           [](const ToolPathError& x) { return formatted("<ToolPathError mean %.4g mm, max %.4g mm>", x.mean, x.max); });
+      .def("__repr__", [](const ToolPathError& x) {
+        return formatted("<ToolPathError mean %.4g mm, max %.4g mm>", x.mean, x.max);
+      });
   py::class_<Measures>(m, "Measures",
-                       "What a trajectory comes near to, and how well it follows its path. None: not asked for, or does not apply.")
+                       "What a trajectory comes near to, and how well it follows its path. None: "
+                       "not asked for, or does not apply.")
       .def(pickling<Measures>())
       .def_readonly("nearest_limit", &Measures::nearest_limit, "NearestLimit.")
       .def_readonly("top_tool_speed", &Measures::top_tool_speed, "TopToolSpeed.")
       .def_property_readonly(
           "tool_path_error_mm",
-          [](const Measures& x) { return x.evidence.tool_path_error ? py::cast(x.tool_path_error_mm) : py::object(py::none()); },
+          [](const Measures& x) {
+            return x.evidence.tool_path_error ? py::cast(x.tool_path_error_mm)
+                                              : py::object(py::none());
+          },
           "ToolPathError.")
       .def_readonly("min_clearance", &Measures::min_clearance, "Of the nearest pair on any row, m.")
       .def_readonly("min_margin", &Measures::min_margin, "LeastMargin.")
-      .def_readonly("deepest_contact", &Measures::deepest_contact, "DeepestContact; None where no allowed pair was found to touch.")
+      .def_readonly("deepest_contact", &Measures::deepest_contact,
+                    "DeepestContact; None where no allowed pair was found to touch.")
       .def_property_readonly(
           "min_manipulability",
-          [](const Measures& x) { return x.evidence.postures ? py::cast(x.min_manipulability) : py::object(py::none()); },
+          [](const Measures& x) {
+            return x.evidence.postures ? py::cast(x.min_manipulability) : py::object(py::none());
+          },
           "Least sqrt(det(J J^T)).")
       .def_property_readonly(
           "arm_angle",
-          [](const Measures& x) { return py::array_t<double>(static_cast<py::ssize_t>(x.arm_angle.size()), x.arm_angle.data()); },
+          [](const Measures& x) {
+            return py::array_t<double>(static_cast<py::ssize_t>(x.arm_angle.size()),
+                                       x.arm_angle.data());
+          },
           "Conventional arm angle of each row of S-R-S arms, (n,), rad; empty where not asked for.")
       .def("__repr__", [](const Measures& x) {
         std::string text;
-        const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
+        const auto add = [&](const std::string& more) {
+          text += (text.empty() ? "" : ", ") + more;
+        };
         if (x.min_clearance) add(formatted("least clearance %.3f mm", 1e3 * *x.min_clearance));
         if (x.min_margin)
-          add(formatted("%.3f mm more than asked (", 1e3 * x.min_margin->margin) + x.min_margin->bodies[0] + " - " +
-              x.min_margin->bodies[1] + ")");
-        if (x.deepest_contact) add(formatted("contact %.3f mm deep", 1e3 * x.deepest_contact->depth));
+          add(formatted("%.3f mm more than asked (", 1e3 * x.min_margin->margin) +
+              x.min_margin->bodies[0] + " - " + x.min_margin->bodies[1] + ")");
+        if (x.deepest_contact)
+          add(formatted("contact %.3f mm deep", 1e3 * x.deepest_contact->depth));
         if (x.nearest_limit)
-          add(x.nearest_limit->joint + formatted(" %.2f deg from its limit", x.nearest_limit->margin * 180 / kPi));
-        if (x.evidence.tool_path_error) add(formatted("tool %.4g mm off", x.tool_path_error_mm.max));
+          add(x.nearest_limit->joint +
+              formatted(" %.2f deg from its limit", x.nearest_limit->margin * 180 / kPi));
+        if (x.evidence.tool_path_error)
+          add(formatted("tool %.4g mm off", x.tool_path_error_mm.max));
         if (x.top_tool_speed) add(formatted("tool speed up to %.3g m/s", x.top_tool_speed->speed));
         return "<Measures " + text + ">";
       });
 }
 
 void bind_verdicts(py::module_& m) {
-  bind_enum<PlanStatus>(m, "Status", "What became of a plan.", names_from(PlanStatus::kSolved, PlanStatus::kCancelled));
+  bind_enum<PlanStatus>(m, "Status", "What became of a plan.",
+                        names_from(PlanStatus::kSolved, PlanStatus::kCancelled));
   bind_enum<Cause::Kind>(m, "CauseKind", "What removes nodes or edges of a lattice.",
                          names_from(Cause::Kind::kNone, Cause::Kind::kCheck));
   bind_enum<Advice::Change>(m, "Change", "What may be changed of a problem.",
@@ -287,41 +322,55 @@ void bind_verdicts(py::module_& m) {
       .def(pickling<Cause>())
       .def_readonly("kind", &Cause::kind, "CauseKind.")
       .def_property_readonly(
-          "side", [](const Cause& c) { return or_none(to_string(c.side)); }, "'lower', 'upper' or None.")
+          "side", [](const Cause& c) { return or_none(to_string(c.side)); },
+          "'lower', 'upper' or None.")
       .def_property_readonly(
           "joint", [](const Cause& c) { return or_none(c.joint); }, "Of limits, steps and speeds.")
       .def_readonly("other_joints", &Cause::other_joints,
                     "Every node has several joints beyond their limits; `joint` is the furthest.")
       .def_readonly("unwinds", &Cause::unwinds,
-                    "Of a limit: the joint can follow only beyond the end of its range, where it would have to unwind by a turn.")
+                    "Of a limit: the joint can follow only beyond the end of its range, where it "
+                    "would have to unwind by a turn.")
       .def_property_readonly(
           "bodies", [](const Cause& c) { return bodies_of(c.bodies); }, "Of pairs: two names.")
       .def_readonly("between_layers", &Cause::between_layers)
       .def_property_readonly(
-          "object", [](const Cause& c) { return or_none(c.object); }, "A scene object that several bodies come too near to.")
-      .def_readonly("value", &Cause::value, "What it is where it misses least, in `unit`; None where it was not measured.")
+          "object", [](const Cause& c) { return or_none(c.object); },
+          "A scene object that several bodies come too near to.")
+      .def_readonly("value", &Cause::value,
+                    "What it is where it misses least, in `unit`; None where it was not measured.")
       .def_readonly("limit", &Cause::limit, "What is allowed, in `unit`.")
-      .def_readonly("over", &Cause::over, "Of the roll's slope: the length of path for which `limit` is allowed, m.")
+      .def_readonly("over", &Cause::over,
+                    "Of the roll's slope: the length of path for which `limit` is allowed, m.")
       .def_property_readonly("unit", &Cause::unit, "'m', 'rad' or ''.")
       .def_property_readonly(
-          "check", [](const Cause& c) { return or_none(c.check); }, "Name of the caller's own check.")
+          "check", [](const Cause& c) { return or_none(c.check); },
+          "Name of the caller's own check.")
       .def("__str__",
            [](const Cause& c) {
              const std::string by = figures(c);
              return words(c) + (by.empty() ? "" : " (" + by + ")");
            })
-      .def("__repr__", [](const Cause& c) { return "<Cause " + py::str(py::cast(c)).cast<std::string>() + ">"; });
-  py::class_<EmptyLayers>(m, "EmptyLayers", "Layers, one after the other, that have no node left for one cause.")
+      .def("__repr__", [](const Cause& c) {
+        return "<Cause " + py::str(py::cast(c)).cast<std::string>() + ">";
+      });
+  py::class_<EmptyLayers>(m, "EmptyLayers",
+                          "Layers, one after the other, that have no node left for one cause.")
       .def(pickling<EmptyLayers>())
       .def_property_readonly(
-          "layers", [](const EmptyLayers& e) { return py::make_tuple(e.first, e.last); }, "First and last.")
+          "layers", [](const EmptyLayers& e) { return py::make_tuple(e.first, e.last); },
+          "First and last.")
       .def_property_readonly(
-          "s", [](const EmptyLayers& e) { return py::make_tuple(e.first_s, e.last_s); }, "m, first and last.")
-      .def_property_readonly("waypoints", [](const EmptyLayers& e) { return pair_or_none(e.first_waypoint, e.last_waypoint); })
+          "s", [](const EmptyLayers& e) { return py::make_tuple(e.first_s, e.last_s); },
+          "m, first and last.")
+      .def_property_readonly(
+          "waypoints",
+          [](const EmptyLayers& e) { return pair_or_none(e.first_waypoint, e.last_waypoint); })
       .def_readonly("cause", &EmptyLayers::cause, "At the layer that misses least.")
       .def_readonly("most", &EmptyLayers::most, "The most that one of them misses by.")
-      .def("__repr__",
-           [](const EmptyLayers& e) { return formatted("<EmptyLayers %d to %d: ", e.first, e.last) + words(e.cause) + ">"; });
+      .def("__repr__", [](const EmptyLayers& e) {
+        return formatted("<EmptyLayers %d to %d: ", e.first, e.last) + words(e.cause) + ">";
+      });
   py::class_<Diagnosis>(m, "Diagnosis", "Why an infeasible problem has no path.")
       .def(pickling<Diagnosis>())
       .def_readonly("reached_layer", &Diagnosis::reached_layer,
@@ -330,10 +379,14 @@ void bind_verdicts(py::module_& m) {
       .def_readonly("cause", &Diagnosis::cause, "The one thing that ends every path there.")
       .def_readonly("at_s", &Diagnosis::at_s, "m, of the layer past the furthest one.")
       .def_property_readonly(
-          "waypoints", [](const Diagnosis& d) { return pair_or_none(d.waypoints[0], d.waypoints[1]); }, "Before and after it.")
-      .def_readonly("without_it", &Diagnosis::without_it, "A layer that paths reach if the cause alone is removed.")
+          "waypoints",
+          [](const Diagnosis& d) { return pair_or_none(d.waypoints[0], d.waypoints[1]); },
+          "Before and after it.")
+      .def_readonly("without_it", &Diagnosis::without_it,
+                    "A layer that paths reach if the cause alone is removed.")
       .def_readonly("without_it_s", &Diagnosis::without_it_s, "m.")
-      .def_readonly("together", &Diagnosis::together, "What must go besides, where no single thing helps.")
+      .def_readonly("together", &Diagnosis::together,
+                    "What must go besides, where no single thing helps.")
       .def_readonly("empty_layers", &Diagnosis::empty_layers, "With evidence=True.")
       .def_property_readonly(
           "removed",
@@ -342,10 +395,12 @@ void bind_verdicts(py::module_& m) {
             for (const auto& [cause, count] : d.removed) all.append(py::make_tuple(cause, count));
             return all;
           },
-          "With evidence=True: (Cause, nodes and edges that it removed just past the furthest layer).")
+          "With evidence=True: (Cause, nodes and edges that it removed just past the furthest "
+          "layer).")
       .def_property_readonly(
           "holds", [](const Diagnosis& d) { return to_string(d.holds()); },
-          "'this_resolution', 'exact_tool' (whatever the resolution, for a tool exactly on its path), or\n"
+          "'this_resolution', 'exact_tool' (whatever the resolution, for a tool exactly on its "
+          "path), or\n"
           "'every_resolution' (a waypoint has no joints within their limits).")
       .def_property_readonly(
           "unreachable",
@@ -353,13 +408,17 @@ void bind_verdicts(py::module_& m) {
             return d.unreachable ? std::optional(d.unreachable->layer) : std::nullopt;
           },
           "A layer that no joints within their limits reach, at any arm angle.")
-      .def_readonly("complete", &Diagnosis::complete, "False where time ran out; what is said is true nevertheless.")
+      .def_readonly("complete", &Diagnosis::complete,
+                    "False where time ran out; what is said is true nevertheless.")
       .def_readonly("layers_known", &Diagnosis::layers_known)
       .def("__repr__", [](const Diagnosis& d) {
         return "<Diagnosis: " + py::str(py::cast(d.cause)).cast<std::string>() +
-               (d.reached_s ? formatted(" ends every path by s = %.4f m>", *d.reached_s) : std::string(" bars the first layer>"));
+               (d.reached_s ? formatted(" ends every path by s = %.4f m>", *d.reached_s)
+                            : std::string(" bars the first layer>"));
       });
-  py::class_<Advice>(m, "Advice", "One change of a problem that has no path, and what planning the changed problem gave.")
+  py::class_<Advice>(
+      m, "Advice",
+      "One change of a problem that has no path, and what planning the changed problem gave.")
       .def(pickling<Advice>())
       .def_readonly("change", &Advice::change, "Change.")
       .def_property_readonly("object", [](const Advice& a) { return or_none(a.object); })
@@ -373,39 +432,49 @@ void bind_verdicts(py::module_& m) {
         return "<Advice " + std::string(to_string(a.outcome)) + ": " + words(a) +
                (a.cost ? formatted(", cost %.6g>", *a.cost) : std::string(">"));
       });
-  py::class_<SpecialPair>(m, "SpecialPair", "A robot pair without an SRDF's word that is not kept apart as others are.")
+  py::class_<SpecialPair>(
+      m, "SpecialPair", "A robot pair without an SRDF's word that is not kept apart as others are.")
       .def(pickling<SpecialPair>())
       .def_property_readonly("bodies", [](const SpecialPair& p) { return bodies_of(p.bodies); })
       .def_readonly("median", &SpecialPair::median, "Clearance over sampled postures, m.")
       .def_readonly("clearance", &SpecialPair::clearance, "m, kept on layers.")
       .def_readonly("edge_clearance", &SpecialPair::edge_clearance, "m, kept between them.")
       .def("__repr__", [](const SpecialPair& p) {
-        return "<SpecialPair " + p.bodies[0] + " - " + p.bodies[1] + formatted(": keeps %.3f mm>", 1e3 * p.clearance);
+        return "<SpecialPair " + p.bodies[0] + " - " + p.bodies[1] +
+               formatted(": keeps %.3f mm>", 1e3 * p.clearance);
       });
 }
 
 void bind_trajectory(py::module_& m) {
-  py::class_<Trajectory>(m, "Trajectory", "Rows along a tool path. Arrays are read-only views that keep the rows alive.")
+  py::class_<Trajectory>(
+      m, "Trajectory",
+      "Rows along a tool path. Arrays are read-only views that keep the rows alive.")
       .def(pickling<Trajectory>())
-      .def(py::init(&make_trajectory), py::arg("joints"), py::arg("s"), py::arg("phi") = py::none(), py::arg("branch") = py::none(),
-           py::arg("joint_names") = std::vector<std::string>{},
-           "joints: (n, 7), rad. s: (n,), m along the path. phi: carried arm angle, rad, and branch: 0 to 7, of S-R-S arms; "
+      .def(py::init(&make_trajectory), py::arg("joints"), py::arg("s"), py::arg("phi") = py::none(),
+           py::arg("branch") = py::none(), py::arg("joint_names") = std::vector<std::string>{},
+           "joints: (n, 7), rad. s: (n,), m along the path. phi: carried arm angle, rad, and "
+           "branch: 0 to 7, of S-R-S arms; "
            "default 0.")
       .def_property_readonly(
-          "s", [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::s); }, "(n,), m along the path.")
+          "s", [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::s); },
+          "(n,), m along the path.")
       .def_property_readonly(
-          "phi", [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::phi); }, "(n,), carried arm angle, rad.")
+          "phi", [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::phi); },
+          "(n,), carried arm angle, rad.")
       .def_property_readonly(
-          "branch", [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::branch); }, "(n,), 0 to 7.")
+          "branch",
+          [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::branch); },
+          "(n,), 0 to 7.")
       .def_property_readonly(
-          "joints", [](const Trajectory& t) { return joints_of(t.rows); }, "(n, 7) float64, rad, base to tip.")
+          "joints", [](const Trajectory& t) { return joints_of(t.rows); },
+          "(n, 7) float64, rad, base to tip.")
       .def_readonly("joint_names", &Trajectory::joint_names)
       .def("save", &save_trajectory, py::arg("file"), "As CSV, docs/formats.md.")
       .def("__len__", [](const Trajectory& t) { return t.rows->size(); })
       .def("__repr__", [](const Trajectory& t) {
-        return t.rows->empty()
-                   ? std::string("<Trajectory, empty>")
-                   : formatted("<Trajectory of %zu rows, s %.4g to %.4g m>", t.rows->size(), t.rows->front().s, t.rows->back().s);
+        return t.rows->empty() ? std::string("<Trajectory, empty>")
+                               : formatted("<Trajectory of %zu rows, s %.4g to %.4g m>",
+                                           t.rows->size(), t.rows->front().s, t.rows->back().s);
       });
 
   py::class_<TimedPath::Stop>(m, "Stop", "Where the tool comes to rest on its way.")
@@ -419,37 +488,53 @@ void bind_trajectory(py::module_& m) {
   py::class_<TimedPath::Slow>(m, "Slow", "A stretch that is slower than asked for.")
       .def(pickling<TimedPath::Slow>())
       .def_property_readonly(
-          "s", [](const TimedPath::Slow& x) { return py::make_tuple(x.from_s, x.to_s); }, "m, from and to.")
+          "s", [](const TimedPath::Slow& x) { return py::make_tuple(x.from_s, x.to_s); },
+          "m, from and to.")
       .def_property_readonly(
-          "t", [](const TimedPath::Slow& x) { return py::make_tuple(x.from_t, x.to_t); }, "s, from and to.")
+          "t", [](const TimedPath::Slow& x) { return py::make_tuple(x.from_t, x.to_t); },
+          "s, from and to.")
       .def_readonly("share", &TimedPath::Slow::share, "Of the speed asked for, at its slowest.")
       .def_readonly("joint", &TimedPath::Slow::joint, "Number of the joint that bounds it, from 0.")
       .def_property_readonly(
           "reason", [](const TimedPath::Slow& x) { return to_string(x.reason); },
           "'speed', 'acceleration' or 'jerk' of that joint.")
       .def_property_readonly(
-          "singular", [](const TimedPath::Slow& x) { return or_none(x.singular); }, "'shoulder', 'elbow', 'wrist' or None.")
+          "singular", [](const TimedPath::Slow& x) { return or_none(x.singular); },
+          "'shoulder', 'elbow', 'wrist' or None.")
       .def("__repr__", [](const TimedPath::Slow& x) {
-        return formatted("<Slow from s = %.4f to %.4f m: %.0f %% of the speed, for the %s of joint %d>", x.from_s, x.to_s,
-                         100 * x.share, to_string(x.reason), x.joint);
+        return formatted(
+            "<Slow from s = %.4f to %.4f m: %.0f %% of the speed, for the %s of joint %d>",
+            x.from_s, x.to_s, 100 * x.share, to_string(x.reason), x.joint);
       });
-  py::class_<Motion>(m, "Motion", "A motion in time, from rest to rest, or why there is none. Arrays are read-only views.")
+  py::class_<Motion>(
+      m, "Motion",
+      "A motion in time, from rest to rest, or why there is none. Arrays are read-only views.")
       .def(pickling<Motion>())
-      .def_property_readonly("executable", [](const Motion& x) { return x.timing->motion.has_value(); })
+      .def_property_readonly("executable",
+                             [](const Motion& x) { return x.timing->motion.has_value(); })
       .def_property_readonly(
-          "reason", [](const Motion& x) { return x.timing->failure ? py::object(py::str(x.timing->failure->reason)) : py::none(); },
+          "reason",
+          [](const Motion& x) {
+            return x.timing->failure ? py::object(py::str(x.timing->failure->reason)) : py::none();
+          },
           "Why it is not executable, or None.")
       .def_property_readonly(
-          "at_s", [](const Motion& x) { return x.timing->failure ? py::object(py::float_(x.timing->failure->s)) : py::none(); },
+          "at_s",
+          [](const Motion& x) {
+            return x.timing->failure ? py::object(py::float_(x.timing->failure->s)) : py::none();
+          },
           "Where it is not, m, or None.")
       .def_property_readonly(
           "t", [](const Motion& x) { return member_column(x.rows(), &TimedRow::t); }, "(m,), s.")
       .def_property_readonly(
-          "s", [](const Motion& x) { return timed_column(x, &TrajectoryRow::s); }, "(m,), m along the path.")
+          "s", [](const Motion& x) { return timed_column(x, &TrajectoryRow::s); },
+          "(m,), m along the path.")
       .def_property_readonly(
-          "phi", [](const Motion& x) { return timed_column(x, &TrajectoryRow::phi); }, "(m,), carried arm angle, rad.")
+          "phi", [](const Motion& x) { return timed_column(x, &TrajectoryRow::phi); },
+          "(m,), carried arm angle, rad.")
       .def_property_readonly(
-          "branch", [](const Motion& x) { return timed_column(x, &TrajectoryRow::branch); }, "(m,), 0 to 7.")
+          "branch", [](const Motion& x) { return timed_column(x, &TrajectoryRow::branch); },
+          "(m,), 0 to 7.")
       .def_property_readonly(
           "joints",
           [](const Motion& x) {
@@ -458,23 +543,34 @@ void bind_trajectory(py::module_& m) {
           },
           "(m, 7), rad.")
       .def_property_readonly(
-          "velocities", [](const Motion& x) { return timed_joints(x, &TimedRow::v); }, "(m, 7), rad/s.")
+          "velocities", [](const Motion& x) { return timed_joints(x, &TimedRow::v); },
+          "(m, 7), rad/s.")
       .def_property_readonly(
-          "accelerations", [](const Motion& x) { return timed_joints(x, &TimedRow::a); }, "(m, 7), rad/s^2.")
+          "accelerations", [](const Motion& x) { return timed_joints(x, &TimedRow::a); },
+          "(m, 7), rad/s^2.")
       .def_readonly("joint_names", &Motion::joint_names)
       .def_property_readonly(
-          "duration", [](const Motion& x) { return x.path().duration; }, "s, until the tool rests at the end.")
+          "duration", [](const Motion& x) { return x.path().duration; },
+          "s, until the tool rests at the end.")
       .def_property_readonly(
-          "ideal", [](const Motion& x) { return x.path().ideal; }, "s, at the speed asked for throughout.")
+          "ideal", [](const Motion& x) { return x.path().ideal; },
+          "s, at the speed asked for throughout.")
       .def_property_readonly(
           "rate", [](const Motion& x) { return x.path().rate; }, "Samples a second.")
-      .def_property_readonly("peaks", &peaks_of, "'speed', 'acceleration', 'jerk': (7,), the largest over what the joint can do.")
       .def_property_readonly(
-          "slow", [](const Motion& x) { return x.path().slow; }, "Stretches below the speed asked for.")
+          "peaks", &peaks_of,
+          "'speed', 'acceleration', 'jerk': (7,), the largest over what the joint can do.")
       .def_property_readonly(
-          "stops", [](const Motion& x) { return x.path().stops; }, "Corners that the tool stops at.")
+          "slow", [](const Motion& x) { return x.path().slow; },
+          "Stretches below the speed asked for.")
       .def_property_readonly(
-          "between_samples", [](const Motion& x) { return py::make_tuple(x.path().between_position, x.path().between_angle); },
+          "stops", [](const Motion& x) { return x.path().stops; },
+          "Corners that the tool stops at.")
+      .def_property_readonly(
+          "between_samples",
+          [](const Motion& x) {
+            return py::make_tuple(x.path().between_position, x.path().between_angle);
+          },
           "How far the tool leaves its path between samples, m and rad.")
       .def_property_readonly("warnings", [](const Motion& x) { return x.path().warnings; })
       .def(
@@ -482,33 +578,42 @@ void bind_trajectory(py::module_& m) {
           [](const Motion& x, const std::filesystem::path& file) {
             io::write_file(file, io::motion_text(x.path(), x.joint_names, x.frame, file));
           },
-          py::arg("file"), "The ending chooses: .csv, .json or .yaml (ROS 2's JointTrajectory), .mcap (JointState).")
+          py::arg("file"),
+          "The ending chooses: .csv, .json or .yaml (ROS 2's JointTrajectory), .mcap (JointState).")
       .def("__len__", [](const Motion& x) { return x.rows()->size(); })
       .def("__repr__", [](const Motion& x) { return "<Motion " + motion_words(x) + ">"; });
 
   py::class_<RefinedPath>(m, "Refined", "A path of the lattice and what refining made of it.")
       .def(pickling<RefinedPath>())
       .def_property_readonly(
-          "refined", [](const RefinedPath& x) { return x.refined->refined; }, "False: the rows are those given.")
+          "refined", [](const RefinedPath& x) { return x.refined->refined; },
+          "False: the rows are those given.")
       .def_property_readonly(
-          "reason", [](const RefinedPath& x) { return or_none(x.refined->reason); }, "Why they are, or None.")
+          "reason", [](const RefinedPath& x) { return or_none(x.refined->reason); },
+          "Why they are, or None.")
       .def_property_readonly("trajectory",
                              [](const RefinedPath& x) {
-                               return Trajectory{std::shared_ptr<const Rows>(x.refined, &x.refined->rows), x.joint_names};
+                               return Trajectory{
+                                   std::shared_ptr<const Rows>(x.refined, &x.refined->rows),
+                                   x.joint_names};
                              })
-      .def_property_readonly("cost_before", [](const RefinedPath& x) { return x.refined->cost_before; })
+      .def_property_readonly("cost_before",
+                             [](const RefinedPath& x) { return x.refined->cost_before; })
       .def_property_readonly("cost", [](const RefinedPath& x) { return x.refined->cost; })
       .def_property_readonly(
           "bend_before", [](const RefinedPath& x) { return x.refined->bend_before; },
           "Largest second divided difference of the joints, rad/m^2.")
       .def_property_readonly(
           "bend", [](const RefinedPath& x) { return x.refined->bend; }, "rad/m^2.")
-      .def("__repr__", [](const RefinedPath& x) { return "<Refined " + refined_words(*x.refined) + ">"; });
-  m.def(
-      "load_trajectory", &load_trajectory, py::arg("file"), py::arg("joint_names"), py::arg("problem") = py::none(),
-      "A Trajectory, or a Motion where the file has times: any CSV, JSON, YAML or MCAP that `swivel check` reads. The file's joint "
-      "names must be those given. What the file does not state (s, phi, branch, roll; of motions speeds and accelerations) is "
-      "worked out from the joints and the problem. Raises InputError.");
+      .def("__repr__",
+           [](const RefinedPath& x) { return "<Refined " + refined_words(*x.refined) + ">"; });
+  m.def("load_trajectory", &load_trajectory, py::arg("file"), py::arg("joint_names"),
+        py::arg("problem") = py::none(),
+        "A Trajectory, or a Motion where the file has times: any CSV, JSON, YAML or MCAP that "
+        "`swivel check` reads. The file's joint "
+        "names must be those given. What the file does not state (s, phi, branch, roll; of motions "
+        "speeds and accelerations) is "
+        "worked out from the joints and the problem. Raises InputError.");
 }
 
 void bind_plan(py::module_& m) {
@@ -516,44 +621,59 @@ void bind_plan(py::module_& m) {
       .def(pickling<LatticeInfo>())
       .def_readonly("layers", &LatticeInfo::layers)
       .def_readonly("nodes", &LatticeInfo::nodes)
-      .def_readonly("arcs", &LatticeInfo::arcs, "Arcs of self-motion in all layers, of arms that are not S-R-S; else None.")
+      .def_readonly("arcs", &LatticeInfo::arcs,
+                    "Arcs of self-motion in all layers, of arms that are not S-R-S; else None.")
       .def_readonly("method", &LatticeInfo::method, "How solutions are found.")
       .def_readonly("complete", &LatticeInfo::complete, "False: \"no path\" means \"none found\".")
       .def_readonly("cost", &LatticeInfo::cost, "What the search minimised.")
       .def("__repr__", [](const LatticeInfo& x) {
-        return formatted("<LatticeInfo %d layers, %lld nodes, ", x.layers, static_cast<long long>(x.nodes)) + x.method + ">";
+        return formatted("<LatticeInfo %d layers, %lld nodes, ", x.layers,
+                         static_cast<long long>(x.nodes)) +
+               x.method + ">";
       });
-  py::class_<Plan>(m, "Plan", "The answer of a planner: a trajectory, or why there is none. It outlives the planner.")
+  py::class_<Plan>(
+      m, "Plan",
+      "The answer of a planner: a trajectory, or why there is none. It outlives the planner.")
       .def(pickling<Plan>())
       .def_property_readonly(
           "status", [](const Plan& p) { return p.result().status; }, "Status.")
-      .def_property_readonly("solved", [](const Plan& p) { return p.result().status == PlanStatus::kSolved; })
+      .def_property_readonly("solved",
+                             [](const Plan& p) { return p.result().status == PlanStatus::kSolved; })
       .def_property_readonly(
           "cost",
           [](const Plan& p) {
-            return p.result().status == PlanStatus::kSolved ? py::object(py::float_(p.result().cost)) : py::none();
+            return p.result().status == PlanStatus::kSolved
+                       ? py::object(py::float_(p.result().cost))
+                       : py::none();
           },
           "Of the trajectory, by the problem's metric; None unless solved.")
       .def_property_readonly(
           "trajectory",
           [](const Plan& p) {
-            return Trajectory{std::shared_ptr<const Rows>(p.plan, &p.result().trajectory), p.result().joint_names};
+            return Trajectory{std::shared_ptr<const Rows>(p.plan, &p.result().trajectory),
+                              p.result().joint_names};
           },
           "Empty unless solved.")
       .def_property_readonly(
-          "joints", [](const Plan& p) { return joints_of(std::shared_ptr<const Rows>(p.plan, &p.result().trajectory)); },
+          "joints",
+          [](const Plan& p) {
+            return joints_of(std::shared_ptr<const Rows>(p.plan, &p.result().trajectory));
+          },
           "(n, 7) float64, rad: those of the trajectory.")
       .def_property_readonly(
           "partial",
           [](const Plan& p) {
-            return Trajectory{std::shared_ptr<const Rows>(p.plan, &p.result().partial), p.result().joint_names};
+            return Trajectory{std::shared_ptr<const Rows>(p.plan, &p.result().partial),
+                              p.result().joint_names};
           },
-          "Where there is no answer: rows from the first on that are known to be valid; maybe none.")
+          "Where there is no answer: rows from the first on that are known to be valid; maybe "
+          "none.")
       .def_property_readonly(
           "lattice_path",
           [](const Plan& p) {
             return Trajectory{
-                std::shared_ptr<const Rows>(p.plan, p.plan->refinement ? &p.plan->lattice_path : &p.result().trajectory),
+                std::shared_ptr<const Rows>(
+                    p.plan, p.plan->refinement ? &p.plan->lattice_path : &p.result().trajectory),
                 p.result().joint_names};
           },
           "The trajectory before it was refined.")
@@ -561,20 +681,26 @@ void bind_plan(py::module_& m) {
           "measures", [](const Plan& p) -> const Measures& { return p.result(); },
           "What the trajectory comes near to; all of it with evidence=True.")
       .def_property_readonly(
-          "diagnosis", [](const Plan& p) { return p.result().status == PlanStatus::kInfeasible ? &p.result().diagnosis : nullptr; },
-          py::return_value_policy::reference_internal, "Why there is no path; None unless infeasible.")
+          "diagnosis",
+          [](const Plan& p) {
+            return p.result().status == PlanStatus::kInfeasible ? &p.result().diagnosis : nullptr;
+          },
+          py::return_value_policy::reference_internal,
+          "Why there is no path; None unless infeasible.")
       .def_property_readonly(
           "refinement",
           [](const Plan& p) -> std::optional<RefinedPath> {
             if (!p.plan->refinement) return {};
-            return RefinedPath{std::shared_ptr<const Refined>(p.plan, &*p.plan->refinement), p.result().joint_names};
+            return RefinedPath{std::shared_ptr<const Refined>(p.plan, &*p.plan->refinement),
+                               p.result().joint_names};
           },
           "Refined, where it was asked for and there is a path.")
       .def_property_readonly(
           "motion",
           [](const Plan& p) -> std::optional<Motion> {
             if (!p.plan->motion) return {};
-            return Motion{std::shared_ptr<const TimingResult>(p.plan, &*p.plan->motion), p.result().joint_names, p.frame};
+            return Motion{std::shared_ptr<const TimingResult>(p.plan, &*p.plan->motion),
+                          p.result().joint_names, p.frame};
           },
           "Motion, where it was asked for and there is a path.")
       .def_property_readonly(
@@ -590,23 +716,30 @@ void bind_plan(py::module_& m) {
             for (const HeldJoint& joint : p.result().held) held[joint.name] = joint.position;
             return held;
           },
-          "Joints between base and tip that are not planned -> where they stand, rad or m; the answer is of the arm with them "
+          "Joints between base and tip that are not planned -> where they stand, rad or m; the "
+          "answer is of the arm with them "
           "there.")
-      .def_property_readonly("lattice", [](const Plan& p) -> const LatticeInfo& { return p.result().lattice; })
+      .def_property_readonly("lattice",
+                             [](const Plan& p) -> const LatticeInfo& { return p.result().lattice; })
       .def_property_readonly(
-          "counters", [](const Plan& p) { return counters_of(p.result().counters); }, "Work done, by name.")
+          "counters", [](const Plan& p) { return counters_of(p.result().counters); },
+          "Work done, by name.")
       .def_property_readonly(
-          "time_ms", [](const Plan& p) { return p.result().time_ms; }, "prepare, plan, report, and stages of these by name.")
+          "time_ms", [](const Plan& p) { return p.result().time_ms; },
+          "prepare, plan, report, and stages of these by name.")
       .def_property_readonly(
-          "dropped_pairs", [](const Plan& p) { return p.result().dropped_pairs; }, "Touch in every posture: not kept apart.")
+          "dropped_pairs", [](const Plan& p) { return p.result().dropped_pairs; },
+          "Touch in every posture: not kept apart.")
       .def_property_readonly(
-          "reduced_pairs", [](const Plan& p) { return p.result().reduced_pairs; }, "Near by design: keep less.")
+          "reduced_pairs", [](const Plan& p) { return p.result().reduced_pairs; },
+          "Near by design: keep less.")
       .def_property_readonly("warnings", [](const Plan& p) { return p.result().warnings; })
       .def(
           "to_json",
           [](const Plan& p) {
             const MotionPlan& plan = *p.plan;
-            return io::to_json(plan.result, {plan.refinement ? &*plan.refinement : nullptr, plan.motion ? &*plan.motion : nullptr,
+            return io::to_json(plan.result, {plan.refinement ? &*plan.refinement : nullptr,
+                                             plan.motion ? &*plan.motion : nullptr,
                                              p.timing.value_or(TimingOptions{}), nullptr});
           },
           "RESULT.json as text, docs/formats.md.")
@@ -618,33 +751,41 @@ void bind_plan(py::module_& m) {
       .def_property_readonly("passed", [](const Check& c) { return c.result.passed; })
       .def("__bool__", [](const Check& c) { return c.result.passed; })
       .def_property_readonly(
-          "failures", [](const Check& c) { return c.result.failures; }, "A line each, with the row; the first 20.")
+          "failures", [](const Check& c) { return c.result.failures; },
+          "A line each, with the row; the first 20.")
       .def_property_readonly("failure_count", [](const Check& c) { return c.result.failure_count; })
       .def_property_readonly(
-          "worst_position", [](const Check& c) { return c.result.worst_position; }, "m, tool against path at the rows.")
+          "worst_position", [](const Check& c) { return c.result.worst_position; },
+          "m, tool against path at the rows.")
       .def_property_readonly(
           "worst_angle", [](const Check& c) { return c.result.worst_angle; }, "rad.")
       .def_property_readonly(
-          "worst_path_error", [](const Check& c) { return c.result.worst_path_error; }, "m, between rows.")
+          "worst_path_error", [](const Check& c) { return c.result.worst_path_error; },
+          "m, between rows.")
       .def_property_readonly(
           "worst_path_angle", [](const Check& c) { return c.result.worst_path_angle; }, "rad.")
       .def_property_readonly(
-          "largest_step", [](const Check& c) { return c.result.largest_step; }, "A joint's move over what is allowed.")
+          "largest_step", [](const Check& c) { return c.result.largest_step; },
+          "A joint's move over what is allowed.")
       .def_property_readonly(
           "cost", [](const Check& c) { return c.result.cost; }, "Of the rows as given.")
       .def_property_readonly(
           "rounded", [](const Check& c) { return c.result.rounded; },
           "Whether the rows were judged on the path of motions, whose corners are rounded.")
       .def_property_readonly(
-          "min_clearance", [](const Check& c) { return c.result.min_clearance; }, "m, of any pair at the rows.")
+          "min_clearance", [](const Check& c) { return c.result.min_clearance; },
+          "m, of any pair at the rows.")
       .def_property_readonly(
-          "min_margin", [](const Check& c) { return c.result.min_margin; }, "m, least clearance less what the pair must keep.")
+          "min_margin", [](const Check& c) { return c.result.min_margin; },
+          "m, least clearance less what the pair must keep.")
       .def_property_readonly(
           "deepest_contact", [](const Check& c) { return c.result.deepest_contact; },
           "DeepestContact; None where no allowed pair was found to touch.")
       .def_property_readonly(
           "duration",
-          [](const Check& c) { return c.result.motion ? py::object(py::float_(c.result.motion->duration)) : py::none(); },
+          [](const Check& c) {
+            return c.result.motion ? py::object(py::float_(c.result.motion->duration)) : py::none();
+          },
           "Of motions, s.")
       .def_property_readonly(
           "peaks",
@@ -660,10 +801,14 @@ void bind_plan(py::module_& m) {
         const CheckResult& r = c.result;
         std::string text = formatted("<Check passed: cost %.6g", r.cost);
         if (!r.passed)
-          text = formatted("<Check failed, %lld failures: ", static_cast<long long>(r.failure_count)) + r.failures.front();
+          text =
+              formatted("<Check failed, %lld failures: ", static_cast<long long>(r.failure_count)) +
+              r.failures.front();
         if (r.min_clearance)
-          text += formatted(", least clearance %.3f mm, %.3f mm more than asked", 1e3 * *r.min_clearance, 1e3 * *r.min_margin);
-        if (r.deepest_contact) text += formatted(", contact %.3f mm deep", 1e3 * r.deepest_contact->depth);
+          text += formatted(", least clearance %.3f mm, %.3f mm more than asked",
+                            1e3 * *r.min_clearance, 1e3 * *r.min_margin);
+        if (r.deepest_contact)
+          text += formatted(", contact %.3f mm deep", 1e3 * r.deepest_contact->depth);
         return text + ">";
       });
 }
@@ -677,7 +822,8 @@ std::shared_ptr<const std::vector<TimedRow>> Motion::rows() const {
 
 const TimedPath& Motion::path() const {
   if (!timing->motion)
-    throw py::value_error("the motion is not executable: " + (timing->failure ? timing->failure->reason : "stopped"));
+    throw py::value_error("the motion is not executable: " +
+                          (timing->failure ? timing->failure->reason : "stopped"));
   return *timing->motion;
 }
 

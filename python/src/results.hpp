@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Answers as Python holds them: shared, so that arrays are views which outlive the object that they were read from.
+// Answers as Python holds them: shared, so that arrays are views which outlive the object that they
+// were read from.
 #pragma once
 #include <memory>
 #include <optional>

@@ -47,7 +47,8 @@ template <class Row>
 py::array_t<double> numbers(const Table<Row>& table, std::optional<double> Row::*member) {
   py::array_t<double> array(static_cast<py::ssize_t>(table.rows->size()));
   double* out = array.mutable_data();
-  for (const Row& row : *table.rows) *out++ = (row.*member).value_or(std::numeric_limits<double>::quiet_NaN());
+  for (const Row& row : *table.rows)
+    *out++ = (row.*member).value_or(std::numeric_limits<double>::quiet_NaN());
   return array;
 }
 template <class Row, class Number>
@@ -64,9 +65,12 @@ std::vector<std::string> texts(const Table<Row>& table, std::string Row::*member
 template <class Row>
 Table<Row> joined(const std::vector<Table<Row>>& parts) {
   std::vector<Row> rows;
-  for (const Table<Row>& part : parts) rows.insert(rows.end(), part.rows->begin(), part.rows->end());
-  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return number_of(a) < number_of(b); });
-  return to_table(std::move(rows), parts.empty() ? std::vector<std::string>() : parts[0].coordinates);
+  for (const Table<Row>& part : parts)
+    rows.insert(rows.end(), part.rows->begin(), part.rows->end());
+  std::sort(rows.begin(), rows.end(),
+            [](const Row& a, const Row& b) { return number_of(a) < number_of(b); });
+  return to_table(std::move(rows),
+                  parts.empty() ? std::vector<std::string>() : parts[0].coordinates);
 }
 
 /// "12, of which 7 have a path; cost 1.9 to 2.4"
@@ -96,7 +100,8 @@ py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* 
           "__getitem__",
           [](const Rows& t, py::ssize_t k) {
             const auto size = static_cast<py::ssize_t>(t.rows->size());
-            if (k < -size || k >= size) throw py::index_error("row " + std::to_string(k) + " of " + std::to_string(size));
+            if (k < -size || k >= size)
+              throw py::index_error("row " + std::to_string(k) + " of " + std::to_string(size));
             return (*t.rows)[static_cast<std::size_t>(k < 0 ? k + size : k)];
           },
           py::arg("k"), "The k-th row.")
@@ -118,17 +123,23 @@ py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* 
           },
           "(n,) bool.")
       .def_property_readonly(
-          "cost", [](const Rows& t) { return numbers(t, &Row::cost); }, "(n,); NaN where there is no path.")
+          "cost", [](const Rows& t) { return numbers(t, &Row::cost); },
+          "(n,); NaN where there is no path.")
       .def_property_readonly(
           "failed_s", [](const Rows& t) { return numbers(t, &Row::failed_s); },
-          "(n,), m, where every path ends; NaN where there is one, and where not even the first layer has a node.")
+          "(n,), m, where every path ends; NaN where there is one, and where not even the first "
+          "layer has a node.")
       .def_property_readonly(
-          "reason", [](const Rows& t) { return texts(t, &Row::reason); }, "What ends them, in words; '' where there is a path.")
+          "reason", [](const Rows& t) { return texts(t, &Row::reason); },
+          "What ends them, in words; '' where there is a path.")
       .def(
-          "save", [](const Rows& t, const std::filesystem::path& file) { io::write_file(file, to_csv(t)); }, py::arg("file"),
-          "As CSV, docs/formats.md: what the program writes.")
+          "save",
+          [](const Rows& t, const std::filesystem::path& file) { io::write_file(file, to_csv(t)); },
+          py::arg("file"), "As CSV, docs/formats.md: what the program writes.")
       .def_static("_joined", &joined<Row>)  // for place() and campaign() of the package
-      .def("__repr__", [name = std::string(type)](const Rows& t) { return "<" + name + ": " + table_words(t) + ">"; });
+      .def("__repr__", [name = std::string(type)](const Rows& t) {
+        return "<" + name + ": " + table_words(t) + ">";
+      });
   return table;
 }
 
@@ -136,16 +147,19 @@ std::string placement_words(const PlacementRow& row) {
   std::string text = formatted("%llu", static_cast<unsigned long long>(row.cell));
   for (std::size_t k = 0; k < kCoordinates.size(); ++k)
     if (row.offset[k] != 0) text += formatted(", %s %.6g", kCoordinates[k], row.offset[k]);
-  if (row.status != PlanStatus::kSolved) return text + ": " + (row.reason.empty() ? "no path" : "no path, " + row.reason);
+  if (row.status != PlanStatus::kSolved)
+    return text + ": " + (row.reason.empty() ? "no path" : "no path, " + row.reason);
   text += formatted(": cost %.6g", *row.cost);
   if (row.clearance) text += formatted(", clearance %.1f mm", 1e3 * *row.clearance);
-  if (row.joint_margin) text += formatted(", %.1f deg from a joint limit", *row.joint_margin * 180 / kPi);
+  if (row.joint_margin)
+    text += formatted(", %.1f deg from a joint limit", *row.joint_margin * 180 / kPi);
   if (row.tool_speed) text += formatted(", tool speed up to %.3g m/s", *row.tool_speed);
   return text;
 }
 
 std::vector<PlacementCriterion> to_criteria(const std::vector<std::string>& names) {
-  if (names.empty()) throw InvalidArgument("best: no criterion: allowed are clearance, cost, margin, speed");
+  if (names.empty())
+    throw InvalidArgument("best: no criterion: allowed are clearance, cost, margin, speed");
   std::vector<PlacementCriterion> criteria;
   for (const std::string& name : names) criteria.push_back(placement_criterion_from_string(name));
   return criteria;
@@ -156,57 +170,85 @@ void bind_tables(py::module_& m) {
       .def(pickling<PlacementRow>())
       .def_readonly("cell", &PlacementRow::cell, "Its number.")
       .def_property_readonly(
-          "offset", [](const PlacementRow& r) { return py::array_t<double>(py::ssize_t{6}, r.offset.data()); },
+          "offset",
+          [](const PlacementRow& r) {
+            return py::array_t<double>(py::ssize_t{6}, r.offset.data());
+          },
           "(6,): x y z (m) roll pitch yaw (rad), by how much the thing is moved.")
       .def_readonly("status", &PlacementRow::status, "Status.")
-      .def_property_readonly("solved", [](const PlacementRow& r) { return r.status == PlanStatus::kSolved; })
+      .def_property_readonly("solved",
+                             [](const PlacementRow& r) { return r.status == PlanStatus::kSolved; })
       .def_readonly("cost", &PlacementRow::cost)
-      .def_readonly("clearance", &PlacementRow::clearance, "m, of the pair that comes nearest to what it must keep.")
-      .def_readonly("clearance_margin", &PlacementRow::clearance_margin, "m, that less what the pair must keep.")
+      .def_readonly("clearance", &PlacementRow::clearance,
+                    "m, of the pair that comes nearest to what it must keep.")
+      .def_readonly("clearance_margin", &PlacementRow::clearance_margin,
+                    "m, that less what the pair must keep.")
       .def_readonly("joint_margin", &PlacementRow::joint_margin, "rad, to the nearest limit.")
-      .def_readonly("tool_speed", &PlacementRow::tool_speed, "m/s, highest constant speed of the tool.")
+      .def_readonly("tool_speed", &PlacementRow::tool_speed,
+                    "m/s, highest constant speed of the tool.")
       .def_readonly("failed_s", &PlacementRow::failed_s, "m, where every path ends.")
       .def_readonly("cause", &PlacementRow::cause, "Of that: the name of a CauseKind, or ''.")
-      .def_readonly("by", &PlacementRow::by, "The scene object in the way, else the joint or the two bodies.")
+      .def_readonly("by", &PlacementRow::by,
+                    "The scene object in the way, else the joint or the two bodies.")
       .def_readonly("reason", &PlacementRow::reason, "The same in words.")
-      .def("__repr__", [](const PlacementRow& r) { return "<Placement " + placement_words(r) + ">"; });
-  bind_table<PlacementRow>(m, "Placements", "Placements in the order of their numbers: Placement by Placement, or as arrays.")
+      .def("__repr__",
+           [](const PlacementRow& r) { return "<Placement " + placement_words(r) + ">"; });
+  bind_table<PlacementRow>(
+      m, "Placements",
+      "Placements in the order of their numbers: Placement by Placement, or as arrays.")
       .def_property_readonly(
-          "cell", [](const Placements& t) { return plain(t, &PlacementRow::cell); }, "(n,) uint64, numbers.")
+          "cell", [](const Placements& t) { return plain(t, &PlacementRow::cell); },
+          "(n,) uint64, numbers.")
       .def_property_readonly(
           "offset",
           [](const Placements& t) {
-            return column(t.rows, t.rows->empty() ? static_cast<const double*>(nullptr) : t.rows->front().offset.data(), 6);
+            return column(t.rows,
+                          t.rows->empty() ? static_cast<const double*>(nullptr)
+                                          : t.rows->front().offset.data(),
+                          6);
           },
           "(n, 6): x y z (m) roll pitch yaw (rad).")
       .def_property_readonly(
-          "clearance", [](const Placements& t) { return numbers(t, &PlacementRow::clearance); }, "(n,), m; as cost.")
+          "clearance", [](const Placements& t) { return numbers(t, &PlacementRow::clearance); },
+          "(n,), m; as cost.")
       .def_property_readonly(
-          "clearance_margin", [](const Placements& t) { return numbers(t, &PlacementRow::clearance_margin); }, "(n,), m; as cost.")
+          "clearance_margin",
+          [](const Placements& t) { return numbers(t, &PlacementRow::clearance_margin); },
+          "(n,), m; as cost.")
       .def_property_readonly(
-          "joint_margin", [](const Placements& t) { return numbers(t, &PlacementRow::joint_margin); }, "(n,), rad; as cost.")
+          "joint_margin",
+          [](const Placements& t) { return numbers(t, &PlacementRow::joint_margin); },
+          "(n,), rad; as cost.")
       .def_property_readonly(
-          "tool_speed", [](const Placements& t) { return numbers(t, &PlacementRow::tool_speed); }, "(n,), m/s; as cost.")
+          "tool_speed", [](const Placements& t) { return numbers(t, &PlacementRow::tool_speed); },
+          "(n,), m/s; as cost.")
       .def_property_readonly(
-          "cause", [](const Placements& t) { return texts(t, &PlacementRow::cause); }, "Names of CauseKinds.")
+          "cause", [](const Placements& t) { return texts(t, &PlacementRow::cause); },
+          "Names of CauseKinds.")
       .def_property_readonly(
-          "by", [](const Placements& t) { return texts(t, &PlacementRow::by); }, "The object, joint or bodies in the way.")
+          "by", [](const Placements& t) { return texts(t, &PlacementRow::by); },
+          "The object, joint or bodies in the way.")
       .def(
           "best",
-          [](const Placements& t, const std::variant<std::string, std::vector<std::string>>& by, std::size_t count) {
+          [](const Placements& t, const std::variant<std::string, std::vector<std::string>>& by,
+             std::size_t count) {
             const auto* const one = std::get_if<std::string>(&by);
-            return best_placements(*t.rows, to_criteria(one != nullptr ? std::vector{*one} : std::get<1>(by)), count);
+            return best_placements(
+                *t.rows, to_criteria(one != nullptr ? std::vector{*one} : std::get<1>(by)), count);
           },
           py::arg("by") = "cost", py::arg("count") = 10,
-          "Those that have a path, the best first. by: 'clearance', 'cost', 'margin' or 'speed', or several, each of which "
+          "Those that have a path, the best first. by: 'clearance', 'cost', 'margin' or 'speed', "
+          "or several, each of which "
           "settles\n"
           "the ties of those before.");
 
-  py::class_<EpisodeRow>(m, "Episode", "What became of one episode of a campaign. None: does not apply.")
+  py::class_<EpisodeRow>(m, "Episode",
+                         "What became of one episode of a campaign. None: does not apply.")
       .def(pickling<EpisodeRow>())
       .def_readonly("episode", &EpisodeRow::episode, "Its number.")
       .def_readonly("status", &EpisodeRow::status, "Status.")
-      .def_property_readonly("solved", [](const EpisodeRow& r) { return r.status == PlanStatus::kSolved; })
+      .def_property_readonly("solved",
+                             [](const EpisodeRow& r) { return r.status == PlanStatus::kSolved; })
       .def_readonly("cost", &EpisodeRow::cost)
       .def_readonly("plan_ms", &EpisodeRow::plan_ms)
       .def_readonly("nodes_checked", &EpisodeRow::nodes_checked)
@@ -220,22 +262,30 @@ void bind_tables(py::module_& m) {
       .def_readonly("offsets", &EpisodeRow::offsets, "Of the coordinates that vary, m and rad.")
       .def("__repr__", [](const EpisodeRow& r) {
         return formatted("<Episode %llu: ", static_cast<unsigned long long>(r.episode)) +
-               (r.cost ? formatted("cost %.6g", *r.cost) : "no path, " + r.reason) + formatted(", %.1f ms>", r.plan_ms);
+               (r.cost ? formatted("cost %.6g", *r.cost) : "no path, " + r.reason) +
+               formatted(", %.1f ms>", r.plan_ms);
       });
-  bind_table<EpisodeRow>(m, "Episodes", "Episodes of a campaign in the order of their numbers: Episode by Episode, or as arrays.")
+  bind_table<EpisodeRow>(
+      m, "Episodes",
+      "Episodes of a campaign in the order of their numbers: Episode by Episode, or as arrays.")
       .def_property_readonly(
-          "episode", [](const Episodes& t) { return plain(t, &EpisodeRow::episode); }, "(n,) uint64, numbers.")
+          "episode", [](const Episodes& t) { return plain(t, &EpisodeRow::episode); },
+          "(n,) uint64, numbers.")
       .def_property_readonly(
           "plan_ms", [](const Episodes& t) { return plain(t, &EpisodeRow::plan_ms); }, "(n,)")
       .def_property_readonly(
-          "nodes_checked", [](const Episodes& t) { return plain(t, &EpisodeRow::nodes_checked); }, "(n,) int64")
+          "nodes_checked", [](const Episodes& t) { return plain(t, &EpisodeRow::nodes_checked); },
+          "(n,) int64")
       .def_property_readonly(
-          "fcl_calls", [](const Episodes& t) { return plain(t, &EpisodeRow::fcl_calls); }, "(n,) int64")
+          "fcl_calls", [](const Episodes& t) { return plain(t, &EpisodeRow::fcl_calls); },
+          "(n,) int64")
       .def_property_readonly(
-          "tool_path_error_mm_mean", [](const Episodes& t) { return numbers(t, &EpisodeRow::tool_path_error_mm_mean); },
+          "tool_path_error_mm_mean",
+          [](const Episodes& t) { return numbers(t, &EpisodeRow::tool_path_error_mm_mean); },
           "(n,), mm; as cost.")
       .def_property_readonly(
-          "tool_path_error_mm_max", [](const Episodes& t) { return numbers(t, &EpisodeRow::tool_path_error_mm_max); },
+          "tool_path_error_mm_max",
+          [](const Episodes& t) { return numbers(t, &EpisodeRow::tool_path_error_mm_max); },
           "(n,), mm; as cost.");
 }
 
@@ -247,30 +297,34 @@ using Range = std::variant<double, std::array<double, 2>, std::array<double, 3>>
 /// The cells that are asked for: a grid, or a sample of places between the ends of its axes.
 class Cells {
  public:
-  Cells(const std::array<std::optional<Range>, 6>& ranges, std::optional<std::uint64_t> sample, std::uint64_t seed)
+  Cells(const std::array<std::optional<Range>, 6>& ranges, std::optional<std::uint64_t> sample,
+        std::uint64_t seed)
       : grid_(axes_of(ranges, sample.has_value())), sample_(sample), seed_(seed) {
     constexpr std::uint64_t kMost = 1'000'000;
     if (size() < 1 || size() > kMost)
-      throw InvalidArgument((sample ? "sample: " : "the grid: ") + std::to_string(size()) + " placements: allowed are 1 to " +
-                            std::to_string(kMost));
+      throw InvalidArgument((sample ? "sample: " : "the grid: ") + std::to_string(size()) +
+                            " placements: allowed are 1 to " + std::to_string(kMost));
   }
   [[nodiscard]] std::uint64_t size() const { return sample_ ? *sample_ : grid_.size(); }
   [[nodiscard]] py::array_t<double> offsets(const std::vector<std::uint64_t>& numbers) const {
     py::array_t<double> array({static_cast<py::ssize_t>(numbers.size()), py::ssize_t{6}});
     double* out = array.mutable_data();
     for (const std::uint64_t cell : numbers) {
-      const Offset offset = sample_ ? sampled_offset(grid_.axes(), seed_, cell) : grid_.offset(cell);
+      const Offset offset =
+          sample_ ? sampled_offset(grid_.axes(), seed_, cell) : grid_.offset(cell);
       out = std::copy(offset.begin(), offset.end(), out);
     }
     return array;
   }
   [[nodiscard]] GridRefinement refinement(const std::vector<std::string>& best) const {
-    if (sample_) throw InvalidArgument("refine_grid: a sample has no neighbours: allowed without sample");
+    if (sample_)
+      throw InvalidArgument("refine_grid: a sample has no neighbours: allowed without sample");
     return {grid_, to_criteria(best)};
   }
 
  private:
-  static std::vector<PlacementAxis> axes_of(const std::array<std::optional<Range>, 6>& ranges, bool sample) {
+  static std::vector<PlacementAxis> axes_of(const std::array<std::optional<Range>, 6>& ranges,
+                                            bool sample) {
     std::vector<PlacementAxis> axes;
     for (std::size_t k = 0; k < ranges.size(); ++k) {
       if (!ranges[k]) continue;
@@ -289,7 +343,9 @@ class Cells {
         axes.push_back(placement_axis(coordinate, from, to, sample ? 0 : step));
       }
     }
-    if (axes.empty()) throw InvalidArgument("x, y, z, roll, pitch, yaw: none is given: allowed are one to six of them");
+    if (axes.empty())
+      throw InvalidArgument(
+          "x, y, z, roll, pitch, yaw: none is given: allowed are one to six of them");
     return axes;
   }
 
@@ -303,9 +359,11 @@ PlanOptions plan_options(const py::object& planner, int threads, std::optional<d
   options.planner = to_enum<PlannerKind>(planner);
   constexpr int kMostThreads = 1024;
   if (threads < 0 || threads > kMostThreads)
-    throw py::value_error("threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
+    throw py::value_error("threads: " + std::to_string(threads) +
+                          ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
   options.threads = threads;
-  if (timeout && !(*timeout > 0)) throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
+  if (timeout && !(*timeout > 0))
+    throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
   options.timeout_s = timeout;
   return options;
 }
@@ -313,13 +371,17 @@ PlanOptions plan_options(const py::object& planner, int threads, std::optional<d
 /// Placements of one thing, planned by planners that remember those before.
 class Placer {
  public:
-  Placer(Problem problem, Movable thing, const py::object& planner, int threads, std::optional<double> timeout)
-      : problem_(std::move(problem)), thing_(std::move(thing)), options_(plan_options(planner, threads, timeout)) {
+  Placer(Problem problem, Movable thing, const py::object& planner, int threads,
+         std::optional<double> timeout)
+      : problem_(std::move(problem)),
+        thing_(std::move(thing)),
+        options_(plan_options(planner, threads, timeout)) {
     static_cast<void>(placed_problem(problem_, thing_, {}));
   }
-  Placements plan(const std::vector<std::uint64_t>& cells, const py::array_t<double, py::array::c_style>& offsets,
-                  const py::object& each) {
-    if (offsets.ndim() != 2 || offsets.shape(0) != static_cast<py::ssize_t>(cells.size()) || offsets.shape(1) != 6)
+  Placements plan(const std::vector<std::uint64_t>& cells,
+                  const py::array_t<double, py::array::c_style>& offsets, const py::object& each) {
+    if (offsets.ndim() != 2 || offsets.shape(0) != static_cast<py::ssize_t>(cells.size()) ||
+        offsets.shape(1) != 6)
       throw py::value_error("offsets: allowed is (n, 6)");
     std::vector<PlacementCell> wanted(cells.size());
     for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -336,7 +398,8 @@ class Placer {
       if (!planner_) {
         PlanOptions options = options_;
         options.stop = stop_.get_token();
-        planner_.emplace(std::make_shared<const PreparedRobot>(problem_, Budget({}, nullptr, stop)), problem_, thing_, options);
+        planner_.emplace(std::make_shared<const PreparedRobot>(problem_, Budget({}, nullptr, stop)),
+                         problem_, thing_, options);
       }
       const std::stop_callback pass_on(stop, [&] { stop_.request_stop(); });
       return planner_->plan(wanted, done);
@@ -355,18 +418,22 @@ class Placer {
 /// Episodes of one campaign.
 class Campaigner {
  public:
-  Campaigner(Problem problem, std::uint64_t episodes, std::uint64_t seed, const py::object& planner, int threads)
+  Campaigner(Problem problem, std::uint64_t episodes, std::uint64_t seed, const py::object& planner,
+             int threads)
       : problem_(std::move(problem)) {
     constexpr std::uint64_t kMost = 10'000'000;
     if (episodes < 1 || episodes > kMost)
-      throw InvalidArgument("episodes: " + std::to_string(episodes) + ": allowed are 1 to " + std::to_string(kMost));
+      throw InvalidArgument("episodes: " + std::to_string(episodes) + ": allowed are 1 to " +
+                            std::to_string(kMost));
     options_.episodes = episodes;
     options_.seed = seed;
     options_.plan = plan_options(planner, threads, {});
   }
   Episodes plan(const Shard& shard, const py::object& each) {
     return to_table(interruptible([&](const std::stop_token& stop) {
-                      if (!robot_) robot_ = std::make_shared<const PreparedRobot>(problem_, Budget({}, nullptr, stop));
+                      if (!robot_)
+                        robot_ = std::make_shared<const PreparedRobot>(problem_,
+                                                                       Budget({}, nullptr, stop));
                       CampaignOptions options = options_;
                       options.shard = shard;
                       options.plan.stop = stop;
@@ -395,29 +462,34 @@ void bind_parts(py::module_& m) {
         for (const PlacementRow& row : *rows.rows) self.learn(row);
       });
   py::class_<Cells>(m, "_Cells")
-      .def(py::init<const std::array<std::optional<Range>, 6>&, std::optional<std::uint64_t>, std::uint64_t>())
+      .def(py::init<const std::array<std::optional<Range>, 6>&, std::optional<std::uint64_t>,
+                    std::uint64_t>())
       .def("__len__", &Cells::size)
       .def("offsets", &Cells::offsets)
       .def("refinement", &Cells::refinement);
   py::class_<Placer>(m, "_Placer")
-      .def(py::init([](const Problem& problem, const std::optional<std::string>& object, bool path, bool base,
-                       const py::object& planner, int threads, std::optional<double> timeout) {
-        return std::make_unique<Placer>(problem, to_movable(object, path, base), planner, threads, timeout);
+      .def(py::init([](const Problem& problem, const std::optional<std::string>& object, bool path,
+                       bool base, const py::object& planner, int threads,
+                       std::optional<double> timeout) {
+        return std::make_unique<Placer>(problem, to_movable(object, path, base), planner, threads,
+                                        timeout);
       }))
       .def("plan", &Placer::plan)
       .def_property_readonly("stopped", &Placer::stopped);
   py::class_<Campaigner>(m, "_Campaigner")
       .def(py::init<Problem, std::uint64_t, std::uint64_t, const py::object&, int>())
-      .def("plan", [](Campaigner& self, std::uint64_t index, std::uint64_t count, const py::object& each) {
-        return self.plan({index, count}, each);
-      });
+      .def("plan",
+           [](Campaigner& self, std::uint64_t index, std::uint64_t count, const py::object& each) {
+             return self.plan({index, count}, each);
+           });
 }
 
 }  // namespace
 
 Movable to_movable(const std::optional<std::string>& object, bool path, bool base) {
   if (static_cast<int>(object.has_value()) + static_cast<int>(path) + static_cast<int>(base) != 1)
-    throw InvalidArgument("object, path, base: what is to be moved: allowed is exactly one of the three");
+    throw InvalidArgument(
+        "object, path, base: what is to be moved: allowed is exactly one of the three");
   if (object) return {Movable::Kind::kObject, *object};
   return {path ? Movable::Kind::kPath : Movable::Kind::kBase, {}};
 }

@@ -26,7 +26,9 @@ class MapCells {
     LatticeMap::Node most = map_.at(column * layers_each, solution, row * angles_each);
     for (int i = column * layers_each; i < std::min(map_.layers, (column + 1) * layers_each); ++i)
       for (int j = row * angles_each; j < std::min(map_.angles, (row + 1) * angles_each); ++j)
-        if (const LatticeMap::Node& node = map_.at(i, solution, j); importance(node) > importance(most)) most = node;
+        if (const LatticeMap::Node& node = map_.at(i, solution, j);
+            importance(node) > importance(most))
+          most = node;
     return most;
   }
   [[nodiscard]] bool on_path(int solution, int column, int row) const {
@@ -41,7 +43,9 @@ class MapCells {
 
  private:
   /// What took FCL to find is told before what a distance proof proves.
-  static std::pair<NodeState, bool> importance(const LatticeMap::Node& node) { return {node.state, !node.proved}; }
+  static std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
+    return {node.state, !node.proved};
+  }
 
   const LatticeMap& map_;
 
@@ -54,7 +58,8 @@ class MapLegend {
  public:
   explicit MapLegend(const LatticeMap& map) : map_(map) {}
   void see(const LatticeMap::Node& node) {
-    seen_.insert({-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.proved});
+    seen_.insert(
+        {-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.proved});
   }
   /// Most important first.
   [[nodiscard]] std::vector<std::pair<LatticeMap::Node, std::string>> entries() const {
@@ -66,7 +71,9 @@ class MapLegend {
     return result;
   }
   [[nodiscard]] std::string path_meaning() const {
-    return static_cast<int>(map_.path.size()) == map_.layers ? "the path" : "a path to the furthest layer that any reaches";
+    return static_cast<int>(map_.path.size()) == map_.layers
+               ? "the path"
+               : "a path to the furthest layer that any reaches";
   }
 
  private:
@@ -89,7 +96,8 @@ class MapLegend {
   }
 
   const LatticeMap& map_;
-  std::set<std::tuple<int, std::uint8_t, bool>> seen_;  // minus the state, cause, proved (of free ones)
+  std::set<std::tuple<int, std::uint8_t, bool>>
+      seen_;  // minus the state, cause, proved (of free ones)
 };
 
 }  // namespace swivel::detail

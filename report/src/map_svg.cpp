@@ -30,11 +30,13 @@ std::string colour_of(const LatticeMap::Node& node) {
   return "#ffffff";
 }
 
-/// Where marks of the coordinate are, in cells from the lower edge of a panel, and what they say, rad.
+/// Where marks of the coordinate are, in cells from the lower edge of a panel, and what they say,
+/// rad.
 std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
   if (map.closed) {
     const double quarter = map.angles / 4.0;
-    return {{0, "-π"}, {quarter, "-π/2"}, {2 * quarter, "0"}, {3 * quarter, "π/2"}, {4 * quarter, "π"}};
+    return {
+        {0, "-π"}, {quarter, "-π/2"}, {2 * quarter, "0"}, {3 * quarter, "π/2"}, {4 * quarter, "π"}};
   }
   const double high = map.low + (map.angles - 1) * map.step;
   if (map.angles == 1) return {{0.5, number(map.value(0))}};
@@ -50,22 +52,29 @@ std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
 }  // namespace
 
 std::string to_svg(const LatticeMap& map) {
-  constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52, kRight = 24;
+  constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52,
+                   kRight = 24;
   const MapCells cells(map, 620, 252);
   Drawing drawing;
   const std::vector<int> solutions = map.inhabited_solutions();
   const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map.blockers.size());
   const double width = kLeft + kPanelWidth + kRight;
-  drawing.rectangle(0, 0, width, kTop + static_cast<double>(solutions.size()) * (kPanelHeight + kGap) + height_of_legend,
-                    "#ffffff");
-  // A node stands for the stretch halfway to its neighbours, so the first and last layer are half as wide.
-  const auto x_of = [&](double layer) { return kLeft + kPanelWidth * std::clamp(layer, 0.0, map.layers - 1.0) / (map.layers - 1); };
+  drawing.rectangle(
+      0, 0, width,
+      kTop + static_cast<double>(solutions.size()) * (kPanelHeight + kGap) + height_of_legend,
+      "#ffffff");
+  // A node stands for the stretch halfway to its neighbours, so the first and last layer are half
+  // as wide.
+  const auto x_of = [&](double layer) {
+    return kLeft + kPanelWidth * std::clamp(layer, 0.0, map.layers - 1.0) / (map.layers - 1);
+  };
   MapLegend seen(map);
   double top = kTop;
   for (const int solution : solutions) {
     const auto y_of = [&](double angle) { return top + kPanelHeight * (1 - angle / map.angles); };
     for (int row = 0; row < cells.rows; ++row) {
-      const double low = row * cells.angles_each, high = std::min(map.angles, (row + 1) * cells.angles_each);
+      const double low = row * cells.angles_each,
+                   high = std::min(map.angles, (row + 1) * cells.angles_each);
       for (int column = 0; column < cells.columns;) {
         const LatticeMap::Node node = cells.node(solution, column, row);
         seen.see(node);
@@ -74,8 +83,10 @@ std::string to_svg(const LatticeMap& map) {
           const LatticeMap::Node other = cells.node(solution, end, row);
           if (other != node) break;
         }
-        const double from = x_of(column * cells.layers_each - 0.5), to = x_of(end * cells.layers_each - 0.5);
-        if (node.state != NodeState::kNoIk) drawing.rectangle(from, y_of(high), to - from, y_of(low) - y_of(high), colour_of(node));
+        const double from = x_of(column * cells.layers_each - 0.5),
+                     to = x_of(end * cells.layers_each - 0.5);
+        if (node.state != NodeState::kNoIk)
+          drawing.rectangle(from, y_of(high), to - from, y_of(low) - y_of(high), colour_of(node));
         column = end;
       }
     }
@@ -92,7 +103,8 @@ std::string to_svg(const LatticeMap& map) {
       const int slot = path[i], angle = slot % map.angles;
       const bool here = slot / map.angles == solution;
       const bool changes = i > 0 && path[i - 1] / map.angles != slot / map.angles;
-      if (here && i > 0 && !changes && map.closed && std::abs(path[i - 1] % map.angles - angle) > map.angles / 2)
+      if (here && i > 0 && !changes && map.closed &&
+          std::abs(path[i - 1] % map.angles - angle) > map.angles / 2)
         flush();  // through pi
       if (!here) {
         flush();
@@ -105,11 +117,13 @@ std::string to_svg(const LatticeMap& map) {
     flush();
     drawing.frame(kLeft, top, kPanelWidth, kPanelHeight);
     drawing.text(kLeft, top - 7, "start", map.solution_name(solution));
-    for (const auto& [angle, name] : marks(map)) drawing.text(kLeft - 6, y_of(angle) + 4, "end", name);
+    for (const auto& [angle, name] : marks(map))
+      drawing.text(kLeft - 6, y_of(angle) + 4, "end", name);
     drawing.text(14, top + kPanelHeight / 2, "middle", map.letter(solution));
     for (int k = 0; k <= 5; ++k) {
       const double layer = (map.layers - 1) * k / 5.0;
-      drawing.text(x_of(layer), top + kPanelHeight + 15, "middle", number(map.s[static_cast<std::size_t>(layer + 0.5)]));
+      drawing.text(x_of(layer), top + kPanelHeight + 15, "middle",
+                   number(map.s[static_cast<std::size_t>(layer + 0.5)]));
     }
     drawing.text(kLeft + kPanelWidth / 2, top + kPanelHeight + 29, "middle", "s (m)");
     top += kPanelHeight + kGap;
@@ -124,13 +138,17 @@ std::string to_svg(const LatticeMap& map) {
   for (const auto& [node, meaning] : seen.entries()) legend(colour_of(node), meaning);
   if (!map.grid()) {
     drawing.text(kLeft, top, "start",
-                 map.letter(solutions.empty() ? 0 : solutions.front()) + std::string(": ") + map.coordinate_name() +
+                 map.letter(solutions.empty() ? 0 : solutions.front()) + std::string(": ") +
+                     map.coordinate_name() +
                      ", rad. Between two nodes of an arc of solutions the nearer one is shown" +
-                     (cells.layers_each * cells.angles_each > 1 ? ", of several a blocked one first, then a free one." : "."));
+                     (cells.layers_each * cells.angles_each > 1
+                          ? ", of several a blocked one first, then a free one."
+                          : "."));
     top += 18;
   } else if (cells.layers_each * cells.angles_each > 1) {
     drawing.text(kLeft, top, "start",
-                 "A cell stands for up to " + std::to_string(cells.layers_each) + " x " + std::to_string(cells.angles_each) +
+                 "A cell stands for up to " + std::to_string(cells.layers_each) + " x " +
+                     std::to_string(cells.angles_each) +
                      " nodes and shows a blocked one first, then a free one.");
     top += 18;
   }

@@ -15,7 +15,8 @@ struct Look {
   int background;  // ANSI 256 colour
 };
 
-constexpr int kLightBlue = 153, kGrey = 252, kGreen = 72, kPaleGreen = 115, kOrange = 208, kMauve = 176;
+constexpr int kLightBlue = 153, kGrey = 252, kGreen = 72, kPaleGreen = 115, kOrange = 208,
+              kMauve = 176;
 
 Look look_of(const LatticeMap::Node& node) {
   switch (node.state) {
@@ -73,12 +74,13 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   if (!map.path.empty()) legend({'*', 231}, seen.path_meaning());
   for (const auto& [node, meaning] : seen.entries()) legend(look_of(node), meaning);
   const std::string name = map.coordinate_name();
-  const std::string rows = "Rows are " + name + "s" + (map.turns ? ", in the last panel rolls, rad. " : ", rad. ");
+  const std::string rows =
+      "Rows are " + name + "s" + (map.turns ? ", in the last panel rolls, rad. " : ", rad. ");
   if (!map.grid())
-    text +=
-        rows + "Between two nodes of an arc of solutions the nearer one is shown" +
-        (cells.layers_each * cells.angles_each > 1 ? ", of several a blocked node before a free one, and that before the others.\n"
-                                                   : ".\n");
+    text += rows + "Between two nodes of an arc of solutions the nearer one is shown" +
+            (cells.layers_each * cells.angles_each > 1
+                 ? ", of several a blocked node before a free one, and that before the others.\n"
+                 : ".\n");
   else if (cells.layers_each * cells.angles_each > 1)
     text += rows + "A cell stands for up to " + std::to_string(cells.layers_each) + " layers x " +
             std::to_string(cells.angles_each) +

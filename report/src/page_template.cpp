@@ -20,8 +20,8 @@
 SWIVEL_EMBED("report");
 SWIVEL_EMBED("overview");
 SWIVEL_EMBED("placements");
-extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[], swivel_overview_end[],
-    swivel_placements_begin[], swivel_placements_end[];
+extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[],
+    swivel_overview_end[], swivel_placements_begin[], swivel_placements_end[];
 #endif
 
 namespace swivel::detail {
@@ -36,7 +36,8 @@ std::string_view page_template() {
 
 std::string_view overview_template() {
 #ifdef SWIVEL_PAGES
-  return {swivel_overview_begin, static_cast<std::size_t>(swivel_overview_end - swivel_overview_begin)};
+  return {swivel_overview_begin,
+          static_cast<std::size_t>(swivel_overview_end - swivel_overview_begin)};
 #else
   return {};
 #endif
@@ -44,7 +45,8 @@ std::string_view overview_template() {
 
 std::string_view placement_template() {
 #ifdef SWIVEL_PAGES
-  return {swivel_placements_begin, static_cast<std::size_t>(swivel_placements_end - swivel_placements_begin)};
+  return {swivel_placements_begin,
+          static_cast<std::size_t>(swivel_placements_end - swivel_placements_begin)};
 #else
   return {};
 #endif
@@ -55,7 +57,8 @@ std::string fill(std::string_view page, const std::string& json,
   std::string filled;
   const auto copy_up_to = [&](std::string_view mark) {
     const std::size_t at = page.find(mark);
-    if (at == std::string_view::npos) throw std::logic_error("the page has no place for " + std::string(mark));
+    if (at == std::string_view::npos)
+      throw std::logic_error("the page has no place for " + std::string(mark));
     filled += page.substr(0, at);
     page.remove_prefix(at + mark.size());
   };

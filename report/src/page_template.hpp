@@ -7,14 +7,16 @@
 
 namespace swivel::detail {
 
-/// The bundled pages of report/web, with marks like "@@DATA@@" for what is put in; empty where they were left out of the build.
+/// The bundled pages of report/web, with marks like "@@DATA@@" for what is put in; empty where they
+/// were left out of the build.
 [[nodiscard]] std::string_view page_template();
 [[nodiscard]] std::string_view overview_template();
 [[nodiscard]] std::string_view placement_template();
 
-/// The page with its data, a JSON text, in place of "@@DATA@@". `besides`: other marks, in the order of the page and all before the
-/// data, each with the HTML that takes its place.
-[[nodiscard]] std::string fill(std::string_view page, const std::string& json,
-                               const std::vector<std::pair<std::string_view, std::string>>& besides = {});
+/// The page with its data, a JSON text, in place of "@@DATA@@". `besides`: other marks, in the
+/// order of the page and all before the data, each with the HTML that takes its place.
+[[nodiscard]] std::string fill(
+    std::string_view page, const std::string& json,
+    const std::vector<std::pair<std::string_view, std::string>>& besides = {});
 
 }  // namespace swivel::detail

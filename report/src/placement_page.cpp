@@ -27,7 +27,8 @@ Json rounded(const std::optional<double>& value) {
 
 /// Where offsets are counted from: the origin of what is moved, before it is.
 Vector3d origin_of(const Problem& problem, const Movable& thing) {
-  const std::string& name = thing.kind == Movable::Kind::kObject ? thing.object : problem.path_frame;
+  const std::string& name =
+      thing.kind == Movable::Kind::kObject ? thing.object : problem.path_frame;
   if (thing.kind != Movable::Kind::kBase)
     for (const SceneObject& object : problem.scene)
       if (object.name == name) return object.pose.translation();
@@ -70,7 +71,8 @@ Json scene_json(const PlacementScene& scene) {
 
 }  // namespace
 
-std::string to_placement_page(const std::vector<PlacementRow>& rows, const PlacementFacts& facts, const PlacementScene& scene) {
+std::string to_placement_page(const std::vector<PlacementRow>& rows, const PlacementFacts& facts,
+                              const PlacementScene& scene) {
   // By columns: the names of the keys would be most of a page of 10,000 rows.
   Json columns = {{"cell", Json::array()}, {"end", Json::array()}};
   const std::pair<const char*, std::optional<double> PlacementRow::*> numbers[] = {
@@ -88,16 +90,20 @@ std::string to_placement_page(const std::vector<PlacementRow>& rows, const Place
     columns["cell"].push_back(row.cell);
     int end = -1;
     if (row.status != PlanStatus::kSolved) {
-      const auto [place, is_new] = known.try_emplace({row.cause, ended_by(row), row.reason}, static_cast<int>(known.size()));
+      const auto [place, is_new] =
+          known.try_emplace({row.cause, ended_by(row), row.reason}, static_cast<int>(known.size()));
       end = place->second;
       if (is_new)
-        ends.push_back({{"cause", row.cause}, {"by", ended_by(row)}, {"reason", row.reason.empty() ? "not known" : row.reason}});
+        ends.push_back({{"cause", row.cause},
+                        {"by", ended_by(row)},
+                        {"reason", row.reason.empty() ? "not known" : row.reason}});
     }
     columns["end"].push_back(end);
     for (const auto& [name, member] : numbers) columns[name].push_back(rounded(row.*member));
     if (!facts.sample) continue;
     Json offsets = Json::array();
-    for (const PlacementAxis& axis : facts.axes) offsets.push_back(row.offset[static_cast<std::size_t>(axis.coordinate)]);
+    for (const PlacementAxis& axis : facts.axes)
+      offsets.push_back(row.offset[static_cast<std::size_t>(axis.coordinate)]);
     columns["offsets"].push_back(std::move(offsets));
   }
   Json axes = Json::array();
@@ -105,7 +111,8 @@ std::string to_placement_page(const std::vector<PlacementRow>& rows, const Place
     Json values = Json::array();
     for (int k = 0; k < axis.count; ++k) values.push_back(axis.at(k));
     if (facts.sample && axis.to > axis.from) values.push_back(axis.to);
-    axes.push_back({{"name", kCoordinates[static_cast<std::size_t>(axis.coordinate)]}, {"values", std::move(values)}});
+    axes.push_back({{"name", kCoordinates[static_cast<std::size_t>(axis.coordinate)]},
+                    {"values", std::move(values)}});
   }
   const Json data = {{"problem", facts.problem},  {"thing", facts.thing},
                      {"axes", std::move(axes)},   {"sample", facts.sample},

@@ -14,7 +14,8 @@ std::string base64(const unsigned char* bytes, std::size_t count) {
     const std::size_t rest = std::min<std::size_t>(3, count - k);
     unsigned word = 0;
     for (std::size_t j = 0; j < 3; ++j) word = word << 8 | (j < rest ? bytes[k + j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j) text += j <= rest ? kDigits[word >> (18 - 6 * j) & 63] : '=';
+    for (std::size_t j = 0; j < 4; ++j)
+      text += j <= rest ? kDigits[word >> (18 - 6 * j) & 63] : '=';
   }
   return text;
 }
@@ -48,20 +49,26 @@ Json chain_json(const Chain& chain) {
                          {"slides", follower.slides},
                          {"axis", vector_json(follower.axis)},
                          {"point", vector_json(follower.point)}});
-  return {{"joints", std::move(joints)}, {"followers", std::move(followers)}, {"home", pose_json(chain.home)}};
+  return {{"joints", std::move(joints)},
+          {"followers", std::move(followers)},
+          {"home", pose_json(chain.home)}};
 }
 
 Bodies::Bodies(const World& world, const std::vector<SceneObject>& scene) {
-  for (const RobotBody& body : world.bodies()) add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
+  for (const RobotBody& body : world.bodies())
+    add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
   for (const SceneObject& object : scene) add(object.name, "scene", 0, object.shape, object.pose);
 }
 
-void Bodies::add(const std::string& name, const char* kind, int group, const Shape& shape, const Pose& pose) {
+void Bodies::add(const std::string& name, const char* kind, int group, const Shape& shape,
+                 const Pose& pose) {
   Json body = {{"name", name}, {"kind", kind}, {"group", group}, {"pose", pose_json(pose)}};
   if (const auto* sphere = std::get_if<Sphere>(&shape)) body["sphere"] = sphere->radius;
   if (const auto* box = std::get_if<Box>(&shape)) body["box"] = vector_json(box->size);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) body["cylinder"] = {cylinder->radius, cylinder->length};
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) body["capsule"] = {capsule->radius, capsule->length};
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape))
+    body["cylinder"] = {cylinder->radius, cylinder->length};
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    body["capsule"] = {capsule->radius, capsule->length};
   if (const auto* mesh = std::get_if<MeshPtr>(&shape)) body["mesh"] = index_of(**mesh);
   bodies.push_back(std::move(body));
 }

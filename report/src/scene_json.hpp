@@ -32,14 +32,16 @@ template <class T>
 /// The chain as the page's forward kinematics needs it (core/kinematics/chain/arm.hpp).
 [[nodiscard]] Json chain_json(const Chain& chain);
 
-/// Bodies of the robot, what it carries, and the scene in its order. Meshes are written once, however many bodies share one.
+/// Bodies of the robot, what it carries, and the scene in its order. Meshes are written once,
+/// however many bodies share one.
 class Bodies {
  public:
   Bodies(const World& world, const std::vector<SceneObject>& scene);
   Json bodies = Json::array(), meshes = Json::array();
 
  private:
-  void add(const std::string& name, const char* kind, int group, const Shape& shape, const Pose& pose);
+  void add(const std::string& name, const char* kind, int group, const Shape& shape,
+           const Pose& pose);
   std::size_t index_of(const TriangleMesh& mesh);
   std::map<const TriangleMesh*, std::size_t> index_;
 };

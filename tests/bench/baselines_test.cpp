@@ -28,7 +28,8 @@ PlanOptions lazy() {
   return options;
 }
 
-/// Every row is what a tracker promises: on the path, in the limits, clear, and near the row before.
+/// Every row is what a tracker promises: on the path, in the limits, clear, and near the row
+/// before.
 void expect_valid(const TrackResult& result, const PreparedRobot& robot, const Problem& problem) {
   const Chain& chain = robot.arm().chain;
   const std::vector<Waypoint> line = waypoints_in_base(problem);
@@ -92,20 +93,24 @@ TEST(Baselines, NullSpaceEscapesTheFirstBallAndSticksBetweenBothInExperimentB) {
   expect_valid(result, robot, problem);
 
   // The same from outside: along the self-motion the clearance has a peak there.
-  const Config self_motion = robot.arm().chain.jacobian(result.end).fullPivLu().kernel().col(0).normalized();
+  const Config self_motion =
+      robot.arm().chain.jacobian(result.end).fullPivLu().kernel().col(0).normalized();
   const World world(robot.world(), problem.scene);
   World::Query query(world);
   const double peak = query.clearance(result.end)->distance;
   EXPECT_EQ(peak, *result.clearance);
   for (const double turn : {0.002, 0.005, 0.01, 0.02})
     for (const double sign : {1, -1})
-      EXPECT_LT(query.clearance(result.end + sign * turn * self_motion)->distance, peak) << sign * turn;
+      EXPECT_LT(query.clearance(result.end + sign * turn * self_motion)->distance, peak)
+          << sign * turn;
 
   // The trap is made of both balls: each stands close to the arm there, and neither alone holds it.
   for (const SceneObject& object : experiment("experiment_b").scene) {
     problem.scene = {object};
     const World alone(robot.world(), problem.scene);
-    EXPECT_LT(World::Query(alone).clearance(result.end)->distance, problem.limits.clearance + 0.0005) << object.name;
+    EXPECT_LT(World::Query(alone).clearance(result.end)->distance,
+              problem.limits.clearance + 0.0005)
+        << object.name;
     EXPECT_TRUE(track_null_space(robot, problem).finished) << object.name;
   }
 }
@@ -142,7 +147,8 @@ TEST(Baselines, FinishWhereNothingIsInTheWay) {
   Problem problem = experiment("experiment_b");
   problem.scene.clear();
   const PreparedRobot robot(problem);
-  for (const TrackResult& result : {track_jacobian(robot, problem), track_null_space(robot, problem)}) {
+  for (const TrackResult& result :
+       {track_jacobian(robot, problem), track_null_space(robot, problem)}) {
     EXPECT_TRUE(result.finished);
     EXPECT_EQ(result.reason, StopReason::kFinished);
     EXPECT_NEAR(result.s, kLength, 1e-9);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into the program by faults_test.py: a large allocation throws what no part of the program expects, as a bug would.
+// Preloaded into the program by faults_test.py: a large allocation throws what no part of the
+// program expects, as a bug would.
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -8,7 +9,8 @@ namespace {
 std::size_t least = static_cast<std::size_t>(-1);
 /// Preloaded libraries come last: those before have made what they need.
 __attribute__((constructor)) void arm() {
-  if (const char* const bytes = std::getenv("SWIVEL_FAULT_BYTES")) least = std::strtoull(bytes, nullptr, 10);
+  if (const char* const bytes = std::getenv("SWIVEL_FAULT_BYTES"))
+    least = std::strtoull(bytes, nullptr, 10);
 }
 }  // namespace
 

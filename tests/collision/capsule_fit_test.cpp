@@ -51,13 +51,18 @@ std::vector<Solid> solids() {
   return {{"box", box_mesh(shaft, 5), in_box(shaft)},
           {"plate", box_mesh(plate, 3), in_box(plate)},
           {"L", joined(box_mesh(shaft, 3), elbow),
-           [=](Random& random) { return random.index(2) == 0 ? in_box(shaft)(random) : Vector3d(in_box(foot)(random) + to_foot); }},
+           [=](Random& random) {
+             return random.index(2) == 0 ? in_box(shaft)(random)
+                                         : Vector3d(in_box(foot)(random) + to_foot);
+           }},
           {"ring", torus_mesh(0.2, 0.03, 24),
            [](Random& random) {
              // A little less than the tube, whose mesh is a polygon within it.
-             const double around = random.uniform(-kPi, kPi), turn = random.uniform(-kPi, kPi), off = 0.028 * random.uniform(0, 1);
+             const double around = random.uniform(-kPi, kPi), turn = random.uniform(-kPi, kPi),
+                          off = 0.028 * random.uniform(0, 1);
              const double ring = 0.2 * std::cos(kPi / 24) + off * std::cos(turn);
-             return Vector3d(ring * std::cos(around), ring * std::sin(around), off * std::sin(turn));
+             return Vector3d(ring * std::cos(around), ring * std::sin(around),
+                             off * std::sin(turn));
            }},
           {"ball", sphere_mesh(0.1, 12), [](Random& random) {
              Vector3d u;
@@ -85,26 +90,33 @@ TEST(CapsuleFit, ContainsSurfaceAndInsideOfWhatItReplaces) {
         EXPECT_EQ(fit.capsules[k].pose.matrix(), again.capsules[k].pose.matrix());
         // Ends and radius are numbers of six digits after the point.
         const auto* capsule = std::get_if<Capsule>(&fit.capsules[k].shape);
-        const double radius = capsule ? capsule->radius : std::get<Sphere>(fit.capsules[k].shape).radius;
+        const double radius =
+            capsule ? capsule->radius : std::get<Sphere>(fit.capsules[k].shape).radius;
         EXPECT_NEAR(1e6 * radius, std::round(1e6 * radius), 1e-6);
-        const Vector3d end = fit.capsules[k].pose * Vector3d(0, 0, capsule ? capsule->length / 2 : 0);
+        const Vector3d end =
+            fit.capsules[k].pose * Vector3d(0, 0, capsule ? capsule->length / 2 : 0);
         for (const double value : end) EXPECT_NEAR(1e6 * value, std::round(1e6 * value), 1e-6);
       }
       double worst = -1e9;
       for (const auto& triangle : mesh.triangles)
         for (int k = 0; k < 4; ++k) {
           const double u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
-          const auto corner = [&](std::size_t n) { return mesh.vertices[static_cast<std::size_t>(triangle[n])]; };
-          worst = std::max(worst, outside(fit, corner(0) + u * (corner(1) - corner(0)) + v * (corner(2) - corner(0))));
+          const auto corner = [&](std::size_t n) {
+            return mesh.vertices[static_cast<std::size_t>(triangle[n])];
+          };
+          worst = std::max(worst, outside(fit, corner(0) + u * (corner(1) - corner(0)) +
+                                                   v * (corner(2) - corner(0))));
           ++points;
         }
       for (const Vector3d& vertex : mesh.vertices) worst = std::max(worst, outside(fit, vertex));
-      for (int k = 0; k < test::trials(2000); ++k, ++points) worst = std::max(worst, outside(fit, pose * solid.inside(random)));
+      for (int k = 0; k < test::trials(2000); ++k, ++points)
+        worst = std::max(worst, outside(fit, pose * solid.inside(random)));
       EXPECT_LE(worst, 1e-12) << solid.name << ", at most " << most;
-      EXPECT_LE(fit.volume, 1.1 * before) << solid.name;  // cuts are sought in few directions, so a pose counts for something
+      EXPECT_LE(fit.volume, 1.1 * before)
+          << solid.name;  // cuts are sought in few directions, so a pose counts for something
       before = fit.volume;
-      std::printf("  %s: %zu of %d, %.3f l, up to %.1f mm further\n", solid.name, fit.capsules.size(), most, 1e3 * fit.volume,
-                  1e3 * fit.excess);
+      std::printf("  %s: %zu of %d, %.3f l, up to %.1f mm further\n", solid.name,
+                  fit.capsules.size(), most, 1e3 * fit.volume, 1e3 * fit.excess);
     }
   }
   std::printf("  %d points\n", points);
@@ -119,7 +131,8 @@ TEST(CapsuleFit, FindsTheLeastWhereItIsKnown) {
   EXPECT_LE(ball.excess, 2e-3);
   // A capsule: half a ball at either end of a tube.
   TriangleMesh mesh = sphere_mesh(0.05, 32);
-  for (Vector3d& vertex : mesh.vertices) vertex.z() += vertex.z() > 1e-9 ? 0.15 : vertex.z() < -1e-9 ? -0.15 : 0;
+  for (Vector3d& vertex : mesh.vertices)
+    vertex.z() += vertex.z() > 1e-9 ? 0.15 : vertex.z() < -1e-9 ? -0.15 : 0;
   const Eigen::AngleAxisd turn(1.1, Vector3d(1, 2, 3).normalized());
   for (Vector3d& vertex : mesh.vertices) vertex = turn * vertex;
   const CapsuleFit fit = fit_capsules(mesh, 1);
@@ -130,7 +143,8 @@ TEST(CapsuleFit, FindsTheLeastWhereItIsKnown) {
   EXPECT_GT(std::abs((fit.capsules[0].pose.linear().col(2)).dot(turn * Vector3d::UnitZ())), 0.9999);
   // An L needs two.
   EXPECT_EQ(fit_capsules(solids()[2].mesh, 2).capsules.size(), 2u);
-  EXPECT_LE(fit_capsules(solids()[2].mesh, 2).volume, 0.5 * fit_capsules(solids()[2].mesh, 1).volume);
+  EXPECT_LE(fit_capsules(solids()[2].mesh, 2).volume,
+            0.5 * fit_capsules(solids()[2].mesh, 1).volume);
 }
 
 }  // namespace

@@ -23,9 +23,12 @@ std::vector<TriangleMesh> closed_meshes() {
   Pose away = Pose::Identity();
   away.translation() = Vector3d(0.4, 0.1, 0);
   move(far_box, away);
-  return {
-      box_mesh(Vector3d(0.3, 0.2, 0.1), 1), box_mesh(Vector3d(0.3, 0.3, 0.3), 4), sphere_mesh(0.2, 8), torus_mesh(0.2, 0.07, 12),
-      panel_mesh(0.5, 0.4, 0.04, 6),        joined(sphere_mesh(0.2, 6), far_box)};
+  return {box_mesh(Vector3d(0.3, 0.2, 0.1), 1),
+          box_mesh(Vector3d(0.3, 0.3, 0.3), 4),
+          sphere_mesh(0.2, 8),
+          torus_mesh(0.2, 0.07, 12),
+          panel_mesh(0.5, 0.4, 0.04, 6),
+          joined(sphere_mesh(0.2, 6), far_box)};
 }
 
 TEST(ClosedMesh, AgreesWithTheWindingNumber) {
@@ -51,7 +54,8 @@ TEST(ClosedMesh, AgreesWithTheWindingNumber) {
 }
 
 TEST(ClosedMesh, RaysThroughCornersAndEdgesCountOnce) {
-  // Grid points of an unturned box mesh: every ray along an axis meets vertices, edges or diagonals.
+  // Grid points of an unturned box mesh: every ray along an axis meets vertices, edges or
+  // diagonals.
   const TriangleMesh mesh = box_mesh(Vector3d(0.4, 0.4, 0.2), 4);
   const ClosedMesh solid(mesh);
   int checks = 0;
@@ -60,7 +64,8 @@ TEST(ClosedMesh, RaysThroughCornersAndEdgesCountOnce) {
       for (const double z : {-0.15, -0.09, 0.0, 0.03, 0.09, 0.15}) {
         const Vector3d p(0.1 * x, 0.1 * y, z);
         if (std::abs(x) == 2 || std::abs(y) == 2) continue;  // on the surface: undefined
-        EXPECT_EQ(solid.contains(p), std::abs(x) < 2 && std::abs(y) < 2 && std::abs(z) < 0.1) << p.transpose();
+        EXPECT_EQ(solid.contains(p), std::abs(x) < 2 && std::abs(y) < 2 && std::abs(z) < 0.1)
+            << p.transpose();
         ++checks;
       }
   EXPECT_EQ(checks, 150);
@@ -70,7 +75,8 @@ TEST(ClosedMesh, EdgesAndPositionsAreCountedAsByHand) {
   Random random(12);
   int closed = 0, open = 0;
   for (int trial = 0; trial < 4000; ++trial) {
-    // A closed surface of few corners, every corner stored anew, as STL does; often a triangle is missing, doubled or turned.
+    // A closed surface of few corners, every corner stored anew, as STL does; often a triangle is
+    // missing, doubled or turned.
     TriangleMesh mesh = box_mesh(Vector3d(1, 1, 1), 1 + random.index(2));
     TriangleMesh soup;
     for (const auto& t : mesh.triangles) {
@@ -83,7 +89,8 @@ TEST(ClosedMesh, EdgesAndPositionsAreCountedAsByHand) {
       soup.triangles.push_back({at, at + 1, at + 2});
     }
     for (int change = random.index(3); change > 0; --change) {
-      const auto which = static_cast<std::size_t>(random.index(static_cast<int>(soup.triangles.size())));
+      const auto which =
+          static_cast<std::size_t>(random.index(static_cast<int>(soup.triangles.size())));
       auto& t = soup.triangles[which];
       switch (random.index(3)) {
         case 0:
@@ -99,17 +106,23 @@ TEST(ClosedMesh, EdgesAndPositionsAreCountedAsByHand) {
     const std::vector<int> number = vertex_numbers(soup);
     int known = 0;
     for (std::size_t k = 0; k < number.size(); ++k) {
-      const auto same = std::find(soup.vertices.begin(), soup.vertices.end(), soup.vertices[k]) - soup.vertices.begin();
-      ASSERT_EQ(number[k], static_cast<std::size_t>(same) < k ? number[static_cast<std::size_t>(same)] : known++) << trial;
+      const auto same = std::find(soup.vertices.begin(), soup.vertices.end(), soup.vertices[k]) -
+                        soup.vertices.begin();
+      ASSERT_EQ(number[k], static_cast<std::size_t>(same) < k
+                               ? number[static_cast<std::size_t>(same)]
+                               : known++)
+          << trial;
     }
     std::map<std::pair<int, int>, int> walked;
     for (const auto& t : soup.triangles)
       for (std::size_t k = 0; k < 3; ++k)
-        ++walked[{number[static_cast<std::size_t>(t[k])], number[static_cast<std::size_t>(t[(k + 1) % 3])]}];
-    const bool by_hand = !walked.empty() && std::all_of(walked.begin(), walked.end(), [&](const auto& edge) {
-      const auto back = walked.find({edge.first.second, edge.first.first});
-      return edge.second == 1 && back != walked.end() && back->second == 1;
-    });
+        ++walked[{number[static_cast<std::size_t>(t[k])],
+                  number[static_cast<std::size_t>(t[(k + 1) % 3])]}];
+    const bool by_hand =
+        !walked.empty() && std::all_of(walked.begin(), walked.end(), [&](const auto& edge) {
+          const auto back = walked.find({edge.first.second, edge.first.first});
+          return edge.second == 1 && back != walked.end() && back->second == 1;
+        });
     ASSERT_EQ(is_closed(soup), by_hand) << trial;
     ++(by_hand ? closed : open);
   }

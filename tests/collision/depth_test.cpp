@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How deep bodies are in each other: between what plain samples find and what a translation that takes them apart needs.
+// How deep bodies are in each other: between what plain samples find and what a translation that
+// takes them apart needs.
 #include "exact/depth.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,8 @@ struct Body {
   Pose pose;
 };
 struct Placed {
-  Placed(const Body& body, MeshStore& store) : shape(make_fcl_shape(body.shape, store)), pose(body.pose) {}
+  Placed(const Body& body, MeshStore& store)
+      : shape(make_fcl_shape(body.shape, store)), pose(body.pose) {}
   [[nodiscard]] PlacedShapeRef ref() const { return {&shape, &pose}; }
   FclShape shape;
   Pose pose;
@@ -37,7 +39,8 @@ Depth depth_of(const Body& a, const Body& b) {
 
 Body random_body(int kind, Random& random, double range) {
   const double r = random.uniform(0.01, 0.05), length = random.uniform(0.01, 0.15);
-  const Vector3d size(random.uniform(0.01, 0.2), random.uniform(0.01, 0.2), random.uniform(0.01, 0.2));
+  const Vector3d size(random.uniform(0.01, 0.2), random.uniform(0.01, 0.2),
+                      random.uniform(0.01, 0.2));
   const Pose pose = random.pose(range);
   if (kind == 0) return {Sphere{r}, pose};
   if (kind == 1) return {Capsule{r, length}, pose};
@@ -46,7 +49,8 @@ Body random_body(int kind, Random& random, double range) {
   return {as_mesh(box_mesh(size, 3), "box.stl"), pose};
 }
 
-/// How deep beneath the surface a point of the base frame lies, less than 0 outside; by its definition. Of a mesh: a box's.
+/// How deep beneath the surface a point of the base frame lies, less than 0 outside; by its
+/// definition. Of a mesh: a box's.
 double beneath(const Body& body, const Vector3d& point) {
   const Vector3d p = body.pose.inverse() * point;
   const double r = std::hypot(p.x(), p.y());
@@ -58,13 +62,15 @@ double beneath(const Body& body, const Vector3d& point) {
     for (const double x : out) outside = std::hypot(outside, std::max(0.0, x));
     return outside > 0 ? -outside : -std::max(out);
   };
-  if (const auto* c = std::get_if<Cylinder>(&body.shape)) return convex({r - c->radius, std::abs(p.z()) - c->length / 2});
+  if (const auto* c = std::get_if<Cylinder>(&body.shape))
+    return convex({r - c->radius, std::abs(p.z()) - c->length / 2});
   Vector3d half = Vector3d::Zero();
   if (const auto* mesh = std::get_if<MeshPtr>(&body.shape))
     for (const Vector3d& v : (*mesh)->vertices) half = half.cwiseMax(v);
   else
     half = std::get<Box>(body.shape).size / 2;
-  return convex({std::abs(p.x()) - half.x(), std::abs(p.y()) - half.y(), std::abs(p.z()) - half.z()});
+  return convex(
+      {std::abs(p.x()) - half.x(), std::abs(p.y()) - half.y(), std::abs(p.z()) - half.z()});
 }
 
 /// How far the body reaches along a direction of the base frame.
@@ -72,11 +78,14 @@ double reach(const Body& body, const Vector3d& way) {
   const Vector3d to = body.pose.linear().transpose() * way;
   const double at = way.dot(body.pose.translation()), aside = std::hypot(to.x(), to.y());
   if (const auto* s = std::get_if<Sphere>(&body.shape)) return at + s->radius;
-  if (const auto* c = std::get_if<Capsule>(&body.shape)) return at + c->radius + std::abs(to.z()) * c->length / 2;
-  if (const auto* c = std::get_if<Cylinder>(&body.shape)) return at + c->radius * aside + std::abs(to.z()) * c->length / 2;
+  if (const auto* c = std::get_if<Capsule>(&body.shape))
+    return at + c->radius + std::abs(to.z()) * c->length / 2;
+  if (const auto* c = std::get_if<Cylinder>(&body.shape))
+    return at + c->radius * aside + std::abs(to.z()) * c->length / 2;
   if (const auto* b = std::get_if<Box>(&body.shape)) return at + to.cwiseAbs().dot(b->size) / 2;
   double most = -1e9;
-  for (const Vector3d& v : std::get<MeshPtr>(body.shape)->vertices) most = std::max(most, v.dot(to));
+  for (const Vector3d& v : std::get<MeshPtr>(body.shape)->vertices)
+    most = std::max(most, v.dot(to));
   return at + most;
 }
 
@@ -93,7 +102,8 @@ TEST(Depth, LiesBetweenASampledPointAndATranslationThatTakesTheBodiesApart) {
     Vector3d best = Vector3d::Zero();
     for (int k = 0; k < 4000; ++k) {
       const Vector3d p =
-          k < 2000 ? random.vector(-0.1, 0.1) : Vector3d(best + random.vector(-1, 1) * 0.05 * std::pow(0.998, k - 2000));
+          k < 2000 ? random.vector(-0.1, 0.1)
+                   : Vector3d(best + random.vector(-1, 1) * 0.05 * std::pow(0.998, k - 2000));
       if (const double sum = beneath(a, p) + beneath(b, p); sum > sampled) sampled = sum, best = p;
     }
     double least = 1e9;  // to move b along some way until a plane parts them
@@ -106,7 +116,8 @@ TEST(Depth, LiesBetweenASampledPointAndATranslationThatTakesTheBodiesApart) {
     const double radius = 0.05 * 0.005;  // of a cylinder, by which its circles may be polygons
     EXPECT_LE(sampled, found.at_most + 1e-9);
     EXPECT_LE(found.at_least, least + 1e-9);
-    EXPECT_LE(found.at_most - found.at_least, 0.02e-3 + 2 * (kind_a == 3 || kind_b == 3 ? radius : 0));
+    EXPECT_LE(found.at_most - found.at_least,
+              0.02e-3 + 2 * (kind_a == 3 || kind_b == 3 ? radius : 0));
     EXPECT_LE(found.at_least, found.at_most);
     deep += found.at_least > 0.001;
     apart += found.at_most < -0.001;
@@ -121,7 +132,8 @@ TEST(Depth, OfBodiesThatAreApartIsMinusTheirClearance) {
   Random random(42);
   int compared = 0;
   for (int trial = 0; trial < test::trials(200); ++trial) {
-    const Body a = random_body(random.index(4), random, 0.15), b = random_body(random.index(5), random, 0.15);
+    const Body a = random_body(random.index(4), random, 0.15),
+               b = random_body(random.index(5), random, 0.15);
     MeshStore store;
     const Placed at_a(a, store), at_b(b, store);
     const double clearance = PairTest().clearance(at_a.ref(), at_b.ref());
@@ -181,7 +193,8 @@ TEST(Depth, IsNotKnownWhereAMeshIsOpenAndNotBoundedBetweenMeshes) {
   Body beside = closed;
   beside.pose.translation().x() = 0.09;
   beside.pose.linear() = Eigen::AngleAxisd(0.1, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  const Depth unknown = depth_of({Sphere{0.06}, Pose::Identity()}, open), meshes = depth_of(closed, beside);
+  const Depth unknown = depth_of({Sphere{0.06}, Pose::Identity()}, open),
+              meshes = depth_of(closed, beside);
   EXPECT_EQ(unknown.at_most, std::numeric_limits<double>::infinity());
   EXPECT_EQ(unknown.at_least, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(meshes.at_most, std::numeric_limits<double>::infinity());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distance proofs against FCL: a verdict that a distance proof gives must be FCL's. docs/model.md "Clearance".
+// Distance proofs against FCL: a verdict that a distance proof gives must be FCL's. docs/model.md
+// "Clearance".
 #include "proofs/distance_proof.hpp"
 
 #include <gtest/gtest.h>
@@ -43,15 +44,16 @@ TriangleMesh sheet_mesh(double width, double height, int n) {
 
 /// Meshes with walls thin and thick, open and closed, with room for a body inside.
 std::vector<MeshPtr> meshes() {
-  return {
-      testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel"),
-      testing::as_mesh(testing::panel_mesh(0.6, 0.5, 0.001, 6), "thin panel"),
-      testing::as_mesh(sheet_mesh(0.8, 0.6, 6), "sheet"),
-      testing::as_mesh(testing::box_mesh(Vector3d(0.9, 0.8, 0.7), 2), "crate"),
-      testing::as_mesh(testing::torus_mesh(0.2, 0.05, 8), "torus"),
-      testing::as_mesh(testing::tube_mesh(0.08, 0.6, 12), "pipe"),
-      testing::as_mesh(testing::sphere_mesh(0.1, 5), "ball"),
-      testing::as_mesh(testing::joined(testing::box_mesh(Vector3d(0.5, 0.5, 0.5), 1), testing::sphere_mesh(0.04, 4)), "two parts")};
+  return {testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel"),
+          testing::as_mesh(testing::panel_mesh(0.6, 0.5, 0.001, 6), "thin panel"),
+          testing::as_mesh(sheet_mesh(0.8, 0.6, 6), "sheet"),
+          testing::as_mesh(testing::box_mesh(Vector3d(0.9, 0.8, 0.7), 2), "crate"),
+          testing::as_mesh(testing::torus_mesh(0.2, 0.05, 8), "torus"),
+          testing::as_mesh(testing::tube_mesh(0.08, 0.6, 12), "pipe"),
+          testing::as_mesh(testing::sphere_mesh(0.1, 5), "ball"),
+          testing::as_mesh(testing::joined(testing::box_mesh(Vector3d(0.5, 0.5, 0.5), 1),
+                                           testing::sphere_mesh(0.04, 4)),
+                           "two parts")};
 }
 
 std::vector<SceneObject> random_scene(Random& random, const std::vector<MeshPtr>& pool) {
@@ -99,7 +101,8 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
   std::int64_t questions = 0, pairs = 0, at_threshold = 0, clearances = 0, touching = 0;
   for (int s = 0; s < scenes; ++s) {
     const World world(empty, random_scene(random, pool));
-    World::Query asked(world, DistanceProofs::kOn), fast(world, DistanceProofs::kOn), off(world, DistanceProofs::kOff);
+    World::Query asked(world, DistanceProofs::kOn), fast(world, DistanceProofs::kOn),
+        off(world, DistanceProofs::kOff);
     for (int k = 0; k < configurations; ++k) {
       const Config q = test::random_config(arm.chain, random);
       const auto ask = [&](double d) {
@@ -107,7 +110,8 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
         for (const BodyPair& pair : world.pairs()) {  // up to the first that FCL names
           const bool below = off.pair_violates(q, pair, d);
           EXPECT_EQ(asked.pair_violates(q, pair, d), below)
-              << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k << " d " << d;
+              << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k << " d "
+              << d;
           ++pairs;
           if (below) {
             EXPECT_EQ(found, pair);
@@ -123,7 +127,8 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
         if (plain) {
           EXPECT_EQ(std::tuple(sooner->distance, sooner->required, sooner->least),
                     std::tuple(plain->distance, plain->required, plain->least));
-          EXPECT_EQ(sooner->pair, plain->pair) << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k;
+          EXPECT_EQ(sooner->pair, plain->pair)
+              << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k;
           touching += plain->distance == 0;
         }
         ++clearances;
@@ -136,7 +141,8 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
         const double middle = (low + high) / 2;
         (fast.find_violating_pair(q, middle) ? high : low) = middle;
       }
-      for (const double offset : {-3 * kTau, -1.1 * kTau, -0.5 * kTau, 0.5 * kTau, 1.1 * kTau, 3 * kTau}) {
+      for (const double offset :
+           {-3 * kTau, -1.1 * kTau, -0.5 * kTau, 0.5 * kTau, 1.1 * kTau, 3 * kTau}) {
         if (low + offset < 0) continue;
         const bool below = ask(low + offset);
         if (std::abs(offset) > kTau) {
@@ -150,11 +156,14 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
   }
   const std::int64_t undecided = questions - sum.proved_free - sum.proved_colliding;
   std::printf(
-      "%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld certified free, %lld certified "
+      "%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld "
+      "certified free, %lld certified "
       "colliding, %lld undecided; %lld pairs asked of both, %lld FCL calls for %lld\n",
-      robot.name.c_str(), scenes * configurations, static_cast<long long>(questions), static_cast<long long>(at_threshold),
-      static_cast<long long>(sum.proved_free), static_cast<long long>(sum.proved_colliding), static_cast<long long>(undecided),
-      static_cast<long long>(pairs), static_cast<long long>(sum.fcl_calls), static_cast<long long>(by_fcl.fcl_calls));
+      robot.name.c_str(), scenes * configurations, static_cast<long long>(questions),
+      static_cast<long long>(at_threshold), static_cast<long long>(sum.proved_free),
+      static_cast<long long>(sum.proved_colliding), static_cast<long long>(undecided),
+      static_cast<long long>(pairs), static_cast<long long>(sum.fcl_calls),
+      static_cast<long long>(by_fcl.fcl_calls));
   EXPECT_GT(clearances - touching, clearances / 10);
   EXPECT_EQ(sum.fcl_failures, 0);
   EXPECT_GT(at_threshold, scenes * 10);
@@ -166,7 +175,9 @@ INSTANTIATE_TEST_SUITE_P(Eight, Lanes, ::testing::Range(0, 8));
 
 struct Verdicts {
   int free = 0, colliding = 0, none = 0;
-  void add(DistanceProof c) { ++(c == DistanceProof::kFree ? free : c == DistanceProof::kColliding ? colliding : none); }
+  void add(DistanceProof c) {
+    ++(c == DistanceProof::kFree ? free : c == DistanceProof::kColliding ? colliding : none);
+  }
   [[nodiscard]] int all() const { return free + colliding + none; }
 };
 
@@ -193,37 +204,46 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
     const FclShape fa = make_fcl_shape(pool[random.below(static_cast<int>(pool.size()))], store);
     const FclShape fb = make_fcl_shape(other, store);
     const Pose X_a = random_pose(random, 0.1);
-    const Pose X_b = X_a * random_pose(random, random.coin(0.3) ? 0.15 : 0.6);  // the nearer often inside
+    const Pose X_b =
+        X_a * random_pose(random, random.coin(0.3) ? 0.15 : 0.6);  // the nearer often inside
     const bool swapped = random.coin();
     const PlacedShapeRef a = swapped ? PlacedShapeRef{&fb, &X_b} : PlacedShapeRef{&fa, &X_a};
     const PlacedShapeRef b = swapped ? PlacedShapeRef{&fa, &X_a} : PlacedShapeRef{&fb, &X_b};
     const double clearance = fcl.clearance(a, b);
-    const std::string where = "SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
+    const std::string where =
+        "SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
     ASSERT_EQ(near_parts.clearance(a, b), clearance) << where << " kind " << kind;
     if (clearance > 0 && kind > 2) {
-      ASSERT_TRUE(near_parts.below(a, b, std::nextafter(clearance, 1))) << where << " kind " << kind;
+      ASSERT_TRUE(near_parts.below(a, b, std::nextafter(clearance, 1)))
+          << where << " kind " << kind;
       ASSERT_FALSE(near_parts.below(a, b, clearance)) << where << " kind " << kind;
     }
     if (are_triangles(a, b)) {
       TrianglePair anywhere;
       const double own = triangle_distance(a, b, 0, 10, anywhere);
-      ASSERT_NEAR(own, clearance, clearance > kTriangleBand ? kTriangleBand / 2 : 2 * kTriangleBand) << where << " kind " << kind;
-      if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand; d > 0 && clearance > 0) {
+      ASSERT_NEAR(own, clearance, clearance > kTriangleBand ? kTriangleBand / 2 : 2 * kTriangleBand)
+          << where << " kind " << kind;
+      if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand;
+          d > 0 && clearance > 0) {
         ASSERT_TRUE(!proves_beyond(a, b, d, anywhere) || clearance > d) << where;
       }
       ++triangles;
     }
     Verdicts& tally = clearance == 0 ? touching : kind <= 2 ? round : kind <= 4 ? solid : mesh;
     const double beyond = fa.beyond_triangles + fb.beyond_triangles;
-    for (const double d : {0.0, 0.005, clearance - 3 * kTau, clearance - 1.1 * kTau, clearance + 1.1 * kTau, clearance + 3 * kTau,
-                           clearance + random.uniform(-0.02, 0.02)}) {
+    for (const double d :
+         {0.0, 0.005, clearance - 3 * kTau, clearance - 1.1 * kTau, clearance + 1.1 * kTau,
+          clearance + 3 * kTau, clearance + random.uniform(-0.02, 0.02)}) {
       if (d < 0) continue;
       const DistanceProof certificate = prove_distance(a, b, d);
-      const std::string what =
-          where + " kind " + std::to_string(kind) + " clearance " + std::to_string(clearance) + " d " + std::to_string(d);
-      ASSERT_FALSE(certificate == DistanceProof::kFree && (clearance < d || clearance == 0)) << what;
-      ASSERT_FALSE(certificate == DistanceProof::kColliding && clearance >= d && clearance > 0) << what;
-      // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all is decided.
+      const std::string what = where + " kind " + std::to_string(kind) + " clearance " +
+                               std::to_string(clearance) + " d " + std::to_string(d);
+      ASSERT_FALSE(certificate == DistanceProof::kFree && (clearance < d || clearance == 0))
+          << what;
+      ASSERT_FALSE(certificate == DistanceProof::kColliding && clearance >= d && clearance > 0)
+          << what;
+      // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all
+      // is decided.
       if (clearance > d + 2.5 * kTau + beyond) {
         ASSERT_EQ(certificate, DistanceProof::kFree) << what;
       }
@@ -237,9 +257,11 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
       ASSERT_LE(ahead.bound, clearance + kTau) << what;
     }
   }
-  for (const auto& [name, tally] : {std::pair("apart: sphere or capsule", round), std::pair("apart: box or cylinder", solid),
-                                    std::pair("apart: mesh", mesh), std::pair("touching or contained", touching)}) {
-    std::printf("%s: %d certified free, %d certified colliding, %d undecided\n", name, tally.free, tally.colliding, tally.none);
+  for (const auto& [name, tally] :
+       {std::pair("apart: sphere or capsule", round), std::pair("apart: box or cylinder", solid),
+        std::pair("apart: mesh", mesh), std::pair("touching or contained", touching)}) {
+    std::printf("%s: %d certified free, %d certified colliding, %d undecided\n", name, tally.free,
+                tally.colliding, tally.none);
     EXPECT_GT(tally.all(), count / 4) << name;
     EXPECT_GT(tally.colliding, tally.all() / 10) << name;
   }
@@ -247,7 +269,8 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
   EXPECT_GT(triangles, count / 8);
   EXPECT_GT(round.free, round.all() / 4);
   EXPECT_EQ(fcl.counters().fcl_failures, 0);
-  std::printf("%d pairs of bodies, %lld FCL calls\n", count, static_cast<long long>(fcl.counters().fcl_calls));
+  std::printf("%d pairs of bodies, %lld FCL calls\n", count,
+              static_cast<long long>(fcl.counters().fcl_calls));
 }
 INSTANTIATE_TEST_SUITE_P(Four, MeshLanes, ::testing::Range(0, 4));
 
@@ -274,24 +297,29 @@ TEST(DistanceProofs, DoNotDependOnWhereTheLastOneEnded) {
     const bool swapped = random.coin();
     TrianglePair kept;
     for (int step = 0; step < steps; ++step) {
-      const PlacedShapeRef a = swapped ? PlacedShapeRef{&moving, &pose} : PlacedShapeRef{&mesh, &at_rest};
-      const PlacedShapeRef b = swapped ? PlacedShapeRef{&mesh, &at_rest} : PlacedShapeRef{&moving, &pose};
-      const double d = random.coin(0.2) ? 0 : random.uniform(0, 0.03), ahead = random.coin() ? 0 : 0.01;
+      const PlacedShapeRef a =
+          swapped ? PlacedShapeRef{&moving, &pose} : PlacedShapeRef{&mesh, &at_rest};
+      const PlacedShapeRef b =
+          swapped ? PlacedShapeRef{&mesh, &at_rest} : PlacedShapeRef{&moving, &pose};
+      const double d = random.coin(0.2) ? 0 : random.uniform(0, 0.03),
+                   ahead = random.coin() ? 0 : 0.01;
       TrianglePair nowhere;
       const Proof fresh = prove(a, b, d, ahead, nowhere), proof = prove(a, b, d, ahead, kept);
-      ASSERT_EQ(proof.proved, fresh.proved) << "SWIVEL_TEST_SEED=" << base << " case " << k << " step " << step << " d " << d;
+      ASSERT_EQ(proof.proved, fresh.proved)
+          << "SWIVEL_TEST_SEED=" << base << " case " << k << " step " << step << " d " << d;
       if (fresh.proved == DistanceProof::kFree) {
         ASSERT_NEAR(proof.bound, fresh.bound, 1e-12);
       }
       all.add(proof.proved);
       pose.translation() += 0.02 * random_size(random, -1, 1);
-      pose.linear() = (Quaterniond(pose.linear()) * Quaterniond(1, random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), 0))
+      pose.linear() = (Quaterniond(pose.linear()) *
+                       Quaterniond(1, random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), 0))
                           .normalized()
                           .toRotationMatrix();
     }
   }
-  std::printf("%d questions: %d certified free, %d certified colliding, %d undecided\n", all.all(), all.free, all.colliding,
-              all.none);
+  std::printf("%d questions: %d certified free, %d certified colliding, %d undecided\n", all.all(),
+              all.free, all.colliding, all.none);
   EXPECT_GT(all.free, all.all() / 4);
   EXPECT_GT(all.colliding, all.all() / 4);
 }
@@ -303,18 +331,23 @@ TEST(DistanceProofs, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
     TriangleMesh crate = testing::box_mesh(Vector3d(1, 1, 1), 1);
     if (!closed) crate.triangles.pop_back();
     const FclShape outer = make_fcl_shape(testing::as_mesh(crate, "crate"), store);
-    for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1},
-                                                 testing::as_mesh(testing::sphere_mesh(0.1, 4), "ball")}) {
+    for (const Shape& shape : std::vector<Shape>{
+             Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1},
+             testing::as_mesh(testing::sphere_mesh(0.1, 4), "ball")}) {
       const FclShape inner = make_fcl_shape(shape, store);
       const DistanceProof expected = closed ? DistanceProof::kColliding : DistanceProof::kFree;
-      EXPECT_EQ(prove_distance({&outer, &origin}, {&inner, &origin}, 0.005), expected) << shape.index();
+      EXPECT_EQ(prove_distance({&outer, &origin}, {&inner, &origin}, 0.005), expected)
+          << shape.index();
       EXPECT_EQ(prove_distance({&inner, &origin}, {&outer, &origin}, 0), expected) << shape.index();
     }
   }
-  const FclShape speck = make_fcl_shape(testing::as_mesh(testing::sphere_mesh(0.01, 4), "speck"), store);
-  for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1}}) {
+  const FclShape speck =
+      make_fcl_shape(testing::as_mesh(testing::sphere_mesh(0.01, 4), "speck"), store);
+  for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2},
+                                               Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1}}) {
     const FclShape outer = make_fcl_shape(shape, store);
-    EXPECT_EQ(prove_distance({&speck, &origin}, {&outer, &origin}, 0), DistanceProof::kColliding) << shape.index();
+    EXPECT_EQ(prove_distance({&speck, &origin}, {&outer, &origin}, 0), DistanceProof::kColliding)
+        << shape.index();
   }
 }
 
@@ -322,7 +355,8 @@ TEST(Segments, DegenerateCasesAreExact) {
   const auto squared = [](Vector3d p, Vector3d u, Vector3d q, Vector3d v) {
     return squared_distance(Segment{p, u}, Segment{q, v});
   };
-  const Vector3d o = Vector3d::Zero(), x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  const Vector3d o = Vector3d::Zero(), x = Vector3d::UnitX(), y = Vector3d::UnitY(),
+                 z = Vector3d::UnitZ();
   EXPECT_EQ(squared(o, o, 3 * x, o), 9);           // points
   EXPECT_EQ(squared(o, o, y - x, 2 * x), 1);       // a point over a segment
   EXPECT_EQ(squared(y - x, 2 * x, o, o), 1);       // and below
@@ -332,7 +366,9 @@ TEST(Segments, DegenerateCasesAreExact) {
   EXPECT_EQ(squared(o, x, 0.5 * x, x), 0);         // in line, over each other
   EXPECT_EQ(squared(-x, 2 * x, z - y, 2 * y), 1);  // crossing
   const Triangle t(o, 2 * x, 2 * y);
-  const auto to_triangle = [&](Vector3d p, Vector3d u) { return squared_distance(Segment{p, u}, t, 1e9); };
+  const auto to_triangle = [&](Vector3d p, Vector3d u) {
+    return squared_distance(Segment{p, u}, t, 1e9);
+  };
   EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y + z, o), 1);      // a point above
   EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y, o), 0);          // a point on it
   EXPECT_EQ(to_triangle(-x - y + z, 4 * x + 4 * y), 1);     // parallel above, ends outside

@@ -29,18 +29,19 @@ TEST(DistancesAbout, AreThoseThatDecideARank) {
     for (std::size_t k = 0; k < count; ++k) {
       const double x = random.uniform(0, 1);
       all.push_back(kind == 0   ? x
-                    : kind == 1 ? std::round(4 * x)                            // many alike
-                    : kind == 2 ? 2e-3 + 1e-4 * x                              // all beside each other
-                    : kind == 3 ? static_cast<double>(k) / count               // the first ones are the least
+                    : kind == 1 ? std::round(4 * x)               // many alike
+                    : kind == 2 ? 2e-3 + 1e-4 * x                 // all beside each other
+                    : kind == 3 ? static_cast<double>(k) / count  // the first ones are the least
                                 : (random.coin(0.5) ? 0 : std::exp(10 * x)));  // half of them touch
     }
-    const auto found = distances_about(count, rank, kMost, kBeside, [&](std::size_t k, double enough, double limit) {
-      ++asked;
-      const double d = all[k];
-      cut_short += d < enough || d > limit;
-      if (d > limit) return limit;
-      return d < enough ? d + random.uniform(0, 0.999) * (enough - d) : d;
-    });
+    const auto found = distances_about(
+        count, rank, kMost, kBeside, [&](std::size_t k, double enough, double limit) {
+          ++asked;
+          const double d = all[k];
+          cut_short += d < enough || d > limit;
+          if (d > limit) return limit;
+          return d < enough ? d + random.uniform(0, 0.999) * (enough - d) : d;
+        });
     ASSERT_EQ(found.size(), count);
     std::vector<double> plain = all, mine = found;
     std::sort(plain.begin(), plain.end());
@@ -53,8 +54,8 @@ TEST(DistancesAbout, AreThoseThatDecideARank) {
     }
   }
   std::printf("seed %llu: %lld distances asked, %lld cut short, %lld beside the one of the rank\n",
-              static_cast<unsigned long long>(base), static_cast<long long>(asked), static_cast<long long>(cut_short),
-              static_cast<long long>(beside));
+              static_cast<unsigned long long>(base), static_cast<long long>(asked),
+              static_cast<long long>(cut_short), static_cast<long long>(beside));
   EXPECT_GT(cut_short, asked / 4);
 }
 

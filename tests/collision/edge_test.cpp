@@ -59,11 +59,13 @@ TEST(EdgeRule, Midpoints) {
 }
 
 /// Returns true if the pair is too near at any midpoint; tests them one after the other.
-bool blocked_by_plain(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
+bool blocked_by_plain(const BodyPair& pair, World::Query& query, const EdgeRule& rule,
+                      const Config& q0, const Config& q1) {
   const std::int64_t n = rule.midpoints(q0, q1);
   for (std::int64_t m = 0; m < n; ++m)
-    if (query.pair_violates(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair,
-                            ClearanceRule::kMidpoint))
+    if (query.pair_violates(
+            q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair,
+            ClearanceRule::kMidpoint))
       return true;
   return false;
 }
@@ -93,11 +95,13 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
                  plain = test::edge_blocked_plain(query, rule, q0, q1).has_value();
       ++(plain ? blocked : free);
       if (const auto pair = edge_blocked(query, rule, q0, q1)) {
-        EXPECT_TRUE(edge_blocked_by(*pair, query, rule, q0, q1)) << world.names(*pair)[0] << " " << world.names(*pair)[1];
+        EXPECT_TRUE(edge_blocked_by(*pair, query, rule, q0, q1))
+            << world.names(*pair)[0] << " " << world.names(*pair)[1];
       }
       if (k < 2)
         for (const BodyPair& pair : world.pairs()) {
-          const bool by = edge_blocked_by(pair, query, rule, q0, q1), plain_by = blocked_by_plain(pair, query, rule, q0, q1);
+          const bool by = edge_blocked_by(pair, query, rule, q0, q1),
+                     plain_by = blocked_by_plain(pair, query, rule, q0, q1);
           ++(plain_by ? blocked_by : free_of);
           in_band += by != plain_by;
         }
@@ -105,8 +109,10 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
       double least = 1;
       const std::int64_t n = rule.midpoints(q0, q1);
       for (std::int64_t m = 0; m < n; ++m)
-        least =
-            std::min(least, query.clearance(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0))->distance);
+        least = std::min(least, query
+                                    .clearance(q0 + (static_cast<double>(m) + 0.5) /
+                                                        static_cast<double>(n) * (q1 - q0))
+                                    ->distance);
       EXPECT_NEAR(least, problem.limits.d_edge() + rule.h, kTau);
       ++in_band;
     }
@@ -118,8 +124,8 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
   EXPECT_GT(free_of, 1000);
   EXPECT_LE(in_band, 5);
   RecordProperty("in_band", in_band);
-  std::cout << "blocked " << blocked << ", free " << free << ", disagreements within tau " << in_band << ", midpoints " << leaves
-            << std::endl;
+  std::cout << "blocked " << blocked << ", free " << free << ", disagreements within tau "
+            << in_band << ", midpoints " << leaves << std::endl;
 }
 
 TEST(EdgeBlocked, ProvesTheWholeMotion) {
@@ -148,7 +154,8 @@ TEST(EdgeBlocked, ProvesTheWholeMotion) {
   EXPECT_FALSE(edge_blocked(other, rule, q0, q1));
 }
 
-/// Pairs that are near by design have motions, and where the median is small tolerances, of their own.
+/// Pairs that are near by design have motions, and where the median is small tolerances, of their
+/// own.
 TEST(EdgeBlocked, NearPairsAgreeWithThePlainRuleAndAreProved) {
   Random random(42);
   int blocked = 0, free = 0, in_band = 0;
@@ -168,14 +175,16 @@ TEST(EdgeBlocked, NearPairsAgreeWithThePlainRuleAndAreProved) {
       q0[5] = random.uniform(-2.5, 2.5);
       q0[6] = random.uniform(-2.5, 2.5);
       const Config q1 = q0 + random.config(0.04);
-      const auto found = edge_blocked(fast, rule, q0, q1), expected = test::edge_blocked_plain(plain, rule, q0, q1);
+      const auto found = edge_blocked(fast, rule, q0, q1),
+                 expected = test::edge_blocked_plain(plain, rule, q0, q1);
       ++(expected ? blocked : free);
       const auto clearance = [&](double t) { return plain.clearance(q0 + t * (q1 - q0))->least; };
       if (found.has_value() != expected.has_value()) {
         const std::int64_t n = rule.midpoints(q0, q1, wrist.h);
         double least = 1;
         for (std::int64_t m = 0; m < n; ++m)
-          least = std::min(least, clearance((static_cast<double>(m) + 0.5) / static_cast<double>(n)));
+          least =
+              std::min(least, clearance((static_cast<double>(m) + 0.5) / static_cast<double>(n)));
         EXPECT_NEAR(least, wrist.d_edge + wrist.h, kTau);
         ++in_band;
         continue;
@@ -206,7 +215,8 @@ TEST(EdgeRule, NoPathBendsFurther) {
     for (const RobotBody& body : world.bodies()) {
       if (body.group == 0) continue;
       const auto at = [&](double t) -> Vector3d {
-        return arm.chain.displacements(q + t * half)[static_cast<std::size_t>(body.group)] * body.pose.translation();
+        return arm.chain.displacements(q + t * half)[static_cast<std::size_t>(body.group)] *
+               body.pose.translation();
       };
       constexpr double kSmall = 1e-4;
       const Vector3d velocity = (at(kSmall) - at(-kSmall)) / (2 * kSmall);
@@ -222,8 +232,8 @@ TEST(EdgeRule, NoPathBendsFurther) {
   EXPECT_GT(most, 0.3);  // the bound is of the right size
 }
 
-/// Segments that are proved by the speed of their bodies are free throughout, and many of them are not by how far joints could
-/// move anything.
+/// Segments that are proved by the speed of their bodies are free throughout, and many of them are
+/// not by how far joints could move anything.
 TEST(MotionSegment, NoPairComesNearerThanSaid) {
   Random random(43);
   const RobotModel robot = capsule_arm();
@@ -238,27 +248,34 @@ TEST(MotionSegment, NoPairComesNearerThanSaid) {
       World::Query query(world, distance_proofs), plain(world);
       for (int k = 0; k < 40; ++k) {
         Config q = random.config(1.5);
-        for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again) q = random.config(1.5);
+        for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again)
+          q = random.config(1.5);
         MotionSegment segment;
         segment.half = random.config(random.uniform(0, 0.15));
         segment.tangent_deviation = rule.tangent_deviation(segment.half);
         const auto free = [&](double margin) {
           segment.margin = margin;
-          return !query.find_violating_pair_over_motion(segment, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
+          return !query.find_violating_pair_over_motion(
+              segment, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
         };
         ++(free(0) ? proved : refused);
         if (!free(0)) continue;
-        by_speed_alone +=
-            plain.find_violating_pair(q, Threshold(ClearanceRule::kMidpoint, rule.motion(q, q + segment.half))).has_value();
+        by_speed_alone += plain
+                              .find_violating_pair(q, Threshold(ClearanceRule::kMidpoint,
+                                                                rule.motion(q, q + segment.half)))
+                              .has_value();
         double least = 0, most = 1;  // m: as much as can be asked for besides
-        while (most - least > kTau / 4) (free((least + most) / 2) ? least : most) = (least + most) / 2;
+        while (most - least > kTau / 4)
+          (free((least + most) / 2) ? least : most) = (least + most) / 2;
         for (int i = -10; i <= 10; ++i)
-          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * segment.half, Threshold(ClearanceRule::kMidpoint, least - kTau)))
+          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * segment.half,
+                                                 Threshold(ClearanceRule::kMidpoint, least - kTau)))
               << w << " " << k << " " << i;
       }
     }
   }
-  std::printf("%d stretches proved, %d of them by speed alone, %d refused\n", proved, by_speed_alone, refused);
+  std::printf("%d stretches proved, %d of them by speed alone, %d refused\n", proved,
+              by_speed_alone, refused);
   EXPECT_GT(proved, 1000);
   EXPECT_GT(by_speed_alone, 300);
   EXPECT_GT(refused, 300);

@@ -36,8 +36,8 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
         const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
         const auto points = nearest_points(pa, pb, test.clearance(pa, pb));
         const double truth = reference_clearance(a, X_a, b, X_b);
-        const std::string what =
-            kKinds[ka] + " / " + kKinds[kb] + ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
+        const std::string what = kKinds[ka] + " / " + kKinds[kb] + ", reference " +
+                                 std::to_string(truth) + ", case " + std::to_string(k);
         if (truth == 0) {
           ++touching;
           EXPECT_FALSE(points) << what;
@@ -50,13 +50,18 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
         constexpr double kSlack = 1.2e-4;  // the function's tolerance and the reference's error
         EXPECT_NEAR(((*points)[1] - (*points)[0]).norm(), truth, kSlack) << what;
         const Sphere dot{1e-6};
-        EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[0])), a, X_a), kSlack) << what;
-        EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[1])), b, X_b), kSlack) << what;
+        EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[0])), a, X_a),
+                  kSlack)
+            << what;
+        EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[1])), b, X_b),
+                  kSlack)
+            << what;
       }
   EXPECT_GT(touching, 5);
   int apart = 0, answered = 0;
   for (const auto& [pair, t] : tally) {
-    std::printf("%s / %s: %d of %d have points\n", kKinds[pair.first].c_str(), kKinds[pair.second].c_str(), t.answered, t.asked);
+    std::printf("%s / %s: %d of %d have points\n", kKinds[pair.first].c_str(),
+                kKinds[pair.second].c_str(), t.answered, t.asked);
     apart += t.asked;
     answered += t.answered;
   }
@@ -78,8 +83,8 @@ TEST(CommonPoint, LiesInBothBodies) {
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
         const auto point = common_point({&fa, &X_a}, {&fb, &X_b});
         const double truth = reference_clearance(a, X_a, b, X_b);
-        const std::string what =
-            kKinds[ka] + " / " + kKinds[kb] + ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
+        const std::string what = kKinds[ka] + " / " + kKinds[kb] + ", reference " +
+                                 std::to_string(truth) + ", case " + std::to_string(k);
         constexpr double kSlack = 1.2e-4;  // the function's tolerance and the reference's error
         if (truth > 2 * kSlack) {
           ++apart;

@@ -26,13 +26,15 @@ Names names_of(const World& world) {
 }
 
 Names pairs_of(const RobotModel& robot, const Problem& problem) {
-  return names_of(World(robot, build_arm(robot, "l0", "l7", problem.hold, Pose::Identity()), problem));
+  return names_of(
+      World(robot, build_arm(robot, "l0", "l7", problem.hold, Pose::Identity()), problem));
 }
 
 /// A flange fixed to l7 and, on it, a finger on a held joint.
 RobotModel arm_with_gripper() {
   RobotModel robot = capsule_arm();
-  for (const auto& [name, type] : {std::pair{"flange", Joint::Type::kFixed}, std::pair{"finger", Joint::Type::kPrismatic}}) {
+  for (const auto& [name, type] :
+       {std::pair{"flange", Joint::Type::kFixed}, std::pair{"finger", Joint::Type::kPrismatic}}) {
     Joint joint;
     joint.name = std::string("to_") + name;
     joint.type = type;
@@ -41,7 +43,9 @@ RobotModel arm_with_gripper() {
     joint.origin.translation().z() = 0.1;
     joint.upper = 0.05;
     robot.joints.push_back(joint);
-    robot.links.push_back({name, {{Box{Vector3d(0.04, 0.04, 0.04)}, Pose::Identity()}}, static_cast<int>(robot.joints.size()) - 1});
+    robot.links.push_back({name,
+                           {{Box{Vector3d(0.04, 0.04, 0.04)}, Pose::Identity()}},
+                           static_cast<int>(robot.joints.size()) - 1});
   }
   return robot;
 }
@@ -59,7 +63,8 @@ TEST(PairRules, GroupsParentsAndChildren) {
   EXPECT_FALSE(names.count({"finger", "flange"}));
   EXPECT_FALSE(names.count({"flange", "l6"}));  // child through the fixed joint
   EXPECT_TRUE(names.count({"finger", "l6"}));   // grandchild
-  EXPECT_TRUE(names.count({"l5", "l7"}));       // an SRDF speaks for links: near or not, what it does not name counts
+  EXPECT_TRUE(names.count(
+      {"l5", "l7"}));  // an SRDF speaks for links: near or not, what it does not name counts
   EXPECT_TRUE(names.count({"l0", "l7"}));
   EXPECT_EQ(names.size(), 10u * 9 / 2 - 7 - 3 - 1);
 }
@@ -96,20 +101,23 @@ void expect_keeps(const World& world, const Limits& limits) {
     if (p.dropped) continue;
     const double self = limits.self_clearance.value_or(limits.clearance), h = limits.edge_tolerance;
     EXPECT_DOUBLE_EQ(p.required.node, std::min(self, p.median / 2));
-    EXPECT_DOUBLE_EQ(p.required.motion, std::min(limits.edge_clearance.value_or(self / 2), p.median / 4));
+    EXPECT_DOUBLE_EQ(p.required.motion,
+                     std::min(limits.edge_clearance.value_or(self / 2), p.median / 4));
     if (p.median / 2 > kVerdictBand) {
       EXPECT_DOUBLE_EQ(p.required.tolerance, std::min(h, p.median / 2));
     }
     EXPECT_GT(p.required.tolerance, 0);
-    EXPECT_EQ(p.reduced,
-              p.required.node < self || p.required.motion < limits.edge_clearance.value_or(self / 2) || p.required.tolerance < h);
+    EXPECT_EQ(p.reduced, p.required.node < self ||
+                             p.required.motion < limits.edge_clearance.value_or(self / 2) ||
+                             p.required.tolerance < h);
     const RequiredClearance required = world.required_clearance(p.pair);
     EXPECT_EQ(required.node, p.required.node);
     EXPECT_EQ(required.motion, p.required.motion);
   }
 }
 
-const RobotPair& find_pair(const std::vector<RobotPair>& pairs, const World& world, const std::string& a, const std::string& b) {
+const RobotPair& find_pair(const std::vector<RobotPair>& pairs, const World& world,
+                           const std::string& a, const std::string& b) {
   const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const RobotPair& p) {
     return world.names(p.pair) == std::array<std::string, 2>{a, b};
   });
@@ -149,7 +157,8 @@ TEST(PairRules, APairThatIsNearByDesignStillMayNotMeet) {
 }
 
 TEST(PairRules, WhatPairsKeepGrowsWithTheLimits) {
-  const std::vector<RobotModel> robots{near_wrist_arm(0.0006), near_wrist_arm(0.002), capsule_arm()};
+  const std::vector<RobotModel> robots{near_wrist_arm(0.0006), near_wrist_arm(0.002),
+                                       capsule_arm()};
   Random random(51);
   int pairs = 0, reduced = 0, plain = 0;
   for (const RobotModel& robot : robots) {
@@ -195,7 +204,8 @@ TEST(PairRules, AnSrdfLeavesNothingToSamples) {
     EXPECT_EQ(p.required.motion, 0.0015);
   }
   EXPECT_TRUE(world.warnings().empty());
-  EXPECT_TRUE(World::Query(world).find_violating_pair(Config::Zero(), ClearanceRule::kNode));  // 2 mm apart
+  EXPECT_TRUE(
+      World::Query(world).find_violating_pair(Config::Zero(), ClearanceRule::kNode));  // 2 mm apart
 }
 
 TEST(PairRules, ForgivenNearnessIsNoContact) {
@@ -204,14 +214,20 @@ TEST(PairRules, ForgivenNearnessIsNoContact) {
   Problem problem = problem_for(robot);
   Config touching = Config::Zero();
   touching[5] = kPi / 2;
-  for (const auto& [clearance, apart_is_forgiven] : {std::pair(0.00203, true), std::pair(0.0021, false), std::pair(0.0, true)}) {
+  for (const auto& [clearance, apart_is_forgiven] :
+       {std::pair(0.00203, true), std::pair(0.0021, false), std::pair(0.0, true)}) {
     problem.limits.clearance = clearance;
     const World strict(robot, arm_of(robot), problem), forgiving(strict, problem, {}, kVerdictBand);
     World::Query query(forgiving);
-    EXPECT_EQ(World::Query(strict).find_violating_pair(Config::Zero(), ClearanceRule::kNode).has_value(), clearance > 0.002);
-    EXPECT_EQ(query.find_violating_pair(Config::Zero(), ClearanceRule::kNode).has_value(), !apart_is_forgiven) << clearance;
+    EXPECT_EQ(
+        World::Query(strict).find_violating_pair(Config::Zero(), ClearanceRule::kNode).has_value(),
+        clearance > 0.002);
+    EXPECT_EQ(query.find_violating_pair(Config::Zero(), ClearanceRule::kNode).has_value(),
+              !apart_is_forgiven)
+        << clearance;
     EXPECT_TRUE(query.find_violating_pair(touching, ClearanceRule::kNode)) << clearance;
-    EXPECT_TRUE(edge_blocked(query, forgiving.edge_rule({1, 1, 1, 1, 1, 0.2, 0.2}), touching, touching));
+    EXPECT_TRUE(
+        edge_blocked(query, forgiving.edge_rule({1, 1, 1, 1, 1, 0.2, 0.2}), touching, touching));
   }
 }
 
@@ -252,13 +268,15 @@ TEST(PairRules, AttachedBodies) {
   Pose tip = Pose::Identity();
   tip.translation().z() = 0.15;
   problem.attached.push_back({"tool", Sphere{0.03}, tip, "l7"});
-  problem.attached.push_back({"collar", Sphere{0.12}, Pose::Identity(), "l6"});  // about joint 6, so always in l5 and l7
+  problem.attached.push_back(
+      {"collar", Sphere{0.12}, Pose::Identity(), "l6"});  // about joint 6, so always in l5 and l7
   const Names names = pairs_of(robot, problem);
   EXPECT_FALSE(names.count({"l7", "tool"}));
   EXPECT_TRUE(names.count({"l5", "tool"}));
   EXPECT_TRUE(names.count({"l0", "tool"}));
   EXPECT_FALSE(names.count({"collar", "l6"}));
-  EXPECT_FALSE(names.count({"collar", "l7"}));  // near in all samples, and attached: the SRDF cannot know
+  EXPECT_FALSE(
+      names.count({"collar", "l7"}));  // near in all samples, and attached: the SRDF cannot know
   EXPECT_TRUE(names.count({"collar", "l1"}));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verdict on one pair, every pair of shape kinds, against references that share nothing with FCL.
+// The verdict on one pair, every pair of shape kinds, against references that share nothing with
+// FCL.
 #include "exact/pair_test.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ using namespace swivel::testing;
 
 constexpr double kTau = 5e-5;  // docs/model.md: the band in which FCL alone decides
 
-/// A point that the shape holds: its centre or, of a mesh, which may be hollow, the middle of a triangle or of an edge.
+/// A point that the shape holds: its centre or, of a mesh, which may be hollow, the middle of a
+/// triangle or of an edge.
 Vector3d held_point(const Shape& shape, bool of_triangle) {
   const auto* mesh = std::get_if<MeshPtr>(&shape);
   if (!mesh) return Vector3d::Zero();
@@ -50,17 +52,20 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
         const Pose X_a = random.pose(0.05);
         Pose X_b = random.pose(k % 4 == 0 ? 0.1 : 0.3);
         if (k % 8 == 0)
-          X_b.translation() = X_a * held_point(a, true) - X_b.linear() * held_point(b, false);  // an edge through a side
+          X_b.translation() = X_a * held_point(a, true) -
+                              X_b.linear() * held_point(b, false);  // an edge through a side
         const double truth = reference_clearance(a, X_a, b, X_b);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
         const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
-        const std::string what =
-            kKinds[ka] + " / " + kKinds[kb] + ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
+        const std::string what = kKinds[ka] + " / " + kKinds[kb] + ", reference " +
+                                 std::to_string(truth) + ", case " + std::to_string(k);
 
         const double found = test.clearance(pa, pb);
         ASSERT_NEAR(found, truth, kTau) << what;
         worst = std::max(worst, std::abs(found - truth));
-        ASSERT_LE(distance_bound(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b)), truth + 1e-5) << what;
+        ASSERT_LE(distance_bound(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b)),
+                  truth + 1e-5)
+            << what;
 
         std::vector<double> thresholds{0.0, 0.001, 0.005, 0.02, 0.1};
         for (const double offset : {-2 * kTau, -1.1 * kTau, 1.1 * kTau, 2 * kTau})
@@ -74,11 +79,14 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
           if (truth == 0 || std::abs(truth - d) > kTau) {
             ASSERT_EQ(below, truth == 0 || truth < d) << what << ", d " << d;
           }
-          const bool apart = proved_apart(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b), d + 1e-6);
+          const bool apart = proved_apart(fa.bound, place(fa.bound, X_a), fb.bound,
+                                          place(fb.bound, X_b), d + 1e-6);
           ASSERT_FALSE(apart && below) << what;
           const DistanceProof certificate = prove_distance(pa, pb, d);
-          ASSERT_FALSE(certificate == DistanceProof::kFree && (truth < d || truth == 0)) << what << ", d " << d;
-          ASSERT_FALSE(certificate == DistanceProof::kColliding && truth >= d && truth > 0) << what << ", d " << d;
+          ASSERT_FALSE(certificate == DistanceProof::kFree && (truth < d || truth == 0))
+              << what << ", d " << d;
+          ASSERT_FALSE(certificate == DistanceProof::kColliding && truth >= d && truth > 0)
+              << what << ", d " << d;
           proved += certificate != DistanceProof::kNone;
           ++verdicts;
         }
@@ -95,8 +103,8 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   RecordProperty("worst_clearance_error_um", static_cast<int>(worst * 1e6));
 }
 
-/// What is proved below a distance is, by the plain verdict; what is proved below less than nothing touches still where one of the
-/// bodies has moved by as much.
+/// What is proved below a distance is, by the plain verdict; what is proved below less than nothing
+/// touches still where one of the bodies has moved by as much.
 TEST(PairTest, ProofsBelowHoldHoweverBodiesMove) {
   Random random(23);
   PairTest test;
@@ -118,15 +126,18 @@ TEST(PairTest, ProofsBelowHoldHoweverBodiesMove) {
     ++(d < 0 ? deep : near);
     ++proved[std::minmax(ka, kb)];
     for (int move = 0; move < (d < 0 ? 4 : 1); ++move) {
-      const Vector3d way = Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+      const Vector3d way =
+          Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+              .normalized();
       Pose moved = X_b;
       moved.translation() += std::max(0.0, -d) * way;
       ASSERT_TRUE(test.below({&fa, &X_a}, {&fb, &moved}, std::max(0.0, d)))
           << kKinds[ka] << " / " << kKinds[kb] << ", case " << k << ", d " << d;
     }
   }
-  std::printf("%d proved deeper than asked, %d nearer, %d of those nearer not proved, %zu pairs of kinds\n", deep, near, missed,
-              proved.size());
+  std::printf(
+      "%d proved deeper than asked, %d nearer, %d of those nearer not proved, %zu pairs of kinds\n",
+      deep, near, missed, proved.size());
   EXPECT_GT(deep, test::at_least(1000));
   EXPECT_GT(near, test::at_least(2000));
   EXPECT_GT(proved.size(), static_cast<std::size_t>(test::at_least(20)));
@@ -138,7 +149,8 @@ TEST(PairTest, BoundedDistanceIsTheFreshVerdict) {
   MeshStore store;
   int near = 0, far = 0, band = 0;
   for (int k = 0; k < 1500; ++k) {
-    const Shape a = random_shape(2 + random.index(5), random), b = random_shape(2 + random.index(5), random);
+    const Shape a = random_shape(2 + random.index(5), random),
+                b = random_shape(2 + random.index(5), random);
     const Pose X_a = random.pose(0.05), X_b = random.pose(0.25);
     const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
     const double fresh = test.clearance({&fa, &X_a}, {&fb, &X_b});
@@ -163,7 +175,8 @@ bool meets_panel(const Shape& shape, bool closed) {
   if (!closed) panel.triangles.pop_back();
   MeshStore store;
   PairTest test;
-  const FclShape fa = make_fcl_shape(shape, store), fb = make_fcl_shape(as_mesh(panel, "panel"), store);
+  const FclShape fa = make_fcl_shape(shape, store),
+                 fb = make_fcl_shape(as_mesh(panel, "panel"), store);
   Pose X = Pose::Identity();
   X.translation().z() = 0.15;  // the middle of the curved panel there
   const Pose still = Pose::Identity();
@@ -191,7 +204,8 @@ TEST(PairTest, AMeshInsideAPrimitiveIsACollision) {
   PairTest test;
   const FclShape mesh = make_fcl_shape(as_mesh(tube_mesh(0.01, 0.02, 8), "tube"), store);
   const Pose X = Pose::Identity();
-  for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.1, 0.2}, Box{Vector3d(0.2, 0.2, 0.2)}, Cylinder{0.1, 0.2}}) {
+  for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.1, 0.2},
+                                               Box{Vector3d(0.2, 0.2, 0.2)}, Cylinder{0.1, 0.2}}) {
     const FclShape solid = make_fcl_shape(shape, store);
     EXPECT_TRUE(test.below({&mesh, &X}, {&solid, &X}, 0)) << shape.index();
     EXPECT_TRUE(test.below({&solid, &X}, {&mesh, &X}, 0.001)) << shape.index();

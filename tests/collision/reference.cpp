@@ -21,7 +21,8 @@ struct Segment {
 
 double to_segment(const Point& p, const Segment& s) {
   const Point d = s.b - s.a;
-  const double t = d.squaredNorm() > 0 ? std::clamp((p - s.a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+  const double t =
+      d.squaredNorm() > 0 ? std::clamp((p - s.a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
   return (p - s.at(t)).norm();
 }
 
@@ -52,10 +53,12 @@ double point_triangle(const Point& p, const Triangle& t) {
   const Point normal = (t[1] - t[0]).cross(t[2] - t[0]);
   if (normal.squaredNorm() > 0) {
     bool above = true;
-    for (std::size_t k = 0; k < 3; ++k) above = above && (t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(normal) >= 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      above = above && (t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(normal) >= 0;
     if (above) return std::abs((p - t[0]).dot(normal.normalized()));
   }
-  return std::min({to_segment(p, {t[0], t[1]}), to_segment(p, {t[1], t[2]}), to_segment(p, {t[2], t[0]})});
+  return std::min(
+      {to_segment(p, {t[0], t[1]}), to_segment(p, {t[1], t[2]}), to_segment(p, {t[2], t[0]})});
 }
 
 /// The distance of a point to a convex set is convex along a segment.
@@ -76,7 +79,8 @@ double point_box(const Point& p, const Box& box) {
   return (p.cwiseAbs() - box.size / 2).cwiseMax(0).norm();
 }
 double point_cylinder(const Point& p, const Cylinder& c) {
-  return std::hypot(std::max(0.0, std::hypot(p.x(), p.y()) - c.radius), std::max(0.0, std::abs(p.z()) - c.length / 2));
+  return std::hypot(std::max(0.0, std::hypot(p.x(), p.y()) - c.radius),
+                    std::max(0.0, std::abs(p.z()) - c.length / 2));
 }
 
 struct Circle {
@@ -87,7 +91,8 @@ struct Circle {
   }
 };
 
-/// A convex primitive: its points' distance, the edges and circles that carry its corners, and the ball it is grown by.
+/// A convex primitive: its points' distance, the edges and circles that carry its corners, and the
+/// ball it is grown by.
 struct Convex {
   std::function<double(const Point&)> distance;  ///< base frame, before growing
   std::vector<Segment> edges;
@@ -109,7 +114,9 @@ Convex convex_of(const Shape& shape, const Pose& X) {
     c.distance = [core](const Point& p) { return to_segment(p, core); };
   } else if (const auto* box = std::get_if<Box>(&shape)) {
     const auto corner = [&](int k) {
-      return X * Point(Point(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(box->size / 2));
+      return X *
+             Point(
+                 Point(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(box->size / 2));
     };
     for (int k = 0; k < 8; ++k)
       for (const int bit : {1, 2, 4})
@@ -121,7 +128,9 @@ Convex convex_of(const Shape& shape, const Pose& X) {
     c.axis = {X * Point(0, 0, -cylinder->length / 2), X * Point(0, 0, cylinder->length / 2)};
     c.edges = {c.axis};  // inside, so it adds nothing but crossings
     c.tube = cylinder->radius;
-    c.distance = [X, size = *cylinder](const Point& p) { return point_cylinder(X.inverse() * p, size); };
+    c.distance = [X, size = *cylinder](const Point& p) {
+      return point_cylinder(X.inverse() * p, size);
+    };
   }
   return c;
 }
@@ -130,7 +139,8 @@ Convex convex_of(const Shape& shape, const Pose& X) {
 template <class Distance>
 double edges_to(const Convex& a, const Distance& distance) {
   double least = kFar;
-  for (const Segment& s : a.edges) least = std::min(least, least_on_unit([&](double x) { return distance(s.at(x)); }));
+  for (const Segment& s : a.edges)
+    least = std::min(least, least_on_unit([&](double x) { return distance(s.at(x)); }));
   for (const Circle& rim : a.rims) {
     constexpr int kSamples = 120;
     int best = 0;
@@ -140,7 +150,9 @@ double edges_to(const Convex& a, const Distance& distance) {
         best = k;
         at_best = d;
       }
-    least = std::min({least, at_best, least_on_unit([&](double x) { return distance(rim.at((best - 1 + 2 * x) / kSamples)); })});
+    least = std::min({least, at_best, least_on_unit([&](double x) {
+                        return distance(rim.at((best - 1 + 2 * x) / kSamples));
+                      })});
   }
   return least;
 }
@@ -151,7 +163,8 @@ double sides(const Convex& a, const Convex& b) {
   const Point u = a.axis.b - a.axis.a, v = b.axis.b - b.axis.a, w = a.axis.a - b.axis.a;
   const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), determinant = uu * vv - uv * uv;
   if (determinant < 1e-12 * uu * vv) return kFar;
-  const double s = (uv * v.dot(w) - vv * u.dot(w)) / determinant, t = (uu * v.dot(w) - uv * u.dot(w)) / determinant;
+  const double s = (uv * v.dot(w) - vv * u.dot(w)) / determinant,
+               t = (uu * v.dot(w) - uv * u.dot(w)) / determinant;
   if (s < 0 || s > 1 || t < 0 || t > 1) return kFar;
   return std::max(0.0, (a.axis.at(s) - b.axis.at(t)).norm() - a.tube - b.tube);
 }
@@ -202,7 +215,9 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& point) {
     std::array<Vector3d, 3> v;
     for (std::size_t k = 0; k < 3; ++k) v[k] = mesh.vertices[t[k]] - point;
     const double a = v[0].norm(), b = v[1].norm(), c = v[2].norm();
-    angle += 2 * std::atan2(v[0].dot(v[1].cross(v[2])), a * b * c + v[0].dot(v[1]) * c + v[1].dot(v[2]) * a + v[2].dot(v[0]) * b);
+    angle +=
+        2 * std::atan2(v[0].dot(v[1].cross(v[2])),
+                       a * b * c + v[0].dot(v[1]) * c + v[1].dot(v[2]) * a + v[2].dot(v[0]) * b);
   }
   return angle / (4 * kPi);
 }
@@ -218,13 +233,16 @@ double reference_clearance(const Shape& a, const Pose& X_a, const Shape& b, cons
     const auto other = triangles_of(**mesh_b, X_b);
     for (const Triangle& s : triangles_of(**mesh_a, X_a))
       for (const Triangle& t : other)
-        if ((s[0] - t[0]).norm() - size_of(s) - size_of(t) < least) least = std::min(least, triangle_triangle(s, t));
+        if ((s[0] - t[0]).norm() - size_of(s) - size_of(t) < least)
+          least = std::min(least, triangle_triangle(s, t));
   } else {
     const Convex convex = mesh_a ? convex_of(b, X_b) : convex_of(a, X_a);
     for (const Triangle& t : triangles_of(mesh_a ? **mesh_a : **mesh_b, mesh_a ? X_a : X_b))
-      if (convex.distance(t[0]) - size_of(t) - convex.growth < least) least = std::min(least, convex_triangle(convex, t));
+      if (convex.distance(t[0]) - size_of(t) - convex.growth < least)
+        least = std::min(least, convex_triangle(convex, t));
   }
-  constexpr double kCrossing = 1e-7;  // what the one-dimensional searches leave where an edge crosses a side
+  constexpr double kCrossing =
+      1e-7;  // what the one-dimensional searches leave where an edge crosses a side
   return least < kCrossing ? 0 : least;
 }
 

@@ -83,7 +83,8 @@ Shape random_shape(int kind, Random& random) {
     case 3:
       return Cylinder{r, random.uniform(0.02, 0.3)};
     case 4:
-      return as_mesh(random.index(2) ? box_mesh(random.vector(0.05, 0.3), 2) : sphere_mesh(r, 5), "closed");
+      return as_mesh(random.index(2) ? box_mesh(random.vector(0.05, 0.3), 2) : sphere_mesh(r, 5),
+                     "closed");
     case 5:
       return as_mesh(tube_mesh(r, random.uniform(0.1, 0.3), 12), "open");
     default:
@@ -117,7 +118,8 @@ TriangleMesh sphere_mesh(double radius, int n) {
   add_grid(mesh, n, 2 * n, [&](int i, int j) {
     if (i == 0 || i == n) return Vector3d(0, 0, i == 0 ? radius : -radius);
     const double theta = kPi * i / n, phi = kTwoPi * (j % (2 * n)) / (2 * n);
-    return Vector3d(radius * std::sin(theta) * std::cos(phi), radius * std::sin(theta) * std::sin(phi), radius * std::cos(theta));
+    return Vector3d(radius * std::sin(theta) * std::cos(phi),
+                    radius * std::sin(theta) * std::sin(phi), radius * std::cos(theta));
   });
   return mesh;
 }
@@ -144,8 +146,10 @@ TriangleMesh tube_mesh(double radius, double length, int n) {
 TriangleMesh panel_mesh(double width, double height, double thickness, int n) {
   const int m = 2 * n;
   const auto at = [&](int i, int j, double side) {
-    const double x = width * (static_cast<double>(i) / m - 0.5), y = height * (static_cast<double>(j) / n - 0.5);
-    return Vector3d(x, y, 0.15 * std::cos(2 * x / width) * std::cos(1.5 * y / height) + side * thickness / 2);
+    const double x = width * (static_cast<double>(i) / m - 0.5),
+                 y = height * (static_cast<double>(j) / n - 0.5);
+    return Vector3d(
+        x, y, 0.15 * std::cos(2 * x / width) * std::cos(1.5 * y / height) + side * thickness / 2);
   };
   TriangleMesh mesh;
   add_grid(mesh, m, n, [&](int i, int j) { return at(i, j, 1); });
@@ -165,7 +169,8 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   TriangleMesh mesh = a;
   const int base = static_cast<int>(a.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const auto& t : b.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  for (const auto& t : b.triangles)
+    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   return mesh;
 }
 
@@ -173,8 +178,9 @@ RobotModel capsule_arm() {
   struct Part {
     double joint_z, radius, length;  // joint above its parent; capsule along z from the joint
   };
-  constexpr Part kParts[7] = {{0.15, 0.08, 0.1},  {0.19, 0.08, 0.12}, {0.21, 0.075, 0.1}, {0.19, 0.07, 0.12},
-                              {0.21, 0.065, 0.1}, {0.19, 0.06, 0.05}, {0.08, 0.04, 0.12}};
+  constexpr Part kParts[7] = {{0.15, 0.08, 0.1},  {0.19, 0.08, 0.12}, {0.21, 0.075, 0.1},
+                              {0.19, 0.07, 0.12}, {0.21, 0.065, 0.1}, {0.19, 0.06, 0.05},
+                              {0.08, 0.04, 0.12}};
   RobotModel robot;
   robot.name = robot.source = "capsule_arm";
   robot.links.push_back({"l0", {{Box{Vector3d(0.2, 0.2, 0.1)}, Pose::Identity()}}, -1});
@@ -199,7 +205,8 @@ RobotModel capsule_arm() {
 
 RobotModel near_wrist_arm(double gap) {
   RobotModel robot = capsule_arm();
-  Pose eccentric = Pose::Identity();  // of the centre about joint 6, which is 0.09 above the end of link 5's axis
+  Pose eccentric = Pose::Identity();  // of the centre about joint 6, which is 0.09 above the end of
+                                      // link 5's axis
   eccentric.translation() = Vector3d(1.1 * gap, 0, -0.08);
   robot.links[7].collision = {{Sphere{0.09 - 0.065 - gap}, eccentric}};
   return robot;

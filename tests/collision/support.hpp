@@ -9,7 +9,8 @@
 
 namespace swivel::testing {
 
-/// SWIVEL_TEST_SEED, or 1; printed, so that a failure can be run again. Mixed with `stream`, so that tests differ.
+/// SWIVEL_TEST_SEED, or 1; printed, so that a failure can be run again. Mixed with `stream`, so
+/// that tests differ.
 class Random {
  public:
   explicit Random(std::uint64_t stream);
@@ -29,7 +30,8 @@ class Random {
 std::string numbered(const std::string& name, int number);
 
 MeshPtr as_mesh(TriangleMesh mesh, const std::string& name);
-inline const std::vector<std::string> kKinds{"sphere", "capsule", "box", "cylinder", "closed mesh", "open mesh", "torus"};
+inline const std::vector<std::string> kKinds{"sphere",      "capsule",   "box",  "cylinder",
+                                             "closed mesh", "open mesh", "torus"};
 /// Of a kind, 0 ... kKinds.size() - 1; some 0.1 m large.
 Shape random_shape(int kind, Random& random);
 /// Full edge lengths; each side cut into n x n squares. Closed.
@@ -40,12 +42,14 @@ TriangleMesh sphere_mesh(double radius, int n);
 TriangleMesh torus_mesh(double ring, double tube, int n);
 /// A pipe along z without ends. Open.
 TriangleMesh tube_mesh(double radius, double length, int n);
-/// A doubly curved plate, like a car door, about 2 * (2 n) * n * 2 triangles, normal along z. Closed.
+/// A doubly curved plate, like a car door, about 2 * (2 n) * n * 2 triangles, normal along z.
+/// Closed.
 TriangleMesh panel_mesh(double width, double height, double thickness, int n);
 void move(TriangleMesh& mesh, const Pose& pose);
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
-/// An upright arm like the usual 7-axis ones: links l0 ... l7, joints j1 ... j7, one capsule each (l0: a box).
+/// An upright arm like the usual 7-axis ones: links l0 ... l7, joints j1 ... j7, one capsule each
+/// (l0: a box).
 RobotModel capsule_arm();
 /// An arm like capsule_arm(), but links 5 and 7 are about `gap`, m, apart at all joint values, and
 /// 1.1 gap nearer where sin q6 cos q7 = 1.

@@ -19,7 +19,9 @@ using namespace swivel::testing;
 std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   std::vector<Triangle> triangles;
   for (const auto& t : mesh.triangles) {
-    const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    const auto corner = [&](std::size_t k) {
+      return mesh.vertices[static_cast<std::size_t>(t[k])];
+    };
     if ((corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() > 1e-12)
       triangles.emplace_back(corner(0), corner(1), corner(2));
   }
@@ -30,11 +32,14 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
 double plain_distance(const Triangle& s, const Triangle& t) {
   constexpr double kFar = std::numeric_limits<double>::max();
   double least = kFar;
-  for (int k = 0; k < 3; ++k) least = std::min({least, squared_distance(s.edge(k), t, kFar), squared_distance(t.edge(k), s, kFar)});
+  for (int k = 0; k < 3; ++k)
+    least = std::min(
+        {least, squared_distance(s.edge(k), t, kFar), squared_distance(t.edge(k), s, kFar)});
   return std::sqrt(least);
 }
 
-/// Two surfaces, the second in the frame of the first: shells a little apart, as links are, or bodies anywhere.
+/// Two surfaces, the second in the frame of the first: shells a little apart, as links are, or
+/// bodies anywhere.
 struct Pair {
   TriangleMesh a, b;
   Pose b_in_a = Pose::Identity();
@@ -54,7 +59,8 @@ Pair random_pair(Random& random) {
       pair.b_in_a.translation().z() = 0.01 + gap;
       break;
     default:
-      pair = {torus_mesh(0.08, 0.02, 8), box_mesh(Vector3d(0.1, 0.05, 0.02), 1 + random.index(2)), random.pose(0.15)};
+      pair = {torus_mesh(0.08, 0.02, 8), box_mesh(Vector3d(0.1, 0.05, 0.02), 1 + random.index(2)),
+              random.pose(0.15)};
   }
   // Each somewhere in its frame, sometimes far from its origin, which costs digits.
   const double away = random.index(3) == 0 ? 20 : 0.2;
@@ -84,7 +90,8 @@ TEST(TriangleTree, DistancesAreThoseOfAllPairs) {
       }
     }
     constexpr double kRounding = 1e-9;
-    TrianglePair first{random.index(static_cast<int>(a.size())), random.index(static_cast<int>(b.size()))};
+    TrianglePair first{random.index(static_cast<int>(a.size())),
+                       random.index(static_cast<int>(b.size()))};
     for (const double limit : {1e6, least + 0.002, least + 1e-6, 0.9 * least}) {
       ASSERT_GE(tree.distance_at(other, pair.b_in_a, first), least - kRounding) << trial;
       const double found = tree.distance(other, pair.b_in_a, 0, limit, first);
@@ -104,15 +111,16 @@ TEST(TriangleTree, DistancesAreThoseOfAllPairs) {
       const std::set<int> in(listed.begin(), listed.end());
       for (std::size_t k = 0; k < distances.size(); ++k)
         if (std::abs(distances[k] - limit) > kRounding) {
-          ASSERT_EQ(in.count(static_cast<int>(k)) > 0, distances[k] < limit) << trial << " triangle " << k;
+          ASSERT_EQ(in.count(static_cast<int>(k)) > 0, distances[k] < limit)
+              << trial << " triangle " << k;
         }
       pairs_near += static_cast<int>(in.size());
     };
     check(near[0], nearest_a);
     check(near[1], nearest_b);
   }
-  std::printf("%d distances, %d beyond their limit, %d that are near enough, %d triangles near\n", exact, beyond, enough,
-              pairs_near);
+  std::printf("%d distances, %d beyond their limit, %d that are near enough, %d triangles near\n",
+              exact, beyond, enough, pairs_near);
   EXPECT_GT(exact, 300);
   EXPECT_GT(beyond, 100);
   EXPECT_GT(pairs_near, 5000);

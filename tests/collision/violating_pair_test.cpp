@@ -33,7 +33,8 @@ class Walk {
   }
   void turn() {
     const double length = std::pow(10, random_->uniform(-4, -1));
-    for (int j = 0; j < kDof; ++j) step_[j] = random_->coin(0.3) ? 0 : random_->uniform(-length, length);
+    for (int j = 0; j < kDof; ++j)
+      step_[j] = random_->coin(0.3) ? 0 : random_->uniform(-length, length);
   }
   const Chain* chain_;
   Random* random_;
@@ -70,26 +71,33 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       const Config& q = walk.next();
       const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
       std::optional<BodyPair> suspected;
-      if (random.coin(0.2)) suspected = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
+      if (random.coin(0.2))
+        suspected = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
       const Threshold threshold =
-          special ? Threshold(ClearanceRule::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01)) : Threshold(d);
+          special ? Threshold(ClearanceRule::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01))
+                  : Threshold(d);
       const auto expected = plain.find_violating_pair(q, threshold, suspected),
                  found = kept.find_violating_pair_incremental(q, threshold, suspected);
-      ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene " << s << " posture " << k << " d "
-                                 << d;
+      ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene "
+                                 << s << " posture " << k << " d " << d;
       if (found && kept.violation_is_proved()) {
-        const double required = special ? world.required_clearance(*found).node + threshold.more : d;
-        ASSERT_TRUE(required <= kVerdictBand || plain.pair_violates(q, *found, required - kVerdictBand));
+        const double required =
+            special ? world.required_clearance(*found).node + threshold.more : d;
+        ASSERT_TRUE(required <= kVerdictBand ||
+                    plain.pair_violates(q, *found, required - kVerdictBand));
         reduced += special && world.required_clearance(*found).node < 0.04;
       }
       if (random.coin(0.2)) {
         const auto of_scene = [&]() -> std::optional<BodyPair> {
           if (suspected && plain.pair_violates(q, *suspected, threshold)) return suspected;
           for (const BodyPair& pair : world.pairs())
-            if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_violates(q, pair, threshold)) return pair;
+            if (pair.b >= static_cast<int>(world.bodies().size()) &&
+                plain.pair_violates(q, pair, threshold))
+              return pair;
           return std::nullopt;
         }();
-        ASSERT_EQ(kept.find_violating_pair_with_scene(q, threshold, suspected), of_scene) << "SWIVEL_TEST_SEED=" << base;
+        ASSERT_EQ(kept.find_violating_pair_with_scene(q, threshold, suspected), of_scene)
+            << "SWIVEL_TEST_SEED=" << base;
         ++scene_questions;
         only_own += found && !of_scene;
       }
@@ -111,16 +119,21 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
     plain_counters += plain.counters();
   }
   std::printf(
-      "%s: %lld questions (%lld answered by a pair, %lld turns from free to not or back), %.1f of %.1f pairs a question kept, "
+      "%s: %lld questions (%lld answered by a pair, %lld turns from free to not or back), %.1f of "
+      "%.1f pairs a question kept, "
       "%lld FCL calls for %lld\n",
-      robot.name.c_str(), static_cast<long long>(questions), static_cast<long long>(named), static_cast<long long>(turned),
+      robot.name.c_str(), static_cast<long long>(questions), static_cast<long long>(named),
+      static_cast<long long>(turned),
       static_cast<double>(kept_counters.pairs_kept) / static_cast<double>(questions),
-      static_cast<double>(pairs) / static_cast<double>(questions), static_cast<long long>(kept_counters.fcl_calls),
+      static_cast<double>(pairs) / static_cast<double>(questions),
+      static_cast<long long>(kept_counters.fcl_calls),
       static_cast<long long>(plain_counters.fcl_calls));
   std::printf(
-      "%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at which only the robot's own were "
+      "%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at "
+      "which only the robot's own were "
       "near\n",
-      static_cast<long long>(reduced), static_cast<long long>(scene_questions), static_cast<long long>(only_own));
+      static_cast<long long>(reduced), static_cast<long long>(scene_questions),
+      static_cast<long long>(only_own));
   EXPECT_GT(scene_questions, questions / 10);
   EXPECT_EQ(plain_counters.pairs_kept, 0);
   EXPECT_GT(kept_counters.pairs_kept, pairs / 4);
@@ -138,8 +151,10 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
   const test::TestRobot robot = test::all_robots()[0];
   const ArmModel arm = test::arm_of(robot);
   Problem problem = test::problem_for(robot);
-  problem.attached.push_back({"block", Box{Vector3d(0.08, 0.06, 0.1)}, Pose(Eigen::Translation3d(0, 0, 0.1)), robot.tip_link});
-  problem.attached.push_back({"rod", Cylinder{0.03, 0.1}, Pose(Eigen::Translation3d(0, 0, 0.2)), robot.tip_link});
+  problem.attached.push_back({"block", Box{Vector3d(0.08, 0.06, 0.1)},
+                              Pose(Eigen::Translation3d(0, 0, 0.1)), robot.tip_link});
+  problem.attached.push_back(
+      {"rod", Cylinder{0.03, 0.1}, Pose(Eigen::Translation3d(0, 0, 0.2)), robot.tip_link});
   const MeshPtr fine = testing::as_mesh(testing::panel_mesh(0.6, 0.4, 0.04, 30), "fine panel");
   const MeshPtr coarse = testing::as_mesh(testing::panel_mesh(0.6, 0.4, 0.04, 2), "coarse panel");
   int below = 0, proved = 0, soon = 0;
@@ -154,7 +169,8 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
       for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.2, 0.2);
       const double d = random.uniform(0, 0.03);
       for (const BodyPair& pair : world.pairs()) {
-        const bool too_near = fcl.pair_violates(q, pair, d), certain = query.proves_violation(q, pair, d);
+        const bool too_near = fcl.pair_violates(q, pair, d),
+                   certain = query.proves_violation(q, pair, d);
         if (certain) {
           ASSERT_TRUE(too_near && query.violation_is_proved())
               << "SWIVEL_TEST_SEED=" << base << " scene " << scene << " posture " << k;
@@ -173,19 +189,23 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
   EXPECT_GE(proved, below * 3 / 4);
 }
 
-/// No point of a box moves further than the bound says, and for a turn about the box's own z axis a rod on it does not move at all.
+/// No point of a box moves further than the bound says, and for a turn about the box's own z axis a
+/// rod on it does not move at all.
 TEST(Motion, BoundsEveryPoint) {
   Random random(test::seed("Motion"));
   int points = 0;
   double tightest = 0;
   for (int k = 0; k < 20000; ++k) {
     Bound bound;
-    bound.center = Vector3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
-    bound.half = Vector3d(random.uniform(0, 0.2), random.coin() ? 0 : random.uniform(0, 0.2), random.uniform(0, 0.5));
+    bound.center =
+        Vector3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+    bound.half = Vector3d(random.uniform(0, 0.2), random.coin() ? 0 : random.uniform(0, 0.2),
+                          random.uniform(0, 0.5));
     const Pose from = test::random_pose(random, Vector3d::Zero(), 1);
     const Vector3d axis = test::random_pose(random, Vector3d::Zero(), 1).linear().col(0);
     Pose to = from * Eigen::AngleAxisd(std::pow(10, random.uniform(-4, 0.5)), axis);
-    to.translation() += random.coin(0.3) ? Vector3d(Vector3d::Zero()) : Vector3d(0.1 * random.uniform(0, 1) * axis);
+    to.translation() +=
+        random.coin(0.3) ? Vector3d(Vector3d::Zero()) : Vector3d(0.1 * random.uniform(0, 1) * axis);
     const double most = motion(bound, place(bound, from), place(bound, to));
     for (int corner = 0; corner < 8; ++corner) {
       const Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
@@ -201,7 +221,9 @@ TEST(Motion, BoundsEveryPoint) {
   Bound rod;
   rod.half.z() = 0.3;
   const Pose from = test::random_pose(random, Vector3d::Zero(), 1);
-  EXPECT_LT(motion(rod, place(rod, from), place(rod, from * Eigen::AngleAxisd(1.0, Vector3d::UnitZ()))), 1e-12);
+  EXPECT_LT(
+      motion(rod, place(rod, from), place(rod, from * Eigen::AngleAxisd(1.0, Vector3d::UnitZ()))),
+      1e-12);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ RobotModel mixed_arm() {
   return robot;
 }
 
-Pose pose_of(const World& world, const Chain& chain, const std::vector<SceneObject>& scene, int index, const Config& q) {
+Pose pose_of(const World& world, const Chain& chain, const std::vector<SceneObject>& scene,
+             int index, const Config& q) {
   const std::size_t i = static_cast<std::size_t>(index), robots = world.bodies().size();
   if (i >= robots) return scene[i - robots].pose;
   return chain.displacements(q)[world.bodies()[i].group] * world.bodies()[i].pose;
@@ -60,7 +61,8 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
   const ArmModel arm = arm_of(robot);
   Problem problem = problem_for(robot);
   problem.scene = mixed_scene();
-  problem.scene[0].shape = as_mesh(panel_mesh(1.0, 0.8, 0.04, 2), "panel");  // the reference is slow
+  problem.scene[0].shape =
+      as_mesh(panel_mesh(1.0, 0.8, 0.04, 2), "panel");  // the reference is slow
   const World world(robot, arm, problem);
   World::Query query(world);
   Random random(31);
@@ -69,8 +71,9 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
     const Config q = random.config(2.0);
     std::vector<double> truth;
     for (const BodyPair& p : world.pairs())
-      truth.push_back(reference_clearance(shape_of(world, problem.scene, p.a), pose_of(world, arm.chain, problem.scene, p.a, q),
-                                          shape_of(world, problem.scene, p.b), pose_of(world, arm.chain, problem.scene, p.b, q)));
+      truth.push_back(reference_clearance(
+          shape_of(world, problem.scene, p.a), pose_of(world, arm.chain, problem.scene, p.a, q),
+          shape_of(world, problem.scene, p.b), pose_of(world, arm.chain, problem.scene, p.b, q)));
     const double least = *std::min_element(truth.begin(), truth.end());
     const auto found = query.clearance(q);
     ASSERT_TRUE(found);
@@ -79,7 +82,8 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
       const auto first = query.find_violating_pair(q, d);
       std::size_t expected = 0;
       bool band = false;
-      for (; expected < truth.size() && truth[expected] >= d && truth[expected] > 0; ++expected) band |= truth[expected] < d + kTau;
+      for (; expected < truth.size() && truth[expected] >= d && truth[expected] > 0; ++expected)
+        band |= truth[expected] < d + kTau;
       if (band) continue;
       if (expected < truth.size() && truth[expected] > 0 && truth[expected] > d - kTau) continue;
       ASSERT_EQ(first.has_value(), expected < truth.size()) << least << " " << d;
@@ -107,7 +111,8 @@ TEST(World, TheLikelyPairIsAskedFirst) {
     const Config q = random.config(2.5);
     const BodyPair suspected = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
     const bool guilty = query.pair_violates(q, suspected, 0.005);
-    const auto plain = query.find_violating_pair(q, 0.005), found = query.find_violating_pair(q, 0.005, suspected);
+    const auto plain = query.find_violating_pair(q, 0.005),
+               found = query.find_violating_pair(q, 0.005, suspected);
     ASSERT_EQ(plain.has_value(), found.has_value());
     if (!found) {
       ++none;
@@ -188,7 +193,8 @@ TEST(World, ThreadsAndHistoryChangeNothing) {
   };
   Random random(33);
   std::vector<Question> questions;
-  for (int k = 0; k < 1000; ++k) questions.push_back({random.config(2.0), k % 3 == 0 ? 0.005 : random.uniform(0, 0.05)});
+  for (int k = 0; k < 1000; ++k)
+    questions.push_back({random.config(2.0), k % 3 == 0 ? 0.005 : random.uniform(0, 0.05)});
   using Answer = std::pair<int, int>;
   const auto ask = [&](World::Query& query, std::size_t k) {
     const auto pair = query.find_violating_pair(questions[k].q, questions[k].d);

@@ -40,7 +40,9 @@ Problem random_path(const Chain& chain, double length, double ds, Random& random
   problem.waypoints.push_back(waypoint_of(tool));
   const int waypoints = 1 + random.below(3);
   for (int k = 0; k < waypoints; ++k) {
-    const auto any = [&] { return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    const auto any = [&] {
+      return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    };
     tool.translation() += length / waypoints * any().normalized();
     if (random.coin()) tool.rotate(Eigen::AngleAxisd(random.uniform(0, 0.6), any().normalized()));
     problem.waypoints.push_back(waypoint_of(tool));
@@ -87,10 +89,12 @@ Found cheapest(const Lattice& lattice) {
   return found;
 }
 
-/// Cost of rows moved along their curves of self-motion, inside the limits, until no move of 1e-3 gains 1e-6.
+/// Cost of rows moved along their curves of self-motion, inside the limits, until no move of 1e-3
+/// gains 1e-6.
 double relaxed(const ArcLattice& lattice, const SelfMotion& motion, const Found& found) {
   std::vector<Config> rows;
-  for (int i = 0; i < lattice.layers(); ++i) rows.push_back(lattice.point(i, found.slots[static_cast<std::size_t>(i)]).q);
+  for (int i = 0; i < lattice.layers(); ++i)
+    rows.push_back(lattice.point(i, found.slots[static_cast<std::size_t>(i)]).q);
   const auto around = [&](std::size_t i, const Config& q) {
     double cost = 0;
     for (const std::size_t other : {i - 1, i + 1}) {
@@ -110,7 +114,8 @@ double relaxed(const ArcLattice& lattice, const SelfMotion& motion, const Found&
         const Config null = qr.householderQ() * Config::Unit(kDof - 1);
         const double before = around(i, rows[i]);
         for (const double sign : {1.0, -1.0}) {
-          auto q = motion.image(rows[i] + sign * step * null, lattice.path().layer(static_cast<int>(i)).tool);
+          auto q = motion.image(rows[i] + sign * step * null,
+                                lattice.path().layer(static_cast<int>(i)).tool);
           if (!q || !motion.canonical(*q)) continue;
           const double after = around(i, *q);
           if (after < before - 1e-9) {
@@ -123,7 +128,8 @@ double relaxed(const ArcLattice& lattice, const SelfMotion& motion, const Found&
       if (gain < 1e-6) break;
     }
   double cost = 0;
-  for (std::size_t i = 0; i + 1 < rows.size(); ++i) cost += lattice.edge_cost(lattice.delta(rows[i], rows[i + 1]));
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i)
+    cost += lattice.edge_cost(lattice.delta(rows[i], rows[i + 1]));
   return cost;
 }
 
@@ -173,20 +179,26 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
             const auto& next = lattice.point(i, point.beside[1]);
             EXPECT_EQ(next.beside[0], slot);
             double chord = 0;
-            for (int j = 0; j < kDof; ++j) chord += std::pow(std::remainder(next.q[j] - point.q[j], kTwoPi), 2);
+            for (int j = 0; j < kDof; ++j)
+              chord += std::pow(std::remainder(next.q[j] - point.q[j], kTwoPi), 2);
             EXPECT_LE(std::sqrt(chord), 1.5 * problem.resolution.arc + 1e-2);
           } else {
             on_limit.push_back(slot);
           }
         }
         // Of a pair of arcs both have the same nodes, which continue each other's like.
-        for (int slot = 0, half = lattice.slots(i) / 2; motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
+        for (int slot = 0, half = lattice.slots(i) / 2;
+             motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
           const int other = slot < half ? slot + half : slot - half;
-          EXPECT_LT(lattice.delta(motion.flipped(lattice.point(i, slot).q), lattice.point(i, other).q).norm(), 1e-9);
+          EXPECT_LT(
+              lattice.delta(motion.flipped(lattice.point(i, slot).q), lattice.point(i, other).q)
+                  .norm(),
+              1e-9);
           const int before = lattice.point(i, slot).along[0];
           if (before < 0) continue;
           const int half_before = lattice.slots(i - 1) / 2;
-          EXPECT_EQ(lattice.point(i, other).along[0], before < half_before ? before + half_before : before - half_before);
+          EXPECT_EQ(lattice.point(i, other).along[0],
+                    before < half_before ? before + half_before : before - half_before);
           ++twins;
         }
         // Every end of an arc is a node, bit for bit.
@@ -204,8 +216,9 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
       EXPECT_EQ(nodes, lattice.nodes());
     }
   }
-  std::printf("  %d nodes on limits, %d transported, %d filled, %d continue the like of their twins\n", ends, transported, filled,
-              twins);
+  std::printf(
+      "  %d nodes on limits, %d transported, %d filled, %d continue the like of their twins\n",
+      ends, transported, filled, twins);
   EXPECT_GE(twins, at_least(500));
   EXPECT_GE(ends, at_least(300));
   EXPECT_GT(transported, 3 * filled);
@@ -213,7 +226,8 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
 
 TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
   Random random(seed("ArcLattice.PathsCostLittleMoreThanTheBestKnown"));
-  std::vector<double> plain, others;  // by the norm of joints alike; by the largest of them, or weighted
+  std::vector<double> plain,
+      others;  // by the norm of joints alike; by the largest of them, or weighted
   for (const ArmTable& table : arms()) {
     const Chain chain = chain_of(table);
     const LockMethod method = lock_method(chain);
@@ -224,7 +238,8 @@ TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
     for (int trial = 0; trial < trials(4); ++trial) {
       Problem problem = random_path(chain, 0.3, 0.02, random);
       if (trial % 2 == 1) problem.cost.metric = CostMetric::kMax;
-      for (std::size_t j = 0; trial % 4 == 3 && j < kDof; ++j) problem.cost.weights[j] = random.uniform(0.2, 3);
+      for (std::size_t j = 0; trial % 4 == 3 && j < kDof; ++j)
+        problem.cost.weights[j] = random.uniform(0.2, 3);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const ArcLattice lattice(chain, method, path, problem);
       nodes += static_cast<double>(lattice.nodes()) / lattice.layers();
@@ -237,16 +252,18 @@ TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
         ++unsolved;
         continue;
       }
-      const double least = std::min({best.cost, relaxed(reference, motion, best), relaxed(lattice, motion, found)});
+      const double least =
+          std::min({best.cost, relaxed(reference, motion, best), relaxed(lattice, motion, found)});
       ratio.push_back(found.cost / least);
       (trial % 2 == 1 ? others : plain).push_back(ratio.back());
     }
     std::sort(ratio.begin(), ratio.end());
     if (ratio.empty()) continue;
     std::printf(
-        "  %s: %zu paths (%d without one), %.0f nodes a layer, cost over the best known: median %.4f, 95 %% %.4f, most %.4f\n",
-        table.name.c_str(), ratio.size(), unsolved, nodes / trials(4), ratio[ratio.size() / 2], ratio[ratio.size() * 19 / 20],
-        ratio.back());
+        "  %s: %zu paths (%d without one), %.0f nodes a layer, cost over the best known: median "
+        "%.4f, 95 %% %.4f, most %.4f\n",
+        table.name.c_str(), ratio.size(), unsolved, nodes / trials(4), ratio[ratio.size() / 2],
+        ratio[ratio.size() * 19 / 20], ratio.back());
   }
   for (auto* const all : {&plain, &others}) {
     std::sort(all->begin(), all->end());
@@ -266,19 +283,23 @@ TEST(ArcLattice, WithoutAClosedFormArcsAreFollowedFromLayerToLayer) {
     for (int trial = 0; trial < trials(4); ++trial) {
       const Problem problem = random_path(chain, 0.2, 0.02, random);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-      const ArcLattice whole(chain, lock_method(chain), path, problem), sampled(chain, LockMethod{}, path, problem);
+      const ArcLattice whole(chain, lock_method(chain), path, problem),
+          sampled(chain, LockMethod{}, path, problem);
       all += whole.arcs();
       found += sampled.arcs();
       for (int i = 0; i < sampled.layers(); ++i)
         for (int slot = 0; slot < sampled.slots(i); ++slot)
-          EXPECT_LT((chain.tool(sampled.point(i, slot).q).matrix() - path.layer(i).tool.matrix()).norm(), 1e-9);
+          EXPECT_LT(
+              (chain.tool(sampled.point(i, slot).q).matrix() - path.layer(i).tool.matrix()).norm(),
+              1e-9);
       const Found best = cheapest(whole), other = cheapest(sampled);
       if (best.cost == kNone) continue;
       ++solved;
       EXPECT_LE(other.cost, 1.05 * best.cost);
     }
   }
-  std::printf("  %d arcs of %d, %d paths\n", static_cast<int>(found), static_cast<int>(all), solved);
+  std::printf("  %d arcs of %d, %d paths\n", static_cast<int>(found), static_cast<int>(all),
+              solved);
   EXPECT_GE(solved, at_least(3));
   EXPECT_GE(static_cast<double>(found), 0.98 * static_cast<double>(all));
 }
@@ -301,7 +322,8 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
     // Any path will do: follow a random node along its images.
     for (int attempt = 0; attempt < 20; ++attempt) {
       std::vector<int> slots;
-      for (int i = 0, slot = lattice.slots(0) > 0 ? random.below(lattice.slots(0)) : -1; i < lattice.layers() && slot >= 0; ++i) {
+      for (int i = 0, slot = lattice.slots(0) > 0 ? random.below(lattice.slots(0)) : -1;
+           i < lattice.layers() && slot >= 0; ++i) {
         slots.push_back(slot);
         slot = lattice.neighbour_along_path(i, slot, 1);
       }
@@ -317,9 +339,9 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
           bool inside = true;
           for (std::size_t i = 0; i < slots.size(); ++i) {
             if (i > 0)
-              q += std::remainder(
-                  lattice.point(static_cast<int>(i), slots[i]).q[at] - lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
-                  kTwoPi);
+              q += std::remainder(lattice.point(static_cast<int>(i), slots[i]).q[at] -
+                                      lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
+                                  kTwoPi);
             inside = inside && q >= chain.limit[j].lower && q <= chain.limit[j].upper;
           }
           fits[j] = fits[j] || inside;
@@ -328,18 +350,24 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
       if (const auto* rows = std::get_if<ArcLattice::Rows>(&result)) {
         ++unwrapped;
         for (std::size_t i = 0; i < rows->size(); ++i) {
-          EXPECT_LT((chain.tool((*rows)[i]).matrix() - path.layer(static_cast<int>(i)).tool.matrix()).norm(), 1e-9);
+          EXPECT_LT(
+              (chain.tool((*rows)[i]).matrix() - path.layer(static_cast<int>(i)).tool.matrix())
+                  .norm(),
+              1e-9);
           for (std::size_t j = 0; j < kDof; ++j) {
             const double q = (*rows)[i][static_cast<Eigen::Index>(j)];
-            EXPECT_TRUE(chain.limit[j].continuous || (q >= chain.limit[j].lower && q <= chain.limit[j].upper));
+            EXPECT_TRUE(chain.limit[j].continuous ||
+                        (q >= chain.limit[j].lower && q <= chain.limit[j].upper));
           }
         }
       } else {
         ++wound;
         const auto& joints = std::get<ArcLattice::Joints>(result);
-        for (std::size_t j = 0; j < kDof; ++j) EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
+        for (std::size_t j = 0; j < kDof; ++j)
+          EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
         const std::unique_ptr<Lattice> wound_lattice = lattice.with_windings(joints);
-        for (std::size_t j = 0; j < kDof; ++j) EXPECT_EQ(wound_lattice->continuous()[j], lattice.continuous()[j] && !joints[j]);
+        for (std::size_t j = 0; j < kDof; ++j)
+          EXPECT_EQ(wound_lattice->continuous()[j], lattice.continuous()[j] && !joints[j]);
         EXPECT_GE(wound_lattice->nodes(), lattice.nodes());
         const Found found = cheapest(*wound_lattice);
         EXPECT_GE(found.cost, cheapest(lattice).cost);  // also where there is none
@@ -371,7 +399,8 @@ TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
       ++tried;
       if (const int next = lattice.neighbour_along_path(0, 0, 1); next >= 0) {
         ++continued;
-        for (int j = 0; j < kDof; ++j) EXPECT_LT(std::abs(std::remainder(lattice.point(1, next).q[j] - start[j], kTwoPi)), 1.5);
+        for (int j = 0; j < kDof; ++j)
+          EXPECT_LT(std::abs(std::remainder(lattice.point(1, next).q[j] - start[j], kTwoPi)), 1.5);
       }
       const Found found = cheapest(lattice);
       if (found.cost == kNone) continue;

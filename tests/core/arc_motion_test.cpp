@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions of arms without an arm angle, and lengths along their self-motion, each against what is plainly right.
+// Motions of arms without an arm angle, and lengths along their self-motion, each against what is
+// plainly right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +36,8 @@ std::vector<Chain> chains() {
   result.push_back(arm_of(offset_robot()).chain);
   for (const char* const name : {"kr6_like", "ur5e_like"}) {
     const TestRobot robot = data_robot(name);
-    result.push_back(build_arm(*robot.model, robot.base_link, "flange", {}, Pose::Identity(), Roll{}).chain);
+    result.push_back(
+        build_arm(*robot.model, robot.base_link, "flange", {}, Pose::Identity(), Roll{}).chain);
   }
   return result;
 }
@@ -49,15 +51,19 @@ std::optional<Drifting> drifting(const Chain& chain, Random& random) {
     Waypoint to = waypoints.back();
     if (random.coin(0.8)) to.position += random_vector(random, random.uniform(0.02, 0.06));
     const Vector3d turn = random_vector(random, random.uniform(0.05, 0.3));
-    to.orientation = (to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()))).normalized();
+    to.orientation =
+        (to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())))
+            .normalized();
     waypoints.push_back(to);
   }
-  d.path.emplace(waypoints, Resolution{.ds = 0.01, .dphi = 0.05, .dalpha = 0.1}, "test", Budget(), PathSmoothing{});
+  d.path.emplace(waypoints, Resolution{.ds = 0.01, .dphi = 0.05, .dalpha = 0.1}, "test", Budget(),
+                 PathSmoothing{});
   const SelfMotion motion(chain, d.kind.lock, 0);
   Config way = Config::Zero();
   for (int i = 0; i < d.path->size(); ++i) {
     for (double& joint : way) joint += random.uniform(-0.01, 0.01);
-    const auto image = motion.image(q + (i == 0 ? Config(Config::Zero()) : way), d.path->layer(i).tool);
+    const auto image =
+        motion.image(q + (i == 0 ? Config(Config::Zero()) : way), d.path->layer(i).tool);
     if (!image || (*image - q).lpNorm<Eigen::Infinity>() > 0.3) return std::nullopt;
     q = *image;
     d.rows.push_back({d.path->layer(i).s, 0, 0, q});
@@ -86,7 +92,8 @@ TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
       const auto q = motion->joints(x);
       ASSERT_TRUE(q) << trial;
       ++places;
-      off_path = std::max(off_path, (d->chain.tool(*q).matrix() - d->path->at_travel(x).matrix()).norm());
+      off_path =
+          std::max(off_path, (d->chain.tool(*q).matrix() - d->path->at_travel(x).matrix()).norm());
       const TrajectoryRow row = motion->row(x, *q);
       EXPECT_EQ(row.q, *q);
       EXPECT_TRUE(!d->chain.roll || row.phi == (*q)[kDof - 1]);
@@ -97,14 +104,18 @@ TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     limits.joint_jerk.emplace().fill(random.uniform(20, 300));
     const JointRates rates = joint_rates(d->chain, limits, "test");
     EXPECT_EQ(std::isfinite(rates.speed[kDof - 1]), !d->chain.roll);
-    const TimingOptions options{.speed = random.coin() ? 0.05 : 0.25, .turn_speed = {}, .rate = random.coin() ? 250.0 : 1000.0};
+    const TimingOptions options{.speed = random.coin() ? 0.05 : 0.25,
+                                .turn_speed = {},
+                                .rate = random.coin() ? 250.0 : 1000.0};
     const TimingResult result = time_path(*motion, rates, options);
     ASSERT_TRUE(result.motion) << trial << ": " << result.failure->reason;
     ++timed;
     const std::vector<TimedRow>& rows = result.motion->rows;
     const double dt = 1 / options.rate;
     const auto n = static_cast<std::ptrdiff_t>(rows.size());
-    const auto q = [&](std::ptrdiff_t k) { return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q; };
+    const auto q = [&](std::ptrdiff_t k) {
+      return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
+    };
     for (std::ptrdiff_t k = -3; k < n + 3; ++k) {
       const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
                    j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
@@ -114,8 +125,10 @@ TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
       ++samples;
     }
   }
-  std::printf("%d motions, %d samples, %d places: within %.2g of the path, %.2g rad of the rows; worst ratios %.4f %.4f %.4f\n",
-              timed, samples, places, off_path, off_rows, worst[0], worst[1], worst[2]);
+  std::printf(
+      "%d motions, %d samples, %d places: within %.2g of the path, %.2g rad of the rows; worst "
+      "ratios %.4f %.4f %.4f\n",
+      timed, samples, places, off_path, off_rows, worst[0], worst[1], worst[2]);
   EXPECT_LE(off_path, 1e-9);
   EXPECT_LE(off_rows, 1e-8);
   for (const double ratio : worst) EXPECT_LE(ratio, 1 + 1e-9);
@@ -132,7 +145,8 @@ TEST(ArcMotion, MovesRowsOffLimits) {
     Random random(base + static_cast<std::uint64_t>(trial));
     auto d = drifting(all[static_cast<std::size_t>(trial) % all.size()], random);
     if (!d) continue;
-    // The limit of some joint is put where it is largest, and rows are taken to it wherever they come within a hundredth.
+    // The limit of some joint is put where it is largest, and rows are taken to it wherever they
+    // come within a hundredth.
     const auto joint = static_cast<std::size_t>(random.below(d->chain.roll ? kDof - 1 : kDof));
     const auto at = static_cast<Eigen::Index>(joint);
     double most = -1e9;
@@ -157,7 +171,8 @@ TEST(ArcMotion, MovesRowsOffLimits) {
     EXPECT_LE(*after, *before + 1e-9) << trial;
     kept += *after <= 1e-9;
   }
-  std::printf("%d of %d motions leave a limit that no row leaves, %d of them no more\n", left, tried, kept);
+  std::printf("%d of %d motions leave a limit that no row leaves, %d of them no more\n", left,
+              tried, kept);
   EXPECT_GE(left, at_least(3));
   EXPECT_GE(kept, at_least(left / 2));
 }
@@ -205,7 +220,8 @@ TEST(ArcLengths, AreThoseOfAWalkInSmallSteps) {
     if (!from || !to) continue;
     const double z = lengths.between(layer, layer - 1, x, layer + 1, y);
     if (z == 0) continue;  // there is none near
-    const double t = (lengths.travel(layer) - lengths.travel(layer - 1)) / (lengths.travel(layer + 1) - lengths.travel(layer - 1));
+    const double t = (lengths.travel(layer) - lengths.travel(layer - 1)) /
+                     (lengths.travel(layer + 1) - lengths.travel(layer - 1));
     const Config middle = *from + t * (*to - *from);
     ++nearest;
     for (const double other : {z - 0.01, z + 0.01})
@@ -213,7 +229,8 @@ TEST(ArcLengths, AreThoseOfAWalkInSmallSteps) {
         EXPECT_LE((*at(z) - middle).norm(), (*q - middle).norm() + 1e-4) << trial;
       }
   }
-  std::printf("%d places compared, at most %.2g rad apart; %d between layers\n", compared, worst, nearest);
+  std::printf("%d places compared, at most %.2g rad apart; %d between layers\n", compared, worst,
+              nearest);
   EXPECT_LE(worst, 5e-3);
   EXPECT_GE(compared, at_least(100));
   EXPECT_GE(nearest, at_least(8));

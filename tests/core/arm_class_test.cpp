@@ -21,7 +21,8 @@ TEST(ArmClass, NamesKindMethodAndCompleteness) {
     EXPECT_EQ(arm.lock.best >= 0, expected == ArmKind::kArcs) << table.name;
     (expected == ArmKind::kSrs ? srs : expected == ArmKind::kArcs ? arcs : sampled) += 1;
   };
-  for (const ArmTable& table : arms_7r()) count(table, table.name == "iiwa7" ? ArmKind::kSrs : ArmKind::kArcs);
+  for (const ArmTable& table : arms_7r())
+    count(table, table.name == "iiwa7" ? ArmKind::kSrs : ArmKind::kArcs);
   for (const ArmTable& table : arms_6r()) count(table, ArmKind::kArcs);
   // An arm like Sawyer: every triple is 1 cm and more from a point.
   ArmTable none = arms_7r()[0];
@@ -31,7 +32,8 @@ TEST(ArmClass, NamesKindMethodAndCompleteness) {
   EXPECT_EQ(arcs, static_cast<int>(arms_7r().size() + arms_6r().size()) - 1);
   EXPECT_EQ(sampled, 1);
   EXPECT_EQ(classify(chain_of(arms_7r()[0]), "panda").method(),
-            "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7); arcs of self-motion");
+            "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7); arcs of "
+            "self-motion");
   EXPECT_EQ(classify(chain_of(none), "none").completeness(), std::string("sampled"));
 }
 
@@ -46,9 +48,12 @@ TEST(ArmClass, NoArmOfSixJointsHasASeventh) {
   lock.best = 5;
   EXPECT_EQ(lock.words(), "closed form: axes 4, 5 and 7 meet in a point; locks joint 6 (or 7)");
   lock.roll = true;
-  EXPECT_EQ(lock.words(), "closed form: axes 4, 5 and that of the roll meet in a point; locks joint 6 (or the roll)");
+  EXPECT_EQ(
+      lock.words(),
+      "closed form: axes 4, 5 and that of the roll meet in a point; locks joint 6 (or the roll)");
   lock.best = 6;
-  EXPECT_EQ(lock.words(), "closed form: axes 4, 5 and 6 meet in a point; locks the roll (or joint 6)");
+  EXPECT_EQ(lock.words(),
+            "closed form: axes 4, 5 and 6 meet in a point; locks the roll (or joint 6)");
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ TEST(Arm, Sda5fHasTheDimensionsOfItsDataSheet) {
   }
 }
 
-/// Seen from the hand, the arm is the same with its joints in the other order: what stood moves, and what moved stands.
+/// Seen from the hand, the arm is the same with its joints in the other order: what stood moves,
+/// and what moved stands.
 TEST(Arm, TheHandMayBeTheBase) {
   Random random(seed("Arm.TheHandMayBeTheBase"));
   double worst = 0;
@@ -48,8 +49,10 @@ TEST(Arm, TheHandMayBeTheBase) {
     for (const Joint& joint : robot.model->joints)
       if (const auto& own = from_base.chain.joint_names;
           joint.movable() && !joint.mimic && std::count(own.begin(), own.end(), joint.name) == 0)
-        others[joint.name] = joint.type == Joint::Type::kContinuous ? 0 : std::clamp(0.0, joint.lower, joint.upper);
-    const ArmModel from_hand = build_arm(*robot.model, robot.tip_link, robot.base_link, others, Pose::Identity());
+        others[joint.name] =
+            joint.type == Joint::Type::kContinuous ? 0 : std::clamp(0.0, joint.lower, joint.upper);
+    const ArmModel from_hand =
+        build_arm(*robot.model, robot.tip_link, robot.base_link, others, Pose::Identity());
     for (std::size_t k = 0; k < kDof; ++k) {
       ASSERT_EQ(from_hand.chain.joint_names[k], from_base.chain.joint_names[kDof - 1 - k]);
       ASSERT_EQ(from_hand.chain.limit[k].lower, from_base.chain.limit[kDof - 1 - k].lower);
@@ -58,13 +61,15 @@ TEST(Arm, TheHandMayBeTheBase) {
     const auto hand = static_cast<std::size_t>(robot.model->find_link(robot.tip_link));
     for (int trial = 0; trial < trials(100); ++trial) {
       const Config q = random_config(from_base.chain, random);
-      const auto G = from_base.chain.displacements(q), H = from_hand.chain.displacements(q.reverse());
+      const auto G = from_base.chain.displacements(q),
+                 H = from_hand.chain.displacements(q.reverse());
       const auto pose = [&](const ArmModel& arm, const auto& moved, std::size_t link) {
         return moved[static_cast<std::size_t>(arm.links[link].group)] * arm.links[link].pose;
       };
       const Pose hand_in_base = pose(from_base, G, hand);
       for (std::size_t link = 0; link < robot.model->links.size(); ++link, ++links)
-        worst = std::max(worst, (pose(from_hand, H, link).matrix() - (hand_in_base.inverse() * pose(from_base, G, link)).matrix())
+        worst = std::max(worst, (pose(from_hand, H, link).matrix() -
+                                 (hand_in_base.inverse() * pose(from_base, G, link)).matrix())
                                     .lpNorm<Eigen::Infinity>());
     }
   }
@@ -75,8 +80,10 @@ TEST(Arm, TheHandMayBeTheBase) {
 
 TEST(Arm, HeldJointsAreNoneOfTheArms) {
   const TestRobot robot = data_robot("sda5f");
-  const std::string last = arm_of(robot).chain.joint_names.back(), first = arm_of(robot).chain.joint_names.front();
-  const ArmModel held = build_arm(*robot.model, robot.base_link, robot.tip_link, {{last, 0.5}}, Pose::Identity());
+  const std::string last = arm_of(robot).chain.joint_names.back(),
+                    first = arm_of(robot).chain.joint_names.front();
+  const ArmModel held =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, {{last, 0.5}}, Pose::Identity());
   EXPECT_EQ(held.chain.joint_names[1], first);  // after the torso's
   EXPECT_EQ(std::count(held.chain.joint_names.begin(), held.chain.joint_names.end(), last), 0);
   const TestRobot seven = data_robot("iiwa14");
@@ -101,13 +108,15 @@ TEST(Arm, DisplacementsAreTurnsAboutTheAxes) {
       Pose expected = Pose::Identity();
       for (std::size_t k = 0; k < kDof; ++k) {
         expected = expected * Eigen::Translation3d(chain.point[k]) *
-                   Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], chain.axis[k]) * Eigen::Translation3d(-chain.point[k]);
+                   Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], chain.axis[k]) *
+                   Eigen::Translation3d(-chain.point[k]);
         worst = std::max(worst, (G[k + 1].matrix() - expected.matrix()).lpNorm<Eigen::Infinity>());
         ++compared;
       }
       const Vector3d point = chain.tool_point(q.array().cos(), q.array().sin());
-      worst = std::max({worst, (point - expected * chain.home.translation()).norm(),
-                        (chain.tool(q).matrix() - (expected * chain.home).matrix()).lpNorm<Eigen::Infinity>()});
+      worst = std::max(
+          {worst, (point - expected * chain.home.translation()).norm(),
+           (chain.tool(q).matrix() - (expected * chain.home).matrix()).lpNorm<Eigen::Infinity>()});
     }
   }
   std::printf("%d displacements, worst error %.1e\n", compared, worst);
@@ -123,7 +132,8 @@ TEST(Arm, JacobianIsTheDerivativeOfTheTool) {
       const auto J = chain.jacobian(q);
       for (int k = 0; k < kDof; ++k) {
         const double h = 1e-6;
-        const Pose ahead = chain.tool(q + h * Config::Unit(k)), behind = chain.tool(q - h * Config::Unit(k));
+        const Pose ahead = chain.tool(q + h * Config::Unit(k)),
+                   behind = chain.tool(q - h * Config::Unit(k));
         const Vector3d linear = (ahead.translation() - behind.translation()) / (2 * h);
         const Eigen::AngleAxisd turn(ahead.linear() * behind.linear().transpose());
         EXPECT_LT((J.block<3, 1>(0, k) - linear).norm(), 1e-7);
@@ -145,14 +155,16 @@ TEST(Arm, MotionRadiiBoundEveryPointThatMoves) {
       Config q1 = q0;
       for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
       double bound = 0;
-      for (int j = 0; j < kDof; ++j) bound += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
+      for (int j = 0; j < kDof; ++j)
+        bound += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
       const auto G0 = arm.chain.displacements(q0), G1 = arm.chain.displacements(q1);
       for (const RobotBody& body : bodies)
         for (const Ball& ball : bounding_balls(body.shape)) {
-          // The farthest point of the ball from where it was: centre motion plus what its turn adds, bounded by sampling its
-          // surface.
+          // The farthest point of the ball from where it was: centre motion plus what its turn
+          // adds, bounded by sampling its surface.
           for (int k = 0; k < 6; ++k) {
-            const Vector3d x = body.pose * (ball.center + ball.radius * (k % 2 ? 1 : -1) * Vector3d::Unit(k / 2));
+            const Vector3d x =
+                body.pose * (ball.center + ball.radius * (k % 2 ? 1 : -1) * Vector3d::Unit(k / 2));
             const auto g = static_cast<std::size_t>(body.group);
             EXPECT_LE((G1[g] * x - G0[g] * x).norm(), bound + 1e-12) << robot.name;
             ++moved;
@@ -164,7 +176,8 @@ TEST(Arm, MotionRadiiBoundEveryPointThatMoves) {
 }
 
 TEST(Arm, RefusesWhatIsNotSrsAndSaysWhichAxesMiss) {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
   // Axis 7 offset by 88 mm from the others: the Panda's class.
   const TestRobot panda_like = synthetic_robot("panda_like",
                                                {{z * 0.333, z, -2.9, 2.9},
@@ -179,7 +192,8 @@ TEST(Arm, RefusesWhatIsNotSrsAndSaysWhichAxesMiss) {
     (void)fit_srs(arm_of(panda_like).chain, "panda_like");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("axes 6 and 7 miss each other by"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("axes 6 and 7 miss each other by"), std::string::npos)
+        << error.what();
     EXPECT_NE(std::string(error.what()).find("88.0 mm"), std::string::npos) << error.what();
   }
 }
@@ -189,10 +203,17 @@ TEST(Arm, HeldJointsAndWrongNames) {
   const Pose none = Pose::Identity();
   EXPECT_THROW((void)build_arm(*robot.model, "nowhere", robot.tip_link, {}, none), InputError);
   EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, "nowhere", {}, none), InputError);
-  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, "arm_left_link_4_u", {}, none), InputError);
-  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, robot.tip_link, {{"nope", 0.0}}, none), InputError);
-  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, robot.tip_link, {{"torso_joint_b1", 9.0}}, none), InputError);
-  const Chain turned = build_arm(*robot.model, robot.base_link, robot.tip_link, {{"torso_joint_b1", 0.5}}, none).chain;
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, "arm_left_link_4_u", {}, none),
+               InputError);
+  EXPECT_THROW(
+      (void)build_arm(*robot.model, robot.base_link, robot.tip_link, {{"nope", 0.0}}, none),
+      InputError);
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, robot.tip_link,
+                               {{"torso_joint_b1", 9.0}}, none),
+               InputError);
+  const Chain turned =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, {{"torso_joint_b1", 0.5}}, none)
+          .chain;
   const Chain straight = arm_of(robot).chain;
   const Eigen::AngleAxisd turn(0.5, Vector3d::UnitZ());
   const Vector3d axis_of_torso(0.045, 0, 0);
@@ -202,16 +223,18 @@ TEST(Arm, HeldJointsAndWrongNames) {
             1e-9);
 }
 
-/// sda5f behind three prismatic joints m1, m2, m3 along x, y, z; m1 follows m2 and m2 follows m3. In the order of `order` in the
-/// file.
+/// sda5f behind three prismatic joints m1, m2, m3 along x, y, z; m1 follows m2 and m2 follows m3.
+/// In the order of `order` in the file.
 RobotModel mimicking(const std::array<int, 3>& order) {
   RobotModel model = *data_robot("sda5f").model;
-  const int first_link = static_cast<int>(model.links.size()), first_joint = static_cast<int>(model.joints.size());
+  const int first_link = static_cast<int>(model.links.size()),
+            first_joint = static_cast<int>(model.joints.size());
   std::array<int, 3> index{};
   for (int place = 0; place < 3; ++place)
     index[static_cast<std::size_t>(order[static_cast<std::size_t>(place)])] = first_joint + place;
   for (int k = 0; k < 3; ++k)
-    model.links.push_back({"w" + std::to_string(k), {}, k == 0 ? -1 : index[static_cast<std::size_t>(k) - 1]});
+    model.links.push_back(
+        {"w" + std::to_string(k), {}, k == 0 ? -1 : index[static_cast<std::size_t>(k) - 1]});
   model.joints.resize(model.joints.size() + 3);
   for (std::size_t k = 0; k < 3; ++k) {
     Joint& joint = model.joints[static_cast<std::size_t>(index[k])];
@@ -237,7 +260,8 @@ TEST(Arm, MimicJointsFollowTheirLeadersInAnyOrderOfTheFile) {
   do {
     const RobotModel model = mimicking(order);
     const Chain chain = build_arm(model, "w0", robot.tip_link, {{"m3", 0.5}}, none).chain;
-    EXPECT_LT((chain.home.translation() - alone - Vector3d(2.3, 1.1, 0.5)).norm(), 1e-12) << chain.home.translation().transpose();
+    EXPECT_LT((chain.home.translation() - alone - Vector3d(2.3, 1.1, 0.5)).norm(), 1e-12)
+        << chain.home.translation().transpose();
     ++orders;
   } while (std::next_permutation(order.begin(), order.end()));
   EXPECT_EQ(orders, 6);
@@ -270,16 +294,19 @@ TEST(Arm, LongChainsNeedNoStackAndLinearTime) {
   }
   const ArmModel arm = build_arm(model, "base_link", "l0", {}, Pose::Identity());
   const TestRobot robot = data_robot("sda5f");
-  EXPECT_NEAR((arm.chain.home.translation() - arm_of(robot).chain.home.translation()).norm(), 1e-6 * kLinks, 1e-6);
+  EXPECT_NEAR((arm.chain.home.translation() - arm_of(robot).chain.home.translation()).norm(),
+              1e-6 * kLinks, 1e-6);
   EXPECT_EQ(arm.links[static_cast<std::size_t>(first_link)].group, kDof);
 }
 
 TEST(Arm, CylinderWithTwoSpheresReadsAsACapsule) {
   RobotModel model;
   model.links.push_back({"base", {}, -1});
-  PlacedShape cylinder{Cylinder{0.05, 0.3}, Pose(Eigen::Translation3d(0.1, 0, 0) * Eigen::AngleAxisd(0.7, Vector3d::UnitX()))};
+  PlacedShape cylinder{Cylinder{0.05, 0.3}, Pose(Eigen::Translation3d(0.1, 0, 0) *
+                                                 Eigen::AngleAxisd(0.7, Vector3d::UnitX()))};
   PlacedShape top{Sphere{0.05}, Pose(Eigen::Translation3d(cylinder.pose * Vector3d(0, 0, 0.15)))};
-  PlacedShape bottom{Sphere{0.05}, Pose(Eigen::Translation3d(cylinder.pose * Vector3d(0, 0, -0.15)))};
+  PlacedShape bottom{Sphere{0.05},
+                     Pose(Eigen::Translation3d(cylinder.pose * Vector3d(0, 0, -0.15)))};
   PlacedShape lone{Sphere{0.05}, Pose::Identity()};
   model.links[0].collision = {lone, top, cylinder, bottom};
   ArmModel arm;
@@ -309,7 +336,9 @@ TEST(Scale, LimitsOfMillimetresAreSuspected) {
   const std::vector<std::string> warnings = limit_scale_warnings(chain, problem);
   ASSERT_EQ(warnings.size(), 6u);
   EXPECT_EQ(warnings[0].find("limits.clearance is 5 m, and the arm reaches 1."), 0u) << warnings[0];
-  EXPECT_NE(warnings[0].find(" m: are these millimetres? Lengths are read as metres"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find(" m: are these millimetres? Lengths are read as metres"),
+            std::string::npos)
+      << warnings[0];
   EXPECT_EQ(warnings[3].find("limits.tool_path_error is 1 m, "), 0u) << warnings[3];
   EXPECT_EQ(warnings[4].find("limits.tool_speed is 100 m/s, "), 0u) << warnings[4];
   EXPECT_EQ(warnings[5].find("path.smooth.position is 1 m, "), 0u) << warnings[5];

@@ -17,12 +17,14 @@ using namespace test;
 
 double turn_distance(const Config6& a, const Config6& b) {
   double most = 0;
-  for (int j = 0; j < kSix; ++j) most = std::max(most, std::abs(std::remainder(a[j] - b[j], kTwoPi)));
+  for (int j = 0; j < kSix; ++j)
+    most = std::max(most, std::abs(std::remainder(a[j] - b[j], kTwoPi)));
   return most;
 }
 
 double pose_distance(const Pose& a, const Pose& b) {
-  return std::max((a.translation() - b.translation()).norm(), (a.linear() - b.linear()).norm() / std::sqrt(2.0));
+  return std::max((a.translation() - b.translation()).norm(),
+                  (a.linear() - b.linear()).norm() / std::sqrt(2.0));
 }
 
 enum class Draw { kLimits, kTurns, kSquare };
@@ -67,8 +69,10 @@ Tally round_trip(const Chain& chain, int lock, Draw kind, int count, Random& ran
     tally.most = std::max(tally.most, solutions.count);
     double nearest = 1e9;
     for (const Config6& solution : solutions) {
-      EXPECT_TRUE((solution.array() > -kPi).all() && (solution.array() <= kPi).all()) << solution.transpose();
-      tally.worst = std::max(tally.worst, pose_distance(chain.tool(with_joint(solution, lock, whole[lock])), tool));
+      EXPECT_TRUE((solution.array() > -kPi).all() && (solution.array() <= kPi).all())
+          << solution.transpose();
+      tally.worst = std::max(
+          tally.worst, pose_distance(chain.tool(with_joint(solution, lock, whole[lock])), tool));
       nearest = std::min(nearest, turn_distance(solution, q));
     }
     if (singular) {
@@ -99,21 +103,24 @@ TEST_P(ClosedFormOf, FindsEveryConfigurationAgain) {
   ASSERT_GE(method.best, 0);
   Random random(seed(arm.name.c_str()));
   const int count = trials(10000);
-  // Where the axes miss each other by more than 0.01 mm, a few configurations beside folds are lost, but none that is regular.
+  // Where the axes miss each other by more than 0.01 mm, a few configurations beside folds are
+  // lost, but none that is regular.
   const FitDeviation& deviation = method.by_joint[static_cast<std::size_t>(method.best)]->deviation;
   const bool near = deviation.offset > 1e-5 || deviation.angle > 1e-5;
   for (const Draw kind : {Draw::kLimits, Draw::kTurns, Draw::kSquare}) {
     const Tally tally = round_trip(chain, method.best, kind, count, random);
     const int missed = tally.tried - tally.found - tally.singular;
     std::printf(
-        "  %s: tried %d, found %d, singular %d (unsolved %d), missed %d (|det| to %.1e), solutions %.2f (most %d), residual %.1e, "
+        "  %s: tried %d, found %d, singular %d (unsolved %d), missed %d (|det| to %.1e), solutions "
+        "%.2f (most %d), residual %.1e, "
         "own "
         "within %.1e\n",
         kind == Draw::kLimits  ? "limits"
         : kind == Draw::kTurns ? "turns "
                                : "square",
         tally.tried, tally.found, tally.singular, tally.unsolved, missed, tally.missed_at,
-        static_cast<double>(tally.solutions) / tally.tried, tally.most, tally.worst, tally.farthest);
+        static_cast<double>(tally.solutions) / tally.tried, tally.most, tally.worst,
+        tally.farthest);
     EXPECT_EQ(tally.tried, count);
     EXPECT_GT(tally.found, tally.tried / 2 - 100);
     EXPECT_LE(tally.missed_at, near ? 1e-4 : 0);
@@ -122,12 +129,14 @@ TEST_P(ClosedFormOf, FindsEveryConfigurationAgain) {
     EXPECT_LE(tally.worst, 1e-9);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Arms, ClosedFormOf, testing::Range(0, static_cast<int>(all_arms().size())), [](const auto& parameter) {
-  std::string name = all_arms()[static_cast<std::size_t>(parameter.param)].name;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Arms, ClosedFormOf, testing::Range(0, static_cast<int>(all_arms().size())),
+                         [](const auto& parameter) {
+                           std::string name =
+                               all_arms()[static_cast<std::size_t>(parameter.param)].name;
+                           for (char& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
 
 TEST(ClosedForm, LocksEveryJointItNames) {
   Random random(seed("ClosedForm.LocksEveryJointItNames"));
@@ -136,7 +145,9 @@ TEST(ClosedForm, LocksEveryJointItNames) {
     const Chain chain = chain_of(arm);
     const LockMethod method = lock_method(chain);
     for (int lock = 0; lock < kDof; ++lock) {
-      if (!method.by_joint[static_cast<std::size_t>(lock)] || !method.by_joint[static_cast<std::size_t>(lock)]->exact) continue;
+      if (!method.by_joint[static_cast<std::size_t>(lock)] ||
+          !method.by_joint[static_cast<std::size_t>(lock)]->exact)
+        continue;
       ++locks;
       const Tally tally = round_trip(chain, lock, Draw::kTurns, trials(500), random);
       EXPECT_EQ(tally.found + tally.singular, tally.tried) << arm.name << " joint " << lock + 1;
@@ -164,7 +175,8 @@ TEST(ClosedForm, AgreesWithTheArmAngle) {
       if (std::abs(six.jacobian(rest).determinant()) < 1e-7) continue;
       const auto solutions = ClosedForm::of(six)->solve(tool);
       ++compared;
-      EXPECT_TRUE(std::any_of(solutions.begin(), solutions.end(), [&](const Config6& x) { return turn_distance(x, rest) < 1e-6; }));
+      EXPECT_TRUE(std::any_of(solutions.begin(), solutions.end(),
+                              [&](const Config6& x) { return turn_distance(x, rest) < 1e-6; }));
     }
   }
   EXPECT_GT(compared, 7 * trials(1000));
@@ -177,16 +189,22 @@ TEST(ClosedForm, SaysWhatItLocks) {
       if (arm.name == name) return lock_method(chain_of(arm)).words();
     return std::string();
   };
-  EXPECT_EQ(words("panda"), "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)");
-  EXPECT_EQ(words("fetch"), "closed form: axes 5, 6 and 7 meet in a point; locks joint 3 (or 1, 2, 4)");
-  EXPECT_EQ(words("gen3"), "closed form: axes 5, 6 and 7 meet in a point within 0.18 mm; locks joint 3 (or 1, 2, 4)");
-  EXPECT_EQ(words("ur10e-like"), "closed form: axes 2, 3 and 4 are parallel; locks joint 7 (or 5, 6)");
+  EXPECT_EQ(words("panda"),
+            "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)");
+  EXPECT_EQ(words("fetch"),
+            "closed form: axes 5, 6 and 7 meet in a point; locks joint 3 (or 1, 2, 4)");
+  EXPECT_EQ(
+      words("gen3"),
+      "closed form: axes 5, 6 and 7 meet in a point within 0.18 mm; locks joint 3 (or 1, 2, 4)");
+  EXPECT_EQ(words("ur10e-like"),
+            "closed form: axes 2, 3 and 4 are parallel; locks joint 7 (or 5, 6)");
   // An arm like Sawyer: every triple is 1 cm and more from a point.
   ArmTable none = arms_7r()[0];
   for (JointRow& joint : none.joints) joint.xyz += Vector3d(0.02, 0.03, 0.05);
   EXPECT_EQ(lock_method(chain_of(none)).best, -1);
   EXPECT_EQ(lock_method(chain_of(none)).words(),
-            "no closed form: no three neighbouring axes meet in a point or are parallel where one joint is locked");
+            "no closed form: no three neighbouring axes meet in a point or are parallel where one "
+            "joint is locked");
 }
 
 TEST(ClosedForm, OutOfReachHasNoSolution) {
@@ -205,15 +223,18 @@ TEST(Trigonometric, FindsTheRootsOfAWave) {
   Random random(seed("Trigonometric.FindsTheRootsOfAWave"));
   int changes = 0, doubles = 0;
   for (int trial = 0; trial < trials(2000); ++trial) {
-    const auto coefficient = [&] { return random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 0)); };
+    const auto coefficient = [&] {
+      return random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 0));
+    };
     Wave2 wave{coefficient(), coefficient(), coefficient(), coefficient(), coefficient()};
     const auto value = [&](double x) {
-      return wave.constant + wave.cosine * std::cos(x) + wave.sine * std::sin(x) + wave.cosine2 * std::cos(2 * x) +
-             wave.sine2 * std::sin(2 * x);
+      return wave.constant + wave.cosine * std::cos(x) + wave.sine * std::sin(x) +
+             wave.cosine2 * std::cos(2 * x) + wave.sine2 * std::sin(2 * x);
     };
     if (trial % 4 == 0) {  // the least value becomes a double root
       double least = 0;
-      for (int k = 1; k < 1000; ++k) least = value(kTwoPi * k / 1000) < value(least) ? kTwoPi * k / 1000 : least;
+      for (int k = 1; k < 1000; ++k)
+        least = value(kTwoPi * k / 1000) < value(least) ? kTwoPi * k / 1000 : least;
       for (int step = 0; step < 50; ++step) {
         const double h = 1e-4, slope = (value(least + h) - value(least - h)) / (2 * h),
                      curve = (value(least + h) - 2 * value(least) + value(least - h)) / (h * h);
@@ -221,8 +242,9 @@ TEST(Trigonometric, FindsTheRootsOfAWave) {
       }
       wave.constant -= value(least);
       const Roots found = roots(wave, 1e-6);
-      EXPECT_TRUE(std::any_of(found.begin(), found.end(),
-                              [&](const Angle& x) { return std::abs(std::remainder(x.radians() - least, kTwoPi)) < 1e-3; }));
+      EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Angle& x) {
+        return std::abs(std::remainder(x.radians() - least, kTwoPi)) < 1e-3;
+      }));
       ++doubles;
       continue;
     }

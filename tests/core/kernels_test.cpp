@@ -21,8 +21,8 @@ struct Angles {
   explicit Angles(std::size_t n) : out(8 * n) {}
 };
 
-Angles run(const CircleKernels& kernels, const TripleCircle& m, double shift, const double* base, const std::vector<double>& s,
-           const std::vector<double>& c) {
+Angles run(const CircleKernels& kernels, const TripleCircle& m, double shift, const double* base,
+           const std::vector<double>& s, const std::vector<double>& c) {
   const std::size_t n = s.size();
   Angles result(n);
   TripleTask task;
@@ -49,7 +49,8 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
   std::vector<const CircleKernels*> units{&scalar_circle_kernels()};
 #ifdef SWIVEL_X86_KERNELS
   if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_circle_kernels());
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
     units.push_back(&avx512_circle_kernels());
 #endif
   const TestRobot robot = data_robot("sda5f");
@@ -73,16 +74,22 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
     const Angles scalar = run(*units[0], circles[0].shoulder, srs.shoulder.shift, base, s, c);
     for (std::size_t unit = 1; unit < units.size(); ++unit) {
       const Angles other = run(*units[unit], circles[0].shoulder, srs.shoulder.shift, base, s, c);
-      ASSERT_EQ(0, std::memcmp(scalar.out.data(), other.out.data(), scalar.out.size() * sizeof(double))) << units[unit]->name;
+      ASSERT_EQ(
+          0, std::memcmp(scalar.out.data(), other.out.data(), scalar.out.size() * sizeof(double)))
+          << units[unit]->name;
     }
     for (int k = 0; k < n; ++k) {  // one at a time: the same bits however asked
-      const Angles alone = run(*units.back(), circles[0].shoulder, srs.shoulder.shift, base, {s[static_cast<std::size_t>(k)]},
-                               {c[static_cast<std::size_t>(k)]});
+      const Angles alone = run(*units.back(), circles[0].shoulder, srs.shoulder.shift, base,
+                               {s[static_cast<std::size_t>(k)]}, {c[static_cast<std::size_t>(k)]});
       for (int row = 0; row < 8; ++row)
-        ASSERT_EQ(alone.out[static_cast<std::size_t>(row)], scalar.out[static_cast<std::size_t>(row * n + k)]);
+        ASSERT_EQ(alone.out[static_cast<std::size_t>(row)],
+                  scalar.out[static_cast<std::size_t>(row * n + k)]);
       for (int sign = 0; sign < 2; ++sign) {
-        const Config q = srs_ik(srs, circles, phi[static_cast<std::size_t>(k)], sign ? kShoulderBit : 0);
-        const auto entry = [&](int row) { return scalar.out[static_cast<std::size_t>(row * n + k)]; };
+        const Config q =
+            srs_ik(srs, circles, phi[static_cast<std::size_t>(k)], sign ? kShoulderBit : 0);
+        const auto entry = [&](int row) {
+          return scalar.out[static_cast<std::size_t>(row * n + k)];
+        };
         const double sine = std::abs(std::sin(entry(1) + srs.shoulder.shift));
         if (std::abs(sine - 1e-4) > 1e-9) {
           bool inside = sine >= 1e-4;
@@ -101,20 +108,24 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
       ++compared;
     }
   }
-  std::printf("%zu units, %d nodes, %d of them barred in one of two signs, worst difference from libm %.2e\n", units.size(),
-              compared, barred, worst);
+  std::printf(
+      "%zu units, %d nodes, %d of them barred in one of two signs, worst difference from libm "
+      "%.2e\n",
+      units.size(), compared, barred, worst);
   EXPECT_GT(compared, trials(2000) * 10);
   EXPECT_LT(worst, 1e-11);
   EXPECT_GT(barred, compared / 10);
 }
 
-/// Points asked about at once have the bits of one after the other, on every vector unit, and stand where they must.
+/// Points asked about at once have the bits of one after the other, on every vector unit, and stand
+/// where they must.
 TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
   Random random(seed("Newton"));
   std::vector<const NewtonKernels*> units{&scalar_newton_kernels()};
 #ifdef SWIVEL_X86_KERNELS
   if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_newton_kernels());
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
     units.push_back(&avx512_newton_kernels());
 #endif
   std::vector<ArmTable> arms = arms_7r();
@@ -130,8 +141,8 @@ TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
       Config reached;
       for (double& angle : reached) angle = random.uniform(-kPi, kPi);
       const Pose tool = chain.tool(reached);
-      const auto move =
-          std::array{NewtonMove::kNone, NewtonMove::kNearest, NewtonMove::kLocked}[static_cast<std::size_t>(trial % 3)];
+      const auto move = std::array{NewtonMove::kNone, NewtonMove::kNearest,
+                                   NewtonMove::kLocked}[static_cast<std::size_t>(trial % 3)];
       const double spread = random.coin(0.3) ? kPi : 0.2;  // far starts mostly fail
       std::vector<Config> starts(count);
       std::vector<double> values;
@@ -140,7 +151,8 @@ TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
       for (Config& start : starts) {
         for (int j = 0; j < kDof; ++j) start[j] = reached[j] + random.uniform(-spread, spread);
         if (random.coin(0.1)) start.setZero();  // singular poses of many arms
-        values.push_back(random.coin() ? start[task.joint] : reached[task.joint] + random.uniform(-spread, spread));
+        values.push_back(random.coin() ? start[task.joint]
+                                       : reached[task.joint] + random.uniform(-spread, spread));
       }
       for (double& scale2 : task.scale2) scale2 = random.uniform(0.01, 1);
       struct Answer {
@@ -148,7 +160,8 @@ TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
         std::vector<unsigned char> found;
       };
       const auto ask = [&](const NewtonKernels& kernels, std::size_t first, std::size_t points) {
-        Answer answer{std::vector<Config>(points), std::vector<Config>(points), std::vector<unsigned char>(points, 2)};
+        Answer answer{std::vector<Config>(points), std::vector<Config>(points),
+                      std::vector<unsigned char>(points, 2)};
         task.n = static_cast<int>(points);
         task.start = starts[first].data();
         task.value = values.data() + first;
@@ -165,8 +178,11 @@ TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
         for (std::size_t k = 0; k < count; ++k) {
           ASSERT_EQ(all.found[k], one_by_one[k].found[0]) << arm.name;
           if (all.found[k] == 0) continue;
-          ASSERT_EQ(0, std::memcmp(all.q[k].data(), one_by_one[k].q[0].data(), sizeof(Config))) << arm.name;
-          ASSERT_EQ(0, std::memcmp(all.null[k].data(), one_by_one[k].null[0].data(), sizeof(Config))) << arm.name;
+          ASSERT_EQ(0, std::memcmp(all.q[k].data(), one_by_one[k].q[0].data(), sizeof(Config)))
+              << arm.name;
+          ASSERT_EQ(0,
+                    std::memcmp(all.null[k].data(), one_by_one[k].null[0].data(), sizeof(Config)))
+              << arm.name;
         }
       }
       for (std::size_t k = 0; k < count; ++k) {
@@ -189,8 +205,8 @@ TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
       }
     }
   }
-  std::printf("%zu units, %d points found, %d not, %d singular; off the pose by up to %.1e\n", units.size(), found, failed,
-              singular, worst);
+  std::printf("%zu units, %d points found, %d not, %d singular; off the pose by up to %.1e\n",
+              units.size(), found, failed, singular, worst);
   EXPECT_LT(worst, 1e-9);
   EXPECT_GE(found, at_least(10000));
   EXPECT_GE(failed, at_least(3000));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arcs of arm angles within the joint limits against sampling, and the cells that are moved onto them.
+// Arcs of arm angles within the joint limits against sampling, and the cells that are moved onto
+// them.
 #include "swivel/core/kinematics/srs/limit_arcs.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,8 @@ namespace {
 
 using namespace test;
 
-/// The robot with limits so narrow that arcs are short and many; joints of more than a turn keep more than one image.
+/// The robot with limits so narrow that arcs are short and many; joints of more than a turn keep
+/// more than one image.
 TestRobot narrowed(const TestRobot& robot, Random& random) {
   return with_limits(robot, [&](int, Joint& joint) {
     if (joint.type == Joint::Type::kContinuous) {
@@ -24,7 +26,8 @@ TestRobot narrowed(const TestRobot& robot, Random& random) {
       joint.lower = -kPi;
       joint.upper = kPi;
     }
-    const double width = joint.upper - joint.lower, kept = width > kTwoPi ? random.uniform(0.9, 1) : random.uniform(0.3, 1);
+    const double width = joint.upper - joint.lower,
+                 kept = width > kTwoPi ? random.uniform(0.9, 1) : random.uniform(0.3, 1);
     joint.lower += random.uniform(0, 1 - kept) * width;
     joint.upper = joint.lower + kept * width;
   });
@@ -36,7 +39,8 @@ struct Small {
   ArmModel arm;
   SrsArm srs;
   std::unique_ptr<ToolPath> path;
-  Small(const TestRobot& robot, const Resolution& resolution, Random& random) : problem(problem_for(robot)), arm(arm_of(robot)) {
+  Small(const TestRobot& robot, const Resolution& resolution, Random& random)
+      : problem(problem_for(robot)), arm(arm_of(robot)) {
     srs = fit_srs(arm.chain, robot.name);
     const Config q0 = random_config(arm.chain, random);
     Config q1 = q0;
@@ -61,32 +65,37 @@ bool holds(const std::vector<AngleArc>& arcs, double phi, double margin = 0) {
   });
 }
 
-/// By the definition: the images of an IK solution's winding exist, one joint after the other. `near`: some joint is so near to an
-/// end of its range, or some angle so near to singular, that rounding decides.
-bool within(const Small& small, const std::array<ElbowCircle, 2>& circles, const SrsLattice& lattice, int solution, double phi,
-            bool& near) {
+/// By the definition: the images of an IK solution's winding exist, one joint after the other.
+/// `near`: some joint is so near to an end of its range, or some angle so near to singular, that
+/// rounding decides.
+bool within(const Small& small, const std::array<ElbowCircle, 2>& circles,
+            const SrsLattice& lattice, int solution, double phi, bool& near) {
   const int branch = solution / lattice.windings();
   const Config q = srs_ik(small.srs, circles, phi, branch);
   int winding = solution % lattice.windings();
-  near = std::abs(std::sin(small.srs.shoulder_angle(q))) < 1e-4 || std::abs(std::sin(small.srs.wrist_angle(q))) < 1e-4;
+  near = std::abs(std::sin(small.srs.shoulder_angle(q))) < 1e-4 ||
+         std::abs(std::sin(small.srs.wrist_angle(q))) < 1e-4;
   bool inside = true;
   for (int j = kDof - 1; j >= 0; --j) {
     const JointLimit& limit = small.arm.chain.limit[static_cast<std::size_t>(j)];
     if (limit.continuous) continue;
-    const double lower = limit.lower + small.problem.limits.joint_margin, upper = limit.upper - small.problem.limits.joint_margin;
+    const double lower = limit.lower + small.problem.limits.joint_margin,
+                 upper = limit.upper - small.problem.limits.joint_margin;
     const int images = std::max(1, static_cast<int>(std::ceil((upper - lower - 1e-3) / kTwoPi)));
     const double first = lower + std::fmod(std::fmod(q[j] - lower, kTwoPi) + kTwoPi, kTwoPi);
     const double value = first + kTwoPi * (winding % images);
     winding /= images;
     inside = inside && value <= upper;
-    near = near || std::abs(std::remainder(q[j] - lower, kTwoPi)) < 1e-7 || std::abs(std::remainder(q[j] - upper, kTwoPi)) < 1e-7;
+    near = near || std::abs(std::remainder(q[j] - lower, kTwoPi)) < 1e-7 ||
+           std::abs(std::remainder(q[j] - upper, kTwoPi)) < 1e-7;
   }
   return inside;
 }
 
 TEST(LimitArcs, AreThoseOfDenseSampling) {
   Random random(seed("LimitArcs.AreThoseOfDenseSampling"));
-  std::int64_t sampled = 0, inside = 0, arcs_found = 0, narrow = 0, whole = 0, several = 0, skipped = 0, images = 0;
+  std::int64_t sampled = 0, inside = 0, arcs_found = 0, narrow = 0, whole = 0, several = 0,
+               skipped = 0, images = 0;
   std::vector<AngleArc> arcs;
   for (const TestRobot& robot : all_robots())
     for (int trial = 0; trial < trials(100); ++trial) {
@@ -94,7 +103,8 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
       const SrsLattice lattice = small.lattice(false);
       for (int layer = 0; layer < 2; ++layer) {
         const Pose& tool = small.path->layer(layer).tool;
-        if (reach_status(small.srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
+        if (reach_status(small.srs, lattice.plane(layer).reach) != ReachStatus::kReachable)
+          continue;
         const auto circles = elbow_circles(small.srs, lattice.plane(layer), tool);
         for (int solution = 0; solution < lattice.solutions(); ++solution) {
           lattice.arcs(layer, solution, arcs);
@@ -104,12 +114,14 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
             ++(near ? skipped : sampled);
             inside += expected;
             ASSERT_TRUE(near || holds(arcs, phi) == expected)
-                << robot.name << " trial " << trial << " sheet " << solution << " phi " << phi << " expected " << expected;
+                << robot.name << " trial " << trial << " sheet " << solution << " phi " << phi
+                << " expected " << expected;
           };
           const int samples = lattice.windings() > 1 ? 40 : 400;
           for (int k = 0; k < samples; ++k) agrees(random.uniform(-kPi, kPi));
           if (HasFatalFailure()) return;
-          for (std::size_t k = 0; k < arcs.size(); ++k) {  // also what samples miss: the middles of arcs, and of gaps between them
+          for (std::size_t k = 0; k < arcs.size();
+               ++k) {  // also what samples miss: the middles of arcs, and of gaps between them
             ASSERT_LE(arcs[k].begin, arcs[k].end);
             agrees((arcs[k].begin + arcs[k].end) / 2);
             const double next = k + 1 < arcs.size() ? arcs[k + 1].begin : arcs[0].begin + kTwoPi;
@@ -125,10 +137,12 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
       }
     }
   std::printf(
-      "%lld angles, %lld of them within the limits, %lld too near to tell; %lld arcs: %lld of them narrower than 0.01 rad, %lld "
+      "%lld angles, %lld of them within the limits, %lld too near to tell; %lld arcs: %lld of them "
+      "narrower than 0.01 rad, %lld "
       "whole circles; %lld sheets with several, %lld of a second image\n",
-      static_cast<long long>(sampled), static_cast<long long>(inside), static_cast<long long>(skipped),
-      static_cast<long long>(arcs_found), static_cast<long long>(narrow), static_cast<long long>(whole),
+      static_cast<long long>(sampled), static_cast<long long>(inside),
+      static_cast<long long>(skipped), static_cast<long long>(arcs_found),
+      static_cast<long long>(narrow), static_cast<long long>(whole),
       static_cast<long long>(several), static_cast<long long>(images));
   EXPECT_GE(sampled, at_least(1000000));
   EXPECT_GE(inside, at_least(50000));
@@ -140,14 +154,16 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
   EXPECT_LT(skipped, sampled / 1000 + 10);
 }
 
-/// Every cell that an arc meets has a node, which stands in the cell, within the arc, and where the grid has a node that one stays.
+/// Every cell that an arc meets has a node, which stands in the cell, within the arc, and where the
+/// grid has a node that one stays.
 TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
   Random random(seed("LimitArcs.MovedCells"));
   std::int64_t cells = 0, moved = 0, kept = 0, middles = 0, shared = 0, missed = 0;
   std::vector<AngleArc> arcs;
   for (const TestRobot& robot : all_robots())
     for (int trial = 0; trial < trials(40); ++trial) {
-      const Small small(narrowed(robot, random), {.ds = 0.05, .dphi = random.uniform(0.1, 0.5), .dalpha = 0.5}, random);
+      const Small small(narrowed(robot, random),
+                        {.ds = 0.05, .dphi = random.uniform(0.1, 0.5), .dalpha = 0.5}, random);
       const SrsLattice grid = small.lattice(false), lattice = small.lattice(true);
       const int n = lattice.angles();
       const double step = kTwoPi / n;
@@ -159,7 +175,8 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
         const int first = random.below(n), count = 1 + random.below(2 * n);
         lattice.solve(layer, first, count, run);
         std::vector<char> stands(static_cast<std::size_t>(lattice.width()), 0);
-        for (const SrsLattice::OffGridNode& cell : lattice.off_grid_nodes(layer)) stands[static_cast<std::size_t>(cell.slot)] = 1;
+        for (const SrsLattice::OffGridNode& cell : lattice.off_grid_nodes(layer))
+          stands[static_cast<std::size_t>(cell.slot)] = 1;
         for (int slot = 0; slot < lattice.width(); ++slot) {
           const int solution = lattice.solution_of(slot), j = lattice.angle_of(slot);
           const auto alone = lattice.node(layer, slot), plain = grid.node(layer, slot);
@@ -191,16 +208,22 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
           ASSERT_EQ(lattice.phi(layer, cell.slot), cell.phi);
           ASSERT_EQ(*lattice.node(layer, cell.slot), cell.q);
           if (small.srs.exact) {
-            const Pose reached = small.arm.chain.tool(cell.q), &wanted = small.path->layer(layer).tool;
-            ASSERT_LT((reached.translation() - wanted.translation()).norm() + (reached.linear() - wanted.linear()).norm(), 1e-9);
-            ASSERT_LT(std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(cell.q)) - cell.phi, kTwoPi)),
+            const Pose reached = small.arm.chain.tool(cell.q),
+                       &wanted = small.path->layer(layer).tool;
+            ASSERT_LT((reached.translation() - wanted.translation()).norm() +
+                          (reached.linear() - wanted.linear()).norm(),
+                      1e-9);
+            ASSERT_LT(std::abs(std::remainder(
+                          lattice.plane(layer).angle_of(small.srs.elbow_axis(cell.q)) - cell.phi,
+                          kTwoPi)),
                       1e-7);
           }
           ASSERT_EQ(small.srs.branch(cell.q), lattice.branch_of(cell.slot));
           for (int j = 0; j < kDof; ++j) {
             const JointLimit& limit = small.arm.chain.limit[static_cast<std::size_t>(j)];
             const double margin = small.problem.limits.joint_margin;
-            ASSERT_TRUE(limit.continuous || (cell.q[j] >= limit.lower + margin - 2e-9 && cell.q[j] <= limit.upper - margin + 2e-9));
+            ASSERT_TRUE(limit.continuous || (cell.q[j] >= limit.lower + margin - 2e-9 &&
+                                             cell.q[j] <= limit.upper - margin + 2e-9));
           }
           // IK solutions whose bodies are said to have the same poses have the same arm angle.
           std::vector<int> same_poses;
@@ -226,7 +249,8 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
               }
               ++cells;
               found = found || holds({arc}, lattice.phi(layer, slot));
-              middles += std::abs(std::remainder(lattice.phi(layer, slot) - (arc.begin + arc.end) / 2, kTwoPi)) < 1e-12;
+              middles += std::abs(std::remainder(
+                             lattice.phi(layer, slot) - (arc.begin + arc.end) / 2, kTwoPi)) < 1e-12;
             }
             missed += !found && arcs.size() == 1;
           }
@@ -234,10 +258,11 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
       }
     }
   std::printf(
-      "%lld cells that arcs meet, %lld moved (%lld to the middle of an arc), %lld of the grid kept, %lld pairs alike, %lld "
+      "%lld cells that arcs meet, %lld moved (%lld to the middle of an arc), %lld of the grid "
+      "kept, %lld pairs alike, %lld "
       "missed\n",
-      static_cast<long long>(cells), static_cast<long long>(moved), static_cast<long long>(middles), static_cast<long long>(kept),
-      static_cast<long long>(shared), static_cast<long long>(missed));
+      static_cast<long long>(cells), static_cast<long long>(moved), static_cast<long long>(middles),
+      static_cast<long long>(kept), static_cast<long long>(shared), static_cast<long long>(missed));
   EXPECT_EQ(missed, 0);
   EXPECT_GE(moved, at_least(2000));
   EXPECT_GE(middles, at_least(100));

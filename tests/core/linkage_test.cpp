@@ -22,11 +22,14 @@ RobotModel shuffled(const RobotModel& model, Random& random) {
   const auto order = [&](std::size_t count) {
     std::vector<int> to(count);  // by old place
     std::iota(to.begin(), to.end(), 0);
-    for (std::size_t k = count; k > 1; --k) std::swap(to[k - 1], to[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+    for (std::size_t k = count; k > 1; --k)
+      std::swap(to[k - 1], to[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
     return to;
   };
   const std::vector<int> link_to = order(model.links.size()), joint_to = order(model.joints.size());
-  const auto at = [](const std::vector<int>& to, int old) { return old < 0 ? -1 : to[static_cast<std::size_t>(old)]; };
+  const auto at = [](const std::vector<int>& to, int old) {
+    return old < 0 ? -1 : to[static_cast<std::size_t>(old)];
+  };
   RobotModel result = model;
   for (std::size_t k = 0; k < model.links.size(); ++k) {
     Link& link = result.links[static_cast<std::size_t>(link_to[k])] = model.links[k];
@@ -84,13 +87,15 @@ RandomArm random_arm(Random& random) {
 }
 
 ArmModel build(const RandomArm& arm, const std::map<std::string, double>& hold) {
-  return build_arm(arm.model, arm.base, arm.tip, hold, Pose::Identity(), arm.six ? std::optional(Roll{}) : std::nullopt);
+  return build_arm(arm.model, arm.base, arm.tip, hold, Pose::Identity(),
+                   arm.six ? std::optional(Roll{}) : std::nullopt);
 }
 
 /// Positions of all joints of the model, for the chain's.
 std::vector<double> positions_of(const RobotModel& model, const ArmModel& arm, const Config& q) {
   std::vector<double> positions(model.joints.size(), 0.0);
-  for (const HeldJoint& held : arm.held) positions[static_cast<std::size_t>(model.find_joint(held.name))] = held.position;
+  for (const HeldJoint& held : arm.held)
+    positions[static_cast<std::size_t>(model.find_joint(held.name))] = held.position;
   for (std::size_t k = 0; k < kDof; ++k)
     if (const int j = model.find_joint(arm.chain.joint_names[k]); j >= 0)
       positions[static_cast<std::size_t>(j)] = q[static_cast<Eigen::Index>(k)];
@@ -113,7 +118,8 @@ TEST(Linkage, EveryLinkStandsWherePlainKinematicsHasIt) {
       const Config q = random_config(chain, random);
       const std::vector<double> positions = positions_of(robot.model, arm, q);
       const std::vector<Pose> moved = chain.all_displacements(q);
-      const Pose to_base = plain_pose(robot.model, static_cast<int>(base_link), positions).inverse(Eigen::Isometry);
+      const Pose to_base =
+          plain_pose(robot.model, static_cast<int>(base_link), positions).inverse(Eigen::Isometry);
       for (std::size_t link = 0; link < robot.model.links.size(); ++link, ++links) {
         const int group = arm.links[link].group;
         const Pose expected = to_base * plain_pose(robot.model, static_cast<int>(link), positions);
@@ -123,20 +129,23 @@ TEST(Linkage, EveryLinkStandsWherePlainKinematicsHasIt) {
         worst = std::max(worst, miss);
         if (group <= kDof) continue;
         ++on_followers;
-        behind_followers += chain.followers[static_cast<std::size_t>(group) - kDof - 1].parent > kDof;
+        behind_followers +=
+            chain.followers[static_cast<std::size_t>(group) - kDof - 1].parent > kDof;
       }
     }
   }
-  std::printf("%d robots (%d seen from the hand), %d links, %d on linkages, %d of them on others; worst error %.1e\n", robots,
-              in_hand, links, on_followers, behind_followers, worst);
+  std::printf(
+      "%d robots (%d seen from the hand), %d links, %d on linkages, %d of them on others; worst "
+      "error %.1e\n",
+      robots, in_hand, links, on_followers, behind_followers, worst);
   EXPECT_GE(robots, at_least(400));
   EXPECT_GE(in_hand, at_least(60));
   EXPECT_GE(on_followers, at_least(3000));
   EXPECT_GE(behind_followers, at_least(500));
 }
 
-/// Of one body and of two: no point moves further than joints times radii say, and only joints between two groups move one against
-/// the other.
+/// Of one body and of two: no point moves further than joints times radii say, and only joints
+/// between two groups move one against the other.
 TEST(Linkage, RadiiBoundEveryPointThatMoves) {
   const std::uint64_t base = seed("Linkage.Radii");
   int points = 0, pairs = 0, still = 0;
@@ -154,40 +163,51 @@ TEST(Linkage, RadiiBoundEveryPointThatMoves) {
       const double length = random.coin() ? 0.3 : 1e-3;
       for (int j = 0; j < kDof; ++j)
         if (random.coin(0.4))
-          q1[j] = std::clamp(q1[j] + random.uniform(-length, length), chain.limit[j].lower, chain.limit[j].upper);
+          q1[j] = std::clamp(q1[j] + random.uniform(-length, length), chain.limit[j].lower,
+                             chain.limit[j].upper);
       const auto bound = [&](const Chain::Joints& joints) {
         double sum = 0;
-        for (int j = joints.first; j < joints.last; ++j) sum += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
+        for (int j = joints.first; j < joints.last; ++j)
+          sum += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
         return sum;
       };
       const auto G0 = chain.all_displacements(q0), G1 = chain.all_displacements(q1);
-      const auto move = [&](const Pose& from, const Pose& to, const Vector3d& x) { return (to * x - from * x).norm(); };
+      const auto move = [&](const Pose& from, const Pose& to, const Vector3d& x) {
+        return (to * x - from * x).norm();
+      };
       for (const RobotBody& body : bodies) {
         const auto g = static_cast<std::size_t>(body.group);
         for (const Ball& ball : bounding_balls(body.shape))
           for (int side = 0; side < 6; ++side, ++points) {
-            const Vector3d x = body.pose * (ball.center + ball.radius * (side % 2 ? 1 : -1) * Vector3d::Unit(side / 2));
-            const double moved = move(G0[g], G1[g], x), most_allowed = bound(chain.joints_between(0, body.group));
+            const Vector3d x = body.pose * (ball.center + ball.radius * (side % 2 ? 1 : -1) *
+                                                              Vector3d::Unit(side / 2));
+            const double moved = move(G0[g], G1[g], x),
+                         most_allowed = bound(chain.joints_between(0, body.group));
             ASSERT_LE(moved, most_allowed + 1e-12) << trial << " " << body.name;
             if (most_allowed > 0) most = std::max(most, moved / most_allowed);
           }
       }
       for (int pair = 0; pair < 20; ++pair) {
-        const RobotBody &a = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))],
-                        &b = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];
+        const RobotBody
+            &a = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))],
+            &b = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];
         if (a.group == b.group) continue;
         ++pairs;
         // Two points come nearer or further by no more than the bound.
-        const Vector3d x = a.pose * bounding_balls(a.shape)[0].center, y = b.pose * bounding_balls(b.shape)[0].center;
+        const Vector3d x = a.pose * bounding_balls(a.shape)[0].center,
+                       y = b.pose * bounding_balls(b.shape)[0].center;
         const auto ga = static_cast<std::size_t>(a.group), gb = static_cast<std::size_t>(b.group);
-        const double before = (G0[ga] * x - G0[gb] * y).norm(), after = (G1[ga] * x - G1[gb] * y).norm();
+        const double before = (G0[ga] * x - G0[gb] * y).norm(),
+                     after = (G1[ga] * x - G1[gb] * y).norm();
         const double allowed = bound(chain.joints_between(a.group, b.group));
-        ASSERT_LE(std::abs(after - before), allowed + 1e-12) << trial << " " << a.name << " " << b.name;
+        ASSERT_LE(std::abs(after - before), allowed + 1e-12)
+            << trial << " " << a.name << " " << b.name;
         still += allowed == 0;
       }
     }
   }
-  std::printf("%d points, %d pairs, %d of them at rest; at most %.2f of the bound\n", points, pairs, still, most);
+  std::printf("%d points, %d pairs, %d of them at rest; at most %.2f of the bound\n", points, pairs,
+              still, most);
   EXPECT_GE(points, at_least(50'000));
   EXPECT_GE(pairs, at_least(20'000));
   EXPECT_GE(still, at_least(300));
@@ -206,7 +226,8 @@ RobotModel balanced(double multiplier, double offset, Joint::Type type = Joint::
   joint.upper = 1;
   joint.velocity = 0.5;
   joint.mimic = Joint::Mimic{model.find_joint("joint_a3"), multiplier, offset};
-  model.links.push_back({"rod", {{Sphere{0.05}, Pose::Identity()}}, static_cast<int>(model.joints.size())});
+  model.links.push_back(
+      {"rod", {{Sphere{0.05}, Pose::Identity()}}, static_cast<int>(model.joints.size())});
   model.joints.push_back(joint);
   return model;
 }
@@ -234,7 +255,8 @@ TEST(Linkage, LimitsAndRatesOfALinkageBoundItsLeader) {
   EXPECT_EQ(limit.velocity, 0.25);
   EXPECT_LT(alone.lower, limit.lower);
   EXPECT_GT(alone.upper, limit.upper);
-  EXPECT_NE(refusal(balanced(0.01, 5)).find("no position of it is within the limits of both"), std::string::npos);
+  EXPECT_NE(refusal(balanced(0.01, 5)).find("no position of it is within the limits of both"),
+            std::string::npos);
 }
 
 TEST(Linkage, RefusesWhatIsElsewhereAfterAWholeTurn) {
@@ -247,8 +269,11 @@ TEST(Linkage, RefusesWhatIsElsewhereAfterAWholeTurn) {
     return model;
   };
   EXPECT_EQ(refusal(around(balanced(-1, 0))), "accepted");
-  for (const RobotModel& model : {around(balanced(0.5, 0)), around(balanced(1, 0, Joint::Type::kPrismatic))})
-    EXPECT_NE(refusal(model).find("joint 'balancer' mimics 'joint_a3' of the arm, which can make a whole turn"), std::string::npos)
+  for (const RobotModel& model :
+       {around(balanced(0.5, 0)), around(balanced(1, 0, Joint::Type::kPrismatic))})
+    EXPECT_NE(refusal(model).find(
+                  "joint 'balancer' mimics 'joint_a3' of the arm, which can make a whole turn"),
+              std::string::npos)
         << refusal(model);
 }
 
@@ -261,7 +286,8 @@ TEST(Linkage, RefusesAnArmThatMimicsItself) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("joint 'joint_a4', between 'base_link' and 'tool0', mimics 'joint_a2' of the arm: not "
+                  .find("joint 'joint_a4', between 'base_link' and 'tool0', mimics 'joint_a2' of "
+                        "the arm: not "
                         "supported"),
               std::string::npos)
         << error.what();
@@ -271,8 +297,10 @@ TEST(Linkage, RefusesAnArmThatMimicsItself) {
 TEST(Held, AreNamedWithWhereTheyStand) {
   // A rail above the base, a joint that mimics it, and one beside the arm.
   RobotModel model = *data_robot("iiwa14").model;
-  const int root = model.root_link, first = static_cast<int>(model.links.size()), joints = static_cast<int>(model.joints.size());
-  const auto add = [&](const char* name, Joint::Type type, int parent, int child, double lower, double upper) {
+  const int root = model.root_link, first = static_cast<int>(model.links.size()),
+            joints = static_cast<int>(model.joints.size());
+  const auto add = [&](const char* name, Joint::Type type, int parent, int child, double lower,
+                       double upper) {
     Joint joint;
     joint.name = name;
     joint.type = type;
@@ -301,10 +329,10 @@ TEST(Held, AreNamedWithWhereTheyStand) {
   EXPECT_EQ(with_held(still), " with rail held at 0.5 m, post held at 0.125 rad");
   const auto warnings = held_warnings(still);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(
-      warnings[0],
-      "joint 'rail' lies between base and tip and is not planned: it is held at 0.5 m: robot.hold: {rail: POSITION} says where "
-      "it stands");
+  EXPECT_EQ(warnings[0],
+            "joint 'rail' lies between base and tip and is not planned: it is held at 0.5 m: "
+            "robot.hold: {rail: POSITION} says where "
+            "it stands");
   const std::vector<HeldJoint> given = held({{"rail", 2.0}});
   EXPECT_EQ(words(given), "rail at 2 m, post at 0.5 rad (as rail)");
   EXPECT_TRUE(held_warnings(given).empty());
@@ -322,10 +350,11 @@ TEST(Held, AreNamedWithWhereTheyStand) {
     (void)held({{"rail", 4.0}});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what())
-                  .find("robot.hold: joint 'rail' at 4: joint 'post', which mimics it, is then at 1 "
-                        "and is outside its limits"),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(error.what())
+            .find("robot.hold: joint 'rail' at 4: joint 'post', which mimics it, is then at 1 "
+                  "and is outside its limits"),
+        std::string::npos)
         << error.what();
   }
   EXPECT_EQ(held({{"rail", 3.5}}).size(), 2u);

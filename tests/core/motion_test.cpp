@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smooth tool paths, splines, motions in time, and the smooth minimum, each against what is plainly right.
+// Smooth tool paths, splines, motions in time, and the smooth minimum, each against what is plainly
+// right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,9 @@ Waypoint moved(const Waypoint& from, const Vector3d& by, const Vector3d& turn) {
   Waypoint to = from;
   to.position += by;
   if (turn.norm() > 0)
-    to.orientation = (to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()))).normalized();
+    to.orientation =
+        (to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())))
+            .normalized();
   return to;
 }
 
@@ -35,9 +38,14 @@ std::vector<Waypoint> random_waypoints(Random& random, const Waypoint& first) {
   const int more = 2 + random.below(5);
   for (int k = 0; k < more; ++k) {
     const int kind = random.below(5);
-    const double length = kind == 0 ? 0 : kind == 1 ? random.uniform(0.2e-3, 2e-3) : random.uniform(0.01, 0.06);
-    const double angle = kind == 0 ? random.uniform(0.05, 0.3) : kind == 2 ? 0 : random.uniform(0.01, 0.3);
-    waypoints.push_back(moved(waypoints.back(), random_vector(random, length), random_vector(random, angle)));
+    const double length = kind == 0   ? 0
+                          : kind == 1 ? random.uniform(0.2e-3, 2e-3)
+                                      : random.uniform(0.01, 0.06);
+    const double angle = kind == 0   ? random.uniform(0.05, 0.3)
+                         : kind == 2 ? 0
+                                     : random.uniform(0.01, 0.3);
+    waypoints.push_back(
+        moved(waypoints.back(), random_vector(random, length), random_vector(random, angle)));
   }
   return waypoints;
 }
@@ -52,22 +60,28 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
   int rounded = 0, sharp = 0;
   for (int trial = 0; trial < trials(60); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const PathSmoothing smooth{random.coin(0.1) ? 0 : random.uniform(0.02e-3, 0.3e-3), random.uniform(0.2e-3, 3e-3)};
-    const auto waypoints = random_waypoints(random, {Vector3d(0.4, 0, 0.3), Quaterniond(0.5, 0.5, -0.5, 0.5)});
-    const ToolPath plain(waypoints, resolution, "test"), curve(waypoints, resolution, "test", {}, smooth);
+    const PathSmoothing smooth{random.coin(0.1) ? 0 : random.uniform(0.02e-3, 0.3e-3),
+                               random.uniform(0.2e-3, 3e-3)};
+    const auto waypoints =
+        random_waypoints(random, {Vector3d(0.4, 0, 0.3), Quaterniond(0.5, 0.5, -0.5, 0.5)});
+    const ToolPath plain(waypoints, resolution, "test"),
+        curve(waypoints, resolution, "test", {}, smooth);
     ASSERT_EQ(plain.size(), curve.size());
     for (int i = 0; i < plain.size(); ++i) {
       EXPECT_EQ(plain.layer(i).s, curve.layer(i).s);
       EXPECT_EQ(plain.layer(i).travel, curve.layer(i).travel);
-      EXPECT_LE((plain.layer(i).tool.translation() - curve.layer(i).tool.translation()).norm(), smooth.position + 1e-12);
+      EXPECT_LE((plain.layer(i).tool.translation() - curve.layer(i).tool.translation()).norm(),
+                smooth.position + 1e-12);
       EXPECT_LE(angle_between(plain.layer(i).tool, curve.layer(i).tool), smooth.angle + 1e-7);
     }
     const double length = curve.layer(curve.size() - 1).travel;
     for (double x = 0; x < length; x += 0.31e-3) {
       const int i = curve.step_at(x);
-      const double t = (x - curve.layer(i).travel) / (curve.layer(i + 1).travel - curve.layer(i).travel);
+      const double t =
+          (x - curve.layer(i).travel) / (curve.layer(i + 1).travel - curve.layer(i).travel);
       const Pose there = curve.at_travel(x), line = plain.at(i, t), same = curve.at(i, t);
-      EXPECT_LE((there.translation() - line.translation()).norm(), smooth.position + 1e-12) << trial << " at " << x;
+      EXPECT_LE((there.translation() - line.translation()).norm(), smooth.position + 1e-12)
+          << trial << " at " << x;
       EXPECT_LE(angle_between(there, line), smooth.angle + 1e-7) << trial << " at " << x;
       EXPECT_LE((there.translation() - same.translation()).norm(), 1e-12);
     }
@@ -78,10 +92,14 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
       }
       ++rounded;
       // The most it leaves the polyline is at the corner, and told.
-      EXPECT_NEAR((plain.layer(corner.layer).tool.translation() - curve.layer(corner.layer).tool.translation()).norm(),
+      EXPECT_NEAR((plain.layer(corner.layer).tool.translation() -
+                   curve.layer(corner.layer).tool.translation())
+                      .norm(),
                   corner.position, 1e-12);
-      EXPECT_NEAR(angle_between(plain.layer(corner.layer).tool, curve.layer(corner.layer).tool), corner.angle, 1e-7);
-      // Second differences on both sides of where the curve begins to bend come together as the step shrinks.
+      EXPECT_NEAR(angle_between(plain.layer(corner.layer).tool, curve.layer(corner.layer).tool),
+                  corner.angle, 1e-7);
+      // Second differences on both sides of where the curve begins to bend come together as the
+      // step shrinks.
       const double x = curve.layer(corner.layer).travel;
       for (const double joint : {x - corner.reach, x, x + corner.reach}) {
         const auto second = [&](double at, double h) -> Eigen::Matrix4d {
@@ -89,7 +107,9 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
                   (curve.at_travel(at).matrix() - curve.at_travel(at - h).matrix())) /
                  (h * h);
         };
-        const auto jump = [&](double h) { return (second(joint + h, h) - second(joint - h, h)).norm(); };
+        const auto jump = [&](double h) {
+          return (second(joint + h, h) - second(joint - h, h)).norm();
+        };
         const double h = corner.reach / 8, bend = second(x, h).norm();
         EXPECT_LT(jump(h / 4), 0.4 * jump(h) + 0.02 * bend + 1e-3) << "trial " << trial;
       }
@@ -101,9 +121,10 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
 }
 
 /// A winding curve, read off as densely as programs that make tool paths do.
-std::vector<Waypoint> dense_waypoints(Random& random, const Waypoint& first, int count, double length) {
-  const Vector3d along = random_vector(random, length), across = random_vector(random, 0.1 * length),
-                 axis = random_vector(random, 1);
+std::vector<Waypoint> dense_waypoints(Random& random, const Waypoint& first, int count,
+                                      double length) {
+  const Vector3d along = random_vector(random, length),
+                 across = random_vector(random, 0.1 * length), axis = random_vector(random, 1);
   const double turns = random.uniform(0.5, 2), angle = random.uniform(0, 0.4);
   std::vector<Waypoint> waypoints;
   for (int k = 0; k < count; ++k) {
@@ -119,11 +140,14 @@ TEST(SmoothToolPath, DenseWaypointsAreNoCorners) {
   int waypoints_met = 0, corners_met = 0;
   for (int trial = 0; trial < trials(30); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const PathSmoothing smooth{random.uniform(0.02e-3, 0.3e-3), random.coin(0.2) ? 0.1 : random.uniform(0.2e-3, 3e-3)};
+    const PathSmoothing smooth{random.uniform(0.02e-3, 0.3e-3),
+                               random.coin(0.2) ? 0.1 : random.uniform(0.2e-3, 3e-3)};
     const int count = 200 + random.below(3000);
     const auto waypoints =
-        dense_waypoints(random, {Vector3d(0.4, 0, 0.3), Quaterniond(0.5, 0.5, -0.5, 0.5)}, count, random.uniform(0.05, 0.4));
-    const ToolPath plain(waypoints, resolution, "test"), curve(waypoints, resolution, "test", {}, smooth);
+        dense_waypoints(random, {Vector3d(0.4, 0, 0.3), Quaterniond(0.5, 0.5, -0.5, 0.5)}, count,
+                        random.uniform(0.05, 0.4));
+    const ToolPath plain(waypoints, resolution, "test"),
+        curve(waypoints, resolution, "test", {}, smooth);
     ASSERT_EQ(plain.size(), curve.size());
     double worst = 0;
     for (int i = 0; i + 1 < plain.size(); ++i) {
@@ -135,7 +159,10 @@ TEST(SmoothToolPath, DenseWaypointsAreNoCorners) {
         worst = std::max(worst, off);
       }
     }
-    EXPECT_LE((plain.layer(plain.size() - 1).tool.translation() - curve.layer(plain.size() - 1).tool.translation()).norm(), 1e-12);
+    EXPECT_LE((plain.layer(plain.size() - 1).tool.translation() -
+               curve.layer(plain.size() - 1).tool.translation())
+                  .norm(),
+              1e-12);
     for (const ToolPath::Corner& corner : curve.corners()) EXPECT_GT(corner.reach, 0) << trial;
     waypoints_met += count;
     corners_met += static_cast<int>(curve.corners().size());
@@ -150,9 +177,11 @@ TEST(CubicSpline, SolvesTheEquationsOfTheNaturalSpline) {
   for (int trial = 0; trial < trials(50); ++trial) {
     const int n = 2 + random.below(12);
     std::vector<double> x{random.uniform(-1, 1)}, y{random.uniform(-3, 3)};
-    for (int k = 1; k < n; ++k) x.push_back(x.back() + random.uniform(0.1, 2)), y.push_back(random.uniform(-3, 3));
+    for (int k = 1; k < n; ++k)
+      x.push_back(x.back() + random.uniform(0.1, 2)), y.push_back(random.uniform(-3, 3));
     const CubicSpline spline(x, y);
-    for (int k = 0; k < n; ++k) EXPECT_NEAR(spline.at(x[static_cast<std::size_t>(k)]), y[static_cast<std::size_t>(k)], 1e-12);
+    for (int k = 0; k < n; ++k)
+      EXPECT_NEAR(spline.at(x[static_cast<std::size_t>(k)]), y[static_cast<std::size_t>(k)], 1e-12);
     const auto slope = [&](double at, double h) { return (spline.at(at + h) - spline.at(at)) / h; };
     const auto bend = [&](double at, double h) {
       return (spline.at(at + 2 * h) - 2 * spline.at(at + h) + spline.at(at)) / (h * h);
@@ -180,10 +209,13 @@ class Waves final : public LayerSolver {
     }
   }
   [[nodiscard]] int layers() const override { return static_cast<int>(travel_.size()); }
-  [[nodiscard]] double travel(int layer) const override { return travel_[static_cast<std::size_t>(layer)]; }
+  [[nodiscard]] double travel(int layer) const override {
+    return travel_[static_cast<std::size_t>(layer)];
+  }
   [[nodiscard]] std::optional<Config> joints(int layer, double x) const override {
     Config q;
-    for (int j = 0; j < kDof; ++j) q[j] = std::sin(x + j + phase_[static_cast<std::size_t>(layer)][j] + 0.1 * layer);
+    for (int j = 0; j < kDof; ++j)
+      q[j] = std::sin(x + j + phase_[static_cast<std::size_t>(layer)][j] + 0.1 * layer);
     return q;
   }
 
@@ -227,7 +259,8 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
       std::vector<double> other = found;
       for (int i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const double by = move < 2 * n ? (i == move / 2 ? (move % 2 == 0 ? 1e-3 : -1e-3) : 0) : random.uniform(-1e-3, 1e-3);
+        const double by = move < 2 * n ? (i == move / 2 ? (move % 2 == 0 ? 1e-3 : -1e-3) : 0)
+                                       : random.uniform(-1e-3, 1e-3);
         other[k] = std::clamp(found[k] + by, boxes[k].low, boxes[k].high);
       }
       EXPECT_GE(smooth_cost(waves, objective, other), least - 1e-7) << "trial " << trial;
@@ -255,7 +288,8 @@ class Plane final : public LayerSolver {
   int layers_;
 };
 
-/// A path that lies on its bounds from end to end comes off them: the shortest way between two points past walls.
+/// A path that lies on its bounds from end to end comes off them: the shortest way between two
+/// points past walls.
 TEST(SmoothMinimum, LongPathsComeOffTheirBounds) {
   constexpr int kLayers = 201;
   const Plane plane(kLayers);
@@ -269,7 +303,8 @@ TEST(SmoothMinimum, LongPathsComeOffTheirBounds) {
   // One wall that stands in the straight way, and one that does not.
   for (std::size_t i = 95; i <= 105; ++i) boxes[i].low = 0;
   for (std::size_t i = 45; i <= 55; ++i) boxes[i].high = 0.6;
-  const std::vector<double> found = smooth_minimum(plane, objective, boxes, std::vector<double>(kLayers, -1));
+  const std::vector<double> found =
+      smooth_minimum(plane, objective, boxes, std::vector<double>(kLayers, -1));
   for (std::size_t i = 0; i < kLayers; ++i) {
     const double k = static_cast<double>(i);
     const double taut = i <= 95 ? -1 + k / 95 : 0.5 * (k - 95) / 105;
@@ -277,21 +312,23 @@ TEST(SmoothMinimum, LongPathsComeOffTheirBounds) {
   }
 }
 
-/// A path from a posture well inside the limits, and rows with arm angles that wander on a grid, as a lattice has them.
+/// A path from a posture well inside the limits, and rows with arm angles that wander on a grid, as
+/// a lattice has them.
 struct Followed {
   Chain chain;
   ArmClass kind;
   std::optional<ToolPath> path;
   std::vector<TrajectoryRow> rows;
 };
-std::optional<Followed> followed(const TestRobot& robot, Random& random, const PathSmoothing& smooth) {
+std::optional<Followed> followed(const TestRobot& robot, Random& random,
+                                 const PathSmoothing& smooth) {
   Followed f;
   f.chain = arm_of(robot).chain;
   f.kind = classify(f.chain, robot.name);
   const SrsArm& arm = *f.kind.srs;
   Config q = inner_posture(f.chain, random);
-  f.path.emplace(random_waypoints(random, waypoint_of(f.chain.tool(q))), Resolution{.ds = 0.01, .dphi = 0.05, .dalpha = 0.1},
-                 "test", Budget(), smooth);
+  f.path.emplace(random_waypoints(random, waypoint_of(f.chain.tool(q))),
+                 Resolution{.ds = 0.01, .dphi = 0.05, .dalpha = 0.1}, "test", Budget(), smooth);
   ArmPlane plane;
   double phi = 0;
   const int branch = arm.branch(q);
@@ -317,7 +354,8 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const PathSmoothing smooth = random.coin(0.2) ? PathSmoothing{0, 0} : PathSmoothing{};
-    const auto f = followed(robots[static_cast<std::size_t>(trial) % robots.size()], random, smooth);
+    const auto f =
+        followed(robots[static_cast<std::size_t>(trial) % robots.size()], random, smooth);
     if (!f) continue;
     Limits limits;
     limits.joint_acceleration.emplace().fill(random.uniform(2, 15));
@@ -336,7 +374,10 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     ASSERT_GE(n, 2u);
     const double dt = 1 / options.rate;
     const auto q = [&](std::ptrdiff_t k) {  // at rest before and after
-      return out.rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, static_cast<std::ptrdiff_t>(n) - 1))].row.q;
+      return out
+          .rows[static_cast<std::size_t>(
+              std::clamp<std::ptrdiff_t>(k, 0, static_cast<std::ptrdiff_t>(n) - 1))]
+          .row.q;
     };
     for (std::ptrdiff_t k = -3; k < static_cast<std::ptrdiff_t>(n) + 3; ++k) {
       const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
@@ -352,19 +393,24 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
       // Its place on the path, by s: where the path only turns, s does not tell.
       int i = 0;
       while (i + 2 < f->path->size() && f->path->layer(i + 1).s <= row.row.s) ++i;
-      const bool turns = f->path->layer(i).step_length == 0 ||
-                         (i > 0 && f->path->layer(i - 1).step_length == 0 && row.row.s == f->path->layer(i).s);
+      const bool turns =
+          f->path->layer(i).step_length == 0 ||
+          (i > 0 && f->path->layer(i - 1).step_length == 0 && row.row.s == f->path->layer(i).s);
       if (k > 0 && !turns) {
-        const Pose there = f->path->at(i, (row.row.s - f->path->layer(i).s) / f->path->layer(i).step_length);
-        EXPECT_LE((tool.translation() - there.translation()).norm(), 1e-8) << "trial " << trial << " row " << k;
+        const Pose there =
+            f->path->at(i, (row.row.s - f->path->layer(i).s) / f->path->layer(i).step_length);
+        EXPECT_LE((tool.translation() - there.translation()).norm(), 1e-8)
+            << "trial " << trial << " row " << k;
         EXPECT_LE(angle_between(tool, there), 1e-6);
         ++samples;
-        const double moved = (tool.translation() - f->chain.tool(out.rows[k - 1].row.q).translation()).norm();
+        const double moved =
+            (tool.translation() - f->chain.tool(out.rows[k - 1].row.q).translation()).norm();
         EXPECT_LE(moved / dt, options.speed * (1 + 1e-3) + 1e-6);
       }
       if (k > 0 && k + 1 < n) {
         const Config v = (out.rows[k + 1].row.q - out.rows[k - 1].row.q) / (2 * dt);
-        EXPECT_LE((v - row.v).lpNorm<Eigen::Infinity>(), 1e-6 + 0.1 * rates.acceleration.maxCoeff() * dt);
+        EXPECT_LE((v - row.v).lpNorm<Eigen::Infinity>(),
+                  1e-6 + 0.1 * rates.acceleration.maxCoeff() * dt);
       }
     }
     EXPECT_LE((out.rows.front().row.q - f->rows.front().q).lpNorm<Eigen::Infinity>(), 1e-8);
@@ -376,8 +422,8 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     stops += sharp;
     slow += static_cast<int>(out.slow.size());
   }
-  std::printf("%d motions, %d stops, %d slow stretches, %d samples; worst ratios %.4f %.4f %.4f\n", timed, stops, slow, samples,
-              worst[0], worst[1], worst[2]);
+  std::printf("%d motions, %d stops, %d slow stretches, %d samples; worst ratios %.4f %.4f %.4f\n",
+              timed, stops, slow, samples, worst[0], worst[1], worst[2]);
   for (const double ratio : worst) EXPECT_LE(ratio, 1 + 1e-9);
   EXPECT_GT(worst[2], 0.8);
   EXPECT_GE(timed, 20);
@@ -397,17 +443,18 @@ TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {
   const JointRates rates = joint_rates(chain, limits, "test");
   std::vector<double> durations;
   for (const double ds : {0.002, 0.005, 0.02}) {
-    const ToolPath path({first, moved(first, Vector3d(0, 0.12, 0.05), Vector3d::Zero())}, {.ds = ds, .dphi = 0.05, .dalpha = 0.1},
-                        "test");
+    const ToolPath path({first, moved(first, Vector3d(0, 0.12, 0.05), Vector3d::Zero())},
+                        {.ds = ds, .dphi = 0.05, .dalpha = 0.1}, "test");
     std::vector<TrajectoryRow> rows;
     const std::vector<ArmPlane> planes = carried_planes(arm, path);
     const double phi = planes[0].angle_of(arm.elbow_axis(q));
     for (int i = 0; i < path.size(); ++i)
       rows.push_back(
           {path.layer(i).s, phi, arm.branch(q),
-           srs_ik(arm, elbow_circles(arm, planes[static_cast<std::size_t>(i)], path.layer(i).tool), phi, arm.branch(q))});
-    const TimingResult result =
-        time_path(*make_path_motion(chain, kind, path, rows), rates, {.speed = 0.05, .turn_speed = {}, .rate = 250});
+           srs_ik(arm, elbow_circles(arm, planes[static_cast<std::size_t>(i)], path.layer(i).tool),
+                  phi, arm.branch(q))});
+    const TimingResult result = time_path(*make_path_motion(chain, kind, path, rows), rates,
+                                          {.speed = 0.05, .turn_speed = {}, .rate = 250});
     ASSERT_TRUE(result.motion);
     durations.push_back(result.motion->duration);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bounds on how far rows of arms that are not exactly S-R-S place links from where their nodes place them, against the rows.
+// Bounds on how far rows of arms that are not exactly S-R-S place links from where their nodes
+// place them, against the rows.
 #include "swivel/core/kinematics/srs/pose_error_model.hpp"
 
 #include <gtest/gtest.h>
@@ -20,14 +21,17 @@ Vector3d direction(Random& random) {
 }
 
 /// Rows: linear, then angular velocity; that of the point `about` (base frame, m) of the tool.
-Eigen::Matrix<double, 6, kDof> jacobian_about(const Chain& chain, const Config& q, const Vector3d& about) {
+Eigen::Matrix<double, 6, kDof> jacobian_about(const Chain& chain, const Config& q,
+                                              const Vector3d& about) {
   auto J = chain.jacobian(q);
   const Vector3d from_tool = about - chain.tool(q).translation();
-  for (int k = 0; k < kDof; ++k) J.block<3, 1>(0, k) += Vector3d(J.block<3, 1>(3, k)).cross(from_tool);
+  for (int k = 0; k < kDof; ++k)
+    J.block<3, 1>(0, k) += Vector3d(J.block<3, 1>(3, k)).cross(from_tool);
   return J;
 }
 
-/// Rows of all branches that share an elbow stand within the bound of every node at which the link has the same pose.
+/// Rows of all branches that share an elbow stand within the bound of every node at which the link
+/// has the same pose.
 TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
   const std::uint64_t base = seed("RowShift");
   Random random(base);
@@ -40,10 +44,12 @@ TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
       Config node, row;
     };
     int rows = 0, known = 0, unknown = 0;
-    std::array<double, kDof + 1> closest{};  // [group] share of a bound that was reached; [0] of that on the Jacobian
+    std::array<double, kDof + 1>
+        closest{};  // [group] share of a bound that was reached; [0] of that on the Jacobian
     const int count = trials(4000);
     for (int trial = 0; trial < count; ++trial) {
-      const std::string what = robot.name + ", SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+      const std::string what = robot.name + ", SWIVEL_TEST_SEED " + std::to_string(base) +
+                               " trial " + std::to_string(trial);
       const Pose tool = chain.tool(random_config(chain, random));
       const ArmPlane plane = first_plane(arm, tool);
       if (reach_status(arm, plane.reach) != ReachStatus::kReachable) continue;
@@ -51,9 +57,11 @@ TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
       const double phi = random.uniform(-kPi, kPi);
       const int elbow = random.coin() ? kElbowBit : 0;
       std::vector<Known> all;
-      for (const int branch : {elbow, elbow | kShoulderBit, elbow | kWristBit, elbow | kShoulderBit | kWristBit}) {
+      for (const int branch :
+           {elbow, elbow | kShoulderBit, elbow | kWristBit, elbow | kShoulderBit | kWristBit}) {
         const Config node = srs_ik(arm, circles, phi, branch);
-        if (const auto row = solve_exact_chain(chain, arm, plane, tool, phi, node)) all.push_back({branch, node, *row});
+        if (const auto row = solve_exact_chain(chain, arm, plane, tool, phi, node))
+          all.push_back({branch, node, *row});
       }
       rows += static_cast<int>(all.size());
       for (const Known& here : all) {
@@ -80,13 +88,16 @@ TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
           if (!std::isfinite(bound.shift)) continue;
           for (const double r : {0.0, radius}) {
             const Vector3d x = bound.about + r * direction(random);
-            const auto place = [&](const Config& q) { return Vector3d(chain.displacements(q)[at] * x); };
+            const auto place = [&](const Config& q) {
+              return Vector3d(chain.displacements(q)[at] * x);
+            };
             for (const Known& there : all) {
               if ((here.branch ^ there.branch) & signs) continue;
               const double moved = (place(there.row) - place(here.node)).norm();
               ASSERT_LE(moved, bound.of(r) + 1e-9) << what << " group " << group;
               closest[at] = std::max(closest[at], moved / bound.of(r));
-              ASSERT_LE((place(there.row) - place(here.row)).norm(), apart.of(r) + 1e-9) << what << " group " << group;
+              ASSERT_LE((place(there.row) - place(here.row)).norm(), apart.of(r) + 1e-9)
+                  << what << " group " << group;
             }
           }
         }
@@ -96,13 +107,15 @@ TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
     middle.setOnes();
     const PoseErrorBound forearm = bounds.from_node(4, 0.8 * (arm.upper + arm.fore), middle);
     std::printf(
-        "%s: %d rows, %d bounds known, %d not; forearm at 0.8 of the reach %.2g mm + %.2g mrad; reached, of J and by links:",
+        "%s: %d rows, %d bounds known, %d not; forearm at 0.8 of the reach %.2g mm + %.2g mrad; "
+        "reached, of J and by links:",
         robot.name.c_str(), rows, known, unknown, 1e3 * forearm.shift, 1e3 * forearm.turn);
     for (const double share : closest) std::printf(" %.2f", share);
     std::printf("\n");
     EXPECT_GT(rows, at_least(8000)) << robot.name;
     EXPECT_GT(known, at_least(20000)) << robot.name;
-    for (std::size_t group = 0; group <= kDof && count >= 4000; ++group)  // not so wide that they say nothing
+    for (std::size_t group = 0; group <= kDof && count >= 4000;
+         ++group)  // not so wide that they say nothing
       EXPECT_GT(closest[group], 0.02) << robot.name << " group " << group;
   }
 }

@@ -34,7 +34,8 @@ Pose tool_of(const ArmTable& arm, const Config& q) {
   Pose pose = Pose::Identity();
   for (std::size_t k = 0; k < arm.joints.size(); ++k) {
     const JointRow& row = arm.joints[k];
-    pose = pose * urdf_pose(row.xyz, row.rpy) * Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], row.axis.normalized());
+    pose = pose * urdf_pose(row.xyz, row.rpy) *
+           Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], row.axis.normalized());
   }
   return pose * urdf_pose(arm.tip_xyz, arm.tip_rpy);
 }
@@ -63,8 +64,10 @@ TEST(Roll, IsTheTurnOfTheToolAboutItsOwnAxis) {
 
 TEST(Roll, IsTheSeventhJointOfSixAndOneCoordinateMoreOfSeven) {
   const ArmTable seven = arms_7r()[0], six = arms_6r()[0];
-  const RobotModel model = model_of(seven, seven.joints, Pose::Identity()), small = model_of(six, six.joints, Pose::Identity());
-  const auto build = [](const RobotModel& robot, const std::map<std::string, double>& hold, const std::optional<Roll>& roll) {
+  const RobotModel model = model_of(seven, seven.joints, Pose::Identity()),
+                   small = model_of(six, six.joints, Pose::Identity());
+  const auto build = [](const RobotModel& robot, const std::map<std::string, double>& hold,
+                        const std::optional<Roll>& roll) {
     return build_arm(robot, "base", robot.links.back().name, hold, Pose::Identity(), roll);
   };
   const auto message = [&](const auto&... arguments) -> std::string {
@@ -81,19 +84,20 @@ TEST(Roll, IsTheSeventhJointOfSixAndOneCoordinateMoreOfSeven) {
   EXPECT_FALSE(with_free_roll.roll);
   EXPECT_TRUE(with_free_roll.free_roll == Roll(-1, 2) && with_free_roll.tool_may_turn());
   EXPECT_EQ(with_free_roll.joint_names.front(), "j1");
-  EXPECT_EQ(
-      message(small, none, std::nullopt),
-      "kr6-r900: robot.tip_link: the arm from 'base' to 'l7' has six joints: allowed with a tool that may turn about its own z "
-      "axis: add `roll: free`, or [lower, upper] in rad, to `path`");
+  EXPECT_EQ(message(small, none, std::nullopt),
+            "kr6-r900: robot.tip_link: the arm from 'base' to 'l7' has six joints: allowed with a "
+            "tool that may turn about its own z "
+            "axis: add `roll: free`, or [lower, upper] in rad, to `path`");
   EXPECT_EQ(build(model, first, Roll{}).chain.joint_names.front(), "j2");
   // What the arm carries moves with its six joints at most.
   const ArmModel arm = build(small, none, Roll{});
   for (const LinkPlacement& link : arm.links) EXPECT_LT(link.group, kDof);
 }
 
-/// The least cost over a grid of rolls from one end of what a layer allows to the other, solved in closed form; windings of joints
-/// by value.
-double cheapest_of_grid(const Chain& chain, const ArcLattice& lattice, const std::vector<Roll>& allowed, int count) {
+/// The least cost over a grid of rolls from one end of what a layer allows to the other, solved in
+/// closed form; windings of joints by value.
+double cheapest_of_grid(const Chain& chain, const ArcLattice& lattice,
+                        const std::vector<Roll>& allowed, int count) {
   std::vector<Config> before, here;
   std::vector<double> cost, next;
   for (int i = 0; i < lattice.layers(); ++i) {
@@ -101,7 +105,8 @@ double cheapest_of_grid(const Chain& chain, const ArcLattice& lattice, const std
     const Roll& window = allowed[static_cast<std::size_t>(i)];
     for (int k = 0; k < count; ++k) {
       const double roll = window.lower + k * ((window.upper - window.lower) / (count - 1));
-      for (const Config6& six : ClosedForm::of(lock_joint(chain, kDof - 1, roll))->solve(lattice.path().layer(i).tool)) {
+      for (const Config6& six :
+           ClosedForm::of(lock_joint(chain, kDof - 1, roll))->solve(lattice.path().layer(i).tool)) {
         Config q = with_joint(six, kDof - 1, roll);
         bool inside = true;
         for (std::size_t j = 0; j < kDof; ++j) {
@@ -109,7 +114,9 @@ double cheapest_of_grid(const Chain& chain, const ArcLattice& lattice, const std
           const JointLimit& limit = chain.limit[j];
           if (lattice.continuous()[j] || lattice.circles()[j]) continue;
           for (const double turn : {-kTwoPi, kTwoPi})
-            if (x + turn >= limit.lower && x + turn <= limit.upper && (x < limit.lower || x > limit.upper)) x += turn;
+            if (x + turn >= limit.lower && x + turn <= limit.upper &&
+                (x < limit.lower || x > limit.upper))
+              x += turn;
           inside = inside && x >= limit.lower && x <= limit.upper;
         }
         if (inside) here.push_back(q);
@@ -119,7 +126,8 @@ double cheapest_of_grid(const Chain& chain, const ArcLattice& lattice, const std
     for (std::size_t b = 0; i > 0 && b < here.size(); ++b)
       for (std::size_t a = 0; a < before.size(); ++a) {
         const Config delta = lattice.delta(before[a], here[b]);
-        if (cost[a] < kNone && lattice.step_allowed(i - 1, delta)) next[b] = std::min(next[b], cost[a] + lattice.edge_cost(delta));
+        if (cost[a] < kNone && lattice.step_allowed(i - 1, delta))
+          next[b] = std::min(next[b], cost[a] + lattice.edge_cost(delta));
       }
     before.swap(here);
     cost.swap(next);
@@ -137,9 +145,11 @@ double cheapest(const ArcLattice& lattice, std::vector<int>& slots) {
     from[i].assign(cost[i].size(), -1);
     for (std::size_t b = 0; i > 0 && b < cost[i].size(); ++b)
       for (std::size_t a = 0; a < cost[i - 1].size(); ++a) {
-        const Config delta =
-            lattice.delta(lattice.point(layer - 1, static_cast<int>(a)).q, lattice.point(layer, static_cast<int>(b)).q);
-        if (!lattice.step_allowed(layer - 1, delta) || !(cost[i - 1][a] + lattice.edge_cost(delta) < cost[i][b])) continue;
+        const Config delta = lattice.delta(lattice.point(layer - 1, static_cast<int>(a)).q,
+                                           lattice.point(layer, static_cast<int>(b)).q);
+        if (!lattice.step_allowed(layer - 1, delta) ||
+            !(cost[i - 1][a] + lattice.edge_cost(delta) < cost[i][b]))
+          continue;
         cost[i][b] = cost[i - 1][a] + lattice.edge_cost(delta);
         from[i][b] = static_cast<int>(a);
       }
@@ -147,7 +157,8 @@ double cheapest(const ArcLattice& lattice, std::vector<int>& slots) {
   const auto best = std::min_element(cost.back().begin(), cost.back().end());
   slots.clear();
   if (best == cost.back().end() || *best == kNone) return kNone;
-  for (std::size_t i = layers, slot = static_cast<std::size_t>(best - cost.back().begin()); i-- > 0;) {
+  for (std::size_t i = layers, slot = static_cast<std::size_t>(best - cost.back().begin());
+       i-- > 0;) {
     slots.insert(slots.begin(), static_cast<int>(slot));
     slot = static_cast<std::size_t>(from[i][slot]);
   }
@@ -174,15 +185,17 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
       Pose tool = chain.tool(q);
       for (int k = 0; k < 3; ++k) {
         problem.waypoints.push_back({tool.translation(), Quaterniond(tool.linear()).normalized()});
-        tool.translation() += 0.1 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        tool.translation() +=
+            0.1 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         tool.rotate(Eigen::AngleAxisd(random.uniform(0, 0.3), Vector3d::UnitX()));
       }
       const bool windowed = !free && random.coin();
       for (std::size_t k = 0; windowed && k < problem.waypoints.size(); ++k) {
         // Now and then the tool stands as one turn alone.
-        const double middle = q[kDof - 1] + random.uniform(-0.2, 0.2), half = random.coin(0.3) ? 0 : random.uniform(0.005, 0.3);
-        problem.waypoints[k].roll =
-            Roll{std::clamp(middle - half, roll.lower, roll.upper), std::clamp(middle + half, roll.lower, roll.upper)};
+        const double middle = q[kDof - 1] + random.uniform(-0.2, 0.2),
+                     half = random.coin(0.3) ? 0 : random.uniform(0.005, 0.3);
+        problem.waypoints[k].roll = Roll{std::clamp(middle - half, roll.lower, roll.upper),
+                                         std::clamp(middle + half, roll.lower, roll.upper)};
       }
       problem.roll = roll;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -205,7 +218,9 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
       ++solved;
       windows += windowed;
       fixed += windowed && std::any_of(problem.waypoints.begin(), problem.waypoints.end(),
-                                       [](const Waypoint& waypoint) { return waypoint.roll->lower == waypoint.roll->upper; });
+                                       [](const Waypoint& waypoint) {
+                                         return waypoint.roll->lower == waypoint.roll->upper;
+                                       });
       worst = std::max(worst, cost / grid);
       dearer += cost > 1.02 * grid;
       for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -213,16 +228,20 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
         if (!free) {
           EXPECT_TRUE(row[kDof - 1] >= roll.lower && row[kDof - 1] <= roll.upper);
         }
-        if (windowed) EXPECT_LE(outside_windows(problem, path, static_cast<int>(i), row[kDof - 1]), 1e-8);
+        if (windowed)
+          EXPECT_LE(outside_windows(problem, path, static_cast<int>(i), row[kDof - 1]), 1e-8);
         EXPECT_EQ(lattice.phi(static_cast<int>(i), slots[i]), row[kDof - 1]);
         if (i == 0) continue;
-        const Config delta = lattice.delta(lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q, row);
-        EXPECT_LE(std::abs(delta[kDof - 1]), problem.limits.roll_slope * problem.resolution.ds + 1e-9);
+        const Config delta =
+            lattice.delta(lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q, row);
+        EXPECT_LE(std::abs(delta[kDof - 1]),
+                  problem.limits.roll_slope * problem.resolution.ds + 1e-9);
       }
     }
   }
   std::printf(
-      "  %d paths (%d with windows, %d with a turn alone), %d of both without one; at most %.3f of the grid's cost, %d dearer by 2 "
+      "  %d paths (%d with windows, %d with a turn alone), %d of both without one; at most %.3f of "
+      "the grid's cost, %d dearer by 2 "
       "%%\n",
       solved, windows, fixed, unsolved, worst, dearer);
   EXPECT_GE(solved, at_least(14));
@@ -241,7 +260,8 @@ TEST(Roll, ToolAngleErrorIsThatOfTheAxis) {
   problem.source = "two poses";
   Pose far = tool;
   far.translation().x() += 0.01;
-  for (const Pose& pose : {tool, far}) problem.waypoints.push_back({pose.translation(), Quaterniond(pose.linear()).normalized()});
+  for (const Pose& pose : {tool, far})
+    problem.waypoints.push_back({pose.translation(), Quaterniond(pose.linear()).normalized()});
   problem.resolution.ds = 0.02;
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   // The roll alone turns nothing that counts.

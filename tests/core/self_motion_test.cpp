@@ -16,7 +16,8 @@ namespace {
 using namespace test;
 
 double pose_distance(const Pose& a, const Pose& b) {
-  return std::max((a.translation() - b.translation()).norm(), (a.linear() - b.linear()).norm() / std::sqrt(2.0));
+  return std::max((a.translation() - b.translation()).norm(),
+                  (a.linear() - b.linear()).norm() / std::sqrt(2.0));
 }
 
 double turn(double x) {
@@ -32,7 +33,8 @@ bool solve(const Chain& chain, const Pose& tool, Config& q) {
     const Eigen::AngleAxisd way(tool.linear() * reached.linear().transpose());
     error << tool.translation() - reached.translation(), way.angle() * way.axis();
     const auto J = chain.jacobian(q);
-    const Eigen::Matrix<double, 6, 6> A = J * J.transpose() + 1e-4 * error.squaredNorm() * Eigen::Matrix<double, 6, 6>::Identity();
+    const Eigen::Matrix<double, 6, 6> A =
+        J * J.transpose() + 1e-4 * error.squaredNorm() * Eigen::Matrix<double, 6, 6>::Identity();
     const Config move = J.transpose() * A.ldlt().solve(error);
     q += move * std::min(1.0, 0.5 / std::max(move.norm(), 1e-12));
   }
@@ -48,13 +50,15 @@ double distance_to(const SelfMotionArc& arc, const Config& q) {
       d[j] = turn(q[j] - from[j]);
       c[j] = turn(to[j] - from[j]);
     }
-    least = std::min(least, (d - std::clamp(d.dot(c) / std::max(c.squaredNorm(), 1e-30), 0.0, 1.0) * c).norm());
+    least = std::min(
+        least, (d - std::clamp(d.dot(c) / std::max(c.squaredNorm(), 1e-30), 0.0, 1.0) * c).norm());
   };
   for (int chord = 0; chord < arc.chords(); ++chord) {
     Config d;
     for (int j = 0; j < kDof; ++j) d[j] = turn(q[j] - arc.q[static_cast<std::size_t>(chord)][j]);
     if (d.norm() > 1) continue;
-    for (int part = 0; part < 4; ++part) between(arc.at(chord, part / 4.0), arc.at(chord, (part + 1) / 4.0));
+    for (int part = 0; part < 4; ++part)
+      between(arc.at(chord, part / 4.0), arc.at(chord, (part + 1) / 4.0));
   }
   return least;
 }
@@ -77,10 +81,10 @@ struct Coverage {
   double length = 0, residual = 0, farthest = 0;
 };
 
-/// Arcs of one pose against random seeds, `own` among them. Seeds at which joint `aligns` is within 1e-6 of 0 are singular and lie
-/// on no arc.
-void compare(const Chain& chain, const Pose& tool, const std::vector<SelfMotionArc>& arcs, const Config* own, int seeds,
-             Random& random, Coverage& coverage, int aligns = -1) {
+/// Arcs of one pose against random seeds, `own` among them. Seeds at which joint `aligns` is within
+/// 1e-6 of 0 are singular and lie on no arc.
+void compare(const Chain& chain, const Pose& tool, const std::vector<SelfMotionArc>& arcs,
+             const Config* own, int seeds, Random& random, Coverage& coverage, int aligns = -1) {
   ++coverage.poses;
   coverage.arcs += static_cast<int>(arcs.size());
   for (const SelfMotionArc& arc : arcs) {
@@ -121,11 +125,12 @@ void compare(const Chain& chain, const Pose& tool, const std::vector<SelfMotionA
 
 void print(const std::string& name, const Coverage& c) {
   std::printf(
-      "  %s: %d poses, %.1f arcs a pose, mean length %.2f, %d ends on limits, residual %.1e; %d seeds (%d singular besides), off "
+      "  %s: %d poses, %.1f arcs a pose, mean length %.2f, %d ends on limits, residual %.1e; %d "
+      "seeds (%d singular besides), off "
       "every arc "
       "%d, farthest %.3f\n",
-      name.c_str(), c.poses, static_cast<double>(c.arcs) / c.poses, c.length / std::max(1, c.arcs), c.ends, c.residual, c.seeds,
-      c.singular, c.missed, c.farthest);
+      name.c_str(), c.poses, static_cast<double>(c.arcs) / c.poses, c.length / std::max(1, c.arcs),
+      c.ends, c.residual, c.seeds, c.singular, c.missed, c.farthest);
 }
 
 std::vector<ArmTable> arms() {
@@ -161,19 +166,23 @@ TEST(SelfMotion, MissesNoArcThatRandomSeedsFind) {
   }
 }
 
-/// A wrist whose outer joints turn all round has its arcs in pairs; one of two and its twin are all of them.
+/// A wrist whose outer joints turn all round has its arcs in pairs; one of two and its twin are all
+/// of them.
 TEST(SelfMotion, TwinsOfArcsAreTheOtherArcs) {
   Random random(seed("SelfMotion.TwinsOfArcsAreTheOtherArcs"));
   const Chain bounded = chain_of(arms_6r()[2]), shoulder = chain_of(arms_7r()[0]);
-  EXPECT_FALSE(SelfMotion(bounded, lock_method(bounded), 0).has_flipped_arcs());    // joint 4 turns by 320 degrees
-  EXPECT_FALSE(SelfMotion(shoulder, lock_method(shoulder), 0).has_flipped_arcs());  // joints 1 and 3 by 332
+  EXPECT_FALSE(SelfMotion(bounded, lock_method(bounded), 0)
+                   .has_flipped_arcs());  // joint 4 turns by 320 degrees
+  EXPECT_FALSE(
+      SelfMotion(shoulder, lock_method(shoulder), 0).has_flipped_arcs());  // joints 1 and 3 by 332
   const Chain chain = chain_of(arms_6r()[0]);
   for (const double margin : {0.0, 0.05}) {
     const SelfMotion motion(chain, lock_method(chain), margin);
     ASSERT_TRUE(motion.has_flipped_arcs());
     const auto apart = [](const Config& a, const Config& b) {
       double most = 0;
-      for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(std::remainder(a[j] - b[j], kTwoPi)));
+      for (int j = 0; j < kDof; ++j)
+        most = std::max(most, std::abs(std::remainder(a[j] - b[j], kTwoPi)));
       return most;
     };
     int compared = 0;
@@ -208,8 +217,8 @@ TEST(SelfMotion, TwinsOfArcsAreTheOtherArcs) {
 
 TEST(SelfMotion, MissesNoArcNearAlignment) {
   Random random(seed("SelfMotion.MissesNoArcNearAlignment"));
-  for (const auto& [table, joint] :
-       {std::pair(arms_7r()[0], 1), std::pair(arms_7r()[3], 5), std::pair(arms_6r()[0], 4), std::pair(arms_6r()[3], 4)}) {
+  for (const auto& [table, joint] : {std::pair(arms_7r()[0], 1), std::pair(arms_7r()[3], 5),
+                                     std::pair(arms_6r()[0], 4), std::pair(arms_6r()[3], 4)}) {
     const Chain chain = chain_of(table);
     const SelfMotion motion(chain, lock_method(chain), 0);
     Coverage coverage;
@@ -223,8 +232,8 @@ TEST(SelfMotion, MissesNoArcNearAlignment) {
     EXPECT_EQ(coverage.poses, trials(4));
     EXPECT_GE(coverage.seeds, at_least(10 * coverage.poses));
     EXPECT_LE(coverage.singular, coverage.seeds / 20) << table.name;
-    // Of an arm with three parallel axes a closed curve along which the lock moves by less than 1e-4 may be hidden between lock
-    // values: one of 60 such poses.
+    // Of an arm with three parallel axes a closed curve along which the lock moves by less than
+    // 1e-4 may be hidden between lock values: one of 60 such poses.
     EXPECT_LE(coverage.missed, table.joints.size() == 6 ? coverage.seeds / 100 : 0) << table.name;
   }
 }
@@ -263,7 +272,8 @@ TEST(SelfMotion, MissesNoArcAlongPaths) {
     for (int trial = 0; trial < trials(1); ++trial) {
       const Config q = random_configuration(chain, random);
       Pose tool = chain.tool(q);
-      const Vector3d way = 0.02 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const Vector3d way =
+          0.02 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       const Eigen::AngleAxisd turning(random.uniform(0, 0.03), way.normalized());
       for (int layer = 0; layer < 8; ++layer) {
         compare(chain, tool, motion.arcs(tool), nullptr, 60, random, coverage);
@@ -291,8 +301,10 @@ TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
       const int joint = random.below(kDof);
       const double by = random.uniform(0, 0.1);
       const auto moved = [&](const Config& x) { return std::abs(x[joint] - q[joint]); };
-      const auto beside = nearest_allowed_posture(chain, q, kFarthest, [&](const Config& x) { return moved(x) >= by; });
-      const std::string where = arm.name + ", SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
+      const auto beside = nearest_allowed_posture(chain, q, kFarthest,
+                                                  [&](const Config& x) { return moved(x) >= by; });
+      const std::string where =
+          arm.name + ", SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
       if (!beside) {
         ++none;
         continue;
@@ -301,12 +313,15 @@ TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
       EXPECT_LT(pose_distance(chain.tool(*beside), chain.tool(q)), 1e-9) << where;
       EXPECT_GE(moved(*beside), by) << where;
       EXPECT_LT((*beside - q).norm(), 1.1 * kFarthest * 1.3) << where;
-      // Steps grow by three tenths: two thirds of the way, on the curve beside the chord, nothing is allowed.
+      // Steps grow by three tenths: two thirds of the way, on the curve beside the chord, nothing
+      // is allowed.
       const Config way = *beside - q;
       if (way.norm() < 2e-3) continue;
       for (const double part : {0.2, 0.4, 0.65}) {
         Config between = q + part * way;
-        if (!solve(chain, chain.tool(q), between) || (between - q - part * way).norm() > 0.02 * way.norm()) continue;
+        if (!solve(chain, chain.tool(q), between) ||
+            (between - q - part * way).norm() > 0.02 * way.norm())
+          continue;
         ++tried;
         EXPECT_LT(moved(between), by) << where << ", " << part;
       }

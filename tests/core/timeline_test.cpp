@@ -58,9 +58,10 @@ TEST(Timeline, ForgetsWhatRanBeforeItAndAllowsNoSecond) {
 TEST(SelfTimes, LeaveOutWhatRanWithin) {
   using Event = Timeline::Event;
   // plan 0 to 100: sweep 10 to 30, ask 40 to 90 with two nodes; on another thread a node.
-  const std::vector<Event> events{{"sweep", 10, 30, 0, nullptr, 0}, {"node", 40, 55, 0, nullptr, 0},
-                                  {"node", 55, 60, 0, nullptr, 0},  {"ask", 40, 90, 0, nullptr, 0},
-                                  {"plan", 0, 100, 0, nullptr, 0},  {"node", 42, 50, 1, nullptr, 0}};
+  const std::vector<Event> events{
+      {"sweep", 10, 30, 0, nullptr, 0}, {"node", 40, 55, 0, nullptr, 0},
+      {"node", 55, 60, 0, nullptr, 0},  {"ask", 40, 90, 0, nullptr, 0},
+      {"plan", 0, 100, 0, nullptr, 0},  {"node", 42, 50, 1, nullptr, 0}};
   const auto times = self_times(events);
   ASSERT_EQ(times.size(), 4u);
   const auto expect = [&](std::size_t k, const char* stage, int calls, int self) {
@@ -76,14 +77,16 @@ TEST(SelfTimes, LeaveOutWhatRanWithin) {
 }
 
 /// Adds a span and random ones within it, inner before outer. How long it lasts.
-std::int64_t add_spans(Random& random, int depth, int thread, std::int64_t& now, std::vector<Timeline::Event>& events,
+std::int64_t add_spans(Random& random, int depth, int thread, std::int64_t& now,
+                       std::vector<Timeline::Event>& events,
                        std::map<std::string, std::int64_t>& self) {
   constexpr const char* kNames[] = {"a", "b", "c", "d"};
   const char* const name = kNames[random.below(4)];
   const std::int64_t begin = now;
   std::int64_t own = 0;
   const auto work = [&] {
-    const std::int64_t ns = random.below(4);  // none, too: inner spans may begin when the outer one does
+    const std::int64_t ns =
+        random.below(4);  // none, too: inner spans may begin when the outer one does
     now += ns;
     own += ns;
   };
@@ -107,10 +110,12 @@ TEST(SelfTimes, AddUpToTheOutermostSpans) {
     std::int64_t outermost = 0, sum = 0;
     for (int thread = 0; thread < 3; ++thread) {
       std::int64_t now = random.below(3);
-      for (int k = random.below(4); k > 0; --k) outermost += add_spans(random, 4, thread, now, events, self);
+      for (int k = random.below(4); k > 0; --k)
+        outermost += add_spans(random, 4, thread, now, events, self);
     }
     for (const SelfTime& time : self_times(events)) {
-      EXPECT_EQ(time.self_ns, self[time.stage]) << "SWIVEL_TEST_SEED " << base << " trial " << trial << " " << time.stage;
+      EXPECT_EQ(time.self_ns, self[time.stage])
+          << "SWIVEL_TEST_SEED " << base << " trial " << trial << " " << time.stage;
       sum += time.self_ns;
     }
     EXPECT_EQ(sum, outermost) << "SWIVEL_TEST_SEED " << base << " trial " << trial;

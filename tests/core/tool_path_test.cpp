@@ -16,7 +16,8 @@ Waypoint at(double x, double y, double z, double yaw = 0) {
 }
 
 TEST(ToolPath, EveryWaypointIsALayerAndStepsAreEqual) {
-  const ToolPath path({at(0, 0, 0), at(0.1, 0, 0), at(0.1, 0.033, 0)}, {.ds = 0.01, .dphi = 0.1, .dalpha = 0.1}, "test");
+  const ToolPath path({at(0, 0, 0), at(0.1, 0, 0), at(0.1, 0.033, 0)},
+                      {.ds = 0.01, .dphi = 0.1, .dalpha = 0.1}, "test");
   ASSERT_EQ(path.size(), 1 + 10 + 4);
   EXPECT_EQ(path.layer(0).waypoint, 0);
   EXPECT_EQ(path.layer(10).waypoint, 1);
@@ -28,7 +29,8 @@ TEST(ToolPath, EveryWaypointIsALayerAndStepsAreEqual) {
 }
 
 TEST(ToolPath, ASegmentThatOnlyTurnsHasLayersAtOneS) {
-  const ToolPath path({at(0, 0, 0), at(0, 0, 0, 1.0), at(0.1, 0, 0, 1.0)}, {.ds = 0.05, .dphi = 0.1, .dalpha = 0.1}, "test");
+  const ToolPath path({at(0, 0, 0), at(0, 0, 0, 1.0), at(0.1, 0, 0, 1.0)},
+                      {.ds = 0.05, .dphi = 0.1, .dalpha = 0.1}, "test");
   ASSERT_EQ(path.size(), 1 + 10 + 2);
   EXPECT_EQ(path.layer(10).s, 0);
   EXPECT_NEAR(path.layer(3).step_angle, 0.1, 1e-12);
@@ -36,7 +38,8 @@ TEST(ToolPath, ASegmentThatOnlyTurnsHasLayersAtOneS) {
 }
 
 TEST(ToolPath, TurnsTheShortWayAndKeepsTurningBeyondTheStep) {
-  const ToolPath path({at(0, 0, 0, 3.0), at(1, 0, 0, -3.0)}, {.ds = 0.5, .dphi = 0.1, .dalpha = 10}, "test");
+  const ToolPath path({at(0, 0, 0, 3.0), at(1, 0, 0, -3.0)}, {.ds = 0.5, .dphi = 0.1, .dalpha = 10},
+                      "test");
   ASSERT_EQ(path.size(), 3);
   const Pose middle = path.layer(1).tool;
   EXPECT_NEAR(middle.linear()(0, 0), -1, 1e-12);  // yaw pi
@@ -44,13 +47,15 @@ TEST(ToolPath, TurnsTheShortWayAndKeepsTurningBeyondTheStep) {
 }
 
 TEST(ToolPath, MergesRepeatedWaypointsAndKeepsTheirRows) {
-  const ToolPath path({at(0, 0, 0), at(0, 0, 0), at(0, 0, 5e-10), at(1, 0, 0)}, {.ds = 1, .dphi = 0.1, .dalpha = 0.1}, "test");
+  const ToolPath path({at(0, 0, 0), at(0, 0, 0), at(0, 0, 5e-10), at(1, 0, 0)},
+                      {.ds = 1, .dphi = 0.1, .dalpha = 0.1}, "test");
   EXPECT_EQ(path.merged_waypoints(), 2);
   ASSERT_EQ(path.size(), 2);
   EXPECT_EQ(path.layer(1).waypoint, 3);
 }
 
-/// Whether the windows of the roll are linear along the path, and both hold where two waypoints are one.
+/// Whether the windows of the roll are linear along the path, and both hold where two waypoints are
+/// one.
 TEST(ToolPath, WindowsOfTheRollAreLinearBetweenWaypoints) {
   std::vector<Waypoint> waypoints{at(0, 0, 0), at(0.1, 0, 0), at(0.1, 0, 0), at(0.1, 0, 0, 0.4)};
   const std::array<Roll, 4> rolls{Roll{-0.1, 0.1}, Roll{-0.5, 0.3}, Roll{-0.4, 0.9}, Roll{0, 0}};
@@ -82,14 +87,16 @@ TEST(ToolPath, WindowsOfTheRollAreLinearBetweenWaypoints) {
 }
 
 /// Each segment of a polyline cut into so many parts of unequal length.
-std::vector<Waypoint> in_parts(const std::vector<Waypoint>& corners, int parts, test::Random& random) {
+std::vector<Waypoint> in_parts(const std::vector<Waypoint>& corners, int parts,
+                               test::Random& random) {
   std::vector<Waypoint> waypoints{corners[0]};
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
     double t = 0;
     for (int part = 1; part < parts; ++part) {
       t += random.uniform(0.2, 0.99) * (1 - t) / (parts - part);
-      waypoints.push_back({corners[k].position + t * (corners[k + 1].position - corners[k].position),
-                           corners[k].orientation.slerp(t, corners[k + 1].orientation)});
+      waypoints.push_back(
+          {corners[k].position + t * (corners[k + 1].position - corners[k].position),
+           corners[k].orientation.slerp(t, corners[k + 1].orientation)});
     }
     waypoints.push_back(corners[k + 1]);
   }
@@ -101,31 +108,42 @@ TEST(ToolPath, WaypointsOnALineAreNoLayers) {
   const std::uint64_t base = test::seed("Collinear");
   int turning = 0, on_the_spot = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     test::Random random(base + static_cast<std::uint64_t>(trial));
     std::vector<Waypoint> corners{at(0, 0, 0)};
     for (int k = 0; k < 3; ++k) {
       Waypoint next = corners.back();
       const bool turns = random.coin(), moves = !turns || random.coin(0.7);
-      if (moves) next.position += Vector3d(random.uniform(0.02, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+      if (moves)
+        next.position += Vector3d(random.uniform(0.02, 0.1), random.uniform(-0.1, 0.1),
+                                  random.uniform(-0.1, 0.1));
       const Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1));
-      if (turns) next.orientation = next.orientation * Quaterniond(Eigen::AngleAxisd(random.uniform(0.1, 2.5), axis.normalized()));
+      if (turns)
+        next.orientation = next.orientation * Quaterniond(Eigen::AngleAxisd(
+                                                  random.uniform(0.1, 2.5), axis.normalized()));
       turning += turns;
       on_the_spot += !moves;
       corners.push_back(next);
     }
-    const Resolution resolution{.ds = random.uniform(0.004, 0.02), .dphi = 0.1, .dalpha = random.uniform(0.05, 0.2)};
+    const Resolution resolution{
+        .ds = random.uniform(0.004, 0.02), .dphi = 0.1, .dalpha = random.uniform(0.05, 0.2)};
     const ToolPath path(corners, resolution, "test");
     for (const int parts : {2, 10, 100}) {
       const ToolPath same(in_parts(corners, parts, random), resolution, "test");
       ASSERT_EQ(same.size(), path.size()) << what << " parts " << parts;
       for (int i = 0; i < path.size(); ++i) {
-        ASSERT_EQ(same.layer(i).tool.matrix(), path.layer(i).tool.matrix()) << what << " layer " << i;
+        ASSERT_EQ(same.layer(i).tool.matrix(), path.layer(i).tool.matrix())
+            << what << " layer " << i;
         ASSERT_EQ(same.layer(i).travel, path.layer(i).travel) << what << " layer " << i;
-        ASSERT_EQ(same.layer(i).waypoint, path.layer(i).waypoint < 0 ? -1 : path.layer(i).waypoint * parts) << what;
+        ASSERT_EQ(same.layer(i).waypoint,
+                  path.layer(i).waypoint < 0 ? -1 : path.layer(i).waypoint * parts)
+            << what;
       }
       // All waypoints are known all the same.
-      EXPECT_EQ(same.waypoints_along(0, path.layer(path.size() - 1).travel), (std::array{0, 3 * parts})) << what;
+      EXPECT_EQ(same.waypoints_along(0, path.layer(path.size() - 1).travel),
+                (std::array{0, 3 * parts}))
+          << what;
       const double middle = path.layer(1).travel / 2;
       EXPECT_LE(same.waypoints_along(0, middle)[1], same.waypoints_along(middle, 1e3)[0]) << what;
     }
@@ -134,13 +152,16 @@ TEST(ToolPath, WaypointsOnALineAreNoLayers) {
   EXPECT_GE(on_the_spot, 10);
 }
 
-/// What bends the path stays a layer: a corner of a micrometre, a turn back, a turn in one half of a line, a window.
+/// What bends the path stays a layer: a corner of a micrometre, a turn back, a turn in one half of
+/// a line, a window.
 TEST(ToolPath, CornersAreLayers) {
   const Resolution resolution{.ds = 0.04, .dphi = 0.1, .dalpha = 0.2};
   EXPECT_EQ(ToolPath({at(0, 0, 0), at(0.02, 0, 0), at(0.04, 0, 0)}, resolution, "test").size(), 2);
-  EXPECT_EQ(ToolPath({at(0, 0, 0), at(0.02, 1e-6, 0), at(0.04, 0, 0)}, resolution, "test").size(), 3);
+  EXPECT_EQ(ToolPath({at(0, 0, 0), at(0.02, 1e-6, 0), at(0.04, 0, 0)}, resolution, "test").size(),
+            3);
   EXPECT_EQ(ToolPath({at(0, 0, 0), at(0.04, 0, 0), at(0.02, 0, 0)}, resolution, "test").size(), 3);
-  EXPECT_EQ(ToolPath({at(0, 0, 0), at(0.02, 0, 0), at(0.04, 0, 0, 0.1)}, resolution, "test").size(), 3);
+  EXPECT_EQ(ToolPath({at(0, 0, 0), at(0.02, 0, 0), at(0.04, 0, 0, 0.1)}, resolution, "test").size(),
+            3);
   // A whole turn is not the short way round.
   std::vector<Waypoint> turns;
   for (int k = 0; k <= 8; ++k) turns.push_back(at(0, 0, 0, kPi / 4 * k));
@@ -153,13 +174,14 @@ TEST(ToolPath, CornersAreLayers) {
   EXPECT_EQ(ToolPath(windows, resolution, "test").size(), 3);
 }
 
-/// A tool that may turn about its z axis as it likes may turn half round it: the z axis stands still.
+/// A tool that may turn about its z axis as it likes may turn half round it: the z axis stands
+/// still.
 TEST(ToolPath, AHalfTurnAboutAFreeAxisIsRightHanded) {
   const Resolution resolution{.ds = 0.005, .dphi = 0.1, .dalpha = 0.1};
   const auto path = [&](double yaw, bool turns_freely) {
-    const Waypoint there{
-        {0.02, 0, 0},
-        Quaterniond(Eigen::AngleAxisd(kPi, Vector3d::UnitX())) * Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()))};
+    const Waypoint there{{0.02, 0, 0},
+                         Quaterniond(Eigen::AngleAxisd(kPi, Vector3d::UnitX())) *
+                             Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()))};
     const Waypoint here{{0, 0, 0}, Quaterniond(Eigen::AngleAxisd(kPi, Vector3d::UnitX()))};
     return ToolPath({here, there}, resolution, "test", {}, {}, turns_freely);
   };
@@ -169,11 +191,15 @@ TEST(ToolPath, AHalfTurnAboutAFreeAxisIsRightHanded) {
     ASSERT_EQ(half.size(), nearly.size());
     for (int i = 0; i < half.size(); ++i) {
       EXPECT_LT((half.layer(i).tool.matrix() - nearly.layer(i).tool.matrix()).norm(), 2e-6) << i;
-      EXPECT_LT((half.layer(i).tool.linear().col(2) - half.layer(0).tool.linear().col(2)).norm(), 1e-9) << i;
+      EXPECT_LT((half.layer(i).tool.linear().col(2) - half.layer(0).tool.linear().col(2)).norm(),
+                1e-9)
+          << i;
     }
   }
   // About another axis it is undefined for that tool, too.
-  const Waypoint here = at(0, 0, 0), over{{0.02, 0, 0}, Quaterniond(Eigen::AngleAxisd(kPi, Vector3d(1, 0, 1).normalized()))};
+  const Waypoint here = at(0, 0, 0),
+                 over{{0.02, 0, 0},
+                      Quaterniond(Eigen::AngleAxisd(kPi, Vector3d(1, 0, 1).normalized()))};
   EXPECT_THROW(ToolPath({here, over}, resolution, "test", {}, {}, true), InputError);
 }
 
@@ -182,7 +208,9 @@ TEST(ToolPath, RefusesWhatHasNoMeaning) {
   EXPECT_THROW(ToolPath({at(0, 0, 0)}, resolution, "test"), InputError);
   EXPECT_THROW(ToolPath({at(0, 0, 0), at(0, 0, 0)}, resolution, "test"), InputError);
   EXPECT_THROW(ToolPath({at(0, 0, 0), at(0, 0, 0, kPi)}, resolution, "test"), InputError);
-  EXPECT_THROW(ToolPath({at(0, 0, 0), at(1, 0, 0)}, {.ds = 1e-9, .dphi = 0.1, .dalpha = 0.1}, "test"), InputError);
+  EXPECT_THROW(
+      ToolPath({at(0, 0, 0), at(1, 0, 0)}, {.ds = 1e-9, .dphi = 0.1, .dalpha = 0.1}, "test"),
+      InputError);
 }
 
 }  // namespace

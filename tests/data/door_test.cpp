@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The door panel and its polishing path: made again byte for byte, closed, and where the path says it is.
+// The door panel and its polishing path: made again byte for byte, closed, and where the path says
+// it is.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -36,12 +37,15 @@ std::vector<Triangle> read_stl(const std::filesystem::path& file) {
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, 4);
   EXPECT_EQ(count, result.size());
-  for (std::size_t k = 0; k < result.size(); ++k) std::memcpy(&result[k], bytes.data() + 84 + 50 * k + 12, sizeof(Triangle));
+  for (std::size_t k = 0; k < result.size(); ++k)
+    std::memcpy(&result[k], bytes.data() + 84 + 50 * k + 12, sizeof(Triangle));
   return result;
 }
 
-double triple(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+double triple(const std::array<double, 3>& a, const std::array<double, 3>& b,
+              const std::array<double, 3>& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
 struct Case {
@@ -52,13 +56,15 @@ struct Case {
 class Regenerated : public testing::TestWithParam<Case> {};
 
 TEST_P(Regenerated, GivesTheSameBytes) {
-  const auto folder =
-      std::filesystem::path(testing::TempDir()) / ("swivel_door_" + std::filesystem::path(GetParam().file).stem().string());
+  const auto folder = std::filesystem::path(testing::TempDir()) /
+                      ("swivel_door_" + std::filesystem::path(GetParam().file).stem().string());
   std::filesystem::create_directories(folder);
   const auto made = folder / "made";
-  const std::string command = std::string("\"") + SWIVEL_MAKE_DOOR + "\" " + GetParam().arguments + " \"" + made.string() + "\"";
+  const std::string command = std::string("\"") + SWIVEL_MAKE_DOOR + "\" " + GetParam().arguments +
+                              " \"" + made.string() + "\"";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
-  EXPECT_TRUE(read(made) == read(kData / GetParam().file)) << GetParam().file << " differs from what make_door writes";
+  EXPECT_TRUE(read(made) == read(kData / GetParam().file))
+      << GetParam().file << " differs from what make_door writes";
   std::filesystem::remove_all(folder);
 }
 INSTANTIATE_TEST_SUITE_P(Door, Regenerated,
@@ -90,12 +96,16 @@ TEST_P(Panel, IsClosedAndOriented) {
   }
   EXPECT_EQ(uses.size(), 3 * triangles.size());
   // One body with one hole: V - E + F = 0.
-  EXPECT_EQ(static_cast<long>(ids.size()) - static_cast<long>(uses.size() / 2) + static_cast<long>(triangles.size()), 0);
+  EXPECT_EQ(static_cast<long>(ids.size()) - static_cast<long>(uses.size() / 2) +
+                static_cast<long>(triangles.size()),
+            0);
   // About 1.5 m x 1.0 m less window, 40 mm thick; positive when the triangles face outwards.
   EXPECT_GT(volume, 0.035);
   EXPECT_LT(volume, 0.055);
 }
-INSTANTIATE_TEST_SUITE_P(Door, Panel, testing::Values(Case{"", "meshes/door_2k.stl"}, Case{"", "meshes/door_20k.stl"}));
+INSTANTIATE_TEST_SUITE_P(Door, Panel,
+                         testing::Values(Case{"", "meshes/door_2k.stl"},
+                                         Case{"", "meshes/door_20k.stl"}));
 
 TEST(PolishingPath, StandsTwelveMillimetresOffTheSurface) {
   const std::vector<Triangle> triangles = read_stl(kData / "meshes/door_20k.stl");
@@ -114,13 +124,17 @@ TEST(PolishingPath, StandsTwelveMillimetresOffTheSurface) {
     double w = 0, x = 0, y = 0, z = 0;
     ASSERT_TRUE(numbers >> p[0] >> p[1] >> p[2] >> w >> x >> y >> z) << line;
     EXPECT_NEAR(w * w + x * x + y * y + z * z, 1, 1e-11);
-    const std::array<double, 3> tool_z{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+    const std::array<double, 3> tool_z{2 * (x * z + w * y), 2 * (y * z - w * x),
+                                       1 - 2 * (x * x + y * y)};
     double nearest = 1e9;  // first triangle that the tool's z axis meets
     for (const Triangle& t : triangles) {
-      const auto from = [&](std::size_t k) { return std::array<double, 3>{t[k][0] - p[0], t[k][1] - p[1], t[k][2] - p[2]}; };
+      const auto from = [&](std::size_t k) {
+        return std::array<double, 3>{t[k][0] - p[0], t[k][1] - p[1], t[k][2] - p[2]};
+      };
       const auto a = from(0), b = from(1), c = from(2);
       const double u = triple(tool_z, b, c), v = triple(tool_z, c, a), s = triple(tool_z, a, b);
-      if (!((u >= 0 && v >= 0 && s >= 0) || (u <= 0 && v <= 0 && s <= 0)) || u + v + s == 0) continue;
+      if (!((u >= 0 && v >= 0 && s >= 0) || (u <= 0 && v <= 0 && s <= 0)) || u + v + s == 0)
+        continue;
       const double distance = triple(a, b, c) / (u + v + s);
       if (distance > 0 && distance < nearest) nearest = distance;
     }

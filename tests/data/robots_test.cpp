@@ -22,8 +22,10 @@ namespace {
 const std::filesystem::path kData = SWIVEL_DATA_DIR;
 
 TEST(Robots, HaveOneCapsuleALink) {
-  for (const std::string name : {"panda_like", "xarm7_like", "gen3_like", "fetch_like", "ur5e_like", "kr6_like"}) {
-    const auto model = io::load_robot(kData / "robots" / (name + ".urdf"), kData / "robots" / (name + ".srdf"));
+  for (const std::string name :
+       {"panda_like", "xarm7_like", "gen3_like", "fetch_like", "ur5e_like", "kr6_like"}) {
+    const auto model =
+        io::load_robot(kData / "robots" / (name + ".urdf"), kData / "robots" / (name + ".srdf"));
     const bool six = name == "ur5e_like" || name == "kr6_like";
     const auto roll = six ? std::optional(Roll{}) : std::nullopt;
     int links = 0;
@@ -48,7 +50,8 @@ TEST(Robots, AreOfTheClassesTheyAreLike) {
   const std::map<std::string, std::string> words{
       {"panda_like", "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)"},
       {"xarm7_like", "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)"},
-      {"gen3_like", "closed form: axes 5, 6 and 7 meet in a point within 0.18 mm; locks joint 3 (or 1, 2, 4)"},
+      {"gen3_like",
+       "closed form: axes 5, 6 and 7 meet in a point within 0.18 mm; locks joint 3 (or 1, 2, 4)"},
       {"fetch_like", "closed form: axes 5, 6 and 7 meet in a point; locks joint 3 (or 1, 2, 4)"},
       {"ur5e_like", "closed form: axes 2, 3 and 4 are parallel; locks the roll (or joint 5, 6)"},
       {"kr6_like", "closed form: axes 4, 5 and 6 meet in a point; locks the roll"}};
@@ -59,7 +62,8 @@ TEST(Robots, AreOfTheClassesTheyAreLike) {
     const auto model = io::load_robot(kData / "robots" / (name + ".urdf"));
     const bool six = name == "ur5e_like" || name == "kr6_like";
     const ArmModel arm =
-        build_arm(*model, "base_link", "flange", {}, six ? torch : Pose::Identity(), six ? std::optional(Roll{}) : std::nullopt);
+        build_arm(*model, "base_link", "flange", {}, six ? torch : Pose::Identity(),
+                  six ? std::optional(Roll{}) : std::nullopt);
     const ArmClass found = classify(arm.chain, name);
     EXPECT_EQ(found.kind, ArmKind::kArcs);
     EXPECT_EQ(found.lock.words(), expected) << name;
@@ -68,15 +72,17 @@ TEST(Robots, AreOfTheClassesTheyAreLike) {
 
 TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
   int rows = 0;
-  for (const std::string name :
-       {"panda_weld_seam", "xarm7_polish_raster", "gen3_glue_bead", "fetch_wipe_table", "kr6_weld_pipe", "ur5e_deburr_edge"}) {
+  for (const std::string name : {"panda_weld_seam", "xarm7_polish_raster", "gen3_glue_bead",
+                                 "fetch_wipe_table", "kr6_weld_pipe", "ur5e_deburr_edge"}) {
     Problem problem = io::load_problem(kData / "problems" / (name + ".yaml"));
     problem.resolution.ds = 0.02;
-    const ArmModel arm = build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold, problem.tool, problem.roll);
+    const ArmModel arm = build_arm(*problem.model, problem.base_link, problem.tip_link,
+                                   problem.hold, problem.tool, problem.roll);
     EXPECT_TRUE(World(*problem.model, arm, problem).warnings().empty()) << name;
     const ArmClass found = classify(arm.chain, name);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-    std::unique_ptr<Lattice> lattice = std::make_unique<ArcLattice>(arm.chain, found.lock, path, problem);
+    std::unique_ptr<Lattice> lattice =
+        std::make_unique<ArcLattice>(arm.chain, found.lock, path, problem);
     std::vector<Config> unwrapped;
     for (int attempt = 0; attempt < 3; ++attempt) {
       const auto cost_to_go = make_cost_to_go(*lattice);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The corpus: inputs that fuzzing found to reach code that no other one does, and edges made by hand. All of them, every time.
+// The corpus: inputs that fuzzing found to reach code that no other one does, and edges made by
+// hand. All of them, every time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +30,11 @@ TEST(Corpus, EveryFileIsReadOrRefused) {
     names.emplace_back(reader.name);
     const std::vector<fs::path> files = entries(fs::path(SWIVEL_CORPUS_DIR) / reader.name);
     const auto count = static_cast<int>(files.size());
-    const Tally tally = watch(count, kAllowance, [&](int k) { reader.read(TempFolder::read(files[static_cast<std::size_t>(k)])); });
-    std::printf("%s: %d files, %d read, %d refused\n", reader.name, count, tally.accepted, tally.refused);
+    const Tally tally = watch(count, kAllowance, [&](int k) {
+      reader.read(TempFolder::read(files[static_cast<std::size_t>(k)]));
+    });
+    std::printf("%s: %d files, %d read, %d refused\n", reader.name, count, tally.accepted,
+                tally.refused);
     EXPECT_GT(count, 3) << reader.name;
     EXPECT_EQ(tally.accepted + tally.refused, count) << reader.name;
     for (const Finding& finding : tally.findings)

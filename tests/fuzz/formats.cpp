@@ -92,7 +92,8 @@ std::string data(const std::string& name) {
 }
 
 void prepare(const TempFolder& folder) {
-  for (const char* name : {"robots", "meshes", "paths"}) fs::create_directory_symlink(data_dir() / name, folder.path() / name);
+  for (const char* name : {"robots", "meshes", "paths"})
+    fs::create_directory_symlink(data_dir() / name, folder.path() / name);
   folder.write("problems/box.stl", io::test::box_stl());
   folder.write("problems/good.yaml", kProblem);
 }
@@ -101,7 +102,8 @@ namespace {
 
 std::string first_lines(std::string text, int lines) {
   std::size_t end = 0;
-  while (lines-- > 0 && end < text.size()) end = std::min(text.find('\n', end), text.size() - 1) + 1;
+  while (lines-- > 0 && end < text.size())
+    end = std::min(text.find('\n', end), text.size() - 1) + 1;
   return text.substr(0, end);
 }
 
@@ -143,14 +145,17 @@ std::string binary_stl() {
 }
 
 const char* const kPly =
-    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float "
+    "y\nproperty float z\nproperty uchar "
     "red\nelement face 3\n"
-    "property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+    "property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int "
+    "vertex2\nend_header\n"
     "0 0 0 1\n0.1 0 0 2\n0 0.1 0 3\n0 0 0.1 4\n3 0 2 1\n3 0 1 3\n4 1 2 3 0\n0 1\n";
 
 std::string binary_ply(bool big) {
   std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
-                     "_endian 1.0\nelement vertex 3\nproperty float x\nproperty double y\nproperty short z\nelement face "
+                     "_endian 1.0\nelement vertex 3\nproperty float x\nproperty double y\nproperty "
+                     "short z\nelement face "
                      "2\nproperty list uchar int vertex_index\nend_header\n";
   const auto put = [&](auto value) {
     std::string raw = bytes(&value, sizeof value);
@@ -170,7 +175,8 @@ std::string binary_ply(bool big) {
 }
 
 const char* const kObj =
-    "# c\nmtllib m.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.5 0 1\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\nf 1/1/1 2/1/1 "
+    "# c\nmtllib m.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.5 0 1\nvt 0 0\nvn 0 0 "
+    "1\nusemtl m\ns off\nf 1/1/1 2/1/1 "
     "3/1/1 4/1/1\n"
     "f -5 -4 \\\n -3 -1 -2\nf 1//1 2//1 3//1\nl 1 2\np 1\n";
 
@@ -185,59 +191,76 @@ std::vector<Reader> readers(const TempFolder& folder) {
     (void)io::load_mesh(file, Vector3d::Ones(), cache);
   };
   std::vector<Reader> all;
-  all.push_back({"problem",
-                 {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
-                 kYamlWords,
-                 at("problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
-  all.push_back({"urdf", {io::test::arm_urdf(), data("robots/iiwa14.urdf")}, kXmlWords, at("robot.urdf", [](const fs::path& file) {
-                   (void)io::load_robot(file);
-                 })});
   all.push_back(
-      {"srdf",
-       {data("robots/iiwa14.srdf"),
-        "<robot name='a'><disable_default_collisions link='link_1'/><enable_collisions link1='link_1' link2='link_2'/></robot>"},
-       kXmlWords,
-       at("robot.srdf", [](const fs::path& file) { (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file); })});
+      {"problem",
+       {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
+       kYamlWords,
+       at("problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
+  all.push_back({"urdf",
+                 {io::test::arm_urdf(), data("robots/iiwa14.urdf")},
+                 kXmlWords,
+                 at("robot.urdf", [](const fs::path& file) { (void)io::load_robot(file); })});
+  all.push_back({"srdf",
+                 {data("robots/iiwa14.srdf"),
+                  "<robot name='a'><disable_default_collisions link='link_1'/><enable_collisions "
+                  "link1='link_1' link2='link_2'/></robot>"},
+                 kXmlWords,
+                 at("robot.srdf", [](const fs::path& file) {
+                   (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file);
+                 })});
   all.push_back({"path",
-                 {first_lines(data("paths/door_polish.csv"), 30), "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
+                 {first_lines(data("paths/door_polish.csv"), 30),
+                  "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
                  {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\""},
                  at("path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
   const std::array<std::string, kDof> joints{"a", "b", "c", "d", "e", "f", "g,\"h\""};
   PlanResult result;
   result.joint_names = joints;
-  for (int k = 0; k < 5; ++k) result.trajectory.push_back({0.1 * k, 0.2, k, Config::Constant(0.1 * k)});
+  for (int k = 0; k < 5; ++k)
+    result.trajectory.push_back({0.1 * k, 0.2, k, Config::Constant(0.1 * k)});
   io::write_trajectory(folder.path() / "good.csv", result);
   all.push_back({"trajectory",
                  {TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,"},
-                 at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory_file(file, joints); })});
+                 at("trajectory.csv", [joints](const fs::path& file) {
+                   (void)io::load_trajectory_file(file, joints);
+                 })});
   TimedPath motion;
   for (int k = 0; k < 5; ++k)
-    motion.rows.push_back(
-        {0.1 * k, result.trajectory[static_cast<std::size_t>(k)], Config::Constant(1), Config::Constant(0.1 * k)});
+    motion.rows.push_back({0.1 * k, result.trajectory[static_cast<std::size_t>(k)],
+                           Config::Constant(1), Config::Constant(0.1 * k)});
   const std::string timed = io::to_timed_csv(motion, joints);
   all.push_back({"motion",
                  {timed, TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,", first_lines(timed, 1)},
-                 at("motion.csv", [joints](const fs::path& file) { (void)io::load_trajectory_file(file, joints); })});
-  const auto message = [&](const char* name, const char* file, std::string seed, std::vector<std::string> words) {
-    all.push_back({name, {std::move(seed)}, std::move(words), at(file, [joints](const fs::path& path) {
-                     (void)io::load_trajectory_file(path, joints);
-                   })});
+                 at("motion.csv", [joints](const fs::path& file) {
+                   (void)io::load_trajectory_file(file, joints);
+                 })});
+  const auto message = [&](const char* name, const char* file, std::string seed,
+                           std::vector<std::string> words) {
+    all.push_back(
+        {name, {std::move(seed)}, std::move(words), at(file, [joints](const fs::path& path) {
+           (void)io::load_trajectory_file(path, joints);
+         })});
   };
   // What is changed in the frame's name is read as before.
   const std::string frame(2000, 'x');
-  message(
-      "motion_json", "motion.json", io::to_trajectory_json(motion, joints, frame),
-      {"0", "1e999", "[", "]", "{", "}", ",", "null", "-1", "\"positions\": [", "\"sec\": 2147483647", "\"nanosec\": 999999999"});
+  message("motion_json", "motion.json", io::to_trajectory_json(motion, joints, frame),
+          {"0", "1e999", "[", "]", "{", "}", ",", "null", "-1", "\"positions\": [",
+           "\"sec\": 2147483647", "\"nanosec\": 999999999"});
   std::vector<std::string> yaml_words = kYamlWords;
-  yaml_words.insert(yaml_words.end(), {"positions: [", "- positions: [1, 2]\n", "sec: 2147483647", "nanosec: 999999999", ".nan"});
+  yaml_words.insert(yaml_words.end(), {"positions: [", "- positions: [1, 2]\n", "sec: 2147483647",
+                                       "nanosec: 999999999", ".nan"});
   message("motion_yaml", "motion.yaml", io::to_trajectory_yaml(motion, joints, frame), yaml_words);
-  const auto little_endian = [](std::uint64_t value, std::size_t size) { return bytes(&value, size); };
+  const auto little_endian = [](std::uint64_t value, std::size_t size) {
+    return bytes(&value, size);
+  };
   message("mcap", "motion.mcap", io::to_mcap(motion, joints, frame),
-          {little_endian(0, 8), little_endian(1, 2), little_endian(7, 4), little_endian(~std::uint64_t{0}, 8),
-           little_endian(0x7FFFFFFF, 4), "\x03", "\x04", "\x05", "\x06", "\x0F", "cdr", "zstd", "sensor_msgs/msg/JointState"});
-  const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}}, {{"arm.urdf", 0x0123456789abcdef}}};
+          {little_endian(0, 8), little_endian(1, 2), little_endian(7, 4),
+           little_endian(~std::uint64_t{0}, 8), little_endian(0x7FFFFFFF, 4), "\x03", "\x04",
+           "\x05", "\x06", "\x0F", "cdr", "zstd", "sensor_msgs/msg/JointState"});
+  const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}},
+                                 {{"arm.urdf", 0x0123456789abcdef}}};
   {
     io::CampaignFile part(folder.path() / "good_results.csv", settings, {}, 100);
     EpisodeRow row;
@@ -264,11 +287,14 @@ std::vector<Reader> readers(const TempFolder& folder) {
   const std::string long_text(1000, 'x');  // what is changed in a text is read as before
   PlacementRow cell;
   cell.by = long_text;
-  all.push_back({"shard",
-                 {shard("campaign", 2) + io::to_csv(std::vector{EpisodeRow(0, "a \"b\", c"), EpisodeRow(1, long_text)}, {}),
-                  shard("place", 1) + io::to_csv(std::vector{cell})},
-                 {",", "\"", "\n", "1,solved,", "{", "}", "# swivel place ", "1/2", "18446744073709551615"},
-                 at("shard.csv", [](const fs::path& file) { (void)io::join_shards({io::load_shard(file)}); })});
+  all.push_back(
+      {"shard",
+       {shard("campaign", 2) +
+            io::to_csv(std::vector{EpisodeRow(0, "a \"b\", c"), EpisodeRow(1, long_text)}, {}),
+        shard("place", 1) + io::to_csv(std::vector{cell})},
+       {",", "\"", "\n", "1,solved,", "{", "}", "# swivel place ", "1/2", "18446744073709551615"},
+       at("shard.csv",
+          [](const fs::path& file) { (void)io::join_shards({io::load_shard(file)}); })});
   InfeasibilityCertificate certificate;
   certificate.layers = 99;
   certificate.first_layer = 3;
@@ -279,26 +305,36 @@ std::vector<Reader> readers(const TempFolder& folder) {
   certificate.witnesses[0].side = Cause::Side::kLower;
   certificate.witnesses[1].kind = Cause::Kind::kPair;
   certificate.witnesses[1].bodies = {"b", "c"};
-  certificate.band = {{8, {{0, 3}}, {{{4, 7}, 0}}, {}}, {8, {}, {{{0, 5}, 1}}, {{{0, 3}, {6, 7}, 1, 8}}}};
+  certificate.band = {{8, {{0, 3}}, {{{4, 7}, 0}}, {}},
+                      {8, {}, {{{0, 5}, 1}}, {{{0, 3}, {6, 7}, 1, 8}}}};
   for (int k = 0; k < 60; ++k)
-    certificate.band.insert(certificate.band.begin() + 1,
-                            {1008, {{k, k + 20}, {700, 900}}, {{{100, 200 + k}, k % 2}}, {{{5, 7}, {300, 310 + k}, 1, k}}});
-  std::string noted = io::to_json(certificate);  // what is changed in a key that nobody reads is read as before
+    certificate.band.insert(certificate.band.begin() + 1, {1008,
+                                                           {{k, k + 20}, {700, 900}},
+                                                           {{{100, 200 + k}, k % 2}},
+                                                           {{{5, 7}, {300, 310 + k}, 1, k}}});
+  std::string noted =
+      io::to_json(certificate);  // what is changed in a key that nobody reads is read as before
   noted.insert(1, "\"note\":\"" + std::string(2 * noted.size(), 'x') + "\",");
-  all.push_back({"certificate",
-                 {io::to_json(certificate), noted},
-                 {"0", "1", "[", "]", "null", "-1", "1e999", "\"limit\"", "[0,1,2],", "\"layers\":["},
-                 at("certificate.json", [](const fs::path& file) { (void)io::load_certificate(file); })});
+  all.push_back(
+      {"certificate",
+       {io::to_json(certificate), noted},
+       {"0", "1", "[", "]", "null", "-1", "1e999", "\"limit\"", "[0,1,2],", "\"layers\":["},
+       at("certificate.json", [](const fs::path& file) { (void)io::load_certificate(file); })});
   all.push_back({"stl",
                  {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()},
-                 {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n", "endloop\n", "endfacet\n", "endsolid\n"},
+                 {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n",
+                  "endloop\n", "endfacet\n", "endsolid\n"},
                  at("a.stl", mesh)});
-  all.push_back({"obj", {kObj}, {"f 1 2 3\n", "v 1 2 3\n", " 1", " -1", "/", "\\\n", "f"}, at("a.obj", mesh)});
-  all.push_back({"ply",
-                 {kPly, binary_ply(false), binary_ply(true)},
-                 {"element face 1000\n", "element vertex 1\n", "property list uchar int vertex_indices\n", "property double x\n",
-                  "end_header\n", "comment ", "3 0 1 2\n"},
-                 at("a.ply", mesh)});
+  all.push_back({"obj",
+                 {kObj},
+                 {"f 1 2 3\n", "v 1 2 3\n", " 1", " -1", "/", "\\\n", "f"},
+                 at("a.obj", mesh)});
+  all.push_back(
+      {"ply",
+       {kPly, binary_ply(false), binary_ply(true)},
+       {"element face 1000\n", "element vertex 1\n", "property list uchar int vertex_indices\n",
+        "property double x\n", "end_header\n", "comment ", "3 0 1 2\n"},
+       at("a.ply", mesh)});
   all.push_back({"dae", {kDae}, kXmlWords, at("a.dae", mesh)});
   return all;
 }

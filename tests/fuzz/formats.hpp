@@ -24,7 +24,8 @@ extern const std::vector<std::string> kXmlWords, kYamlWords;
 /// A file of the data folder.
 std::string data(const std::string& name);
 
-/// Puts into an empty folder what problems/*.yaml name: links to the data, problems/box.stl, problems/good.yaml.
+/// Puts into an empty folder what problems/*.yaml name: links to the data, problems/box.stl,
+/// problems/good.yaml.
 void prepare(const TempFolder& folder);
 
 /// Of every format. Files are written into `folder`, a prepared one.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Broken files of every format that is read: an InputError of one line, soon, and nothing else. SWIVEL_TEST_TRIALS is the number of
-// inputs over all readers (2,000 unless given).
+// Broken files of every format that is read: an InputError of one line, soon, and nothing else.
+// SWIVEL_TEST_TRIALS is the number of inputs over all readers (2,000 unless given).
 #include <gtest/gtest.h>
 
 #include "seed.hpp"
@@ -48,7 +48,8 @@ TEST(Fuzz, TheWatchdogBites) {
   EXPECT_EQ(tally.accepted, 3);
   EXPECT_EQ(tally.refused, 3);
   ASSERT_EQ(tally.findings.size(), 6u);
-  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(tally.findings[k].input, static_cast<int>(k) + 2) << tally.findings[k].what;
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_EQ(tally.findings[k].input, static_cast<int>(k) + 2) << tally.findings[k].what;
 }
 
 }  // namespace

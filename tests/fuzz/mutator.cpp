@@ -48,10 +48,11 @@ const std::vector<std::string> kNumbers{"0",
                                         "1e",
                                         "",
                                         "x"};
-const std::vector<std::string> kPlainNumbers{"0",         "1",         "2",      "7",     "10",     "0.1",   "0.01",
-                                             "0.001",     "1e-6",      "1e-9",   "1e-15", "1e-300", "100",   "999",
-                                             "1e4",       "1e6",       "1e9",    "1e16",  "1e160",  "1e308", "3.1415926535897931",
-                                             "6.2831853", "1.5707963", "3.1416", "0.7"};
+const std::vector<std::string> kPlainNumbers{
+    "0",         "1",         "2",      "7",     "10",     "0.1",   "0.01",
+    "0.001",     "1e-6",      "1e-9",   "1e-15", "1e-300", "100",   "999",
+    "1e4",       "1e6",       "1e9",    "1e16",  "1e160",  "1e308", "3.1415926535897931",
+    "6.2831853", "1.5707963", "3.1416", "0.7"};
 const std::vector<std::string> kAnyWords{"<",
                                          ">",
                                          "&",
@@ -112,7 +113,8 @@ std::pair<std::size_t, std::size_t> number(const std::string& text, Random& rand
 
 /// Begin and size of a line with its end.
 std::pair<std::size_t, std::size_t> line(const std::string& text, Random& random) {
-  const std::size_t at = place(text, random), before = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  const std::size_t at = place(text, random),
+                    before = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;
   return {begin, std::min(text.find('\n', begin), text.size() - 1) + 1 - begin};
 }
@@ -165,7 +167,8 @@ void Mutator::change(std::string& text, Random& random) const {
     {
       const std::string& other = one_of(seeds_, random);
       const std::size_t from = place(other, random);
-      text.replace(at, random.coin() ? size : 0, other.substr(from, length(other.size() - from, random)));
+      text.replace(at, random.coin() ? size : 0,
+                   other.substr(from, length(other.size() - from, random)));
       return;
     }
     case 6:  // nested
@@ -184,9 +187,11 @@ void Mutator::change(std::string& text, Random& random) const {
       return;
     case 9:  // four bytes of a binary count or index
     {
-      const std::uint32_t values[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x10000, 0x7f800000, 0x7fc00000, 0x01000000};
+      const std::uint32_t values[] = {0,       1,          0x7fffffff, 0x80000000, 0xffffffff,
+                                      0x10000, 0x7f800000, 0x7fc00000, 0x01000000};
       const std::uint32_t value = values[random.below(9)];
-      for (std::size_t k = 0; k < 4 && at + k < text.size(); ++k) text[at + k] = static_cast<char>(value >> 8 * k);
+      for (std::size_t k = 0; k < 4 && at + k < text.size(); ++k)
+        text[at + k] = static_cast<char>(value >> 8 * k);
       return;
     }
     case 10:  // lines change places, or one is there twice

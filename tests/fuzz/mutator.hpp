@@ -7,7 +7,8 @@
 
 namespace swivel::test {
 
-/// Breaks files the way that transfers, editors and attackers do. The same seed gives the same bytes everywhere.
+/// Breaks files the way that transfers, editors and attackers do. The same seed gives the same
+/// bytes everywhere.
 class Mutator {
  public:
   /// `seeds`: good files of one format; `words`: pieces of its syntax.

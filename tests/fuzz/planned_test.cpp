@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems and robots with changed numbers and lines: what the readers take is planned, coarsely and for a tenth of a second, and
-// must end with an answer, a time-out, or an InputError. SWIVEL_TEST_TRIALS over 10 inputs (200 unless given).
+// Problems and robots with changed numbers and lines: what the readers take is planned, coarsely
+// and for a tenth of a second, and must end with an answer, a time-out, or an InputError.
+// SWIVEL_TEST_TRIALS over 10 inputs (200 unless given).
 #include <gtest/gtest.h>
 
 #include "robots.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The format that the environment's SWIVEL_FUZZ_FORMAT names under libFuzzer: https://llvm.org/docs/LibFuzzer.html. What counts as
-// wrong is what it is for the tests beside this file; libFuzzer watches over memory, and over time by the clock, which on a busy
-// machine says nothing: the time of the processor is looked at here.
+// The format that the environment's SWIVEL_FUZZ_FORMAT names under libFuzzer:
+// https://llvm.org/docs/LibFuzzer.html. What counts as wrong is what it is for the tests beside
+// this file; libFuzzer watches over memory, and over time by the clock, which on a busy machine
+// says nothing: the time of the processor is looked at here.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -31,7 +32,8 @@ class Target {
       if (wanted != nullptr && std::strcmp(reader.name, wanted) == 0) reader_ = reader;
     }
     if (!reader_.read) {
-      std::fprintf(stderr, "SWIVEL_FUZZ_FORMAT: '%s': allowed is one of %s\n", wanted == nullptr ? "" : wanted, names.c_str());
+      std::fprintf(stderr, "SWIVEL_FUZZ_FORMAT: '%s': allowed is one of %s\n",
+                   wanted == nullptr ? "" : wanted, names.c_str());
       std::exit(2);
     }
     mutator_.emplace(reader_.seeds, reader_.words, false);
@@ -63,19 +65,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::clock_t start = std::clock();
   Verdict verdict = judge([&] { target().reader().read(text); });
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  if (seconds > Allowance{}.seconds) verdict.wrong += " " + std::to_string(seconds) + " s of the processor";
+  if (seconds > Allowance{}.seconds)
+    verdict.wrong += " " + std::to_string(seconds) + " s of the processor";
   if (verdict.wrong.empty()) return 0;
   std::fprintf(stderr, "%s\n", verdict.wrong.c_str());
   std::abort();
 }
 
-/// Half of the changes are libFuzzer's, which know what comparisons the code makes; the others know the format's words and numbers.
-/// Some inputs begin anew from a good file, so that a corpus need not hold any.
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+/// Half of the changes are libFuzzer's, which know what comparisons the code makes; the others know
+/// the format's words and numbers. Some inputs begin anew from a good file, so that a corpus need
+/// not hold any.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
   using namespace swivel::test;
   if (seed % 2 == 0 && size > 0) return LLVMFuzzerMutate(data, size, most);
   const Mutator& mutator = target().mutator();
-  const std::string text = seed % 16 == 1 || size == 0 ? mutator.input(seed) : mutator.changed(text_of(data, size), seed);
+  const std::string text = seed % 16 == 1 || size == 0 ? mutator.input(seed)
+                                                       : mutator.changed(text_of(data, size), seed);
   const std::size_t kept = std::min(text.size(), most);
   std::memcpy(data, text.data(), kept);
   return kept;

@@ -29,7 +29,8 @@ void note(Progress& progress, const std::string& what) {
   std::snprintf(progress.what, sizeof progress.what, "%s", what.c_str());
 }
 
-/// Of the processor, since the machine may do other things; what waits for something else may wait twenty times as long.
+/// Of the processor, since the machine may do other things; what waits for something else may wait
+/// twenty times as long.
 void kill_after(int seconds) {
   const itimerval timer{{0, 0}, {seconds, 0}};
   setitimer(ITIMER_PROF, &timer, nullptr);
@@ -55,8 +56,10 @@ Verdict judge(const std::function<void()>& read) {
     read();
   } catch (const InputError& error) {
     const std::string message = error.what();
-    const bool fine = is_valid_name(message) && message.find("allowed") != std::string::npos && message.size() <= 4000;
-    return {false, true, fine ? "" : "not one printable line that says what is allowed: " + printable(message)};
+    const bool fine = is_valid_name(message) && message.find("allowed") != std::string::npos &&
+                      message.size() <= 4000;
+    return {false, true,
+            fine ? "" : "not one printable line that says what is allowed: " + printable(message)};
   } catch (const std::exception& error) {
     return {false, false, "thrown: " + printable(error.what())};
   }
@@ -64,7 +67,8 @@ Verdict judge(const std::function<void()>& read) {
 }
 
 Tally watch(int count, const Allowance& allowance, const std::function<void(int)>& read) {
-  void* const shared = mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* const shared =
+      mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) throw std::runtime_error("mmap failed");
   auto& progress = *new (shared) Progress{};
   Tally tally;
@@ -90,9 +94,11 @@ Tally watch(int count, const Allowance& allowance, const std::function<void(int)
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
     std::string what = progress.what;
     if (WIFSIGNALED(status))
-      what = WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM ? "hangs"
-                                                                        : std::string("crash: ") + strsignal(WTERMSIG(status));
-    if (what.empty()) what = "ended with " + std::to_string(WEXITSTATUS(status));  // as sanitizers do
+      what = WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM
+                 ? "hangs"
+                 : std::string("crash: ") + strsignal(WTERMSIG(status));
+    if (what.empty())
+      what = "ended with " + std::to_string(WEXITSTATUS(status));  // as sanitizers do
     tally.findings.push_back({progress.input, what});
     ++progress.input;
   }

@@ -7,7 +7,8 @@
 
 namespace swivel::test {
 
-/// How an input was answered: it may be read, or refused by an InputError of one printable line that says what is allowed.
+/// How an input was answered: it may be read, or refused by an InputError of one printable line
+/// that says what is allowed.
 struct Verdict {
   bool accepted = false, refused = false;
   std::string wrong;  ///< empty where it is as it should be
@@ -29,8 +30,9 @@ struct Tally {
   std::vector<Finding> findings;
 };
 
-/// Calls read(k) for k in [0, count) in a child process, and judges it. What is wrong, a crash, a hang and too much memory are
-/// findings; the next child goes on after them.
-[[nodiscard]] Tally watch(int count, const Allowance& allowance, const std::function<void(int)>& read);
+/// Calls read(k) for k in [0, count) in a child process, and judges it. What is wrong, a crash, a
+/// hang and too much memory are findings; the next child goes on after them.
+[[nodiscard]] Tally watch(int count, const Allowance& allowance,
+                          const std::function<void(int)>& read);
 
 }  // namespace swivel::test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers that are barred, or all but barred: the search says what a whole sweep without their nodes says.
+// Layers that are barred, or all but barred: the search says what a whole sweep without their nodes
+// says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,12 +17,15 @@ using namespace test;
 /// Nodes fail by a table.
 class Table final : public Validity {
  public:
-  explicit Table(const Lattice& lattice) : lattice_(&lattice), fails_(static_cast<std::size_t>(lattice.nodes())) {}
+  explicit Table(const Lattice& lattice)
+      : lattice_(&lattice), fails_(static_cast<std::size_t>(lattice.nodes())) {}
   [[nodiscard]] std::uint8_t& fails(int layer, int slot) {
-    return fails_[static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->slots(0)) + static_cast<std::size_t>(slot)];
+    return fails_[static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->slots(0)) +
+                  static_cast<std::size_t>(slot)];
   }
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
-    for (std::size_t k = 0; k < questions.size(); ++k) answers[k].valid = !fails(questions[k].layer, questions[k].slot);
+    for (std::size_t k = 0; k < questions.size(); ++k)
+      answers[k].valid = !fails(questions[k].layer, questions[k].slot);
   }
   /// As other threads may answer: from the questions as they were, before `work` or after.
   void nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
@@ -32,7 +36,9 @@ class Table final : public Validity {
     work();
     if (!before) nodes(asked, answers);
     const auto was_asked = [&](const NodeQuestion& x) {
-      return std::any_of(wave_.begin(), wave_.end(), [&](const NodeQuestion& y) { return x.layer == y.layer && x.slot == y.slot; });
+      return std::any_of(wave_.begin(), wave_.end(), [&](const NodeQuestion& y) {
+        return x.layer == y.layer && x.slot == y.slot;
+      });
     };
     EXPECT_TRUE(std::none_of(asked.begin(), asked.end(), was_asked));
     wave_ = asked;
@@ -63,18 +69,25 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
       problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
       const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-      problem.resolution = {.ds = length / (70 + random.below(30)), .dphi = robot.name == "windings" ? 0.4 : 0.15, .dalpha = 10};
+      problem.resolution = {.ds = length / (70 + random.below(30)),
+                            .dphi = robot.name == "windings" ? 0.4 : 0.15,
+                            .dalpha = 10};
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial);
+      const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " " + robot.name +
+                               " trial " + std::to_string(trial);
 
-      // A layer but for at most a few of its nodes, one node in fifty of the others, and in every other problem a block of them.
-      const int layer = random.below(lattice.layers()), left = random.coin() ? 0 : 1 + random.below(3);
+      // A layer but for at most a few of its nodes, one node in fifty of the others, and in every
+      // other problem a block of them.
+      const int layer = random.below(lattice.layers()),
+                left = random.coin() ? 0 : 1 + random.below(3);
       Table table(lattice);
-      const int angles = random.coin() ? lattice.angles() / 3 : 0, angle = random.below(lattice.angles());
+      const int angles = random.coin() ? lattice.angles() / 3 : 0,
+                angle = random.below(lattice.angles());
       const int first = random.below(lattice.layers()), last = first + lattice.layers() / 4;
       const auto blocked = [&](int k, int slot) {
-        return k >= first && k <= last && (lattice.angle_of(slot) - angle + lattice.angles()) % lattice.angles() < angles;
+        return k >= first && k <= last &&
+               (lattice.angle_of(slot) - angle + lattice.angles()) % lattice.angles() < angles;
       };
       for (int k = 0; k < lattice.layers(); ++k)
         for (int slot = 0; slot < lattice.slots(k); ++slot)
@@ -82,7 +95,9 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       std::vector<Lattice::Node> nodes;
       lattice.layer_nodes(layer, nodes);
       for (int k = 0; k < left && !nodes.empty(); ++k)
-        table.fails(layer, nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].slot) = 0;
+        table.fails(
+            layer,
+            nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].slot) = 0;
 
       const auto truth = make_cost_to_go(lattice);
       for (int k = 0; k < lattice.layers(); ++k)
@@ -95,8 +110,9 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       unbarred->sweep(lattice.layers() - 1);
       const bool only_by_table = unbarred->best() != kUnreachable;
 
-      for (const PathFirstOptions& options :
-           {PathFirstOptions{.batch = 1}, {.batch = 32}, {.batch = 32, .overlap_region_questions = true}}) {
+      for (const PathFirstOptions& options : {PathFirstOptions{.batch = 1},
+                                              {.batch = 32},
+                                              {.batch = 32, .overlap_region_questions = true}}) {
         const auto cost_to_go = make_cost_to_go(lattice, Pruning::kByBound);
         cost_to_go->sweep(lattice.layers() - 1);
         SearchCounters counters;
@@ -104,7 +120,9 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
         const std::int64_t rounds = counters.iterations;
         ASSERT_EQ(found.path, expected) << what;
         if (expected.empty()) {
-          ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, options, counters), truth->deepest_reachable()) << what;
+          ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, options, counters),
+                    truth->deepest_reachable())
+              << what;
         } else {
           ASSERT_EQ(found.cost, truth->at(0, expected.front())) << what;
         }
@@ -116,8 +134,11 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       waves += table.waves();
     }
   }
-  std::printf("%d searches of a barred layer in %lld rounds, %d of one with gaps, %d solved, %lld waves beside work\n", barred,
-              static_cast<long long>(rounds_of_barred), gaps, solved, static_cast<long long>(waves));
+  std::printf(
+      "%d searches of a barred layer in %lld rounds, %d of one with gaps, %d solved, %lld waves "
+      "beside work\n",
+      barred, static_cast<long long>(rounds_of_barred), gaps, solved,
+      static_cast<long long>(waves));
   EXPECT_GE(waves, at_least(1000));
   EXPECT_GE(barred, at_least(40));
   EXPECT_GE(solved, at_least(10));

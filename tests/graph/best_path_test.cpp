@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search by Boost.Graph against a plain descent: both go by the cost-to-go, the descent by one that is computed here.
+// The search by Boost.Graph against a plain descent: both go by the cost-to-go, the descent by one
+// that is computed here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,14 +15,18 @@ namespace {
 
 using namespace test;
 
-/// Nodes of each layer that are not removed, and their costs to the last layer: every pair of nodes compared.
+/// Nodes of each layer that are not removed, and their costs to the last layer: every pair of nodes
+/// compared.
 struct PlainLattice {
-  PlainLattice(const Lattice& lattice, const Verdicts& verdicts) : lattice_(lattice), verdicts_(verdicts) {
+  PlainLattice(const Lattice& lattice, const Verdicts& verdicts)
+      : lattice_(lattice), verdicts_(verdicts) {
     nodes.resize(lattice.layers());
     cost_to_go.resize(lattice.layers());
     for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
       lattice.layer_nodes(layer, nodes[layer]);
-      std::erase_if(nodes[layer], [&](const auto& node) { return verdicts.node(layer, node.slot) == Verdict::kRemoved; });
+      std::erase_if(nodes[layer], [&](const auto& node) {
+        return verdicts.node(layer, node.slot) == Verdict::kRemoved;
+      });
       for (std::size_t a = 0; a < nodes[layer].size(); ++a) {
         double least = layer + 1 == lattice.layers() ? 0 : kUnreachable;
         for (std::size_t b = 0; layer + 1 < lattice.layers() && b < nodes[layer + 1].size(); ++b)
@@ -34,15 +39,18 @@ struct PlainLattice {
   [[nodiscard]] double cost(int layer, std::size_t a, std::size_t b) const {
     const Lattice::Node &from = nodes[layer][a], &to = nodes[layer + 1][b];
     const Config delta = lattice_.delta(from.q, to.q);
-    const bool joined = lattice_.in_window(layer, from.slot, to.slot) && lattice_.step_allowed(layer, delta) &&
+    const bool joined = lattice_.in_window(layer, from.slot, to.slot) &&
+                        lattice_.step_allowed(layer, delta) &&
                         verdicts_.edge(layer, from.slot, to.slot) != Verdict::kRemoved;
     return joined ? lattice_.edge_cost(delta) : kUnreachable;
   }
-  /// From the node of layer 0 that the answer begins at always to the first node that keeps its cost. `ties` counts the others that
-  /// would, `chosen` the paths whose first node is not the first of layer 0 that has the least cost.
+  /// From the node of layer 0 that the answer begins at always to the first node that keeps its
+  /// cost. `ties` counts the others that would, `chosen` the paths whose first node is not the
+  /// first of layer 0 that has the least cost.
   [[nodiscard]] SlotPath descend(int& ties, int& chosen) const {
     SlotPath path;
-    const int start = first_of_answer(lattice_, cost_to_go[0], [&](int k) { return nodes[0][k].q; });
+    const int start =
+        first_of_answer(lattice_, cost_to_go[0], [&](int k) { return nodes[0][k].q; });
     if (start < 0) return path;
     const auto least = std::min_element(cost_to_go[0].begin(), cost_to_go[0].end());
     ties += static_cast<int>(std::count(least, cost_to_go[0].end(), *least)) - 1;
@@ -88,21 +96,26 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     Problem problem = problem_for(robot);
     problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
     const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-    problem.resolution = {.ds = length / 4, .dphi = robot.name == "windings" ? 0.5 : random.uniform(0.2, 0.35), .dalpha = 10};
+    problem.resolution = {.ds = length / 4,
+                          .dphi = robot.name == "windings" ? 0.5 : random.uniform(0.2, 0.35),
+                          .dalpha = 10};
     problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
     problem.limits.joint_step = random.uniform(0.3, 0.6);
     problem.cost.metric = random.coin() ? CostMetric::kL2 : CostMetric::kMax;
-    if (random.coin(0.2)) problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
+    if (random.coin(0.2))
+      problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
     if (random.coin(0.3)) problem.start = q0;
     problem.resolution.arcs = trial % 2 == 1;
     const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
     const SrsLattice lattice(arm.chain, srs, path, problem);
-    const auto cost_to_go = make_cost_to_go(lattice, random.coin() ? Pruning::kNone : Pruning::kByBound);
+    const auto cost_to_go =
+        make_cost_to_go(lattice, random.coin() ? Pruning::kNone : Pruning::kByBound);
     cost_to_go->sweep(lattice.layers() - 1);
     PathCache earlier;
     for (int round = 0; round < 8; ++round) {
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
-                               robot.name + " round " + std::to_string(round);
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                               std::to_string(trial) + " robot " + robot.name + " round " +
+                               std::to_string(round);
       const SlotPath wanted = PlainLattice(lattice, cost_to_go->verdicts()).descend(ties, chosen);
       std::int64_t expansions = 0;
       ASSERT_EQ(best_path(*cost_to_go, expansions), wanted) << what;
@@ -125,7 +138,8 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     }
   }
   std::printf(
-      "%d paths, %d lattices without one; %d ties, %d starts chosen among them, %d removals changed the optimum, %d paths went on "
+      "%d paths, %d lattices without one; %d ties, %d starts chosen among them, %d removals "
+      "changed the optimum, %d paths went on "
       "as an earlier one\n",
       found, none, ties, chosen, changed, followed);
   EXPECT_GE(chosen, at_least(count / 4 + 1));
@@ -152,7 +166,8 @@ TEST(BestPath, FollowsNoEarlierOneWhereSumsAreRounded) {
   for (const double units : {1.0, 1000.0}) {  // of each node; in sum some 20, or more than kExact
     const auto cost_to_go = make_cost_to_go(lattice);
     for (int layer = 0; layer < lattice.layers(); ++layer)
-      for (int slot = 0; slot < lattice.width(); ++slot) cost_to_go->verdicts().set_cost(layer, slot, units * lattice.cost_unit());
+      for (int slot = 0; slot < lattice.width(); ++slot)
+        cost_to_go->verdicts().set_cost(layer, slot, units * lattice.cost_unit());
     cost_to_go->sweep(lattice.layers() - 1);
     PathCache earlier;
     std::int64_t first = 0, again = 0;

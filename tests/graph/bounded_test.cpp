@@ -27,12 +27,16 @@ Problem random_problem(const TestRobot& robot, const Chain& chain, Random& rando
   for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.5, 0.5);
   problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
   const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-  problem.resolution = {.ds = length / layers, .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3), .dalpha = 10};
+  problem.resolution = {.ds = length / layers,
+                        .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3),
+                        .dalpha = 10};
   problem.limits.arm_slope = random.uniform(1, 3) * problem.resolution.dphi / problem.resolution.ds;
   problem.limits.joint_step = random.uniform(0.2, 0.6);
-  problem.cost.metric = std::array{CostMetric::kL2, CostMetric::kMax, CostMetric::kTime}[static_cast<std::size_t>(random.below(3))];
+  problem.cost.metric = std::array{CostMetric::kL2, CostMetric::kMax,
+                                   CostMetric::kTime}[static_cast<std::size_t>(random.below(3))];
   if (random.coin())
-    for (double& weight : problem.cost.weights) weight = random.coin(0.1) ? 0 : random.uniform(0.1, 10);
+    for (double& weight : problem.cost.weights)
+      weight = random.coin(0.1) ? 0 : random.uniform(0.1, 10);
   if (random.coin()) problem.start = q0;
   problem.resolution.arcs = layers % 2 == 1;
   return problem;
@@ -41,8 +45,9 @@ Problem random_problem(const TestRobot& robot, const Chain& chain, Random& rando
 /// Cost from layer 0 to every node, forward over every edge of the lattice.
 std::vector<std::vector<double>> cost_to_come(GridCostToGo& whole) {
   const SrsLattice& lattice = whole.lattice();
-  std::vector<std::vector<double>> cost(static_cast<std::size_t>(lattice.layers()),
-                                        std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
+  std::vector<std::vector<double>> cost(
+      static_cast<std::size_t>(lattice.layers()),
+      std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
   const ImplicitLattice graph(whole, kUnreachable);
   for (int slot = 0; slot < lattice.width(); ++slot)
     if (whole.at(0, slot) != kUnreachable) cost[0][static_cast<std::size_t>(slot)] = 0;
@@ -51,7 +56,8 @@ std::vector<std::vector<double>> cost_to_come(GridCostToGo& whole) {
       const double done = cost[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
       if (done == kUnreachable || whole.at(layer, slot) == kUnreachable) continue;
       for (const auto& edge : graph.expand(graph.vertex(layer, slot))) {
-        double& there = cost[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(graph.slot_of(edge.target))];
+        double& there = cost[static_cast<std::size_t>(layer) + 1]
+                            [static_cast<std::size_t>(graph.slot_of(edge.target))];
         there = std::min(there, done + edge.cost);
       }
     }
@@ -74,9 +80,12 @@ ParallelFor shared_by_threads() {
 /// A third of the problems are also swept by threads: the same values, the same counts.
 TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   Random random(seed("Bounded"));
-  Random beyond(seed("Bounded.Deepest"));  // its own, so that the problems are the same however many rounds it has
-  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0, met = 0, apart = 0, longest = 0, followed = 0;
-  std::int64_t whole_ik = 0, bounded_ik = 0, whole_deepest_ik = 0, bounded_deepest_ik = 0, compared = 0;
+  Random beyond(seed(
+      "Bounded.Deepest"));  // its own, so that the problems are the same however many rounds it has
+  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0, met = 0,
+      apart = 0, longest = 0, followed = 0;
+  std::int64_t whole_ik = 0, bounded_ik = 0, whole_deepest_ik = 0, bounded_deepest_ik = 0,
+               compared = 0;
   double tightest = 0;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
@@ -87,7 +96,8 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       const Problem problem = random_problem(robot, arm.chain, random, waypoints);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      GridCostToGo whole(lattice), bounded(lattice, Pruning::kByBound), shared(lattice, Pruning::kByBound);
+      GridCostToGo whole(lattice), bounded(lattice, Pruning::kByBound),
+          shared(lattice, Pruning::kByBound);
       const bool shares = problems % 3 == 0;
       std::vector<GridCostToGo*> all{&whole, &bounded};
       if (shares) {
@@ -100,13 +110,15 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
         ASSERT_EQ(shared.ik_nodes(), bounded.ik_nodes());
         ASSERT_EQ(shared.edges(), bounded.edges());
         for (int layer = 0; layer < lattice.layers(); ++layer)
-          for (int slot = 0; slot < lattice.width(); ++slot) ASSERT_EQ(shared.at(layer, slot), bounded.at(layer, slot));
+          for (int slot = 0; slot < lattice.width(); ++slot)
+            ASSERT_EQ(shared.at(layer, slot), bounded.at(layer, slot));
         ++compared;
       };
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
       ++problems;
-      for (int step = 0; step + 1 < lattice.layers(); ++step) (lattice.may_change_elbow_side(step) ? met : apart) += 1;
+      for (int step = 0; step + 1 < lattice.layers(); ++step)
+        (lattice.may_change_elbow_side(step) ? met : apart) += 1;
       longest = std::max(longest, lattice.layers());
       whole_ik += whole.ik_nodes();
       bounded_ik += bounded.ik_nodes();
@@ -116,10 +128,12 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       const auto come = cost_to_come(whole);
       ASSERT_LE(bound.best(), whole.best());
       for (int layer = 0; layer < lattice.layers(); ++layer)
-        for (int slot = 0; const float* row = bound.row(layer) ? bound.row(layer) + slot : nullptr; ++slot) {
+        for (int slot = 0; const float* row = bound.row(layer) ? bound.row(layer) + slot : nullptr;
+             ++slot) {
           if (slot == lattice.width()) break;
           const double cost = come[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
-          ASSERT_LE(*row, cost) << robot.name << " trial " << trial << " layer " << layer << " slot " << slot;
+          ASSERT_LE(*row, cost) << robot.name << " trial " << trial << " layer " << layer
+                                << " slot " << slot;
           if (cost != kUnreachable && cost > 0) {
             ++bounds;
             tightest = std::max(tightest, *row / cost);
@@ -128,7 +142,8 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
 
       PathCache of_bounded, of_shared;
       for (int round = 0; round < 12; ++round) {
-        const std::string what = robot.name + " trial " + std::to_string(trial) + " round " + std::to_string(round) + " metric " +
+        const std::string what = robot.name + " trial " + std::to_string(trial) + " round " +
+                                 std::to_string(round) + " metric " +
                                  std::to_string(static_cast<int>(problem.cost.metric));
         ++rounds;
         ASSERT_EQ(bounded.best(), whole.best()) << what;
@@ -154,7 +169,8 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
           ASSERT_EQ(bounded.at(layer, best[static_cast<std::size_t>(layer)]),
                     whole.at(layer, best[static_cast<std::size_t>(layer)]));
         const double before = whole.best();
-        const int layer = random.below(lattice.layers()), slot = best[static_cast<std::size_t>(layer)];
+        const int layer = random.below(lattice.layers()),
+                  slot = best[static_cast<std::size_t>(layer)];
         const int kind = random.below(4);
         const int reach = random.below(lattice.angles() / 2);
         for (GridCostToGo* cost_to_go : all) {
@@ -215,18 +231,23 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
     return 100.0 * static_cast<double>(some) / static_cast<double>(all);
   };
   std::printf(
-      "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from paths to the deepest layer; %d "
-      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes, those to the deepest layer %.1f %%; "
-      "%lld tables by threads the same; families meet at %d steps, not at %d; up to %d layers; %d paths went on as an earlier "
+      "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from "
+      "paths to the deepest layer; %d "
+      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes, "
+      "those to the deepest layer %.1f %%; "
+      "%lld tables by threads the same; families meet at %d steps, not at %d; up to %d layers; %d "
+      "paths went on as an earlier "
       "one\n",
       problems, rounds, changed, ended, to_deepest, bounds, tightest, share(bounded_ik, whole_ik),
-      share(bounded_deepest_ik, whole_deepest_ik), static_cast<long long>(compared), met, apart, longest, followed);
+      share(bounded_deepest_ik, whole_deepest_ik), static_cast<long long>(compared), met, apart,
+      longest, followed);
   EXPECT_GE(followed, at_least(rounds / 20));
   EXPECT_GE(met, at_least(20));
   EXPECT_GE(apart, at_least(200));
   EXPECT_GT(longest, 64);
   if (at_least(1) > 0) {
-    EXPECT_LT(share(bounded_deepest_ik, whole_deepest_ik), 65);  // about 80 where the costs of the reach are lost
+    EXPECT_LT(share(bounded_deepest_ik, whole_deepest_ik),
+              65);  // about 80 where the costs of the reach are lost
   }
   EXPECT_GE(compared, at_least(problems + 1));
   EXPECT_GE(rounds, at_least(3 * problems + 1));
@@ -259,7 +280,8 @@ std::vector<double> relaxed_plainly(const RelaxTask<double>& task, bool all = fa
       const double cost = task.metric == RelaxMetric::kL2 ? norm : most;
       if (allowed)
         best[static_cast<std::size_t>(k)] =
-            std::min(best[static_cast<std::size_t>(k)], cost + 6144.0 * task.unit - 6144.0 * task.unit + task.value[partner]);
+            std::min(best[static_cast<std::size_t>(k)],
+                     cost + 6144.0 * task.unit - 6144.0 * task.unit + task.value[partner]);
     }
   return best;
 }
@@ -268,7 +290,8 @@ std::vector<const RelaxKernels*> vector_units() {
   std::vector<const RelaxKernels*> units{&scalar_relax_kernels()};
 #ifdef SWIVEL_X86_KERNELS
   if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_relax_kernels());
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
     units.push_back(&avx512_relax_kernels());
 #endif
   return units;
@@ -287,12 +310,14 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
       return values;
     };
     std::array<std::vector<double>, kDof> from, to;
-    const bool idle = random.coin(0.1);             // no joint has a weight: every move costs nothing
+    const bool idle = random.coin(0.1);  // no joint has a weight: every move costs nothing
     const double spread = random.coin() ? 7 : 0.5;  // moves beyond the bounds, or within
     for (auto* joints : {&from, &to})
-      for (auto& joint : *joints) joint = random_values([&] { return random.uniform(-spread, spread); });
+      for (auto& joint : *joints)
+        joint = random_values([&] { return random.uniform(-spread, spread); });
     const double unit = random.coin() ? 1 : std::exp2(random.below(41) - 20);
-    const auto value = random_values([&] { return random.coin(0.2) ? kUnreachable : unit * random.uniform(0, 5); });
+    const auto value = random_values(
+        [&] { return random.coin(0.2) ? kUnreachable : unit * random.uniform(0, 5); });
     RelaxTask<double> task{.n = n,
                            .offsets = offsets,
                            .from = {},
@@ -350,9 +375,11 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
       ++runs;
     }
     // A coarse step allows every step, so it is nowhere dearer, and single precision loses little.
-    for (std::size_t k = 0; k < best[0].size(); ++k) ASSERT_LE(coarse_best[0][k], best[0][k] + 1e-4 * unit);
+    for (std::size_t k = 0; k < best[0].size(); ++k)
+      ASSERT_LE(coarse_best[0][k], best[0][k] + 1e-4 * unit);
   }
-  std::printf("%zu units, %d runs, %d nodes reached, %d not\n", units.size(), runs, reached, barred);
+  std::printf("%zu units, %d runs, %d nodes reached, %d not\n", units.size(), runs, reached,
+              barred);
   EXPECT_GT(reached, runs);
   EXPECT_GT(barred, runs / 10);
   EXPECT_GT(idle_runs, runs / 60);
@@ -360,7 +387,8 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
 
 template <class T>
 void expect_plain_ranges(Random& random, const std::vector<const RelaxKernels*>& units,
-                         void (*RelaxKernels::*range)(const T*, const T*, int, T&, T&), int& ranges, int& empty) {
+                         void (*RelaxKernels::*range)(const T*, const T*, int, T&, T&), int& ranges,
+                         int& empty) {
   for (int trial = 0; trial < trials(4000); ++trial) {
     const int n = random.below(40);
     const double known = random.coin(0.2) ? 0.05 : 0.7;
@@ -368,7 +396,8 @@ void expect_plain_ranges(Random& random, const std::vector<const RelaxKernels*>&
     T low = std::numeric_limits<T>::infinity(), high = -low;
     for (std::size_t k = 0; k < q.size(); ++k) {
       q[k] = static_cast<T>(random.uniform(-7, 7));
-      value[k] = random.coin(known) ? static_cast<T>(random.uniform(0, 5)) : std::numeric_limits<T>::infinity();
+      value[k] = random.coin(known) ? static_cast<T>(random.uniform(0, 5))
+                                    : std::numeric_limits<T>::infinity();
       if (value[k] == std::numeric_limits<T>::infinity()) continue;
       low = std::min(low, q[k]);
       high = std::max(high, q[k]);
@@ -394,7 +423,8 @@ TEST(Kernels, RangesAreOfTheNodesWithAValue) {
   EXPECT_GT(empty, ranges / 100);
 }
 
-/// Nodes in runs along which joints change little, as on arcs, or anywhere; partners near some of them.
+/// Nodes in runs along which joints change little, as on arcs, or anywhere; partners near some of
+/// them.
 TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
   Random random(seed("RelaxAll"));
   const std::vector<const RelaxKernels*> units = vector_units();
@@ -407,7 +437,8 @@ TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
     for (int k = 0; k < n; ++k) {
       const bool jump = k == 0 || random.coin(0.1);
       for (auto& joint : from)
-        joint.push_back(jump ? random.uniform(-turns, turns) : joint.back() + random.uniform(-spacing, spacing));
+        joint.push_back(jump ? random.uniform(-turns, turns)
+                             : joint.back() + random.uniform(-spacing, spacing));
     }
     RelaxTask<double> task{};
     task.n = n;
@@ -422,16 +453,19 @@ TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
     }
     for (int k = 0; k < partners; ++k) {
       const auto near = static_cast<std::size_t>(random.below(n));
-      const double share = random.coin() ? 1 : 1.1;  // of the bounds: some partners stand on them to the bit
+      const double share =
+          random.coin() ? 1 : 1.1;  // of the bounds: some partners stand on them to the bit
       for (std::size_t j = 0; j < kDof; ++j) {
-        const double away = random.coin(0.2) ? std::copysign(1.0, random.uniform(-1, 1)) : random.uniform(-1, 1);
+        const double away =
+            random.coin(0.2) ? std::copysign(1.0, random.uniform(-1, 1)) : random.uniform(-1, 1);
         const double whole = task.turn[j] > 0 ? kTwoPi * (random.below(3) - 1) : 0;
         turned += whole != 0;
         to[j].push_back(from[j][near] + share * away * task.bound[j] + whole);
       }
     }
     std::vector<double> value;
-    for (int k = 0; k < partners; ++k) value.push_back(random.coin(0.2) ? kUnreachable : task.unit * random.uniform(0, 5));
+    for (int k = 0; k < partners; ++k)
+      value.push_back(random.coin(0.2) ? kUnreachable : task.unit * random.uniform(0, 5));
     task.value = value.data();
     for (std::size_t j = 0; j < kDof; ++j) {
       task.from[j] = from[j].data();
@@ -447,8 +481,8 @@ TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
       ++runs;
     }
   }
-  std::printf("%zu units, %d runs, %d nodes reached, %d not, %d joints a turn further\n", units.size(), runs, reached, barred,
-              turned);
+  std::printf("%zu units, %d runs, %d nodes reached, %d not, %d joints a turn further\n",
+              units.size(), runs, reached, barred, turned);
   EXPECT_GT(reached, runs / 4);
   EXPECT_GT(barred, runs / 4);
   EXPECT_GT(turned, runs / 4);

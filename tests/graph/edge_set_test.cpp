@@ -22,7 +22,8 @@ struct Edge {
 };
 
 /// Successors of a by brute force over all pairs, by the definition: own window, own joint steps.
-std::vector<Edge> brute_force(const SrsLattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here,
+std::vector<Edge> brute_force(const SrsLattice& lattice, int layer, int a,
+                              const std::vector<std::optional<Config>>& here,
                               const std::vector<std::optional<Config>>& next) {
   std::vector<Edge> edges;
   for (int b = 0; b < lattice.width(); ++b) {
@@ -31,7 +32,8 @@ std::vector<Edge> brute_force(const SrsLattice& lattice, int layer, int a, const
     Config delta = *next[static_cast<std::size_t>(b)] - *here[static_cast<std::size_t>(a)];
     bool allowed = true;
     for (int j = 0; j < kDof; ++j) {
-      if (lattice.chain().limit[static_cast<std::size_t>(j)].continuous) delta[j] = std::remainder(delta[j], kTwoPi);
+      if (lattice.chain().limit[static_cast<std::size_t>(j)].continuous)
+        delta[j] = std::remainder(delta[j], kTwoPi);
       allowed = allowed && std::abs(delta[j]) <= lattice.limits().joint_step;
     }
     if (allowed) edges.push_back({b, lattice.edge_cost(delta)});
@@ -39,10 +41,12 @@ std::vector<Edge> brute_force(const SrsLattice& lattice, int layer, int a, const
   return edges;
 }
 
-/// Where the pair of layers is put: near each singular pose, at a joint's window, through axis 1, or anywhere.
+/// Where the pair of layers is put: near each singular pose, at a joint's window, through axis 1,
+/// or anywhere.
 enum class Place { kAnywhere, kShoulder, kElbow, kWrist, kWindow, kAxisOne };
 
-std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const SrsArm& srs, Place place, Random& random) {
+std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const SrsArm& srs,
+                               Place place, Random& random) {
   Config q0 = random_config(chain, random), q1;
   const auto through = [&](int joint, double zero) {
     q0[joint] = zero + random.uniform(-0.15, -0.02);
@@ -64,7 +68,9 @@ std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const
       const int joint = robot.name == "windings" ? (random.coin() ? 0 : 6) : random.below(kDof);
       const JointLimit& limit = chain.limit[static_cast<std::size_t>(joint)];
       // For a joint of more than a turn the first image ends a turn above its lower limit.
-      through(joint, limit.continuous ? kPi : limit.upper - limit.lower > kTwoPi ? limit.lower + kTwoPi : limit.upper);
+      through(joint, limit.continuous                     ? kPi
+                     : limit.upper - limit.lower > kTwoPi ? limit.lower + kTwoPi
+                                                          : limit.upper);
       break;
     }
     case Place::kAxisOne: {
@@ -98,9 +104,9 @@ std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const
 
 TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
   Random random(seed("EdgeSet"));
-  const std::map<Place, const char*> places{{Place::kAnywhere, "anywhere"}, {Place::kShoulder, "shoulder"},
-                                            {Place::kElbow, "elbow"},       {Place::kWrist, "wrist"},
-                                            {Place::kWindow, "window"},     {Place::kAxisOne, "axis 1"}};
+  const std::map<Place, const char*> places{
+      {Place::kAnywhere, "anywhere"}, {Place::kShoulder, "shoulder"}, {Place::kElbow, "elbow"},
+      {Place::kWrist, "wrist"},       {Place::kWindow, "window"},     {Place::kAxisOne, "axis 1"}};
   std::int64_t total = 0;
   std::map<Place, std::int64_t> changing;
   std::array<std::int64_t, 3> flips{};
@@ -131,26 +137,32 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
           const std::vector<Edge> wanted = brute_force(lattice, 0, a, here, next);
           double least = kUnreachable;
           for (const Edge& edge : wanted) least = std::min(least, edge.cost);
-          ASSERT_EQ(cost_to_go.at(0, a), least) << robot.name << " " << name;  // the vector sweep sees the same edges
+          ASSERT_EQ(cost_to_go.at(0, a), least)
+              << robot.name << " " << name;  // the vector sweep sees the same edges
           if (!here[static_cast<std::size_t>(a)]) continue;
           std::vector<Edge> found;
-          for (const auto& edge : graph.expand(graph.vertex(0, a))) found.push_back({graph.slot_of(edge.target), edge.cost});
-          std::sort(found.begin(), found.end(), [](const Edge& x, const Edge& y) { return x.b < y.b; });
+          for (const auto& edge : graph.expand(graph.vertex(0, a)))
+            found.push_back({graph.slot_of(edge.target), edge.cost});
+          std::sort(found.begin(), found.end(),
+                    [](const Edge& x, const Edge& y) { return x.b < y.b; });
           ASSERT_EQ(found, wanted) << robot.name << " " << name;
           total += static_cast<std::int64_t>(found.size());
           for (const Edge& edge : found) {
             const int change = lattice.branch_of(a) ^ lattice.branch_of(edge.b);
             if (lattice.solution_of(a) != lattice.solution_of(edge.b)) ++changing[place];
-            for (int bit = 0; bit < 3; ++bit) flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
+            for (int bit = 0; bit < 3; ++bit)
+              flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
             windings += change == 0 && lattice.solution_of(a) != lattice.solution_of(edge.b);
           }
         }
       }
   }
   std::printf("%lld edges; sheet-changing:", static_cast<long long>(total));
-  for (const auto& [place, count] : changing) std::printf(" %s %lld", places.at(place), static_cast<long long>(count));
-  std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n", static_cast<long long>(flips[0]),
-              static_cast<long long>(flips[1]), static_cast<long long>(flips[2]), static_cast<long long>(windings));
+  for (const auto& [place, count] : changing)
+    std::printf(" %s %lld", places.at(place), static_cast<long long>(count));
+  std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n",
+              static_cast<long long>(flips[0]), static_cast<long long>(flips[1]),
+              static_cast<long long>(flips[2]), static_cast<long long>(windings));
   EXPECT_GE(total, at_least(10001));
   for (const Place place : {Place::kShoulder, Place::kElbow, Place::kWrist})
     EXPECT_GE(changing[place], at_least(1)) << places.at(place);
@@ -159,14 +171,18 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
 }
 
 /// Cost-to-go of the whole lattice by the definition: every pair, minus removed nodes and edges.
-std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice, const GridCostToGo& cost_to_go) {
-  std::vector<std::vector<double>> g(static_cast<std::size_t>(lattice.layers()),
-                                     std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
+std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice,
+                                                  const GridCostToGo& cost_to_go) {
+  std::vector<std::vector<double>> g(
+      static_cast<std::size_t>(lattice.layers()),
+      std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
   std::vector<std::optional<Config>> next;
   for (int layer = cost_to_go.goal_layer(); layer >= 0; --layer) {
     std::vector<std::optional<Config>> here;
     for (int slot = 0; slot < lattice.width(); ++slot)
-      here.push_back(cost_to_go.verdicts().node(layer, slot) == Verdict::kRemoved ? std::nullopt : lattice.node(layer, slot));
+      here.push_back(cost_to_go.verdicts().node(layer, slot) == Verdict::kRemoved
+                         ? std::nullopt
+                         : lattice.node(layer, slot));
     for (int a = 0; a < lattice.width(); ++a) {
       double& value = g[static_cast<std::size_t>(layer)][static_cast<std::size_t>(a)];
       if (layer == cost_to_go.goal_layer()) {
@@ -175,7 +191,9 @@ std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice, con
       }
       for (const Edge& edge : brute_force(lattice, layer, a, here, next))
         if (cost_to_go.verdicts().edge(layer, a, edge.b) != Verdict::kRemoved)
-          value = std::min(value, edge.cost + g[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(edge.b)]);
+          value = std::min(
+              value,
+              edge.cost + g[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(edge.b)]);
     }
     next.swap(here);
   }
@@ -195,7 +213,9 @@ TEST(CostToGo, StaysExactUnderRemovals) {
       Problem problem = problem_for(robot);
       problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
       const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-      problem.resolution = {.ds = length / 5, .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3), .dalpha = 10};
+      problem.resolution = {.ds = length / 5,
+                            .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3),
+                            .dalpha = 10};
       problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
       if (random.coin()) problem.start = q0;
       problem.resolution.arcs = trial % 2 == 1;
@@ -207,8 +227,10 @@ TEST(CostToGo, StaysExactUnderRemovals) {
         const auto wanted = plain_cost_to_go(lattice, cost_to_go);
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int slot = 0; slot < lattice.width(); ++slot)
-            ASSERT_EQ(cost_to_go.at(layer, slot), wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
-                << robot.name << " trial " << trial << " round " << round << " layer " << layer << " slot " << slot;
+            ASSERT_EQ(cost_to_go.at(layer, slot),
+                      wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
+                << robot.name << " trial " << trial << " round " << round << " layer " << layer
+                << " slot " << slot;
         ++rounds;
         if (cost_to_go.best() == kUnreachable) break;
         const double before = cost_to_go.best();
@@ -222,7 +244,8 @@ TEST(CostToGo, StaysExactUnderRemovals) {
           if (layer == cut) {
             for (int k = 0; k < 3; ++k) {
               const int j = (lattice.angle_of(slot) + k) % lattice.angles();
-              cost_to_go.verdicts().remove_node(layer, lattice.solution_of(slot) * lattice.angles() + j);
+              cost_to_go.verdicts().remove_node(layer,
+                                                lattice.solution_of(slot) * lattice.angles() + j);
               ++removed_nodes;
             }
             break;
@@ -243,11 +266,12 @@ TEST(CostToGo, StaysExactUnderRemovals) {
       std::vector<double> repaired;
       for (int s = 0; s < lattice.width(); ++s) repaired.push_back(cost_to_go.at(0, s));
       cost_to_go.sweep(cost_to_go.goal_layer());
-      for (int s = 0; s < lattice.width(); ++s) ASSERT_EQ(cost_to_go.at(0, s), repaired[static_cast<std::size_t>(s)]);
+      for (int s = 0; s < lattice.width(); ++s)
+        ASSERT_EQ(cost_to_go.at(0, s), repaired[static_cast<std::size_t>(s)]);
     }
   }
-  std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds, removed_nodes, removed_edges,
-              changed);
+  std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds,
+              removed_nodes, removed_edges, changed);
   EXPECT_GE(rounds, at_least(61));
   EXPECT_GE(changed, at_least(11));
   EXPECT_GE(removed_edges, at_least(11));
@@ -261,7 +285,8 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(8); ++trial) {
       Problem problem = problem_for(robot);
-      const Config q0 = random_config(arm.chain, random), q1 = random_config(arm.chain, random);  // far apart: often no way through
+      const Config q0 = random_config(arm.chain, random),
+                   q1 = random_config(arm.chain, random);  // far apart: often no way through
       problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
       const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
       problem.resolution = {.ds = length / 8, .dphi = 0.35, .dalpha = 10};
@@ -271,7 +296,8 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
       problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      std::vector<std::vector<std::optional<Config>>> nodes(static_cast<std::size_t>(lattice.layers()));
+      std::vector<std::vector<std::optional<Config>>> nodes(
+          static_cast<std::size_t>(lattice.layers()));
       for (int layer = 0; layer < lattice.layers(); ++layer)
         for (int slot = 0; slot < lattice.width(); ++slot)
           nodes[static_cast<std::size_t>(layer)].push_back(lattice.node(layer, slot));
@@ -283,7 +309,8 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
         for (int a = 0; a < lattice.width(); ++a)
           if (reached[static_cast<std::size_t>(a)])
             for (const Edge& edge :
-                 brute_force(lattice, layer, a, nodes[static_cast<std::size_t>(layer)], nodes[static_cast<std::size_t>(layer) + 1]))
+                 brute_force(lattice, layer, a, nodes[static_cast<std::size_t>(layer)],
+                             nodes[static_cast<std::size_t>(layer) + 1]))
               ahead[static_cast<std::size_t>(edge.b)] = 1;
         if (std::find(ahead.begin(), ahead.end(), 1) != ahead.end()) deepest = layer + 1;
         reached.swap(ahead);

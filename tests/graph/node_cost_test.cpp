@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Costs of nodes that come in by and by, among removals: repaired values against a plain dynamic program over all that is known.
+// Costs of nodes that come in by and by, among removals: repaired values against a plain dynamic
+// program over all that is known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,8 @@ using namespace test;
 
 using Values = std::vector<std::vector<double>>;  // [layer][slot]
 
-/// The definition: what a node costs, and the least of the edges' costs and the values of their heads.
+/// The definition: what a node costs, and the least of the edges' costs and the values of their
+/// heads.
 Values plain_values(const Lattice& lattice, const Verdicts& verdicts, const Values& costs) {
   const auto layers = static_cast<std::size_t>(lattice.layers());
   Values values(layers);
@@ -40,8 +42,9 @@ Values plain_values(const Lattice& lattice, const Verdicts& verdicts, const Valu
         if (!lattice.in_window(layer, a.slot, b.slot) || !lattice.step_allowed(layer, delta) ||
             verdicts.edge(layer, a.slot, b.slot) == Verdict::kRemoved)
           continue;
-        value = std::min(value, costs[i][static_cast<std::size_t>(a.slot)] + lattice.edge_cost(delta) +
-                                    values[i + 1][static_cast<std::size_t>(b.slot)]);
+        value =
+            std::min(value, costs[i][static_cast<std::size_t>(a.slot)] + lattice.edge_cost(delta) +
+                                values[i + 1][static_cast<std::size_t>(b.slot)]);
       }
     }
   }
@@ -49,8 +52,10 @@ Values plain_values(const Lattice& lattice, const Verdicts& verdicts, const Valu
 }
 
 /// From the node that the answer begins at, the smallest slots among the best, by the values.
-SlotPath plain_path(const Lattice& lattice, const Verdicts& verdicts, const Values& values, const Values& costs) {
-  const int start = first_of_answer(lattice, values[0], [&](int slot) { return *lattice.node(0, slot); });
+SlotPath plain_path(const Lattice& lattice, const Verdicts& verdicts, const Values& values,
+                    const Values& costs) {
+  const int start =
+      first_of_answer(lattice, values[0], [&](int slot) { return *lattice.node(0, slot); });
   if (start < 0) return {};
   SlotPath path{start};
   for (int layer = 1; layer < lattice.layers(); ++layer) {
@@ -88,19 +93,23 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
       for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.4, 0.4);
       problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
       const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-      problem.resolution = {.ds = length / (2 + random.below(8)), .dphi = random.uniform(0.35, 0.5), .dalpha = 10};
+      problem.resolution = {
+          .ds = length / (2 + random.below(8)), .dphi = random.uniform(0.35, 0.5), .dalpha = 10};
       const bool open = random.coin(0.4);  // any arm angle may follow any other, as in a list
-      problem.limits.arm_slope = open ? 1e6 : random.uniform(1, 3) * problem.resolution.dphi / problem.resolution.ds;
+      problem.limits.arm_slope =
+          open ? 1e6 : random.uniform(1, 3) * problem.resolution.dphi / problem.resolution.ds;
       problem.limits.joint_step = random.uniform(0.4, 1);
       if (random.coin(0.3)) problem.cost.metric = CostMetric::kMax;
       if (random.coin(0.3))
-        for (double& weight : problem.cost.weights) weight = random.coin(0.2) ? 0 : random.uniform(0.1, 5);
+        for (double& weight : problem.cost.weights)
+          weight = random.coin(0.2) ? 0 : random.uniform(0.1, 5);
       if (!open && random.coin()) problem.start = q0;
       problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
 
-      std::vector<std::vector<int>> place(static_cast<std::size_t>(lattice.layers()));  // in the list, of each slot
+      std::vector<std::vector<int>> place(
+          static_cast<std::size_t>(lattice.layers()));  // in the list, of each slot
       std::unique_ptr<ExplicitLattice> list;
       std::unique_ptr<CostToGo> listed;
       if (open) {
@@ -121,12 +130,14 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
       GridCostToGo whole(lattice), bounded(lattice, Pruning::kByBound);
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
-      Values costs(place.size(), std::vector<double>(static_cast<std::size_t>(lattice.width()), 0.0));
+      Values costs(place.size(),
+                   std::vector<double>(static_cast<std::size_t>(lattice.width()), 0.0));
       SlotPath last;
       PathCache earlier;
       for (int round = 0; round < 14; ++round) {
-        const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial) +
-                                 " round " + std::to_string(round);
+        const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name +
+                                 " trial " + std::to_string(trial) + " round " +
+                                 std::to_string(round);
         ++rounds;
         const Values values = plain_values(lattice, whole.verdicts(), costs);
         const SlotPath best = plain_path(lattice, whole.verdicts(), values, costs);
@@ -134,12 +145,16 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         for (int layer = 0; layer < lattice.layers(); ++layer) cut = cut || !lattice.alive(layer);
         for (int layer = 0; layer < lattice.layers() && !cut; ++layer)
           for (int slot = 0; slot < lattice.width(); ++slot) {
-            const double value = values[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
-            ASSERT_EQ(whole.at(layer, slot), value) << what << " layer " << layer << " slot " << slot;
+            const double value =
+                values[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+            ASSERT_EQ(whole.at(layer, slot), value)
+                << what << " layer " << layer << " slot " << slot;
             ASSERT_GE(bounded.at(layer, slot), value) << what;
-            const int k = open ? place[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)] : -1;
+            const int k =
+                open ? place[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)] : -1;
             if (k >= 0) {
-              ASSERT_EQ(listed->at(layer, k), value) << what << " layer " << layer << " slot " << slot;
+              ASSERT_EQ(listed->at(layer, k), value)
+                  << what << " layer " << layer << " slot " << slot;
             }
           }
         ASSERT_EQ(bounded.best(), whole.best()) << what;
@@ -154,7 +169,8 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
           ++listed_rounds;
           SlotPath there = best_path(*listed, expansions);
           ASSERT_EQ(there.size(), best.size()) << what;
-          for (std::size_t i = 0; i < there.size(); ++i) ASSERT_EQ(there[i], place[i][static_cast<std::size_t>(best[i])]) << what;
+          for (std::size_t i = 0; i < there.size(); ++i)
+            ASSERT_EQ(there[i], place[i][static_cast<std::size_t>(best[i])]) << what;
         }
         if (best.empty()) {
           ++ended;
@@ -170,19 +186,27 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
           change(static_cast<CostToGo&>(whole), [](int, int slot) { return slot; });
           change(static_cast<CostToGo&>(bounded), [](int, int slot) { return slot; });
           if (open)
-            change(*listed,
-                   [&](int layer, int slot) { return place[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)]; });
+            change(*listed, [&](int layer, int slot) {
+              return place[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+            });
         };
-        // Costs of the best path's nodes, or of some, and of those beside them; large ones, small ones, none.
-        const double scale = lattice.cost_unit() * std::array{1e-3, 0.02, 0.5, 100.0}[static_cast<std::size_t>(random.below(4))];
+        // Costs of the best path's nodes, or of some, and of those beside them; large ones, small
+        // ones, none.
+        const double scale =
+            lattice.cost_unit() *
+            std::array{1e-3, 0.02, 0.5, 100.0}[static_cast<std::size_t>(random.below(4))];
         const int reach = random.below(4);
         const double share = random.coin() ? 1 : 0.3;
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int k = -reach; k <= reach; ++k) {
             const int n = lattice.angles(), slot = best[static_cast<std::size_t>(layer)];
-            const int there = lattice.solution_of(slot) * n + ((lattice.angle_of(slot) + k) % n + n) % n;
-            if (whole.verdicts().knows_cost(layer, there) || !lattice.node(layer, there) || !random.coin(share)) continue;
-            const double cost = random.coin(0.2) ? 0 : lattice.rounded_cost(random.uniform(0, scale));
+            const int there =
+                lattice.solution_of(slot) * n + ((lattice.angle_of(slot) + k) % n + n) % n;
+            if (whole.verdicts().knows_cost(layer, there) || !lattice.node(layer, there) ||
+                !random.coin(share))
+              continue;
+            const double cost =
+                random.coin(0.2) ? 0 : lattice.rounded_cost(random.uniform(0, scale));
             costs[static_cast<std::size_t>(layer)][static_cast<std::size_t>(there)] = cost;
             raised += cost > 0;
             each([&](CostToGo& cost_to_go, const auto& number) {
@@ -192,10 +216,13 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         const int layer = random.below(lattice.layers());
         const auto i = static_cast<std::size_t>(layer);
         if (random.coin(0.3)) {
-          each([&](CostToGo& cost_to_go, const auto& number) { cost_to_go.verdicts().remove_node(layer, number(layer, best[i])); });
+          each([&](CostToGo& cost_to_go, const auto& number) {
+            cost_to_go.verdicts().remove_node(layer, number(layer, best[i]));
+          });
         } else if (layer > 0 && random.coin(0.4)) {
           each([&](CostToGo& cost_to_go, const auto& number) {
-            cost_to_go.remove_edge(layer - 1, number(layer - 1, best[i - 1]), number(layer, best[i]));
+            cost_to_go.remove_edge(layer - 1, number(layer - 1, best[i - 1]),
+                                   number(layer, best[i]));
           });
         }
         const double before = whole.best();
@@ -204,7 +231,8 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         dearer += whole.best() > before;
       }
       // The furthest layer is the same whatever nodes cost.
-      for (int slot = 0; slot < lattice.width(); ++slot) whole.verdicts().remove_node(lattice.layers() - 1, slot);
+      for (int slot = 0; slot < lattice.width(); ++slot)
+        whole.verdicts().remove_node(lattice.layers() - 1, slot);
       const int deepest = whole.deepest_reachable();
       ASSERT_LT(deepest, lattice.layers() - 1);
       if (deepest < 0) continue;
@@ -213,7 +241,8 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
     }
   }
   std::printf(
-      "%d rounds (%d on lists), %d costs, best path dearer %d times and another %d times, %d went on as an earlier one, %d ended "
+      "%d rounds (%d on lists), %d costs, best path dearer %d times and another %d times, %d went "
+      "on as an earlier one, %d ended "
       "without one\n",
       rounds, listed_rounds, raised, dearer, moved, followed, ended);
   EXPECT_GT(followed, at_least(rounds / 8));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The robots and problems of the project, and real descriptions where they lie beside the source tree.
+// The robots and problems of the project, and real descriptions where they lie beside the source
+// tree.
 #include <cstdlib>
 
 #include "io_support.hpp"
@@ -33,19 +34,22 @@ class SharedData : public testing::Test {
   void SetUp() override {
     const char* const given = std::getenv("SWIVEL_SHARED");
     root_ = fs::path(given ? given : "") / "data";
-    if (!given || !fs::is_directory(root_)) GTEST_SKIP() << "SWIVEL_SHARED names no folder with data";
+    if (!given || !fs::is_directory(root_))
+      GTEST_SKIP() << "SWIVEL_SHARED names no folder with data";
   }
   fs::path root_;
 };
 
 TEST_F(SharedData, Sda5fAsItsAuthorsCheckedItIn) {
   const fs::path folder = root_ / "motoman_sda5f";
-  const auto robot = load_robot(folder / "motoman_sda5f_support/urdf/sda5f_checked_in.urdf", folder / "motoman_sda5f.srdf");
+  const auto robot = load_robot(folder / "motoman_sda5f_support/urdf/sda5f_checked_in.urdf",
+                                folder / "motoman_sda5f.srdf");
   EXPECT_EQ(robot->links.size(), 19u);
   EXPECT_EQ(robot->joints.size(), 18u);
   EXPECT_EQ(robot->disabled_pairs.size(), 58u);
   ASSERT_EQ(robot->warnings.size(), 1u);  // a call of the macro that is expanded above it
-  EXPECT_NE(robot->warnings[0].find("sda5f_checked_in.urdf:415: element <xacro:motoman_sda5f>"), std::string::npos);
+  EXPECT_NE(robot->warnings[0].find("sda5f_checked_in.urdf:415: element <xacro:motoman_sda5f>"),
+            std::string::npos);
   EXPECT_EQ(count_collisions(*robot), 17u);
   const Joint& mimic = robot->joints[robot->find_joint("torso_joint_b2")];
   ASSERT_TRUE(mimic.mimic);
@@ -62,7 +66,8 @@ TEST_F(SharedData, Sda5fExpanded) {
   EXPECT_EQ(count_collisions(*robot), 17u);
 }
 
-/// The Z_UP trap: the drawing file and the collision file of one link must agree about where the link is.
+/// The Z_UP trap: the drawing file and the collision file of one link must agree about where the
+/// link is.
 TEST_F(SharedData, ZUpDaeAgreesWithItsStl) {
   const fs::path meshes = root_ / "motoman_sda5f/motoman_sda5f_support/meshes";
   MeshCache cache;
@@ -71,14 +76,16 @@ TEST_F(SharedData, ZUpDaeAgreesWithItsStl) {
     for (const Vector3d& v : load_mesh(file, Vector3d::Ones(), cache)->vertices) result.extend(v);
     return result;
   };
-  const Eigen::AlignedBox3d dae = box(meshes / "dae/arm_left_link_1_s.dae"), stl = box(meshes / "collision/arm_left_link_1_s.STL");
+  const Eigen::AlignedBox3d dae = box(meshes / "dae/arm_left_link_1_s.dae"),
+                            stl = box(meshes / "collision/arm_left_link_1_s.STL");
   EXPECT_LT((dae.min() - stl.min()).norm(), 0.03);
   EXPECT_LT((dae.max() - stl.max()).norm(), 0.03);
 }
 
 TEST_F(SharedData, PuzzleCell) {
   const fs::path urdf = root_ / "puzzle_cell/tesseract/support/urdf";
-  const auto robot = load_robot(urdf / "puzzle_piece_workcell.urdf", urdf / "puzzle_piece_workcell.srdf");
+  const auto robot =
+      load_robot(urdf / "puzzle_piece_workcell.urdf", urdf / "puzzle_piece_workcell.srdf");
   EXPECT_EQ(robot->links.size(), 20u);
   EXPECT_EQ(robot->joints.size(), 19u);
   EXPECT_EQ(robot->disabled_pairs.size(), 48u);

@@ -68,16 +68,19 @@ TEST(Files, ManyWritersOneWholeFile) {
 
 TEST(Files, CannotWrite) {
   const TempFolder folder;
-  expect_message(input_error([&] { write_file(folder.path() / "none" / "out.txt", "x"); }), {"none/out.txt"});
+  expect_message(input_error([&] { write_file(folder.path() / "none" / "out.txt", "x"); }),
+                 {"none/out.txt"});
   fs::create_directories(folder.path() / "taken" / "inside");
   expect_message(input_error([&] { write_file(folder.path() / "taken", "x"); }), {"taken"});
   EXPECT_EQ(count_files(folder.path()), 1u);
-  expect_message(input_error([&] { write_trajectory(folder.path() / "none" / "t.csv", {}); }), {"none/t.csv"});
+  expect_message(input_error([&] { write_trajectory(folder.path() / "none" / "t.csv", {}); }),
+                 {"none/t.csv"});
 }
 
 TEST(Files, AllOrNone) {
   const TempFolder folder;
-  const fs::path first = folder.write("first", "old"), second = folder.write("second", "old"), third = folder.write("third", "old");
+  const fs::path first = folder.write("first", "old"), second = folder.write("second", "old"),
+                 third = folder.write("third", "old");
   {
     OutputFiles outputs;
     outputs.add("--first", first);
@@ -105,7 +108,8 @@ TEST(Files, AllOrNone) {
 
 TEST(Files, InputsAreNotedWithTheirContents) {
   const TempFolder folder;
-  const fs::path file = folder.write("t.csv", "s,phi,branch,1,2,3,4,5,6,7\n0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0\n");
+  const fs::path file = folder.write(
+      "t.csv", "s,phi,branch,1,2,3,4,5,6,7\n0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0\n");
   const std::array<std::string, kDof> names{"1", "2", "3", "4", "5", "6", "7"};
   const auto noted = [&] {
     const InputFiles inputs(InputFiles::Contents::kHash);
@@ -118,7 +122,8 @@ TEST(Files, InputsAreNotedWithTheirContents) {
   EXPECT_EQ(before[0].name, file);
   fs::create_hard_link(file, folder.path() / "same");
   OutputFiles outputs(before);
-  expect_message(input_error([&] { outputs.add("--out", folder.path() / "same"); }), {"--out", "same", "read"});
+  expect_message(input_error([&] { outputs.add("--out", folder.path() / "same"); }),
+                 {"--out", "same", "read"});
   folder.write("t.csv", TempFolder::read(file) + "\n");
   const auto after = noted();
   EXPECT_NE(before[0].hash, after[0].hash);
@@ -128,8 +133,9 @@ TEST(Files, InputsAreNotedWithTheirContents) {
 TEST(Files, CampaignsKnowTheirSettings) {
   const TempFolder folder;
   const fs::path csv = folder.path() / "r.csv";
-  const RunSettings settings{
-      {{"version", "1"}, {"seed", "2"}}, {{"the problem file", 3}, {"a,\"b\".stl", 4}}, {"a,\"b\".x", "c.yaw"}};
+  const RunSettings settings{{{"version", "1"}, {"seed", "2"}},
+                             {{"the problem file", 3}, {"a,\"b\".stl", 4}},
+                             {"a,\"b\".x", "c.yaw"}};
   const Shard shard;
   std::string written;
   {
@@ -141,16 +147,20 @@ TEST(Files, CampaignsKnowTheirSettings) {
   }
   RunSettings other = settings;
   other.values[0].second = "2";
-  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "begun with version 1, this is 2"});
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }),
+                 {"r.csv.part:1", "begun with version 1, this is 2"});
   other = settings;
   other.files[1].second = 5;
-  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "a,\"b\".stl was another"});
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }),
+                 {"r.csv.part:1", "a,\"b\".stl was another"});
   other = settings;
   other.files.pop_back();
-  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "more settings or files"});
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }),
+                 {"r.csv.part:1", "more settings or files"});
   other = settings;
   other.files.emplace_back("more", 1);
-  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "begun without more"});
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }),
+                 {"r.csv.part:1", "begun without more"});
   CampaignFile file(csv, settings, shard, 3);
   ASSERT_EQ(file.rows().size(), 1u);
   EXPECT_EQ(file.rows()[0].status, PlanStatus::kError);
@@ -164,9 +174,11 @@ TEST(Files, CampaignsKnowTheirSettings) {
   expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"another campaign"});
   file.finish();
   EXPECT_EQ(count_files(folder.path()), 1u);
-  for (const char* line : {"{}", "{\"settings\": {}}", "[]", "{\"settings\": 1, \"files\": 2}", "no JSON"}) {
+  for (const char* line :
+       {"{}", "{\"settings\": {}}", "[]", "{\"settings\": 1, \"files\": 2}", "no JSON"}) {
     std::ofstream(csv.string() + ".part") << "# swivel campaign " << line << '\n';
-    expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"r.csv.part:1", "its settings cannot be read"});
+    expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }),
+                   {"r.csv.part:1", "its settings cannot be read"});
   }
 }
 

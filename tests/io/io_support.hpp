@@ -23,7 +23,8 @@ class TempFolder {
  public:
   TempFolder() {
     static std::atomic<int> count{0};
-    path_ = fs::temp_directory_path() / ("swivel_io_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+    path_ = fs::temp_directory_path() /
+            ("swivel_io_" + std::to_string(getpid()) + "_" + std::to_string(count++));
     fs::create_directories(path_);
   }
   ~TempFolder() {
@@ -50,7 +51,8 @@ class TempFolder {
   fs::path path_;
 };
 
-/// The message of the InputError that `call` throws; a test failure and "" when it throws nothing or something else.
+/// The message of the InputError that `call` throws; a test failure and "" when it throws nothing
+/// or something else.
 template <class Call>
 std::string input_error(const Call& call) {
   try {
@@ -93,7 +95,8 @@ inline std::string box_stl(double x = 1, double y = 2, double z = 3) {
   for (const auto& triangle : kTriangles) {
     text << "facet normal 0 0 0\nouter loop\n";
     for (const int corner : triangle)
-      text << "vertex " << (corner & 1 ? x : 0) << ' ' << (corner & 2 ? y : 0) << ' ' << (corner & 4 ? z : 0) << '\n';
+      text << "vertex " << (corner & 1 ? x : 0) << ' ' << (corner & 2 ? y : 0) << ' '
+           << (corner & 4 ? z : 0) << '\n';
     text << "endloop\nendfacet\n";
   }
   text << "endsolid box\n";
@@ -114,14 +117,18 @@ inline double volume(const TriangleMesh& mesh) {
 inline std::string arm_urdf() {
   std::string text = "<robot name='arm'>\n<link name='base_link'/>\n";
   for (int k = 1; k <= 7; ++k) {
-    const std::string n = std::to_string(k), parent = k == 1 ? "base_link" : "link_" + std::to_string(k - 1);
-    text += "<link name='link_" + n + "'><collision><geometry><sphere radius='0.05'/></geometry></collision></link>\n";
-    text += "<joint name='joint_" + n + "' type='revolute'><parent link='" + parent + "'/><child link='link_" + n + "'/>" +
-            "<origin xyz='0 0 0.2'/><axis xyz='" + (k % 2 != 0 ? "0 0 1" : "0 1 0") +
+    const std::string n = std::to_string(k),
+                      parent = k == 1 ? "base_link" : "link_" + std::to_string(k - 1);
+    text += "<link name='link_" + n +
+            "'><collision><geometry><sphere radius='0.05'/></geometry></collision></link>\n";
+    text += "<joint name='joint_" + n + "' type='revolute'><parent link='" + parent +
+            "'/><child link='link_" + n + "'/>" + "<origin xyz='0 0 0.2'/><axis xyz='" +
+            (k % 2 != 0 ? "0 0 1" : "0 1 0") +
             "'/><limit lower='-2' upper='2.5' velocity='1' effort='0'/></joint>\n";
   }
   return text +
-         "<link name='finger'/>\n<joint name='finger_joint' type='prismatic'><parent link='link_7'/><child link='finger'/>"
+         "<link name='finger'/>\n<joint name='finger_joint' type='prismatic'><parent "
+         "link='link_7'/><child link='finger'/>"
          "<limit lower='0' upper='0.04' velocity='0' effort='0'/></joint>\n</robot>\n";
 }
 

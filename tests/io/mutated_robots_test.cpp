@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Robots and problems with one word of them changed: what states geometry, limits or which joints move is understood or told from
-// what is; nothing of it is passed over.
+// Robots and problems with one word of them changed: what states geometry, limits or which joints
+// move is understood or told from what is; nothing of it is passed over.
 #include <tinyxml2.h>
 
 #ifdef SWIVEL_URDFDOM
@@ -24,7 +24,8 @@ using swivel::test::at_least;
 using swivel::test::Random;
 using swivel::test::trials;
 
-/// Every element and attribute that the reader honours, on a tree with a mimic joint and joints of all types.
+/// Every element and attribute that the reader honours, on a tree with a mimic joint and joints of
+/// all types.
 const char* const kEveryWord = R"(<robot name="every" version="1.2">
 <link name="base_link"><collision name="c"><origin xyz="0 0 0.1" rpy="0.1 0.2 0.3"/><geometry><box size="0.1 0.2 0.3"/></geometry></collision>
 <collision><origin xyz="0 0 0.2" quat_xyzw="0 0.6 0 0.8"/><geometry><capsule radius="0.05" length="0.2"/></geometry></collision></link>
@@ -66,7 +67,9 @@ struct Xml {
   }
   void collect(tinyxml2::XMLElement& element) {
     elements.push_back(&element);
-    for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) collect(*child);
+    for (auto* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement())
+      collect(*child);
   }
   tinyxml2::XMLDocument document;
   std::vector<tinyxml2::XMLElement*> elements;
@@ -104,29 +107,40 @@ std::string misspelt(std::string word, Random& random) {
   return word;
 }
 
-enum class What { kRenameElement, kDoubleElement, kRemoveElement, kRenameAttribute, kDoubleAttribute, kRemoveAttribute };
+enum class What {
+  kRenameElement,
+  kDoubleElement,
+  kRemoveElement,
+  kRenameAttribute,
+  kDoubleAttribute,
+  kRemoveAttribute
+};
 
 struct Mutation {
   What what;
   std::string element, attribute, text;
-  /// The same text with what is removed written as the default that the format has for it; none where it has none.
+  /// The same text with what is removed written as the default that the format has for it; none
+  /// where it has none.
   std::optional<std::string> with_default = {};
 };
 
 /// What stands for an attribute that is not there, https://wiki.ros.org/urdf/XML.
 std::optional<std::string> default_of(const std::string& element, const std::string& attribute) {
   static const std::map<std::string, std::string> kDefaults{
-      {"origin xyz", "0 0 0"}, {"origin rpy", "0 0 0"},        {"limit lower", "0"},      {"limit upper", "0"},
-      {"limit velocity", "0"}, {"limit effort", "0"},          {"mimic multiplier", "1"}, {"mimic offset", "0"},
-      {"mesh scale", "1 1 1"}, {"origin quat_xyzw", "0 0 0 1"}};
+      {"origin xyz", "0 0 0"},        {"origin rpy", "0 0 0"}, {"limit lower", "0"},
+      {"limit upper", "0"},           {"limit velocity", "0"}, {"limit effort", "0"},
+      {"mimic multiplier", "1"},      {"mimic offset", "0"},   {"mesh scale", "1 1 1"},
+      {"origin quat_xyzw", "0 0 0 1"}};
   const auto found = kDefaults.find(element + " " + attribute);
   return found == kDefaults.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// One random change of one element with one of those names, or of one of its attributes.
-std::optional<Mutation> mutated(const std::string& text, const std::set<std::string>& names, Random& random) {
+std::optional<Mutation> mutated(const std::string& text, const std::set<std::string>& names,
+                                Random& random) {
   Xml xml(text);
-  auto& element = *xml.elements[static_cast<std::size_t>(random.below(static_cast<int>(xml.elements.size())))];
+  auto& element =
+      *xml.elements[static_cast<std::size_t>(random.below(static_cast<int>(xml.elements.size())))];
   Mutation result{static_cast<What>(random.below(6)), element.Name(), "", ""};
   if (!names.contains(result.element)) return {};
   if (result.what < What::kRenameAttribute) {
@@ -152,10 +166,12 @@ std::optional<Mutation> mutated(const std::string& text, const std::set<std::str
     return result;
   }
   std::vector<std::string> attributes;
-  for (const auto* attribute = element.FirstAttribute(); attribute != nullptr; attribute = attribute->Next())
+  for (const auto* attribute = element.FirstAttribute(); attribute != nullptr;
+       attribute = attribute->Next())
     attributes.emplace_back(attribute->Name());
   if (attributes.empty()) return {};
-  const std::string name = attributes[static_cast<std::size_t>(random.below(static_cast<int>(attributes.size())))];
+  const std::string name =
+      attributes[static_cast<std::size_t>(random.below(static_cast<int>(attributes.size())))];
   const std::string value = element.Attribute(name.c_str());
   result.attribute = name;
   if (result.what == What::kDoubleAttribute) {
@@ -184,9 +200,11 @@ std::string kinematics(const RobotModel& robot) {
   const auto pose = [&](const Pose& p) { text << p.matrix() << '\n'; };
   text << robot.root_link << '\n';
   for (const Joint& j : robot.joints) {
-    text << j.name << ' ' << static_cast<int>(j.type) << ' ' << j.parent_link << ' ' << j.child_link << ' ' << j.axis.transpose()
-         << ' ' << j.lower << ' ' << j.upper << ' ' << j.velocity << ' ' << j.acceleration << ' ' << j.jerk;
-    if (j.mimic) text << " mimics " << j.mimic->joint << ' ' << j.mimic->multiplier << ' ' << j.mimic->offset;
+    text << j.name << ' ' << static_cast<int>(j.type) << ' ' << j.parent_link << ' ' << j.child_link
+         << ' ' << j.axis.transpose() << ' ' << j.lower << ' ' << j.upper << ' ' << j.velocity
+         << ' ' << j.acceleration << ' ' << j.jerk;
+    if (j.mimic)
+      text << " mimics " << j.mimic->joint << ' ' << j.mimic->multiplier << ' ' << j.mimic->offset;
     pose(j.origin);
   }
   for (const Link& link : robot.links) {
@@ -195,8 +213,10 @@ std::string kinematics(const RobotModel& robot) {
       text << shape.shape.index() << ' ';
       if (const auto* box = std::get_if<Box>(&shape.shape)) text << box->size.transpose();
       if (const auto* one = std::get_if<Sphere>(&shape.shape)) text << one->radius;
-      if (const auto* one = std::get_if<Cylinder>(&shape.shape)) text << one->radius << ' ' << one->length;
-      if (const auto* one = std::get_if<Capsule>(&shape.shape)) text << one->radius << ' ' << one->length;
+      if (const auto* one = std::get_if<Cylinder>(&shape.shape))
+        text << one->radius << ' ' << one->length;
+      if (const auto* one = std::get_if<Capsule>(&shape.shape))
+        text << one->radius << ' ' << one->length;
       pose(shape.pose);
     }
   }
@@ -221,8 +241,8 @@ std::shared_ptr<const RobotModel> read(const std::string& urdf, const std::strin
 }
 
 #ifdef SWIVEL_URDFDOM
-/// Holds a model against what urdfdom, which kdl_parser and robot_state_publisher read by, makes of the file: poses and axes to the
-/// last bit. Returns false where urdfdom refuses the file.
+/// Holds a model against what urdfdom, which kdl_parser and robot_state_publisher read by, makes of
+/// the file: poses and axes to the last bit. Returns false where urdfdom refuses the file.
 bool agrees_with_urdfdom(const std::string& text, const RobotModel& robot) {
   console_bridge::noOutputHandler();
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
@@ -233,12 +253,16 @@ bool agrees_with_urdfdom(const std::string& text, const RobotModel& robot) {
   EXPECT_EQ(model->getRoot()->name, robot.links[static_cast<std::size_t>(robot.root_link)].name);
   for (const Joint& joint : robot.joints) {
     const auto& other = *model->joints_.at(joint.name);
-    const auto& [position, rotation] =
-        std::pair(other.parent_to_joint_origin_transform.position, other.parent_to_joint_origin_transform.rotation);
-    EXPECT_EQ(joint.origin.translation(), Vector3d(position.x, position.y, position.z)) << joint.name;
-    EXPECT_EQ(joint.origin.linear(), Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized().toRotationMatrix())
+    const auto& [position, rotation] = std::pair(other.parent_to_joint_origin_transform.position,
+                                                 other.parent_to_joint_origin_transform.rotation);
+    EXPECT_EQ(joint.origin.translation(), Vector3d(position.x, position.y, position.z))
         << joint.name;
-    EXPECT_EQ(other.parent_link_name, robot.links[static_cast<std::size_t>(joint.parent_link)].name);
+    EXPECT_EQ(
+        joint.origin.linear(),
+        Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z).normalized().toRotationMatrix())
+        << joint.name;
+    EXPECT_EQ(other.parent_link_name,
+              robot.links[static_cast<std::size_t>(joint.parent_link)].name);
     if (!joint.movable()) continue;
     const Vector3d axis(other.axis.x, other.axis.y, other.axis.z);
     EXPECT_EQ(joint.axis, axis / axis.norm()) << joint.name;
@@ -252,15 +276,18 @@ bool agrees_with_urdfdom(const std::string& text, const RobotModel& robot) {
     EXPECT_EQ(joint.mimic->multiplier, other.mimic->multiplier);
     EXPECT_EQ(joint.mimic->offset, other.mimic->offset);
   }
-  for (const Link& link : robot.links) EXPECT_EQ(link.collision.size(), model->links_.at(link.name)->collision_array.size());
+  for (const Link& link : robot.links)
+    EXPECT_EQ(link.collision.size(), model->links_.at(link.name)->collision_array.size());
   return true;
 }
 #endif
 
 TEST(Mutated, Urdf) {
   Random random(swivel::test::seed("Mutated.Urdf"));
-  const std::set<std::string> names{"link",    "joint", "collision", "origin", "geometry", "box",   "sphere", "cylinder",
-                                    "capsule", "mesh",  "parent",    "child",  "axis",     "limit", "mimic",  "safety_controller"};
+  const std::set<std::string> names{"link",     "joint", "collision", "origin",
+                                    "geometry", "box",   "sphere",    "cylinder",
+                                    "capsule",  "mesh",  "parent",    "child",
+                                    "axis",     "limit", "mimic",     "safety_controller"};
   std::vector<std::string> texts = robots(".urdf");
   texts.insert(texts.end(), texts.size(), kEveryWord);  // half of the trials
   ASSERT_GE(texts.size(), 18u);
@@ -269,7 +296,8 @@ TEST(Mutated, Urdf) {
   int refused = 0, warned = 0, defaults = 0, removed = 0, doubled_bodies = 0, compared = 0;
   const int wanted = trials(2000);
   for (int trial = 0; trial < wanted;) {
-    const std::string& text = texts[static_cast<std::size_t>(random.below(static_cast<int>(texts.size())))];
+    const std::string& text =
+        texts[static_cast<std::size_t>(random.below(static_cast<int>(texts.size())))];
     const RobotModel& whole = *wholes.at(text);
     const auto mutation = mutated(text, names, random);
     if (!mutation) continue;
@@ -281,7 +309,8 @@ TEST(Mutated, Urdf) {
       ++refused;
       continue;
     }
-    const bool removes = mutation->what == What::kRemoveElement || mutation->what == What::kRemoveAttribute;
+    const bool removes =
+        mutation->what == What::kRemoveElement || mutation->what == What::kRemoveAttribute;
     if (!removes && robot->warnings.size() > whole.warnings.size()) {
       ++warned;
     } else if (mutation->what == What::kDoubleElement && mutation->element == "collision") {
@@ -303,14 +332,15 @@ TEST(Mutated, Urdf) {
         EXPECT_EQ(kinematics(*robot), kinematics(*parse_robot(text, "", {}, {{}, false})));
       }
 #ifdef SWIVEL_URDFDOM
-      // The words of URDF 1.1 and 1.2, which older ones do not have, and limits without a velocity, which they refuse, are left
-      // out.
+      // The words of URDF 1.1 and 1.2, which older ones do not have, and limits without a velocity,
+      // which they refuse, are left out.
       if (text != kEveryWord) compared += agrees_with_urdfdom(mutation->text, *robot);
 #endif
     }
   }
   std::printf(
-      "%d refused, %d warned of, %d bodies doubled, %d removed, of these %d as with the default, %d as urdfdom reads them\n",
+      "%d refused, %d warned of, %d bodies doubled, %d removed, of these %d as with the default, "
+      "%d as urdfdom reads them\n",
       refused, warned, doubled_bodies, removed, defaults, compared);
   EXPECT_GE(refused, at_least(1200));
   EXPECT_GE(warned, at_least(15));
@@ -370,9 +400,13 @@ TEST(Mutated, Srdf) {
   const int wanted = trials(1000);
   for (int trial = 0; trial < wanted;) {
     const auto& [urdf, srdf] =
-        robots_and_srdfs[random.coin() ? 0 : static_cast<std::size_t>(random.below(static_cast<int>(robots_and_srdfs.size())))];
+        robots_and_srdfs[random.coin() ? 0
+                                       : static_cast<std::size_t>(random.below(
+                                             static_cast<int>(robots_and_srdfs.size())))];
     const auto mutation = mutated(srdf, names, random);
-    if (!mutation || mutation->what == What::kRemoveElement || mutation->what == What::kRemoveAttribute) continue;
+    if (!mutation || mutation->what == What::kRemoveElement ||
+        mutation->what == What::kRemoveAttribute)
+      continue;
     ++trial;
     const auto robot = read(urdf, mutation->text);
     if (!robot) {
@@ -381,7 +415,9 @@ TEST(Mutated, Srdf) {
       ++warned;
     } else {  // what stands twice says nothing new
       ++same;
-      EXPECT_EQ(static_cast<int>(mutation->what), static_cast<int>(What::kDoubleElement)) << "passed over:\n" << mutation->text;
+      EXPECT_EQ(static_cast<int>(mutation->what), static_cast<int>(What::kDoubleElement))
+          << "passed over:\n"
+          << mutation->text;
       EXPECT_EQ(robot->disabled_pairs, read(urdf, srdf)->disabled_pairs);
     }
   }
@@ -403,34 +439,41 @@ TEST(Mutated, Problems) {
       fs::create_directory_symlink(entry.path(), folder.path() / entry.path().filename());
       continue;
     }
-    for (const auto& problem : fs::directory_iterator(entry.path())) files.push_back(problem.path());
+    for (const auto& problem : fs::directory_iterator(entry.path()))
+      files.push_back(problem.path());
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files)
-    if (file.extension() == ".yaml") texts.push_back(std::regex_replace(TempFolder::read(file), std::regex("#[^\n]*"), ""));
+    if (file.extension() == ".yaml")
+      texts.push_back(std::regex_replace(TempFolder::read(file), std::regex("#[^\n]*"), ""));
   ASSERT_GE(texts.size(), 10u);
   const std::regex key("(^|[{,\n])( *(?:- )?)([a-z_]+)(: )");
   int misspelt_keys = 0, doubled = 0;
   const int wanted = trials(300);
   for (int trial = 0; trial < wanted; ++trial) {
-    std::string text = texts[static_cast<std::size_t>(random.below(static_cast<int>(texts.size())))];
+    std::string text =
+        texts[static_cast<std::size_t>(random.below(static_cast<int>(texts.size())))];
     std::vector<std::smatch> found;
     const std::string before = text;
-    for (auto at = std::sregex_iterator(before.begin(), before.end(), key); at != std::sregex_iterator(); ++at)
+    for (auto at = std::sregex_iterator(before.begin(), before.end(), key);
+         at != std::sregex_iterator(); ++at)
       found.push_back(*at);
-    const std::smatch& one = found[static_cast<std::size_t>(random.below(static_cast<int>(found.size())))];
+    const std::smatch& one =
+        found[static_cast<std::size_t>(random.below(static_cast<int>(found.size())))];
     const std::string name = one[3];
     const auto at = static_cast<std::size_t>(one.position(3));
     const std::size_t end = before.find_first_of(",}\n", at);
     const std::string value = before.substr(at + name.size() + 2, end - at - name.size() - 2);
-    if (random.coin() || value.find_first_of("[{") != std::string::npos || before[one.position(0)] != '{') {
+    if (random.coin() || value.find_first_of("[{") != std::string::npos ||
+        before[one.position(0)] != '{') {
       ++misspelt_keys;
       text.replace(at, name.size(), misspelt(name, random));
     } else {
       ++doubled;
       text.insert(at, name + ": " + value + ", ");
     }
-    const std::string message = input_error([&] { (void)load_problem(folder.write("problems/problem.yaml", text)); });
+    const std::string message =
+        input_error([&] { (void)load_problem(folder.write("problems/problem.yaml", text)); });
     EXPECT_NE(message.find("problem.yaml"), std::string::npos) << message << '\n' << text;
   }
   std::printf("%d misspelt, %d doubled\n", misspelt_keys, doubled);

@@ -17,7 +17,8 @@ struct Edited {
 };
 
 Edited edited(const ProblemFolder& folder, const std::string& scene, const Offset& offset,
-              const Movable& thing = {Movable::Kind::kObject, "part"}, const std::string& path = "{file: weld.csv}") {
+              const Movable& thing = {Movable::Kind::kObject, "part"},
+              const std::string& path = "{file: weld.csv}") {
   const fs::path file = folder.write({{"scene", scene}, {"path", path}});
   const Problem problem = load_problem(file);
   Edited result{TempFolder::read(file), "", placed_problem(problem, thing, offset), {}};
@@ -29,10 +30,12 @@ Edited edited(const ProblemFolder& folder, const std::string& scene, const Offse
 TEST(WithPoses, ReadsBackBitForBitAndKeepsTheRest) {
   const ProblemFolder folder;
   const std::vector<std::string> scenes{
-      "\n  # ünïcode: xyz: [1, 2, 3]\n  - {name: post, sphere: 0.1, xyz: [0.1, 0.2, 0.3]}\n  - {name: part, sphere: 0.1, xyz: "
+      "\n  # ünïcode: xyz: [1, 2, 3]\n  - {name: post, sphere: 0.1, xyz: [0.1, 0.2, 0.3]}\n  - "
+      "{name: part, sphere: 0.1, xyz: "
       "[0.76, 0.27, 0.90], rpy: [0, 0, "
       "-1.5707963267948966]}  # the part",
-      "\n  - name: part   # stands on the table\n    sphere: 0.1\n    xyz:\n      - 0.76  # across\n      - 0.27\n      - 0.9\n    "
+      "\n  - name: part   # stands on the table\n    sphere: 0.1\n    xyz:\n      - 0.76  # "
+      "across\n      - 0.27\n      - 0.9\n    "
       "rpy: [0.1, 0.2,\n          0.3]",
       "\n  - name: part\n    box: [0.1, 0.1, 0.2]",
       "[{name: part, sphere: 0.1}, {name: post, sphere: 0.1}]",
@@ -48,25 +51,33 @@ TEST(WithPoses, ReadsBackBitForBitAndKeepsTheRest) {
         EXPECT_EQ(e.read.scene[k].pose.matrix(), e.wanted.scene[k].pose.matrix()) << e.after;
       EXPECT_EQ(e.after == e.before, offset == Offset{}) << e.after;
       // Every comment is still there.
-      for (const char* const comment : {"# ünïcode: xyz: [1, 2, 3]", "# the part", "# stands on the table", "# across"})
-        EXPECT_EQ(e.before.find(comment) == std::string::npos, e.after.find(comment) == std::string::npos) << e.after;
+      for (const char* const comment :
+           {"# ünïcode: xyz: [1, 2, 3]", "# the part", "# stands on the table", "# across"})
+        EXPECT_EQ(e.before.find(comment) == std::string::npos,
+                  e.after.find(comment) == std::string::npos)
+            << e.after;
       turned += offset[4] != 0;
     }
   EXPECT_EQ(turned, 12);
   const Edited e = edited(folder, scenes[0], kMoved);
-  EXPECT_NE(e.after.find("{name: part, sphere: 0.1, xyz: [0.81, 0.27, 0.8], rpy: [0, 0, -1.5707963267948966]}  # the part"),
+  EXPECT_NE(e.after.find("{name: part, sphere: 0.1, xyz: [0.81, 0.27, 0.8], rpy: [0, 0, "
+                         "-1.5707963267948966]}  # the part"),
             std::string::npos)
       << e.after;
 }
 
 TEST(WithPoses, LineEndsAndByteOrderMarksStay) {
   const ProblemFolder folder;
-  for (const std::string& head : {std::string("# häder\r\n"), std::string("\xef\xbb\xbf# häder\n")}) {
+  for (const std::string& head :
+       {std::string("# häder\r\n"), std::string("\xef\xbb\xbf# häder\n")}) {
     const fs::path file = folder.folder().write(
-        "problems/p.yaml", head +
-                               "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}\r\npath: {file: "
-                               "weld.csv}\r\nscene:\r\n  - {name: part, sphere: 0.1, xyz: [1, 2, 3]}  # ö\r\n");
-    const Problem problem = load_problem(file), wanted = placed_problem(problem, {Movable::Kind::kObject, "part"}, kMoved);
+        "problems/p.yaml",
+        head +
+            "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}\r\npath: "
+            "{file: "
+            "weld.csv}\r\nscene:\r\n  - {name: part, sphere: 0.1, xyz: [1, 2, 3]}  # ö\r\n");
+    const Problem problem = load_problem(file),
+                  wanted = placed_problem(problem, {Movable::Kind::kObject, "part"}, kMoved);
     std::string expected = TempFolder::read(file);
     expected.replace(expected.find("[1, 2, 3]"), 9, "[1.05, 2, 2.9]");
     EXPECT_EQ(with_poses(TempFolder::read(file), problem, wanted), expected);
@@ -75,9 +86,13 @@ TEST(WithPoses, LineEndsAndByteOrderMarksStay) {
 
 TEST(WithPoses, TheBaseMovesAllObjects) {
   const ProblemFolder folder;
-  const std::string scene = "\n  - {name: part, sphere: 0.1, xyz: [1, 2, 3]}\n  - {name: post, sphere: 0.1, rpy: [0, 0, 1]} # post";
-  const Edited e = edited(folder, scene, kTurned, {Movable::Kind::kBase, ""}, "{frame: part, file: weld.csv}");
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(e.read.scene[k].pose.matrix(), e.wanted.scene[k].pose.matrix()) << e.after;
+  const std::string scene =
+      "\n  - {name: part, sphere: 0.1, xyz: [1, 2, 3]}\n  - {name: post, sphere: 0.1, rpy: [0, 0, "
+      "1]} # post";
+  const Edited e =
+      edited(folder, scene, kTurned, {Movable::Kind::kBase, ""}, "{frame: part, file: weld.csv}");
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(e.read.scene[k].pose.matrix(), e.wanted.scene[k].pose.matrix()) << e.after;
   EXPECT_EQ(e.read.waypoints, e.wanted.waypoints);
   EXPECT_NE(e.after.find(" # post"), std::string::npos);
 }
@@ -86,15 +101,20 @@ TEST(WithPoses, RefusesWhatItCannotChangeInPlace) {
   const ProblemFolder folder;
   const auto refused = [&](const std::string& scene, const Offset& offset,
                            const Movable& thing = {Movable::Kind::kObject, "part"}) {
-    const std::string message = input_error([&] { static_cast<void>(edited(folder, scene, offset, thing)); });
+    const std::string message =
+        input_error([&] { static_cast<void>(edited(folder, scene, offset, thing)); });
     EXPECT_NE(message.find("problem.yaml"), std::string::npos) << message;
     EXPECT_NE(message.find("allowed is"), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   };
-  refused("[{name: post, sphere: 0.1, xyz: &p [1, 2, 3]}, {name: part, sphere: 0.1, xyz: *p}]", kMoved);
+  refused("[{name: post, sphere: 0.1, xyz: &p [1, 2, 3]}, {name: part, sphere: 0.1, xyz: *p}]",
+          kMoved);
   refused("[{name: part, sphere: 0.1, xyz: [1, 2, \"3\"]}]", kMoved);
   refused("[{name: part, sphere: 0.1, xyz: }]", kMoved);
-  refused("\n  - name: part\n    sphere: 0.1\n    quat:\n      - 0.5\n      - 0.5\n      - 0.5\n      - 0.5", kTurned);
+  refused(
+      "\n  - name: part\n    sphere: 0.1\n    quat:\n      - 0.5\n      - 0.5\n      - 0.5\n      "
+      "- 0.5",
+      kTurned);
   refused("[{name: part, sphere: 0.1}]", kMoved, {Movable::Kind::kPath, ""});
   refused("[{name: part, sphere: 0.1}]", kMoved, {Movable::Kind::kBase, ""});
 }
@@ -113,7 +133,8 @@ TEST(Placements, Csv) {
   blocked.by = "a, \"b\"";
   blocked.reason = "two\nlines";
   EXPECT_EQ(to_csv({solved, blocked}),
-            "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_speed,failed_s,cause,by,reason\n"
+            "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_"
+            "speed,failed_s,cause,by,reason\n"
             "3,0.1,-0.2,0,0,0,0.001,solved,2.5,0.01,0.005,,1,,,,\n"
             "0,0,0,0,0,0,0,infeasible,,,,,,0.25,pair,\"a, \"\"b\"\"\",two lines\n");
 }

@@ -13,13 +13,15 @@ class ProblemFolder {
 
   ProblemFolder() {
     folder_.write("robots/arm.urdf", arm_urdf());
-    folder_.write("robots/arm.srdf", "<robot name='arm'><disable_collisions link1='link_1' link2='link_3'/></robot>");
+    folder_.write("robots/arm.srdf",
+                  "<robot name='arm'><disable_collisions link1='link_1' link2='link_3'/></robot>");
     folder_.write("problems/box.stl", box_stl());
     folder_.write("problems/weld.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n");
   }
 
   [[nodiscard]] static Sections good() {
-    return {{"robot", "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}"}, {"path", "{file: weld.csv}"}};
+    return {{"robot", "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}"},
+            {"path", "{file: weld.csv}"}};
   }
   /// Sections of `changes` replace or join the good ones; an empty text leaves the section out.
   [[nodiscard]] fs::path write(const Sections& changes) const {

@@ -25,7 +25,8 @@ TEST(ProblemFile, Defaults) {
   EXPECT_FALSE(problem.start_at);
   EXPECT_EQ(problem.start_tolerance, 1e-6);
   EXPECT_EQ(problem.cost.metric, CostMetric::kL2);
-  EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() && problem.attached.empty());
+  EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() &&
+              problem.attached.empty());
 }
 
 TEST(ProblemFile, WhatMotionsKeep) {
@@ -33,9 +34,10 @@ TEST(ProblemFile, WhatMotionsKeep) {
   const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
   EXPECT_FALSE(folder.load({}).smooth);
   EXPECT_FALSE(folder.load({}).limits.joint_jerk);
-  const Problem problem = folder.load({{"path", "{smooth: {position: 0.0002}, " + waypoints + "}"},
-                                       {"limits", "{joint_speed: 2, joint_acceleration: [1, 2, 3, 4, 5, 6, 7], joint_jerk: null}"},
-                                       {"refine", "{smoothing: 0.02, joint_margin: 0.03, singular_margin: 0.04}"}});
+  const Problem problem = folder.load(
+      {{"path", "{smooth: {position: 0.0002}, " + waypoints + "}"},
+       {"limits", "{joint_speed: 2, joint_acceleration: [1, 2, 3, 4, 5, 6, 7], joint_jerk: null}"},
+       {"refine", "{smoothing: 0.02, joint_margin: 0.03, singular_margin: 0.04}"}});
   ASSERT_TRUE(problem.smooth && problem.limits.joint_speed && problem.limits.joint_acceleration);
   EXPECT_EQ(problem.smooth->position, 0.0002);
   EXPECT_EQ(problem.smooth->angle, PathSmoothing{}.angle);
@@ -74,7 +76,8 @@ TEST(ProblemFile, RollOfTheTool) {
 TEST(ProblemFile, WindowsOfTheRoll) {
   const ProblemFolder folder;
   const auto path = [](const char* roll, const char* first, const char* second) {
-    return std::string("{") + roll + "waypoints: [{xyz: [0.6, -0.1, 0.9]" + first + "}, {xyz: [0.6, 0.1, 0.9]" + second + "}]}";
+    return std::string("{") + roll + "waypoints: [{xyz: [0.6, -0.1, 0.9]" + first +
+           "}, {xyz: [0.6, 0.1, 0.9]" + second + "}]}";
   };
   const auto load = [&](const char* roll, const char* first, const char* second) {
     return folder.load({{"path", path(roll, first, second)}});
@@ -91,30 +94,44 @@ TEST(ProblemFile, WindowsOfTheRoll) {
   EXPECT_NEAR(whole.roll->upper, kPi, 1e-5);
   EXPECT_FALSE(load("roll: free, ", "", "").waypoints[0].roll);
 
-  const auto refused = [&](const char* roll, const char* first, const char* second, const std::vector<std::string>& words) {
+  const auto refused = [&](const char* roll, const char* first, const char* second,
+                           const std::vector<std::string>& words) {
     expect_message(input_error([&] { return load(roll, first, second); }), words);
   };
-  refused("", ", roll: [-2, 0.1]", ", roll: [0, 1]", {"path.waypoints", "the roll is not free", "path.roll"});
+  refused("", ", roll: [-2, 0.1]", ", roll: [0, 1]",
+          {"path.waypoints", "the roll is not free", "path.roll"});
   refused("roll: free, ", ", roll: [-2, 0.1]", "", {"path.waypoints[1]", "some waypoints alone"});
-  refused("roll: free, ", ", roll: [0.2, 0.1]", ", roll: [0, 1]", {"path.waypoints[0].roll", "lower <= upper"});
-  refused("roll: free, ", ", roll: [0.2]", ", roll: [0, 1]", {"path.waypoints[0].roll", "2 numbers"});
-  refused("roll: [0, 1], ", ", roll: [0.2, 0.5]", ", roll: [1.2, 1.5]", {"path.waypoints", "waypoint 1 (from 0)", "path.roll"});
-  refused("roll: free, ", ", roll: [-2, -1]", ", roll: [4, 5]", {"path.waypoints", "-2 to 5", "less than a turn"});
+  refused("roll: free, ", ", roll: [0.2, 0.1]", ", roll: [0, 1]",
+          {"path.waypoints[0].roll", "lower <= upper"});
+  refused("roll: free, ", ", roll: [0.2]", ", roll: [0, 1]",
+          {"path.waypoints[0].roll", "2 numbers"});
+  refused("roll: [0, 1], ", ", roll: [0.2, 0.5]", ", roll: [1.2, 1.5]",
+          {"path.waypoints", "waypoint 1 (from 0)", "path.roll"});
+  refused("roll: free, ", ", roll: [-2, -1]", ", roll: [4, 5]",
+          {"path.waypoints", "-2 to 5", "less than a turn"});
   refused("roll: free, ", ", roll: [1, 1]", ", roll: [1, 1]", {"path.waypoints", "more than one"});
 
   // A problem file that states this.
   folder.folder().write("problems/turns.csv",
-                        "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0.6,-0.1,0.9,1,0,0,0,-2,0.1\n0.6,0.1,0.9,1,0,0,0,0.2,0.2\n");
+                        "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0.6,-0.1,0.9,1,0,0,0,-2,0.1\n0.6,0.1,"
+                        "0.9,1,0,0,0,0.2,0.2\n");
   const Problem file = folder.load({{"path", "{roll: [-0.5, 1], file: turns.csv}"}});
   EXPECT_EQ(file.waypoints, cut.waypoints);
   EXPECT_EQ(*file.roll, *cut.roll);
-  expect_message(input_error([&] { return folder.load({{"path", "{file: turns.csv}"}}); }), {"path.file", "the roll is not free"});
-  folder.folder().write("problems/turns.csv", "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0,0,0,1,0,0,0,0,1\n1,0,0,1,0,0,0,1,0\n");
   expect_message(input_error([&] {
-                   return folder.load({{"path", "{roll: free, file: turns.csv}"}});
+                   return folder.load({{"path", "{file: turns.csv}"}});
                  }),
-                 {"turns.csv:3: data row 2", "roll_min,roll_max: is empty", "roll_min <= roll_max"});
-  folder.folder().write("problems/turns.csv", "x,y,z,qw,qx,qy,qz,roll_min\n0,0,0,1,0,0,0,0\n1,0,0,1,0,0,0,1\n");
+                 {"path.file", "the roll is not free"});
+  folder.folder().write(
+      "problems/turns.csv",
+      "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0,0,0,1,0,0,0,0,1\n1,0,0,1,0,0,0,1,0\n");
+  expect_message(
+      input_error([&] {
+        return folder.load({{"path", "{roll: free, file: turns.csv}"}});
+      }),
+      {"turns.csv:3: data row 2", "roll_min,roll_max: is empty", "roll_min <= roll_max"});
+  folder.folder().write("problems/turns.csv",
+                        "x,y,z,qw,qx,qy,qz,roll_min\n0,0,0,1,0,0,0,0\n1,0,0,1,0,0,0,1\n");
   expect_message(input_error([&] {
                    return folder.load({{"path", "{roll: free, file: turns.csv}"}});
                  }),
@@ -126,11 +143,14 @@ TEST(ProblemFile, RollCost) {
   const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
   EXPECT_EQ(folder.load({}).cost.roll, 0);
   EXPECT_EQ(folder.load({{"cost", "{roll: 0}"}}).cost.roll, 0);
-  EXPECT_EQ(folder.load({{"path", "{roll: free, " + waypoints + "}"}, {"cost", "{roll: 2.5}"}}).cost.roll, 2.5);
-  expect_message(input_error([&] {
-                   return folder.load({{"path", "{roll: free, " + waypoints + "}"}, {"cost", "{roll: 1e-7}"}});
-                 }),
-                 {"cost.roll", "1e-6"});
+  EXPECT_EQ(
+      folder.load({{"path", "{roll: free, " + waypoints + "}"}, {"cost", "{roll: 2.5}"}}).cost.roll,
+      2.5);
+  expect_message(
+      input_error([&] {
+        return folder.load({{"path", "{roll: free, " + waypoints + "}"}, {"cost", "{roll: 1e-7}"}});
+      }),
+      {"cost.roll", "1e-6"});
 }
 
 TEST(ProblemFile, ArmSlopeIsForArmsWithAnArmAngle) {
@@ -145,7 +165,8 @@ TEST(ProblemFile, ArmSlopeIsForArmsWithAnArmAngle) {
   // Its default as well: what is given does nothing.
   for (const char* const slope : {"20", "7"})
     expect_message(input_error([&] {
-                     return folder.load({{"robot", robot}, {"limits", std::string("{arm_slope: ") + slope + "}"}});
+                     return folder.load(
+                         {{"robot", robot}, {"limits", std::string("{arm_slope: ") + slope + "}"}});
                    }),
                    {"problem.yaml:1: limits.arm_slope", "no arm angle", "allowed is no such key"});
 }
@@ -171,13 +192,16 @@ TEST(ProblemFile, EveryKey) {
   - {name: rod, capsule: {radius: 0.05, length: 0.8}}
   - {name: door, mesh: box.stl, scale: [1, -1, 1], quat: [2, 0, 0, 0], allow: [grinder, link_7]})"},
       {"path",
-       "{frame: door, waypoints: [{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963, 0]}, {xyz: [0, 0, 1], quat: [0.9995, 0, 0, 0]}]}"},
+       "{frame: door, waypoints: [{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963, 0]}, {xyz: [0, 0, "
+       "1], quat: [0.9995, 0, 0, 0]}]}"},
       {"resolution", "{ds: 0.01, dphi: 0.2, dalpha: 0.3, arcs: true}"},
       {"limits",
-       "{clearance: 0.01, self_clearance: 0.002, manipulability: 0.02, joint_margin: 0.03, joint_step: 0.4, arm_slope: 5, "
+       "{clearance: 0.01, self_clearance: 0.002, manipulability: 0.02, joint_margin: 0.03, "
+       "joint_step: 0.4, arm_slope: 5, "
        "step_error: 0.6, "
        "tool_path_error: null, "
-       "tool_angle_error: 0.8, tool_speed: 0.9, tool_turn_speed: 1, edges: nodes, edge_clearance: 0, edge_tolerance: 0.001}"},
+       "tool_angle_error: 0.8, tool_speed: 0.9, tool_turn_speed: 1, edges: nodes, edge_clearance: "
+       "0, edge_tolerance: 0.001}"},
       {"start", "{joints: [1, 2, 3, 4, 5, 6, 7]}"},
       {"start_at", "0.25"},
       {"start_tolerance", "0.002"},
@@ -186,9 +210,10 @@ TEST(ProblemFile, EveryKey) {
   });
   EXPECT_TRUE(problem.model->has_srdf);
   EXPECT_EQ(problem.tool.translation(), Vector3d(0, 0, 0.1));
-  const Matrix3d tool = (Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitY()) *
-                         Eigen::AngleAxisd(0.1, Vector3d::UnitX()))
-                            .toRotationMatrix();
+  const Matrix3d tool =
+      (Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitY()) *
+       Eigen::AngleAxisd(0.1, Vector3d::UnitX()))
+          .toRotationMatrix();
   EXPECT_TRUE(problem.tool.linear().isApprox(tool, 1e-14));
   EXPECT_EQ(problem.hold.at("finger_joint"), 0.01);
   ASSERT_EQ(problem.attached.size(), 2u);
@@ -235,8 +260,12 @@ TEST(ProblemFile, EveryKey) {
 
 TEST(ProblemFile, SectionsWithEverythingCommentedOut) {
   const ProblemFolder folder;
-  const Problem problem =
-      folder.load({{"limits", "# {}"}, {"scene", "null"}, {"resolution", "~"}, {"start", "null"}, {"vary", "[]"}, {"cost", "{}"}});
+  const Problem problem = folder.load({{"limits", "# {}"},
+                                       {"scene", "null"},
+                                       {"resolution", "~"},
+                                       {"start", "null"},
+                                       {"vary", "[]"},
+                                       {"cost", "{}"}});
   EXPECT_EQ(problem.limits.joint_step, 0.5);
   EXPECT_FALSE(problem.start);
 }
@@ -252,20 +281,23 @@ TEST(ProblemFile, NamesAreRelativeToTheFileWhereverItIsReadFrom) {
 
 TEST(ProblemFile, OneMeshForManyObjects) {
   const ProblemFolder folder;
-  const Problem problem = folder.load({{"scene", "[{name: a, mesh: box.stl}, {name: b, mesh: ./box.stl, scale: 1}]"}});
+  const Problem problem =
+      folder.load({{"scene", "[{name: a, mesh: box.stl}, {name: b, mesh: ./box.stl, scale: 1}]"}});
   EXPECT_EQ(std::get<MeshPtr>(problem.scene[0].shape), std::get<MeshPtr>(problem.scene[1].shape));
 }
 
 /// Six numbers for six joints: the seventh is the roll.
 TEST(ProblemFile, ListsOfASixJointArmSayThatTheSeventhIsTheRoll) {
   const ProblemFolder folder;
-  const ProblemFolder::Sections six = {{"robot", "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_6}"},
-                                       {"path", "{file: weld.csv, roll: free}"}};
+  const ProblemFolder::Sections six = {
+      {"robot", "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_6}"},
+      {"path", "{file: weld.csv, roll: free}"}};
   EXPECT_TRUE(folder.load(six).roll);
-  for (const auto& [section, text, key] : {std::tuple("start", "{joints: [0, 0, 0, 0, 0, 0]}", "start.joints"),
-                                           std::tuple("cost", "{weights: [1, 1, 1, 1, 1, 1]}", "cost.weights"),
-                                           std::tuple("limits", "{joint_speed: [1, 1, 1, 1, 1, 1]}", "limits.joint_speed"),
-                                           std::tuple("limits", "{joint_jerk: [1, 1, 1, 1, 1, 1]}", "limits.joint_jerk")}) {
+  for (const auto& [section, text, key] :
+       {std::tuple("start", "{joints: [0, 0, 0, 0, 0, 0]}", "start.joints"),
+        std::tuple("cost", "{weights: [1, 1, 1, 1, 1, 1]}", "cost.weights"),
+        std::tuple("limits", "{joint_speed: [1, 1, 1, 1, 1, 1]}", "limits.joint_speed"),
+        std::tuple("limits", "{joint_jerk: [1, 1, 1, 1, 1, 1]}", "limits.joint_jerk")}) {
     ProblemFolder::Sections changes = six;
     changes[section] = text;
     const std::string message = input_error([&] { (void)folder.load(changes); });

@@ -61,9 +61,11 @@ TEST(Result, KeysInTheOrderOfTheSchema) {
   PlanResult turning = solved();  // has the keys of a tool that turns as well
   turning.lattice.grid->rolls = 63;
   turning.trajectory[1].roll = 0.2;
-  const Json json = Json::parse(to_json(turning)), schema = properties_of(Json::parse(result_json_schema()));
+  const Json json = Json::parse(to_json(turning)),
+             schema = properties_of(Json::parse(result_json_schema()));
   EXPECT_EQ(keys_of(json), keys_of(schema));
-  for (const char* const key : {"counters", "time_ms"}) EXPECT_EQ(keys_of(json[key]), keys_of(properties_of(schema[key]))) << key;
+  for (const char* const key : {"counters", "time_ms"})
+    EXPECT_EQ(keys_of(json[key]), keys_of(properties_of(schema[key]))) << key;
   EXPECT_EQ(keys_of(json["trajectory"][0]), keys_of(properties_of(schema["trajectory"])));
   Json lattice = properties_of(schema["lattice"]);
   lattice.erase("arcs");  // of other arms
@@ -86,20 +88,30 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["time_ms"]["stages"], Json({{"search", 0.25}}));
   EXPECT_EQ(json["tool_path_error_mm"]["max"], 0.2);
   EXPECT_EQ(json["min_clearance"], 0.012);
-  EXPECT_EQ(json["min_margin"],
-            Json({{"margin", 0.001}, {"clearance", 0.003}, {"required", 0.002}, {"bodies", {"link_5", "link_7"}}, {"row", 1}}));
-  EXPECT_EQ(json["summary"]["clearance"], Json({{"value", 0.003}, {"asked", 0.002}, {"bodies", {"link_5", "link_7"}}, {"s", 0.1}}));
-  EXPECT_EQ(json["summary"]["joint_limit"],
-            Json({{"joint", "c"}, {"side", "upper"}, {"margin_deg", 0.04 * 180 / kPi}, {"s", 0.1}}));
-  EXPECT_EQ(json["summary"]["tool_path_error"], Json({{"max_mm", 0.2}, {"allowed_mm", 1.0}, {"s", 0.1}}));
+  EXPECT_EQ(json["min_margin"], Json({{"margin", 0.001},
+                                      {"clearance", 0.003},
+                                      {"required", 0.002},
+                                      {"bodies", {"link_5", "link_7"}},
+                                      {"row", 1}}));
+  EXPECT_EQ(
+      json["summary"]["clearance"],
+      Json({{"value", 0.003}, {"asked", 0.002}, {"bodies", {"link_5", "link_7"}}, {"s", 0.1}}));
+  EXPECT_EQ(
+      json["summary"]["joint_limit"],
+      Json({{"joint", "c"}, {"side", "upper"}, {"margin_deg", 0.04 * 180 / kPi}, {"s", 0.1}}));
+  EXPECT_EQ(json["summary"]["tool_path_error"],
+            Json({{"max_mm", 0.2}, {"allowed_mm", 1.0}, {"s", 0.1}}));
   EXPECT_EQ(json["summary"]["top_tool_speed"], Json({{"speed", 0.35}, {"joint", "g"}, {"s", 0.1}}));
   EXPECT_EQ(json["robot_pairs"]["dropped"], Json::parse(R"([{"bodies": ["link_1", "link_3"]}])"));
-  EXPECT_EQ(json["robot_pairs"]["reduced"],
-            Json::parse(R"([{"bodies": ["link_5", "link_7"], "median": 0.004, "clearance": 0.002, "edge_clearance": 0.001}])"));
+  EXPECT_EQ(
+      json["robot_pairs"]["reduced"],
+      Json::parse(
+          R"([{"bodies": ["link_5", "link_7"], "median": 0.004, "clearance": 0.002, "edge_clearance": 0.001}])"));
   EXPECT_TRUE(json["diagnosis"].is_null());
   ASSERT_EQ(json["trajectory"].size(), 2u);
   EXPECT_EQ(json["trajectory"][0]["phi"].get<double>(), kPi);
-  for (int k = 0; k < kDof; ++k) EXPECT_EQ(json["trajectory"][0]["joints"][k].get<double>(), result.trajectory[0].q[k]);
+  for (int k = 0; k < kDof; ++k)
+    EXPECT_EQ(json["trajectory"][0]["joints"][k].get<double>(), result.trajectory[0].q[k]);
   EXPECT_EQ(json["warnings"], Json({"open mesh"}));
   EXPECT_EQ(json["joint_names"], Json({"a", "b", "c", "d", "e", "f", "g"}));
 }
@@ -126,23 +138,29 @@ TEST(Result, Infeasible) {
   result.diagnosis.without_it_s = 0.45;
   result.diagnosis.reached_layer = 12;
   result.diagnosis.reached_s = 0.34;
-  result.diagnosis.empty_layers = {{13, 14, 0.35, 0.36, 4, 4, reach, 0.3}, {15, 15, 0.37, 0.37, -1, -1, pair, {}}};
+  result.diagnosis.empty_layers = {{13, 14, 0.35, 0.36, 4, 4, reach, 0.3},
+                                   {15, 15, 0.37, 0.37, -1, -1, pair, {}}};
   result.diagnosis.removed = {{reach, 9}};
   result.diagnosis.complete = false;
   result.diagnosis.layers_known = 16;
   const Json json = Json::parse(to_json(result));
   EXPECT_EQ(json["status"], "infeasible");
-  for (const char* key : {"cost", "min_clearance", "min_margin", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
+  for (const char* key : {"cost", "min_clearance", "min_margin", "min_manipulability"})
+    EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
   const Json& diagnosis = json["diagnosis"];
-  EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "cause", "at_s", "waypoints",
-                                                          "without_it", "without_it_s", "together", "empty_layers", "removed",
-                                                          "holds", "unreachable", "complete", "layers_known"}));
+  EXPECT_EQ(keys_of(diagnosis),
+            (std::vector<std::string>{"reached_layer", "reached_s", "reason", "cause", "at_s",
+                                      "waypoints", "without_it", "without_it_s", "together",
+                                      "empty_layers", "removed", "holds", "unreachable", "complete",
+                                      "layers_known"}));
   EXPECT_EQ(diagnosis["reached_layer"], 12);
   EXPECT_EQ(diagnosis["reached_s"], 0.34);
   EXPECT_EQ(diagnosis["reason"], "joint j5");
-  EXPECT_EQ(diagnosis["cause"],
-            Json::parse(R"({"cause": "limit", "joint": "j5", "other_joints": false, "unwinds": false, "side": "lower",
+  EXPECT_EQ(
+      diagnosis["cause"],
+      Json::parse(
+          R"({"cause": "limit", "joint": "j5", "other_joints": false, "unwinds": false, "side": "lower",
       "bodies": null, "between_layers": false, "object": null, "check": null, "by": 0.5, "value": -2.5, "limit": -2.0, "over": null,
       "unit": "rad"})"));
   EXPECT_EQ(diagnosis["waypoints"], Json({3, 4}));
@@ -166,7 +184,8 @@ TEST(Result, Infeasible) {
   EXPECT_TRUE(diagnosis["unreachable"].is_null());
   result.diagnosis.unreachable = {14, 0.36, -1};
   EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "exact_tool");
-  EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["unreachable"], Json::parse(R"({"layer": 14, "s": 0.36, "waypoint": null})"));
+  EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["unreachable"],
+            Json::parse(R"({"layer": 14, "s": 0.36, "waypoint": null})"));
   result.diagnosis.unreachable->waypoint = 4;
   EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "every_resolution");
   EXPECT_EQ(json["trajectory"], Json::array());

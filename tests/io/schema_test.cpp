@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The JSON Schema of problem files and the reader say the same: whatever the schema names the reader reads, with its types, ranges
-// and defaults, and nothing else.
+// The JSON Schema of problem files and the reader say the same: whatever the schema names the
+// reader reads, with its types, ranges and defaults, and nothing else.
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -69,7 +69,8 @@ struct Place {
 /// Calls `visit` for every key of the schema, and `visit_object` for every section.
 struct Walk {
   std::function<void(const Place&)> visit;
-  std::function<void(const Json& problem, const Json::json_pointer& object)> visit_object = [](const auto&, const auto&) {};
+  std::function<void(const Json& problem, const Json::json_pointer& object)> visit_object =
+      [](const auto&, const auto&) {};
 
   void operator()(const Json& problem, const Json& schema, const Json::json_pointer& at) const {
     for (const Json& option : options(schema)) {
@@ -110,7 +111,8 @@ std::vector<Json> outside(const Json& schema) {
   std::vector<Json> values;
   for (const Json& option : options(schema)) {
     if (option["type"] == "array" && option.contains("minItems"))
-      for (const Json& item : outside(option["items"])) values.push_back(std::vector<Json>(option["minItems"], item));
+      for (const Json& item : outside(option["items"]))
+        values.push_back(std::vector<Json>(option["minItems"], item));
     if (option.contains("exclusiveMinimum")) values.push_back(option["exclusiveMinimum"]);
     if (option.contains("minimum")) values.push_back(option["minimum"].get<double>() - 1e-9);
     if (option.contains("maximum")) values.push_back(option["maximum"].get<double>() * 1.000001);
@@ -123,7 +125,8 @@ TEST(ProblemSchema, EveryKeyIsRead) {
   int keys = 0;
   Walk walk{[&](const Place& place) {
     ++keys;
-    expect_message(refusal(folder, place.with(of_another_type(place.schema))), {": " + place.name()});
+    expect_message(refusal(folder, place.with(of_another_type(place.schema))),
+                   {": " + place.name()});
   }};
   walk(whole_problem(), Json::parse(problem_json_schema()), Json::json_pointer());
   EXPECT_GE(keys, 90);
@@ -159,22 +162,25 @@ TEST(ProblemSchema, RequiredKeys) {
   const ProblemFolder folder;
   int keys = 0;
   const Json schema = Json::parse(problem_json_schema());
-  const std::function<void(const Json&, const Json&, const Json::json_pointer&)> remove = [&](const Json& problem, const Json& one,
-                                                                                              const Json::json_pointer& at) {
-    for (const Json& option : options(one)) {
-      if (option["type"] == "array" && problem.contains(at / 0)) remove(problem, option["items"], at / 0);
-      if (option["type"] != "object" || !option.contains("properties") || !problem.contains(at) || !problem[at].is_object())
-        continue;
-      for (const auto& [key, value] : option["properties"].items()) remove(problem, value, at / key);
-      if (!option.contains("required")) continue;
-      for (const std::string key : option["required"]) {
-        ++keys;
-        Json changed = problem;
-        changed[at].erase(key);
-        expect_message(refusal(folder, changed), {Place{{}, at, key, {}}.name(), "missing"});
-      }
-    }
-  };
+  const std::function<void(const Json&, const Json&, const Json::json_pointer&)> remove =
+      [&](const Json& problem, const Json& one, const Json::json_pointer& at) {
+        for (const Json& option : options(one)) {
+          if (option["type"] == "array" && problem.contains(at / 0))
+            remove(problem, option["items"], at / 0);
+          if (option["type"] != "object" || !option.contains("properties") ||
+              !problem.contains(at) || !problem[at].is_object())
+            continue;
+          for (const auto& [key, value] : option["properties"].items())
+            remove(problem, value, at / key);
+          if (!option.contains("required")) continue;
+          for (const std::string key : option["required"]) {
+            ++keys;
+            Json changed = problem;
+            changed[at].erase(key);
+            expect_message(refusal(folder, changed), {Place{{}, at, key, {}}.name(), "missing"});
+          }
+        }
+      };
   remove(whole_problem(), schema, Json::json_pointer());
   EXPECT_GE(keys, 10);
 }

@@ -16,13 +16,15 @@ using swivel::test::Random;
 
 std::string some_text(Random& random) {
   std::string text;
-  for (int k = random.below(12); k > 0; --k) text += "ab \"',-#\xc3\xa9"[static_cast<std::size_t>(random.below(8))];
+  for (int k = random.below(12); k > 0; --k)
+    text += "ab \"',-#\xc3\xa9"[static_cast<std::size_t>(random.below(8))];
   return text;
 }
 
 /// Of any size and sign.
 double some_number(Random& random) {
-  return random.coin(0.2) ? random.below(5) : random.uniform(-1, 1) * std::pow(10, random.uniform(-12, 6));
+  return random.coin(0.2) ? random.below(5)
+                          : random.uniform(-1, 1) * std::pow(10, random.uniform(-12, 6));
 }
 
 std::optional<double> maybe_number(Random& random) {
@@ -38,7 +40,8 @@ void fill(PlacementRow& row, std::uint64_t number, Random& random) {
   row.cell = number;
   for (double& value : row.offset) value = random.coin() ? some_number(random) : 0;
   row.status = some_status(random);
-  for (auto* const value : {&row.cost, &row.clearance, &row.clearance_margin, &row.joint_margin, &row.tool_speed, &row.failed_s})
+  for (auto* const value : {&row.cost, &row.clearance, &row.clearance_margin, &row.joint_margin,
+                            &row.tool_speed, &row.failed_s})
     *value = maybe_number(random);
   row.cause = random.coin() ? "pair" : "";
   row.by = some_text(random);
@@ -48,7 +51,8 @@ void fill(PlacementRow& row, std::uint64_t number, Random& random) {
 void fill(EpisodeRow& row, std::uint64_t number, Random& random) {
   row.episode = number;
   row.status = some_status(random);
-  for (auto* const value : {&row.cost, &row.tool_path_error_mm_mean, &row.tool_path_error_mm_max, &row.failed_s})
+  for (auto* const value :
+       {&row.cost, &row.tool_path_error_mm_mean, &row.tool_path_error_mm_max, &row.failed_s})
     *value = maybe_number(random);
   row.plan_ms = random.below(1'000'000) / 1e3;  // as many digits as are written
   row.nodes_checked = random.below(1 << 30);
@@ -73,19 +77,21 @@ template <class Row>
 void splits_and_joins(const char* command, Random& random, int& rows_joined, int& empty_shards) {
   const TempFolder folder;
   ShardRecord record{command,
-                     {{{"seed", "1"}, {"x", some_text(random)}}, {{"the problem file", 3}, {some_text(random), 4}}},
+                     {{{"seed", "1"}, {"x", some_text(random)}},
+                      {{"the problem file", 3}, {some_text(random), 4}}},
                      {},
                      0,
                      some_text(random),
                      some_text(random)};
   for (int k = random.below(3); k > 0; --k)
-    record.held.push_back(
-        {some_text(random), random.uniform(-3, 3), random.coin(0.5), random.coin(0.5), random.coin(0.5) ? "" : some_text(random)});
+    record.held.push_back({some_text(random), random.uniform(-3, 3), random.coin(0.5),
+                           random.coin(0.5), random.coin(0.5) ? "" : some_text(random)});
   record.total = static_cast<std::uint64_t>(random.below(30));
   record.shard.count = static_cast<std::uint64_t>(1 + random.below(8));
   std::vector<Row> rows(record.total);
   if (std::is_same_v<Row, EpisodeRow>)
-    for (int k = random.below(4); k > 0; --k) record.settings.coordinates.push_back(some_text(random));
+    for (int k = random.below(4); k > 0; --k)
+      record.settings.coordinates.push_back(some_text(random));
   for (std::uint64_t k = 0; k < record.total; ++k) {
     fill(rows[k], k, random);
     move_by(rows[k], record.settings.coordinates.size(), random);
@@ -94,9 +100,11 @@ void splits_and_joins(const char* command, Random& random, int& rows_joined, int
   for (std::uint64_t index = 0; index < record.shard.count; ++index) {
     record.shard.index = index;
     std::vector<Row> own;
-    for (std::uint64_t k = 0; k < record.shard.size(record.total); ++k) own.push_back(rows[record.shard.episode(k)]);
+    for (std::uint64_t k = 0; k < record.shard.size(record.total); ++k)
+      own.push_back(rows[record.shard.episode(k)]);
     empty_shards += own.empty();
-    shards.push_back(load_shard(folder.write(std::to_string(index), to_line(record) + table_of(own, record))));
+    shards.push_back(
+        load_shard(folder.write(std::to_string(index), to_line(record) + table_of(own, record))));
   }
   for (std::size_t k = shards.size(); k > 1; --k)
     std::swap(shards[k - 1], shards[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
@@ -111,7 +119,8 @@ void splits_and_joins(const char* command, Random& random, int& rows_joined, int
   ASSERT_EQ(whole.record.held.size(), record.held.size());
   for (std::size_t k = 0; k < record.held.size(); ++k) {
     const HeldJoint &a = whole.record.held[k], &b = record.held[k];
-    EXPECT_EQ(std::tie(a.name, a.position, a.slides, a.given, a.leader), std::tie(b.name, b.position, b.slides, b.given, b.leader));
+    EXPECT_EQ(std::tie(a.name, a.position, a.slides, a.given, a.leader),
+              std::tie(b.name, b.position, b.slides, b.given, b.leader));
   }
   EXPECT_EQ(whole.record.settings.coordinates, record.settings.coordinates);
   EXPECT_EQ(table_of(std::get<std::vector<Row>>(whole.rows), record), table_of(rows, record));
@@ -139,9 +148,12 @@ TEST(Shards, NumbersKeepTheirBits) {
   const ShardResults read = load_shard(folder.write("r.csv", to_line(record) + to_csv(rows)));
   const auto& same = std::get<PlacementRows>(read.rows);
   ASSERT_EQ(same.size(), rows.size());
-  const auto bits = [](const std::optional<double>& value) { return std::bit_cast<std::uint64_t>(value.value_or(0.125)); };
+  const auto bits = [](const std::optional<double>& value) {
+    return std::bit_cast<std::uint64_t>(value.value_or(0.125));
+  };
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    for (std::size_t c = 0; c < rows[k].offset.size(); ++c) EXPECT_EQ(bits(same[k].offset[c]), bits(rows[k].offset[c]));
+    for (std::size_t c = 0; c < rows[k].offset.size(); ++c)
+      EXPECT_EQ(bits(same[k].offset[c]), bits(rows[k].offset[c]));
     EXPECT_EQ(bits(same[k].cost), bits(rows[k].cost));
     EXPECT_EQ(bits(same[k].clearance_margin), bits(rows[k].clearance_margin));
     EXPECT_EQ(same[k].status, rows[k].status);

@@ -43,7 +43,8 @@ TEST(Trajectory, MotionKeepsEveryBitAndTheHeaderTellsWhatAFileIs) {
     motion.rows.push_back(row);
   }
   const std::string text = to_timed_csv(motion, kNames);
-  EXPECT_TRUE(text.starts_with("t,s,phi,branch,a,b,c,d,e,f,g,a_v,b_v,c_v,d_v,e_v,f_v,g_v,a_a,b_a,c_a,d_a,e_a,f_a,g_a\n"));
+  EXPECT_TRUE(text.starts_with(
+      "t,s,phi,branch,a,b,c,d,e,f,g,a_v,b_v,c_v,d_v,e_v,f_v,g_v,a_a,b_a,c_a,d_a,e_a,f_a,g_a\n"));
   const TrajectoryFile file = load_trajectory_file(folder.write("m.csv", text), kNames);
   ASSERT_EQ(file.timed.size(), motion.rows.size());
   ASSERT_EQ(file.rows.size(), motion.rows.size());
@@ -80,7 +81,8 @@ TEST(Trajectory, SeventeenDigits) {
   PlanResult result = random_result(2);
   result.trajectory[1].s = 0.1;
   write_trajectory(folder.path() / "t.csv", result);
-  EXPECT_NE(TempFolder::read(folder.path() / "t.csv").find("\n0.10000000000000001,"), std::string::npos);
+  EXPECT_NE(TempFolder::read(folder.path() / "t.csv").find("\n0.10000000000000001,"),
+            std::string::npos);
 }
 
 TEST(Trajectory, BadFiles) {
@@ -94,12 +96,20 @@ TEST(Trajectory, BadFiles) {
       {"other joints",
        "s,phi,branch,a,b,c,d,e,f,x\n" + good + good,
        {"t.csv:1", "'x'", "no joint of the arm", "a, b, c, d, e, f, g"}},
-      {"a joint is missing", "s,phi,branch,a,b,c,d,e,f\n0,0,0,0,0,0,0,0,0\n", {"t.csv:1", "'g' is missing"}},
+      {"a joint is missing",
+       "s,phi,branch,a,b,c,d,e,f\n0,0,0,0,0,0,0,0,0\n",
+       {"t.csv:1", "'g' is missing"}},
       {"a joint twice", "a,b,c,d,e,f,g,c\n" + good, {"t.csv:1", "'c' is there twice"}},
       {"speeds of some joints", "t,a,b,c,d,e,f,g,a_v\n" + good, {"t.csv:1", "'b_v' is missing"}},
-      {"speeds without times", "a,b,c,d,e,f,g,a_v,b_v,c_v,d_v,e_v,f_v,g_v\n" + good, {"t.csv:1", "'t' is missing"}},
-      {"times that stand still", "t,a,b,c,d,e,f,g\n0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n", {"t.csv:3", "data row 2", ": t", "ascend"}},
-      {"infinite", "a,b,c,d,e,f,g\n0,0,0,0,0,0,0\n0,0,0,0,0,0,inf\n", {"t.csv:3", "data row 2", ": g"}},
+      {"speeds without times",
+       "a,b,c,d,e,f,g,a_v,b_v,c_v,d_v,e_v,f_v,g_v\n" + good,
+       {"t.csv:1", "'t' is missing"}},
+      {"times that stand still",
+       "t,a,b,c,d,e,f,g\n0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n",
+       {"t.csv:3", "data row 2", ": t", "ascend"}},
+      {"infinite",
+       "a,b,c,d,e,f,g\n0,0,0,0,0,0,0\n0,0,0,0,0,0,inf\n",
+       {"t.csv:3", "data row 2", ": g"}},
       {"no header", "0,0,0,0,0,0,0\n0,0,0,0,0,0,1\n", {"t.csv:1", "'0'"}},
       {"one row", header + good, {"1 data row"}},
       {"NaN", header + good + "0,0,0,0,0,nan,0,0,0,0\n", {"t.csv:3", "data row 2", ": c"}},
@@ -125,15 +135,16 @@ TimedPath random_motion(swivel::test::Random& random, double rate, bool roll = f
     TimedRow row;
     row.t = k / rate;
     for (Config* values : {&row.row.q, &row.v, &row.a})
-      for (double& value : *values) value = random.uniform(-4, 4) * std::pow(10, random.below(20) - 15);
+      for (double& value : *values)
+        value = random.uniform(-4, 4) * std::pow(10, random.below(20) - 15);
     motion.rows.push_back(row);
   }
   return motion;
 }
 
 /// The joints of a CSV by name in another order, with or without speeds and accelerations.
-std::string shuffled_csv(const TimedPath& motion, const JointNames& names, swivel::test::Random& random, const Stated& stated,
-                         bool timed) {
+std::string shuffled_csv(const TimedPath& motion, const JointNames& names,
+                         swivel::test::Random& random, const Stated& stated, bool timed) {
   struct Column {
     std::string name;
     std::function<double(const TimedRow&)> value;
@@ -142,7 +153,8 @@ std::string shuffled_csv(const TimedPath& motion, const JointNames& names, swive
   if (timed) columns.push_back({"t", [](const TimedRow& row) { return row.t; }});
   if (stated.s) columns.push_back({"s", [](const TimedRow& row) { return row.row.s; }});
   if (stated.phi) columns.push_back({"phi", [](const TimedRow& row) { return row.row.phi; }});
-  if (stated.branch) columns.push_back({"branch", [](const TimedRow& row) { return row.row.branch; }});
+  if (stated.branch)
+    columns.push_back({"branch", [](const TimedRow& row) { return row.row.branch; }});
   for (Eigen::Index j = 0; j < kDof; ++j) {
     const std::string& name = names[static_cast<std::size_t>(j)];
     columns.push_back({name, [j](const TimedRow& row) { return row.row.q[j]; }});
@@ -153,15 +165,18 @@ std::string shuffled_csv(const TimedPath& motion, const JointNames& names, swive
     std::swap(columns[k - 1], columns[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
   std::ostringstream text;
   text.precision(17);
-  for (const Column& column : columns) text << (&column == columns.data() ? "" : ",") << column.name;
+  for (const Column& column : columns)
+    text << (&column == columns.data() ? "" : ",") << column.name;
   for (const TimedRow& row : motion.rows) {
     text << '\n';
-    for (const Column& column : columns) text << (&column == columns.data() ? "" : ",") << column.value(row);
+    for (const Column& column : columns)
+      text << (&column == columns.data() ? "" : ",") << column.value(row);
   }
   return text.str() + '\n';
 }
 
-/// Every format keeps every bit of what it holds, messages times to the nanosecond, and says what it does not hold.
+/// Every format keeps every bit of what it holds, messages times to the nanosecond, and says what
+/// it does not hold.
 TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
   using swivel::test::Random;
   const TempFolder folder;
@@ -174,7 +189,8 @@ TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
     const bool roll = random.coin(0.3);
     if (roll) names.back() = "roll";
     const TimedPath motion = random_motion(random, rates[random.below(8)], roll);
-    const bool has_v = random.coin(), has_a = random.coin(), placed = random.coin(), timed = random.coin();
+    const bool has_v = random.coin(), has_a = random.coin(), placed = random.coin(),
+               timed = random.coin();
     const Stated some{placed, placed, placed, placed, true, timed && has_v, timed && has_a};
     const struct {
       const char* name;
@@ -184,10 +200,18 @@ TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
     } files[] = {
         {"m.csv", to_timed_csv(motion, names), {}},
         {"shuffled.csv", shuffled_csv(motion, names, random, some, timed), some, timed},
-        {"m.json", to_trajectory_json(motion, names, "base \"1\""), {false, false, false, false, !roll, true, true}},
-        {"m.yaml", to_trajectory_yaml(motion, names, "base"), {false, false, false, false, !roll, true, true}},
-        {"no_ending", to_trajectory_yaml(motion, names, "base") + "---\n", {false, false, false, false, !roll, true, true}},
-        {"m.mcap", to_mcap(motion, names, "base"), {false, false, false, false, !roll, true, false}},
+        {"m.json",
+         to_trajectory_json(motion, names, "base \"1\""),
+         {false, false, false, false, !roll, true, true}},
+        {"m.yaml",
+         to_trajectory_yaml(motion, names, "base"),
+         {false, false, false, false, !roll, true, true}},
+        {"no_ending",
+         to_trajectory_yaml(motion, names, "base") + "---\n",
+         {false, false, false, false, !roll, true, true}},
+        {"m.mcap",
+         to_mcap(motion, names, "base"),
+         {false, false, false, false, !roll, true, false}},
     };
     for (const auto& [name, text, stated, is_timed] : files) {
       SCOPED_TRACE(std::string(name) + ", trial " + std::to_string(trial));
@@ -208,8 +232,10 @@ TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
         if (!is_timed) continue;
         EXPECT_NEAR(read.timed[k].t, row.t, std::string(name).ends_with(".csv") ? 0 : 0.5001e-9);
         EXPECT_EQ(read.timed[k].row.q.head(joints), row.row.q.head(joints));
-        EXPECT_EQ(read.timed[k].v.head(joints), Config(stated.v ? row.v : Config::Zero()).head(joints));
-        EXPECT_EQ(read.timed[k].a.head(joints), Config(stated.a ? row.a : Config::Zero()).head(joints));
+        EXPECT_EQ(read.timed[k].v.head(joints),
+                  Config(stated.v ? row.v : Config::Zero()).head(joints));
+        EXPECT_EQ(read.timed[k].a.head(joints),
+                  Config(stated.a ? row.a : Config::Zero()).head(joints));
       }
       ++count;
       without_roll += !stated.last_joint;
@@ -223,10 +249,13 @@ TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
 /// Messages of other programs: one line with place, key and what is allowed.
 TEST(TrajectoryFiles, MessagesAreReadStrictly) {
   const TempFolder folder;
-  const std::string names = "joint_names: [a, b, c, d, e, f, g]\n", time = "time_from_start: {sec: 0, nanosec: 0}",
-                    zeros = "[0, 0, 0, 0, 0, 0, 0]", first = "- {positions: " + zeros + ", " + time + "}\n",
-                    second = "- {positions: [1, 1, 1, 1, 1, 1, 1], time_from_start: {sec: 1, nanosec: 5}}\n";
-  const TrajectoryFile good = load_trajectory_file(folder.write("t", "# a note\n---\npoints:\n" + first + second + names), kNames);
+  const std::string
+      names = "joint_names: [a, b, c, d, e, f, g]\n",
+      time = "time_from_start: {sec: 0, nanosec: 0}", zeros = "[0, 0, 0, 0, 0, 0, 0]",
+      first = "- {positions: " + zeros + ", " + time + "}\n",
+      second = "- {positions: [1, 1, 1, 1, 1, 1, 1], time_from_start: {sec: 1, nanosec: 5}}\n";
+  const TrajectoryFile good = load_trajectory_file(
+      folder.write("t", "# a note\n---\npoints:\n" + first + second + names), kNames);
   ASSERT_EQ(good.timed.size(), 2u);
   EXPECT_EQ(good.timed[1].t, 1.000000005);
   EXPECT_FALSE(good.stated.v || good.stated.a || good.stated.s);
@@ -236,28 +265,47 @@ TEST(TrajectoryFiles, MessagesAreReadStrictly) {
     std::string text;
     std::vector<std::string> needles;
   } cases[] = {
-      {"another joint", "joint_names: [a, b, c, d, e, f, g, finger]\n" + points + first, {"t:1", "joint_names", "7 names"}},
-      {"a joint of another arm", "joint_names: [a, b, c, d, e, f, x]\n" + points + first + second, {"t: joint_names", "'x'"}},
-      {"a joint is missing", "joint_names: [a, b, c, d, e, f]\n" + points + first + second, {"'g' is missing"}},
-      {"a joint twice", "joint_names: [a, b, c, d, e, f, f]\n" + points + first + second, {"'f' is there twice"}},
+      {"another joint",
+       "joint_names: [a, b, c, d, e, f, g, finger]\n" + points + first,
+       {"t:1", "joint_names", "7 names"}},
+      {"a joint of another arm",
+       "joint_names: [a, b, c, d, e, f, x]\n" + points + first + second,
+       {"t: joint_names", "'x'"}},
+      {"a joint is missing",
+       "joint_names: [a, b, c, d, e, f]\n" + points + first + second,
+       {"'g' is missing"}},
+      {"a joint twice",
+       "joint_names: [a, b, c, d, e, f, f]\n" + points + first + second,
+       {"'f' is there twice"}},
       {"one point", names + points + first, {"1 row"}},
       {"no points", names, {"t:1", "points: is missing"}},
-      {"unknown key", names + points + first + second + "extra: 1\n", {"t:5", "'extra' is unknown"}},
-      {"unknown key of a point", names + points + "- {position: " + zeros + "}\n", {"t:3", "points[0]", "'position' is unknown"}},
-      {"key twice", names + names + points + first + second, {"t:2", "'joint_names' is there twice"}},
-      {"no time", names + points + "- {positions: " + zeros + "}\n", {"points[0]", "time_from_start: is missing"}},
+      {"unknown key",
+       names + points + first + second + "extra: 1\n",
+       {"t:5", "'extra' is unknown"}},
+      {"unknown key of a point",
+       names + points + "- {position: " + zeros + "}\n",
+       {"t:3", "points[0]", "'position' is unknown"}},
+      {"key twice",
+       names + names + points + first + second,
+       {"t:2", "'joint_names' is there twice"}},
+      {"no time",
+       names + points + "- {positions: " + zeros + "}\n",
+       {"points[0]", "time_from_start: is missing"}},
       {"too few numbers",
        names + points + first + "- {positions: [1, 2], time_from_start: {sec: 1, nanosec: 0}}\n",
        {"t:4", "points[1]", "positions", "2 numbers"}},
       {"NaN",
-       names + points + first + "- {positions: [0, 0, 0, 0, 0, 0, .nan], time_from_start: {sec: 1, nanosec: 0}}\n",
+       names + points + first +
+           "- {positions: [0, 0, 0, 0, 0, 0, .nan], time_from_start: {sec: 1, nanosec: 0}}\n",
        {"t:4", "points[1]", "positions", "'.nan'"}},
       {"times go back", names + points + second + first, {"t:4", "points[1]", "ascend"}},
       {"speeds of one point",
-       names + points + "- {positions: " + zeros + ", velocities: " + zeros + ", " + time + "}\n" + second,
+       names + points + "- {positions: " + zeros + ", velocities: " + zeros + ", " + time + "}\n" +
+           second,
        {"t:4", "points[1]", "velocities", "in some rows only"}},
       {"nanoseconds",
-       names + points + first + "- {positions: " + zeros + ", time_from_start: {sec: 1, nanosec: 1000000000}}\n",
+       names + points + first + "- {positions: " + zeros +
+           ", time_from_start: {sec: 1, nanosec: 1000000000}}\n",
        {"t:4", "points[1]", "time_from_start.nanosec", "'1000000000'"}},
       {"fraction of a second",
        names + points + "- {positions: " + zeros + ", time_from_start: {sec: 0.5, nanosec: 0}}\n",
@@ -266,7 +314,8 @@ TEST(TrajectoryFiles, MessagesAreReadStrictly) {
        names + points + "- {positions: " + zeros + ", time_from_start: {sec: \"1\", nanosec: 0}}\n",
        {"t:3", "points[0]", "time_from_start.sec", "the text \"1\"", "a whole number"}},
       {"a position in quotes",
-       names + points + first + "- {positions: [0, 0, '0', 0, 0, 0, 0], time_from_start: {sec: 1, nanosec: 0}}\n",
+       names + points + first +
+           "- {positions: [0, 0, '0', 0, 0, 0, 0], time_from_start: {sec: 1, nanosec: 0}}\n",
        {"t:4", "points[1]", "positions", "the text \"0\"", "a finite number"}},
       {"JSON: seconds in quotes",
        R"({"points": [{"positions": [0, 0, 0, 0, 0, 0, 0], "time_from_start": {"sec": "1", "nanosec": 0}}]})",
@@ -277,11 +326,21 @@ TEST(TrajectoryFiles, MessagesAreReadStrictly) {
       {"JSON: a position in quotes",
        R"({"points": [{"positions": [0, 0, 0, "0", 0, 0, 0]}]})",
        {"points[0]: positions", "the text \"0\"", "a finite number"}},
-      {"JSON: effort in quotes", R"({"points": [{"effort": ["1"]}]})", {"points[0]: effort", "the text \"1\""}},
-      {"JSON: true for a position", R"({"points": [{"positions": [true]}]})", {"points[0]: positions", "'true'"}},
-      {"JSON: a number for a name", R"({"joint_names": ["a", 2]})", {"joint_names", "is 2", "the name of a joint"}},
-      {"alias", names + points + "- &p {positions: " + zeros + ", " + time + "}\n- *p\n", {"t:4", "alias"}},
-      {"two messages", names + points + first + second + "---\n" + names + points + first + second, {"more than one message"}},
+      {"JSON: effort in quotes",
+       R"({"points": [{"effort": ["1"]}]})",
+       {"points[0]: effort", "the text \"1\""}},
+      {"JSON: true for a position",
+       R"({"points": [{"positions": [true]}]})",
+       {"points[0]: positions", "'true'"}},
+      {"JSON: a number for a name",
+       R"({"joint_names": ["a", 2]})",
+       {"joint_names", "is 2", "the name of a joint"}},
+      {"alias",
+       names + points + "- &p {positions: " + zeros + ", " + time + "}\n- *p\n",
+       {"t:4", "alias"}},
+      {"two messages",
+       names + points + first + second + "---\n" + names + points + first + second,
+       {"more than one message"}},
       {"a list", "- joint_names: [a]\n", {"'- joint_names: [a]'"}},
       {"broken YAML", names + "points: [\n", {"not YAML"}},
       {"JSON list", "[1]", {"t:", "is no map"}},
@@ -307,8 +366,10 @@ TEST(TrajectoryFiles, LogsAreReadStrictly) {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
   };
-  // The chunk's check sum and the name of its compression stand before the size of its records; both are empty.
-  const std::size_t records = good.find("sensor_msgs/msg/JointState") - 4 - 2 - 9, crc = records - 8 - 4 - 4;
+  // The chunk's check sum and the name of its compression stand before the size of its records;
+  // both are empty.
+  const std::size_t records = good.find("sensor_msgs/msg/JointState") - 4 - 2 - 9,
+                    crc = records - 8 - 4 - 4;
   std::string summed = good, packed = good;
   summed[crc] = 1;
   packed.replace(crc + 4, 4, std::string("\4\0\0\0zstd", 8));
@@ -324,9 +385,13 @@ TEST(TrajectoryFiles, LogsAreReadStrictly) {
       {"cut off", good.substr(0, good.size() / 2), {"cut off"}},
       {"mark alone", good.substr(0, 8), {"cut off"}},
       {"another version", changed("MCAP0", "MCAP1"), {"version 0"}},
-      {"another message", changed("sensor_msgs/msg/JointState", "sensor_msgs/msg/JointStatf"), {"no joint states"}},
+      {"another message",
+       changed("sensor_msgs/msg/JointState", "sensor_msgs/msg/JointStatf"),
+       {"no joint states"}},
       {"another encoding", changed("cdr", "xml"), {"/joint_states", "CDR"}},
-      {"big-endian", changed(std::string("\0\1\0\0", 4), std::string("\0\0\0\0", 4)), {"little-endian"}},
+      {"big-endian",
+       changed(std::string("\0\1\0\0", 4), std::string("\0\0\0\0", 4)),
+       {"little-endian"}},
       {"check sum", summed, {"check sum"}},
       {"compressed", packed, {"compressed by zstd"}},
       {"another joint", to_mcap(motion, renamed, "base"), {"message 0 of '/joint_states'", "'x'"}},

@@ -59,11 +59,14 @@ TEST(Executor, WorkBesideACallMayNotShareItself) {
   Executor executor(2);
   executor.start_helpers();
   const auto nothing = [](int, int) {};
-  EXPECT_THROW(executor.for_each_overlapped(4, nothing, [&] { executor.for_each_short(4, nothing); }), std::logic_error);
+  EXPECT_THROW(
+      executor.for_each_overlapped(4, nothing, [&] { executor.for_each_short(4, nothing); }),
+      std::logic_error);
   executor.for_each_short(4, nothing);
 }
 
-/// Calls of some microseconds each, with pauses in which helpers stay awake or fall asleep, and some that throw.
+/// Calls of some microseconds each, with pauses in which helpers stay awake or fall asleep, and
+/// some that throw.
 TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
   Random random(seed("Executor.BriefCalls"));
   std::int64_t visited = 0, thrown = 0;
@@ -91,7 +94,10 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
         ++worked;
         if (work_fails) throw std::invalid_argument("y");
       };
-      const auto call_it = [&] { beside ? executor.for_each_overlapped(count, body, work) : executor.for_each_short(count, body); };
+      const auto call_it = [&] {
+        beside ? executor.for_each_overlapped(count, body, work)
+               : executor.for_each_short(count, body);
+      };
       if (beside && work_fails) {
         ASSERT_THROW(call_it(), std::invalid_argument);
         ++thrown;
@@ -104,10 +110,12 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
         ++thrown;
       }
       ASSERT_EQ(worked, beside ? 1 : 0);
-      if (random.below(50) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(random.below(5)));
+      if (random.below(50) == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(random.below(5)));
     }
   }
-  std::printf("%lld indices visited once, %lld calls threw\n", static_cast<long long>(visited), static_cast<long long>(thrown));
+  std::printf("%lld indices visited once, %lld calls threw\n", static_cast<long long>(visited),
+              static_cast<long long>(thrown));
   EXPECT_GE(visited, at_least(40'000));
   EXPECT_GE(thrown, at_least(500));
 }
@@ -140,8 +148,8 @@ TEST(Executor, AProcessThatForksNeedNotWaitForHelpers) {
 }
 #endif
 
-/// Runs loops of 50 indices, some 20 us each, until helpers have called 1000 of them or 20 s are over. Returns the number of
-/// loops.
+/// Runs loops of 50 indices, some 20 us each, until helpers have called 1000 of them or 20 s are
+/// over. Returns the number of loops.
 int loops_until_helped(Executor& executor) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   int loops = 0;
@@ -162,7 +170,9 @@ TEST(Executor, WhatTheCallerDoesNotCallItselfIsCalledInTbbsArena) {
       if (std::this_thread::get_id() == caller) return;
       ++elsewhere;
       // A thread that TBB does not own has no index in an arena.
-      if (tbb::this_task_arena::current_thread_index() == tbb::task_arena::not_initialized || worker == 0) ++outside;
+      if (tbb::this_task_arena::current_thread_index() == tbb::task_arena::not_initialized ||
+          worker == 0)
+        ++outside;
     });
   EXPECT_GE(elsewhere, 1000);
   EXPECT_EQ(outside, 0);
@@ -174,7 +184,8 @@ TEST(Executor, AProgramsOwnLimitOfTbbIsKept) {
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     executor.start_helpers();
-    for (int loop = 0; loop < 100; ++loop) executor.for_each_short(50, [](int, int) { keep_busy(5000); });
+    for (int loop = 0; loop < 100; ++loop)
+      executor.for_each_short(50, [](int, int) { keep_busy(5000); });
     EXPECT_EQ(executor.helped(), 0);
   }
   EXPECT_GT(loops_until_helped(executor), 0);
@@ -182,11 +193,13 @@ TEST(Executor, AProgramsOwnLimitOfTbbIsKept) {
 }
 
 TEST(Executor, LimitsNoOtherWorkOfTheProgram) {
-  const std::size_t before = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const std::size_t before =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   Executor executor(1 < before ? 2 : 1);
   executor.for_each(10, [](int, int) {});
   executor.start_helpers();
-  EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), before);
+  EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+            before);
 }
 #endif
 

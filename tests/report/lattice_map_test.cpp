@@ -46,17 +46,21 @@ Drawn draw(const std::string& name, PlannerKind planner, bool full) {
   return drawn;
 }
 
-/// The panel of rolls: what plain questions say of the nodes at the path's branch and arm angle, nothing outside the windows.
+/// The panel of rolls: what plain questions say of the nodes at the path's branch and arm angle,
+/// nothing outside the windows.
 TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
   for (const bool windows : {false, true}) {
     Problem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
     problem.resolution.droll = 0.25;
     problem.resolution.dphi = 0.2;
-    if (!windows) problem.scene.push_back({"ball", Sphere{0.03}, Pose(Eigen::Translation3d(0.6, 0.3, 1.0)), {}});
+    if (!windows)
+      problem.scene.push_back(
+          {"ball", Sphere{0.03}, Pose(Eigen::Translation3d(0.6, 0.3, 1.0)), {}});
     const auto n = static_cast<double>(problem.waypoints.size() - 1);
     if (windows) problem.roll = Roll{-1, 0.8};
     for (std::size_t k = 0; windows && k < problem.waypoints.size(); ++k)
-      problem.waypoints[k].roll = Roll{-1 + 0.6 * static_cast<double>(k) / n, 0.2 + 0.6 * static_cast<double>(k) / n};
+      problem.waypoints[k].roll =
+          Roll{-1 + 0.6 * static_cast<double>(k) / n, 0.2 + 0.6 * static_cast<double>(k) / n};
     Planner arm(problem);
     const PlanResult result = arm.plan({});
     ASSERT_EQ(result.status, PlanStatus::kSolved);
@@ -71,8 +75,10 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
     std::map<NodeState, int> count;
     const double cell = kTwoPi / map.angles;
     for (int layer = 0; layer < map.layers; ++layer) {
-      const int on_path = view.path[static_cast<std::size_t>(layer)], inner = lattice.grid_place(layer, on_path).cell;
-      const int path_cell = map.path_of_rolls[static_cast<std::size_t>(layer)] - map.solutions() * map.angles;
+      const int on_path = view.path[static_cast<std::size_t>(layer)],
+                inner = lattice.grid_place(layer, on_path).cell;
+      const int path_cell =
+          map.path_of_rolls[static_cast<std::size_t>(layer)] - map.solutions() * map.angles;
       EXPECT_EQ(map.at(layer, map.solutions(), path_cell).state, NodeState::kFree) << layer;
       const Roll window = lattice.path().layer(layer).window;
       for (int k = 0; k < map.angles; ++k) {
@@ -82,7 +88,8 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
         int nearest = 0;
         double least = kPi;
         for (int rank = 0; rank < *grid.rolls; ++rank) {
-          const double away = std::abs(std::remainder(lattice.grid_place(layer, rank * width + inner).roll - roll, kTwoPi));
+          const double away = std::abs(
+              std::remainder(lattice.grid_place(layer, rank * width + inner).roll - roll, kTwoPi));
           if (away < least) least = away, nearest = rank;
         }
         if (windows && (roll < window.lower - 0.13 || roll > window.upper + 0.13)) {
@@ -94,13 +101,17 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
         const auto q = lattice.node(layer, slot);
         ASSERT_EQ(q.has_value(), seen.state >= NodeState::kNotLookedAt) << layer << ' ' << k;
         if (q) {
-          ASSERT_EQ(seen.state, query.find_violating_pair(*q, problem.limits.clearance) ? NodeState::kBlocked : NodeState::kFree);
+          ASSERT_EQ(seen.state, query.find_violating_pair(*q, problem.limits.clearance)
+                                    ? NodeState::kBlocked
+                                    : NodeState::kFree);
         } else {
-          ASSERT_EQ(seen.state == NodeState::kJointLimit, lattice.fault(layer, slot).status == NodeStatus::kLimit);
+          ASSERT_EQ(seen.state == NodeState::kJointLimit,
+                    lattice.fault(layer, slot).status == NodeStatus::kLimit);
         }
       }
     }
-    std::printf("%s: %d free, %d blocked, %d beyond a limit, %d none\n", windows ? "windows" : "all rolls", count[NodeState::kFree],
+    std::printf("%s: %d free, %d blocked, %d beyond a limit, %d none\n",
+                windows ? "windows" : "all rolls", count[NodeState::kFree],
                 count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kNoIk]);
     EXPECT_GT(count[NodeState::kFree], 50);
     EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 50);
@@ -111,14 +122,16 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
   }
 }
 
-/// Every cell that an arc passes through between two nodes shows a node, its own or the nearer neighbour's; every other cell is
-/// empty. Checked against the arcs alone: each pair of neighbours in each layer.
+/// Every cell that an arc passes through between two nodes shows a node, its own or the nearer
+/// neighbour's; every other cell is empty. Checked against the arcs alone: each pair of neighbours
+/// in each layer.
 TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
   using Coordinate = LatticeMap::Coordinate;
-  for (const auto& [name, coordinate] : {std::pair{"panda_weld_seam", Coordinate::kGeneralisedArmAngle},
-                                         {"gen3_glue_bead", Coordinate::kGeneralisedArmAngle},
-                                         {"ur5e_deburr_edge", Coordinate::kRoll},
-                                         {"kr6_weld_pipe", Coordinate::kRoll}}) {
+  for (const auto& [name, coordinate] :
+       {std::pair{"panda_weld_seam", Coordinate::kGeneralisedArmAngle},
+        {"gen3_glue_bead", Coordinate::kGeneralisedArmAngle},
+        {"ur5e_deburr_edge", Coordinate::kRoll},
+        {"kr6_weld_pipe", Coordinate::kRoll}}) {
     Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.05;
     Planner arm(problem);
@@ -132,18 +145,22 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
     const double high = map.low + (map.angles - 1) * map.step;
     int filled = 0, own = 0, empty = 0, holes = 0;
     for (int layer = 0; layer < map.layers; ++layer) {
-      std::map<std::pair<int, int>, std::vector<int>> of_cell;  // by branch and cell: the slots that have it
-      std::set<std::pair<int, int>> with_node, unsure;          // unsure: as near to one neighbour as to the other
+      std::map<std::pair<int, int>, std::vector<int>>
+          of_cell;  // by branch and cell: the slots that have it
+      std::set<std::pair<int, int>> with_node,
+          unsure;  // unsure: as near to one neighbour as to the other
       for (int slot = 0; slot < lattice.slots(layer); ++slot) {
         const double at = map.place(lattice.phi(layer, slot));
         ASSERT_TRUE(map.closed ? at < map.angles - 0.5 + 1e-9 : at <= map.angles - 1 + 1e-6);
         ASSERT_GE(at, map.closed ? -0.5 : -1e-6);
-        const std::pair cell(lattice.branch(layer, slot), static_cast<int>(std::lround(at)) % map.angles);
+        const std::pair cell(lattice.branch(layer, slot),
+                             static_cast<int>(std::lround(at)) % map.angles);
         of_cell[cell].push_back(slot);
         with_node.insert(cell);
         const int next = lattice.next_on_arc(layer, slot);
         if (next < 0) continue;
-        const double from = lattice.phi(layer, slot), way = std::remainder(lattice.phi(layer, next) - from, kTwoPi);
+        const double from = lattice.phi(layer, slot),
+                     way = std::remainder(lattice.phi(layer, next) - from, kTwoPi);
         for (int k = 0; k < map.angles; ++k) {
           const double along = std::remainder(map.low + k * map.step - from, kTwoPi);
           if (along * way < 0 || std::abs(along) > std::abs(way)) continue;
@@ -153,10 +170,13 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
             for (const int either : {slot, next}) unsure.insert({lattice.branch(layer, either), k});
         }
       }
-      const int on_path = layer < static_cast<int>(view.path.size()) ? view.path[static_cast<std::size_t>(layer)] : -1;
+      const int on_path = layer < static_cast<int>(view.path.size())
+                              ? view.path[static_cast<std::size_t>(layer)]
+                              : -1;
       for (int solution = 0; solution < map.solutions(); ++solution)
         for (int cell = 0; cell < map.angles; ++cell) {
-          const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + solution)) * static_cast<std::size_t>(map.angles) +
+          const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + solution)) *
+                                    static_cast<std::size_t>(map.angles) +
                                 static_cast<std::size_t>(cell);
           const auto found = of_cell.find({solution, cell});
           if (unsure.count({solution, cell})) continue;
@@ -172,11 +192,14 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
             EXPECT_EQ(map.slots[k], on_path);
             continue;
           }
-          EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end()) << layer << ' ' << cell;
+          EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end())
+              << layer << ' ' << cell;
           const bool blocked = std::any_of(slots.begin(), slots.end(), [&](int slot) {
-            return query.find_violating_pair(*lattice.node(layer, slot), problem.limits.clearance).has_value();
+            return query.find_violating_pair(*lattice.node(layer, slot), problem.limits.clearance)
+                .has_value();
           });
-          EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree) << name << ' ' << layer << ' ' << cell;
+          EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree)
+              << name << ' ' << layer << ' ' << cell;
         }
       if (layer >= static_cast<int>(view.path.size())) continue;
       const int cell = map.path[static_cast<std::size_t>(layer)];  // the path shows itself
@@ -184,12 +207,13 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
                 view.path[static_cast<std::size_t>(layer)]);
       EXPECT_EQ(map.at(layer, cell / map.angles, cell % map.angles).state, NodeState::kFree);
     }
-    std::printf("%s: %d cells with nodes, %d between them, %d empty; %.2f to %.2f rad%s\n", name, own, filled, empty, map.low, high,
-                map.closed ? ", closed" : "");
+    std::printf("%s: %d cells with nodes, %d between them, %d empty; %.2f to %.2f rad%s\n", name,
+                own, filled, empty, map.low, high, map.closed ? ", closed" : "");
     EXPECT_EQ(holes, 0);
     EXPECT_GT(filled, 100);
     EXPECT_GT(own, 500);
-    const std::string text = to_text(map, 80, false), svg = to_svg(map), words = map.coordinate_name();
+    const std::string text = to_text(map, 80, false), svg = to_svg(map),
+                      words = map.coordinate_name();
     EXPECT_NE(text.find("Rows are " + words + "s, rad."), std::string::npos);
     EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
     EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
@@ -200,11 +224,13 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
           if (map.at(layer, solution, cell).state == NodeState::kNoIk) return true;
       return false;
     });
-    EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos, some_are_empty);
+    EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos,
+              some_are_empty);
   }
 }
 
-/// A value's cell stands for that value, wherever the range begins and however often the value has gone around.
+/// A value's cell stands for that value, wherever the range begins and however often the value has
+/// gone around.
 TEST(MapOfArcs, CellsStandForTheirValues) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-kPi, kPi), width(0.02, 5.4);
@@ -224,10 +250,12 @@ TEST(MapOfArcs, CellsStandForTheirValues) {
 
 class Maps : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, Maps,
-                         ::testing::Values("experiment_a", "experiment_a_start", "experiment_b", "experiment_c"));
+                         ::testing::Values("experiment_a", "experiment_a_start", "experiment_b",
+                                           "experiment_c"));
 
 TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
-  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false), full = draw(GetParam(), PlannerKind::kLazy, true);
+  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false),
+              full = draw(GetParam(), PlannerKind::kLazy, true);
   const Drawn eager = draw(GetParam(), PlannerKind::kEagerDp, false);
   EXPECT_FALSE(lazy.map.complete);
   EXPECT_TRUE(full.map.complete);
@@ -272,26 +300,35 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
       if (pair) {
         const auto& names = world.body_names();
         ASSERT_EQ(full.map.blockers[known.cause],
-                  std::pair(names[static_cast<std::size_t>(pair->a)], names[static_cast<std::size_t>(pair->b)]));
+                  std::pair(names[static_cast<std::size_t>(pair->a)],
+                            names[static_cast<std::size_t>(pair->b)]));
       }
     }
-  std::printf("%s: %zu nodes: %d not looked at, %d free, %d blocked, %d beyond a limit, %d singular, %d out of reach\n", GetParam(),
-              k, count[NodeState::kNotLookedAt], count[NodeState::kFree], count[NodeState::kBlocked], count[NodeState::kJointLimit],
-              count[NodeState::kSingular], count[NodeState::kNoIk]);
+  std::printf(
+      "%s: %zu nodes: %d not looked at, %d free, %d blocked, %d beyond a limit, %d singular, %d "
+      "out of reach\n",
+      GetParam(), k, count[NodeState::kNotLookedAt], count[NodeState::kFree],
+      count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kSingular],
+      count[NodeState::kNoIk]);
   EXPECT_GT(count[NodeState::kNotLookedAt], count[NodeState::kFree]);  // or the search was not lazy
   EXPECT_GT(count[NodeState::kJointLimit], 0);
   const int exist = static_cast<int>(
-      std::count_if(full.map.nodes.begin(), full.map.nodes.end(), [](const auto& node) { return node.state >= NodeState::kFree; }));
+      std::count_if(full.map.nodes.begin(), full.map.nodes.end(),
+                    [](const auto& node) { return node.state >= NodeState::kFree; }));
   std::printf("%d of %d nodes certified\n", proved, exist);
   EXPECT_GT(proved, exist / 2);
   for (std::size_t i = 0; i < lazy.map.path.size(); ++i)
-    EXPECT_EQ(lazy.map.nodes[i * static_cast<std::size_t>(lattice.width()) + static_cast<std::size_t>(lazy.map.path[i])].state,
+    EXPECT_EQ(lazy.map
+                  .nodes[i * static_cast<std::size_t>(lattice.width()) +
+                         static_cast<std::size_t>(lazy.map.path[i])]
+                  .state,
               NodeState::kFree);
   if (lazy.result.status == PlanStatus::kSolved) {
     EXPECT_EQ(static_cast<int>(lazy.map.path.size()), lattice.layers());
     EXPECT_EQ(lazy.map.path, eager.map.path);
   } else {
-    EXPECT_EQ(static_cast<int>(lazy.map.path.size()), lazy.result.diagnosis.reached_layer.value_or(-1) + 1);
+    EXPECT_EQ(static_cast<int>(lazy.map.path.size()),
+              lazy.result.diagnosis.reached_layer.value_or(-1) + 1);
   }
 }
 
@@ -330,10 +367,12 @@ TEST_P(Maps, SvgIsWellFormedAndCoversEveryPanel) {
   tinyxml2::XMLDocument document;
   ASSERT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
   int lines = 0;
-  for (auto* line = document.RootElement()->FirstChildElement("polyline"); line; line = line->NextSiblingElement("polyline"))
+  for (auto* line = document.RootElement()->FirstChildElement("polyline"); line;
+       line = line->NextSiblingElement("polyline"))
     ++lines;
   EXPECT_EQ(lines > 0, lazy.map.path.size() > 1);
-  for (const int label : lazy.map.inhabited_solutions()) EXPECT_NE(svg.find(lazy.map.solution_name(label)), std::string::npos);
+  for (const int label : lazy.map.inhabited_solutions())
+    EXPECT_NE(svg.find(lazy.map.solution_name(label)), std::string::npos);
   EXPECT_LT(svg.size(), 2'000'000U);
 }
 

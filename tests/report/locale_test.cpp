@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program's locale changes nothing of what is read and written: its decimal point may be a comma, its thousands may be grouped.
+// A program's locale changes nothing of what is read and written: its decimal point may be a comma,
+// its thousands may be grouped.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -33,7 +34,8 @@ struct Comma : std::numpunct<char> {
   [[nodiscard]] std::string do_grouping() const override { return "\3"; }
 };
 
-/// C's locale and C++'s have a decimal comma while this lives: one that is installed, or that localedef makes.
+/// C's locale and C++'s have a decimal comma while this lives: one that is installed, or that
+/// localedef makes.
 class DecimalComma {
  public:
   DecimalComma() : before_(std::setlocale(LC_ALL, nullptr)) {
@@ -41,12 +43,14 @@ class DecimalComma {
     if (!is_set_) {
       const std::string name = (folder_ / "de_DE.UTF-8").string();
       fs::create_directories(folder_);
-      if (std::system(("localedef -i de_DE -f UTF-8 '" + name + "' > /dev/null 2>&1").c_str()) == 0) {
+      if (std::system(("localedef -i de_DE -f UTF-8 '" + name + "' > /dev/null 2>&1").c_str()) ==
+          0) {
         setenv("LOCPATH", folder_.c_str(), 1);
         is_set_ = set_one();
       }
     }
-    cpp_before_ = std::locale::global(std::locale(std::locale::classic(), new Comma));  // which a locale owns
+    cpp_before_ =
+        std::locale::global(std::locale(std::locale::classic(), new Comma));  // which a locale owns
   }
   ~DecimalComma() {
     std::locale::global(cpp_before_);
@@ -62,8 +66,10 @@ class DecimalComma {
 
  private:
   static bool set_one() {
-    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "it_IT.UTF-8", "es_ES.UTF-8"})
-      if (std::setlocale(LC_ALL, name) != nullptr && *std::localeconv()->decimal_point == ',') return true;
+    for (const char* name :
+         {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "it_IT.UTF-8", "es_ES.UTF-8"})
+      if (std::setlocale(LC_ALL, name) != nullptr && *std::localeconv()->decimal_point == ',')
+        return true;
     return false;
   }
   std::string before_;
@@ -94,9 +100,11 @@ std::map<std::string, std::string> texts() {
     texts["map" + of] = to_text(map, 100, false);
     if (page_available()) texts["page" + of] = to_page(planner.view(), map, json.dump());
     if (result.status != PlanStatus::kSolved) continue;
-    const fs::path file = fs::temp_directory_path() / ("swivel-locale-" + std::to_string(getpid()) + ".csv");
+    const fs::path file =
+        fs::temp_directory_path() / ("swivel-locale-" + std::to_string(getpid()) + ".csv");
     io::write_trajectory(file, result);
-    for (const TrajectoryRow& row : io::load_trajectory_file(file, planner.view().lattice.chain().joint_names).rows)
+    for (const TrajectoryRow& row :
+         io::load_trajectory_file(file, planner.view().lattice.chain().joint_names).rows)
       texts["trajectory"] += formatted("%.17g %.17g %.17g\n", row.s, row.phi, row.q.sum());
     fs::remove(file);
   }
@@ -106,14 +114,17 @@ std::map<std::string, std::string> texts() {
 TEST(Locale, ChangesNothingThatIsReadOrWritten) {
   const auto classic = texts();
   const DecimalComma locale;
-  if (!locale.is_set()) std::printf("no locale with a decimal comma here, and none could be made: C++'s alone is tried\n");
+  if (!locale.is_set())
+    std::printf(
+        "no locale with a decimal comma here, and none could be made: C++'s alone is tried\n");
   const auto foreign = texts();
   ASSERT_EQ(classic.size(), foreign.size());
   EXPECT_GE(classic.size(), 8u);
   for (const auto& [what, text] : classic)
     EXPECT_TRUE(foreign.at(what) == text) << what << (text.size() < 400 ? foreign.at(what) : "");
   EXPECT_EQ(formatted("%.2f", 1234.5), "1234.50");
-  if (locale.is_set()) EXPECT_EQ(*std::localeconv()->decimal_point, ',');  // and the program's own is as it was
+  if (locale.is_set())
+    EXPECT_EQ(*std::localeconv()->decimal_point, ',');  // and the program's own is as it was
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ namespace {
 
 using namespace test;
 
-/// The text between the tags of the element that holds a page's data, as a browser finds it: to the first "</script" unless "<!--"
-/// and "<script" came before.
+/// The text between the tags of the element that holds a page's data, as a browser finds it: to the
+/// first "</script" unless "<!--" and "<script" came before.
 std::string data_of(const std::string& page) {
   const std::string open = "<script id=\"data\" type=\"application/json\">";
   const std::size_t begin = page.find(open) + open.size();
@@ -30,15 +30,17 @@ std::string data_of(const std::string& page) {
 }
 
 TEST(Names, OfBodiesStayWordsInEveryDrawing) {
-  for (const std::string name : {"<!--<script>", "</script><script>", "a - b", "]]>&lt;\"'", "Türgriff 扉", "%s%n", "$&@@DATA@@"}) {
+  for (const std::string name : {"<!--<script>", "</script><script>", "a - b", "]]>&lt;\"'",
+                                 "Türgriff 扉", "%s%n", "$&@@DATA@@"}) {
     SCOPED_TRACE(name);
     Problem problem =
-        episode_problem(io::load_problem(data_dir() / "problems" / "experiment_c.yaml"), 1, 258);  // the post blocks it
+        episode_problem(io::load_problem(data_dir() / "problems" / "experiment_c.yaml"), 1,
+                        258);  // the post blocks it
     problem.source = name;
     problem.resolution = {0.02, 0.2, 0.1};
     problem.limits.edges = EdgeMode::kNodes;
-    const auto post =
-        std::find_if(problem.scene.begin(), problem.scene.end(), [](const auto& object) { return object.name == "post"; });
+    const auto post = std::find_if(problem.scene.begin(), problem.scene.end(),
+                                   [](const auto& object) { return object.name == "post"; });
     ASSERT_NE(post, problem.scene.end());
     post->name = name;
     PlanOptions options;
@@ -55,7 +57,8 @@ TEST(Names, OfBodiesStayWordsInEveryDrawing) {
     tinyxml2::XMLPrinter printer;
     svg.Print(&printer);
     found = false;
-    for (auto* e = svg.RootElement()->FirstChildElement("text"); e != nullptr; e = e->NextSiblingElement("text"))
+    for (auto* e = svg.RootElement()->FirstChildElement("text"); e != nullptr;
+         e = e->NextSiblingElement("text"))
       found = found || std::string_view(e->GetText()).find(name) != std::string_view::npos;
     EXPECT_TRUE(found);
     EXPECT_EQ(to_svg(map).find("]]>"), std::string::npos);
@@ -74,7 +77,8 @@ TEST(Names, OfBodiesStayWordsInEveryDrawing) {
     for (const auto& body : json["bodies"]) found = found || body["name"] == name;
     EXPECT_TRUE(found);
     found = false;
-    for (const auto& pair : json["map"]["blockers"]) found = found || (pair.size() == 2 && (pair[0] == name || pair[1] == name));
+    for (const auto& pair : json["map"]["blockers"])
+      found = found || (pair.size() == 2 && (pair[0] == name || pair[1] == name));
     EXPECT_TRUE(found);
   }
 }
@@ -84,7 +88,8 @@ TEST(Names, ThatNobodyCheckedDoNotEscape) {
   map.layers = map.angles = 2;
   map.s = {0, 1};
   map.blockers = {{"a\x1b[31m\xff", "b\n"}};
-  map.nodes.resize(static_cast<std::size_t>(map.layers * map.solutions() * map.angles), {NodeState::kBlocked, 0});
+  map.nodes.resize(static_cast<std::size_t>(map.layers * map.solutions() * map.angles),
+                   {NodeState::kBlocked, 0});
   std::string text = to_text(map, 100, false);
   text.erase(std::remove(text.begin(), text.end(), '\n'), text.end());
   EXPECT_TRUE(is_valid_name(text)) << text;

@@ -26,19 +26,21 @@ inline double off_middle(const Lattice& lattice, const Config& q) {
     const double weight = heaviest > 0 ? std::max(lattice.cost_scale()[j], 0.01 * heaviest) : 1;
     const double margin = lattice.limits().joint_margin, x = q[static_cast<Eigen::Index>(j)];
     double nearest = std::numeric_limits<double>::infinity();
-    const int most = lattice.continuous()[j] ? 70 : 0;  // turns: a bounded joint may be taken as a circle
+    const int most =
+        lattice.continuous()[j] ? 70 : 0;  // turns: a bounded joint may be taken as a circle
     for (int turn = -most; turn <= most; ++turn) {
       const double image = x + turn * kTwoPi;
       if (most > 0 && !(image >= limit.lower + margin && image <= limit.upper - margin)) continue;
-      nearest = std::min(nearest, in_steps(lattice, weight * std::abs(image - (limit.lower + limit.upper) / 2)));
+      nearest = std::min(
+          nearest, in_steps(lattice, weight * std::abs(image - (limit.lower + limit.upper) / 2)));
     }
     sum += nearest;
   }
   return sum;
 }
 
-/// The definition: of the nodes of layer 0, whose joints are joints(k) and from which the least path costs cost[k], infinity: none,
-/// the one that the answer begins at; -1 where there is none.
+/// The definition: of the nodes of layer 0, whose joints are joints(k) and from which the least
+/// path costs cost[k], infinity: none, the one that the answer begins at; -1 where there is none.
 template <class Joints>
 int first_of_answer(const Lattice& lattice, const std::vector<double>& cost, const Joints& joints) {
   using Order = std::tuple<double, double, int>;  // coarse cost, off_middle, slot

@@ -8,8 +8,9 @@
 
 namespace swivel::test {
 
-/// Arms as rows of joints, as URDFs have them: dimensions are those of the makers' descriptions, rounding included; "like" means
-/// lengths of that class. An arm of six joints has a seventh that turns the tool about its own z axis.
+/// Arms as rows of joints, as URDFs have them: dimensions are those of the makers' descriptions,
+/// rounding included; "like" means lengths of that class. An arm of six joints has a seventh that
+/// turns the tool about its own z axis.
 struct JointRow {
   Vector3d xyz, rpy, axis;
   double lower, upper;
@@ -24,14 +25,16 @@ struct ArmTable {
 inline Pose urdf_pose(const Vector3d& xyz, const Vector3d& rpy) {
   Pose pose = Pose::Identity();
   pose.translation() = xyz;
-  pose.linear() = (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
+  pose.linear() = (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
                    Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()))
                       .toRotationMatrix();
   return pose;
 }
 
 /// Links "base", "l1", ...; a fixed joint leads to the tip.
-inline RobotModel model_of(const ArmTable& arm, const std::vector<JointRow>& rows, const Pose& tip) {
+inline RobotModel model_of(const ArmTable& arm, const std::vector<JointRow>& rows,
+                           const Pose& tip) {
   RobotModel model;
   model.name = model.source = arm.name;
   model.links.push_back({"base", {}, -1});
@@ -40,7 +43,8 @@ inline RobotModel model_of(const ArmTable& arm, const std::vector<JointRow>& row
     model.joints.back().name = "j" + std::to_string(model.joints.size());
     model.joints.back().parent_link = static_cast<int>(model.links.size()) - 1;
     model.joints.back().child_link = static_cast<int>(model.links.size());
-    model.links.push_back({"l" + std::to_string(model.links.size()), {}, static_cast<int>(model.joints.size()) - 1});
+    model.links.push_back(
+        {"l" + std::to_string(model.links.size()), {}, static_cast<int>(model.joints.size()) - 1});
   };
   for (const JointRow& row : rows) {
     Joint joint;
@@ -76,7 +80,8 @@ inline ArmModel arm_with_roll(const ArmTable& arm, const Roll& roll) {
 
 /// Seven joints, none of them S-R-S but the last.
 inline std::vector<ArmTable> arms_7r() {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
   const auto v = [](double a, double b, double c) { return Vector3d(a, b, c); };
   const double half = kPi / 2;
   return {
@@ -158,7 +163,8 @@ inline std::vector<ArmTable> arms_7r() {
 
 /// Six joints and the turn of the tool.
 inline std::vector<ArmTable> arms_6r() {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
   const auto v = [](double a, double b, double c) { return Vector3d(a, b, c); };
   const double half = kPi / 2;
   return {
@@ -207,7 +213,8 @@ inline std::vector<ArmTable> arms_6r() {
         {v(0, 0, -0.11985), o, y, -kTwoPi, kTwoPi}},
        v(0, 0.11655, 0.03),
        v(-half + 0.5, 0, 0)},
-      // Nothing meets nor stands square: axes 5 and 6 pass each other, so that the position of the parallel axes is a quartic.
+      // Nothing meets nor stands square: axes 5 and 6 pass each other, so that the position of the
+      // parallel axes is a quartic.
       {"skew-parallel",
        {{v(0, 0, 0.2), o, z, -kPi, kPi},
         {v(0.07, 0.1, 0), v(0.2, 0, 0.1), y, -kPi, kPi},

@@ -19,16 +19,19 @@ struct Answer {
   bool solved = false;
   double cost = 0;
   std::vector<int> slots;
-  bool chosen = false;  // the start is not the first of the least cost: another costs as much but for rounding
+  bool chosen = false;  // the start is not the first of the least cost: another costs as much but
+                        // for rounding
   int deepest = -1;
   std::vector<int> empty;  // layers without a valid node
 };
 
-/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; the order of answers.
-/// Cost and order of the nodes, everything else of the rows. `in_window`: whether slots a and b of neighbouring layers may be
-/// joined. Hooks are asked about one state or motion at a time.
+/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic
+/// program; the order of answers. Cost and order of the nodes, everything else of the rows.
+/// `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks are asked about
+/// one state or motion at a time.
 inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
-                          const std::function<bool(int layer, int a, int b)>& in_window, const Hooks& hooks = {}) {
+                          const std::function<bool(int layer, int a, int b)>& in_window,
+                          const Hooks& hooks = {}) {
   World::Query query(world);
   const Chain& chain = lattice.chain();
   const Limits& limits = lattice.limits();
@@ -44,7 +47,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       }
       rows[i].push_back(lattice.exact_config(static_cast<int>(i), slot, *q));
       const auto& row = rows[i].back();
-      if (!row || chain.manipulability(*row) < limits.manipulability || query.find_violating_pair(*row, ClearanceRule::kNode))
+      if (!row || chain.manipulability(*row) < limits.manipulability ||
+          query.find_violating_pair(*row, ClearanceRule::kNode))
         q.reset();
       bool allowed = true;
       if (q && hooks.check) hooks.check->states({&*row, 1}, {&allowed, 1});
@@ -53,7 +57,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
   const auto own_cost = [&](std::size_t i, std::size_t slot) {
     double cost = 0;
     if (hooks.cost) hooks.cost->costs({&*rows[i][slot], 1}, {&cost, 1});
-    return lattice.rounded_cost(cost) + lattice.node_cost(static_cast<int>(i), static_cast<int>(slot));
+    return lattice.rounded_cost(cost) +
+           lattice.node_cost(static_cast<int>(i), static_cast<int>(slot));
   };
   const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
     const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
@@ -64,7 +69,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       const Config delta = lattice.delta(qa, qb);
       for (int j = 0; j < kDof; ++j)
         if (std::abs(delta[j]) > lattice.step_bound(layer)[j]) return std::nullopt;
-      Lattice::InterpolatedEdge interpolated = lattice.interpolate_edge(layer, sa, row_a, sb, row_b);
+      Lattice::InterpolatedEdge interpolated =
+          lattice.interpolate_edge(layer, sa, row_a, sb, row_b);
       if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return std::nullopt;
       for (const Config& q : interpolated.rows)
         if (query.find_violating_pair(q, ClearanceRule::kNode)) return std::nullopt;
@@ -72,7 +78,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       Config from = row_a;
       for (const Config& row : interpolated.rows) {
         const Config to = from + lattice.delta(from, row);
-        if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, from, to)) return std::nullopt;
+        if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, from, to))
+          return std::nullopt;
         from = to;
       }
       return lattice.edge_cost(delta);
@@ -80,12 +87,16 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     Config delta = qb - qa, row_delta = row_b - row_a;
     for (int j = 0; j < kDof; ++j) {
       for (Config* move : {&delta, &row_delta})
-        if (lattice.continuous()[static_cast<std::size_t>(j)]) (*move)[j] = std::remainder((*move)[j], kTwoPi);
-      if (std::abs(delta[j]) > limits.joint_step + 2 * lattice.fit_error()[j] || std::abs(row_delta[j]) > limits.joint_step)
+        if (lattice.continuous()[static_cast<std::size_t>(j)])
+          (*move)[j] = std::remainder((*move)[j], kTwoPi);
+      if (std::abs(delta[j]) > limits.joint_step + 2 * lattice.fit_error()[j] ||
+          std::abs(row_delta[j]) > limits.joint_step)
         return std::nullopt;
     }
     if (!lattice.follows_path(layer, sa, row_a, sb, row_b)) return std::nullopt;
-    if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, row_a, row_a + row_delta)) return std::nullopt;
+    if (limits.edges == EdgeMode::kContinuous &&
+        edge_blocked_plain(query, rule, row_a, row_a + row_delta))
+      return std::nullopt;
     if (hooks.check && hooks.check->checks_motions()) {
       const StateCheck::Motion motion{row_a, row_a + row_delta};
       bool allowed = true;
@@ -121,7 +132,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       }
     }
   Answer answer;
-  int slot = first_of_answer(lattice, g[0], [&](int k) { return *nodes[0][static_cast<std::size_t>(k)]; });
+  int slot =
+      first_of_answer(lattice, g[0], [&](int k) { return *nodes[0][static_cast<std::size_t>(k)]; });
   answer.solved = slot >= 0;
   answer.cost = answer.solved ? g[0][static_cast<std::size_t>(slot)] : kNone;
   if (answer.solved) {
@@ -133,11 +145,14 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     return answer;
   }
   for (std::size_t i = 0; i < layers; ++i)
-    if (std::none_of(nodes[i].begin(), nodes[i].end(), [](const auto& node) { return node.has_value(); }))
+    if (std::none_of(nodes[i].begin(), nodes[i].end(),
+                     [](const auto& node) { return node.has_value(); }))
       answer.empty.push_back(static_cast<int>(i));
   std::vector<char> reached(nodes[0].size(), 0);
-  for (std::size_t slot = 0; slot < reached.size(); ++slot) reached[slot] = nodes[0][slot].has_value();
-  for (std::size_t i = 0; i < layers && std::find(reached.begin(), reached.end(), 1) != reached.end(); ++i) {
+  for (std::size_t slot = 0; slot < reached.size(); ++slot)
+    reached[slot] = nodes[0][slot].has_value();
+  for (std::size_t i = 0;
+       i < layers && std::find(reached.begin(), reached.end(), 1) != reached.end(); ++i) {
     answer.deepest = static_cast<int>(i);
     if (i + 1 == layers) break;
     std::vector<char> ahead(nodes[i + 1].size(), 0);

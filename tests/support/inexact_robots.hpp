@@ -16,26 +16,33 @@ TestRobot with_origins(const TestRobot& robot, const std::string& name, const Ch
   return changed;
 }
 
-/// The robot as files have it that write 1.5708 for pi/2: roll, pitch and yaw rounded to `step`, rad.
+/// The robot as files have it that write 1.5708 for pi/2: roll, pitch and yaw rounded to `step`,
+/// rad.
 inline TestRobot rounded(const TestRobot& robot, double step) {
   return with_origins(robot, robot.name + " rounded", [&](Pose& origin) {
     const Vector3d rpy = origin.linear().eulerAngles(2, 1, 0).reverse();
-    const auto turn = [&](int k, const Vector3d& axis) { return Eigen::AngleAxisd(step * std::round(rpy[k] / step), axis); };
-    origin.linear() = (turn(2, Vector3d::UnitZ()) * turn(1, Vector3d::UnitY()) * turn(0, Vector3d::UnitX())).toRotationMatrix();
+    const auto turn = [&](int k, const Vector3d& axis) {
+      return Eigen::AngleAxisd(step * std::round(rpy[k] / step), axis);
+    };
+    origin.linear() =
+        (turn(2, Vector3d::UnitZ()) * turn(1, Vector3d::UnitY()) * turn(0, Vector3d::UnitX()))
+            .toRotationMatrix();
   });
 }
 
-/// The robot with origins shifted and turned at random, so that it misses the ideal arm by at least half of `share` of what is
-/// tolerated, 1 mm and 10 mrad, and by no more than that.
+/// The robot with origins shifted and turned at random, so that it misses the ideal arm by at least
+/// half of `share` of what is tolerated, 1 mm and 10 mrad, and by no more than that.
 inline TestRobot perturbed(const TestRobot& robot, double share, Random& random) {
   for (;;) {
     const auto vector = [&](double most) {
-      return Vector3d(random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most));
+      return Vector3d(random.uniform(-most, most), random.uniform(-most, most),
+                      random.uniform(-most, most));
     };
     const TestRobot tried = with_origins(robot, robot.name + " perturbed", [&](Pose& origin) {
       const Vector3d turn = vector(3e-3 * share);
       origin.translation() += vector(0.3e-3 * share);
-      origin.linear() = origin.linear() * Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+      origin.linear() =
+          origin.linear() * Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
     });
     try {
       const FitDeviation deviation = fit_srs(arm_of(tried).chain, tried.name).deviation;

@@ -10,14 +10,16 @@ inline Config inner_posture(const Chain& chain, Random& random) {
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
     const double middle = limit.continuous ? 0 : (limit.lower + limit.upper) / 2;
-    q[j] = middle + random.uniform(-0.6, 0.6) + (j == 1 || j == 3 || j == 5 ? (random.coin() ? 0.8 : -0.8) : 0.0);
+    q[j] = middle + random.uniform(-0.6, 0.6) +
+           (j == 1 || j == 3 || j == 5 ? (random.coin() ? 0.8 : -0.8) : 0.0);
   }
   return q;
 }
 
 /// A vector of some direction and this length.
 inline Vector3d random_vector(Random& random, double length) {
-  return length * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+  return length *
+         Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
 }
 
 }  // namespace swivel::test

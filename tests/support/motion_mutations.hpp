@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories and motions that planners made, ways to make them illegal, and ways to change them that stay legal. Each mutation
-// proves by itself, or by its size, that what it makes is illegal.
+// Trajectories and motions that planners made, ways to make them illegal, and ways to change them
+// that stay legal. Each mutation proves by itself, or by its size, that what it makes is illegal.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -36,8 +36,11 @@ struct Judged {
   [[nodiscard]] const Chain& chain() const { return robot->arm().chain; }
   [[nodiscard]] const Config& q(std::size_t k) const { return rows[k].row.q; }
   [[nodiscard]] double t(std::size_t k) const { return rows[k].t; }
-  [[nodiscard]] JointRates rates() const { return joint_rates(chain(), problem.limits, problem.source); }
-  /// Whether a joint of the chain is one of the robot: not the roll of the tool, which no controller moves.
+  [[nodiscard]] JointRates rates() const {
+    return joint_rates(chain(), problem.limits, problem.source);
+  }
+  /// Whether a joint of the chain is one of the robot: not the roll of the tool, which no
+  /// controller moves.
   [[nodiscard]] bool is_joint(int j) const { return !chain().roll || j + 1 < kDof; }
 };
 
@@ -53,11 +56,12 @@ inline CheckResult judge(const Judged& judged, const CheckOptions& options = {})
                       : check_trajectory(*judged.robot, judged.problem, rows_of(judged), options);
 }
 
-/// Problems of the data folder and small ones of the project's robots, from the seed: trajectories as planned, some of them on the
-/// path of motions; or motions, at 20 to 250 samples a second.
+/// Problems of the data folder and small ones of the project's robots, from the seed: trajectories
+/// as planned, some of them on the path of motions; or motions, at 20 to 250 samples a second.
 inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int small_ones) {
   std::vector<Judged> found;
-  const auto add = [&](const std::string& what, const Problem& problem, bool as_motion, double rate, bool refined) {
+  const auto add = [&](const std::string& what, const Problem& problem, bool as_motion, double rate,
+                       bool refined) {
     Judged judged{what, problem, nullptr, timed, {}};
     PlanOptions lazy;
     lazy.planner = PlannerKind::kLazy;
@@ -75,21 +79,25 @@ inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int sma
   };
   const double rates[] = {20, 125, 50, 250};
   int number = 0;
-  for (const char* name : {"iiwa14_bench", "iiwa14_deburr_in_hand", "kr6_weld_pipe", "panda_weld_seam", "ur5e_deburr_edge"}) {
-    const Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+  for (const char* name : {"iiwa14_bench", "iiwa14_deburr_in_hand", "kr6_weld_pipe",
+                           "panda_weld_seam", "ur5e_deburr_edge"}) {
+    const Problem problem =
+        io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     add(name, problem, timed || number % 2 == 1, 25, false);
     ++number;
   }
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < small_ones; ++trial) {
     Random random(seed + static_cast<std::uint64_t>(trial));
-    Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     // Corners rounded as motions do by themselves; or so little that the tool stops at them.
     if (trial % 2 == 0)
       problem.smooth.reset();
     else if (timed)
       problem.smooth = PathSmoothing{1e-6, 1e-6};
-    add(problem.source + " " + std::to_string(trial), problem, timed || trial % 3 > 0, rates[trial % 4], trial % 2 == 1);
+    add(problem.source + " " + std::to_string(trial), problem, timed || trial % 3 > 0,
+        rates[trial % 4], trial % 2 == 1);
   }
   return found;
 }
@@ -101,7 +109,8 @@ enum class Column {
   kPlace,   ///< s, phi, branch
 };
 
-/// Makes a legal trajectory or motion illegal. `mutate` says how, or nothing where this one cannot be made so.
+/// Makes a legal trajectory or motion illegal. `mutate` says how, or nothing where this one cannot
+/// be made so.
 struct MotionMutation {
   std::string name;
   bool of_motions = true, of_trajectories = true;
@@ -129,20 +138,23 @@ inline void delay(Judged& judged, std::size_t k, double by) {
   for (; k < judged.rows.size(); ++k) judged.rows[k].t += by;
 }
 
-inline Config speed(const Judged& judged, std::size_t k) {  // of the straight move from row k - 1 to row k
+inline Config speed(const Judged& judged,
+                    std::size_t k) {  // of the straight move from row k - 1 to row k
   return (judged.q(k) - judged.q(k - 1)) / (judged.t(k) - judged.t(k - 1));
 }
 
-/// The change of speed at row k, made within h, and the change from the acceleration h before to that, over what a joint can do. A
-/// controller moves joints straight from row to row.
+/// The change of speed at row k, made within h, and the change from the acceleration h before to
+/// that, over what a joint can do. A controller moves joints straight from row to row.
 inline double jolt(const Judged& judged, std::size_t k, double h) {
   if (k < 2 || k + 1 >= judged.rows.size()) return 0;
   const JointRates rates = judged.rates();
-  const Config now = (speed(judged, k + 1) - speed(judged, k)) / h, before = (speed(judged, k) - speed(judged, k - 1)) / h;
+  const Config now = (speed(judged, k + 1) - speed(judged, k)) / h,
+               before = (speed(judged, k) - speed(judged, k - 1)) / h;
   double most = 0;
   for (int j = 0; j < kDof; ++j)
     if (judged.is_joint(j))
-      most = std::max({most, std::abs(now[j]) / rates.acceleration[j], std::abs(now[j] - before[j]) / h / rates.jerk[j]});
+      most = std::max({most, std::abs(now[j]) / rates.acceleration[j],
+                       std::abs(now[j] - before[j]) / h / rates.jerk[j]});
   return most;
 }
 
@@ -155,9 +167,10 @@ inline Vector3d inside(const Shape& shape) {
   return sum / static_cast<double>((*mesh)->vertices.size());
 }
 
-/// The row at another posture of its self-motion, where some joint has moved by `far`, rad; none where the tool cannot stand still
-/// so far.
-inline std::optional<TimedRow> beside(const Judged& judged, std::size_t k, double far, Random& random) {
+/// The row at another posture of its self-motion, where some joint has moved by `far`, rad; none
+/// where the tool cannot stand still so far.
+inline std::optional<TimedRow> beside(const Judged& judged, std::size_t k, double far,
+                                      Random& random) {
   const Chain& chain = judged.chain();
   const Config& q = judged.q(k);
   const int side = random.below(kDof);
@@ -169,28 +182,34 @@ inline std::optional<TimedRow> beside(const Judged& judged, std::size_t k, doubl
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
     const double margin = judged.problem.limits.joint_margin + 1e-6;
-    if (!limit.continuous && !((*there)[j] > limit.lower + margin && (*there)[j] < limit.upper - margin)) return std::nullopt;
+    if (!limit.continuous &&
+        !((*there)[j] > limit.lower + margin && (*there)[j] < limit.upper - margin))
+      return std::nullopt;
   }
   TimedRow row = judged.rows[k];
   row.row.q = *there;
   row.v = row.a = Config::Zero();
   if (chain.roll) row.row.phi = (*there)[kDof - 1];
   if (const auto& arm = judged.robot->arm_class().srs) {
-    const ArmPlane plane = first_plane(*arm, chain.tool(q));  // any plane tells the difference of two arm angles
-    row.row.phi += wrap_angle(plane.angle_of(arm->elbow_axis(*there)) - plane.angle_of(arm->elbow_axis(q)));
+    const ArmPlane plane =
+        first_plane(*arm, chain.tool(q));  // any plane tells the difference of two arm angles
+    row.row.phi +=
+        wrap_angle(plane.angle_of(arm->elbow_axis(*there)) - plane.angle_of(arm->elbow_axis(q)));
     row.row.branch = arm->branch(*there);
   }
   return row;
 }
 
-/// How far the tool is from where it stands at both ends of a straight move of the joints, m and rad, at its farthest.
+/// How far the tool is from where it stands at both ends of a straight move of the joints, m and
+/// rad, at its farthest.
 inline std::pair<double, double> sway(const Chain& chain, const Config& from, const Config& to) {
   const Pose at = chain.tool(from);
   std::pair<double, double> most{0, 0};
   for (int part = 1; part < 32; ++part) {
     const Pose tool = chain.tool(from + part / 32. * (to - from));
     most.first = std::max(most.first, (tool.translation() - at.translation()).norm());
-    most.second = std::max(most.second, Eigen::AngleAxisd(at.linear().transpose() * tool.linear()).angle());
+    most.second =
+        std::max(most.second, Eigen::AngleAxisd(at.linear().transpose() * tool.linear()).angle());
   }
   return most;
 }
@@ -204,15 +223,16 @@ inline std::vector<std::size_t> rows_at_corners(const Judged& judged) {
     const Pose& there = path.layer(corner.layer).tool;
     for (std::size_t k = 1; k + 1 < judged.rows.size(); ++k) {
       const Pose tool = judged.chain().tool(judged.q(k));
-      if ((tool.translation() - there.translation()).norm() < 1e-6 && (tool.linear() - there.linear()).norm() < 1e-6)
+      if ((tool.translation() - there.translation()).norm() < 1e-6 &&
+          (tool.linear() - there.linear()).norm() < 1e-6)
         found.push_back(k);
     }
   }
   return found;
 }
 
-/// Of a motion with time enough: the arm swings to its first row from another posture, or from its last row to one; or at a corner
-/// to one and back.
+/// Of a motion with time enough: the arm swings to its first row from another posture, or from its
+/// last row to one; or at a corner to one and back.
 struct Swing {
   std::size_t row = 0;  // where the arm rests
   TimedRow other;
@@ -230,12 +250,14 @@ inline void insert(Judged& judged, Swing swing) {
   const std::size_t k = swing.row, last = judged.rows.size() - 1;
   swing.other.t = judged.t(k) + (k > 0 ? kAgesOfTime : -kAgesOfTime);
   const TimedRow back = judged.rows[k];
-  judged.rows.insert(judged.rows.begin() + static_cast<std::ptrdiff_t>(k > 0 ? k + 1 : 0), swing.other);
+  judged.rows.insert(judged.rows.begin() + static_cast<std::ptrdiff_t>(k > 0 ? k + 1 : 0),
+                     swing.other);
   if (k == 0 || k == last) return;
   judged.rows.insert(judged.rows.begin() + static_cast<std::ptrdiff_t>(k) + 2, back);
   delay(judged, k + 2, 2 * kAgesOfTime);
 }
-/// Whether the arm rests where the swing begins: it leaves for the swing, and comes back, without a jump of its speed.
+/// Whether the arm rests where the swing begins: it leaves for the swing, and comes back, without a
+/// jump of its speed.
 inline bool can_leave(const Judged& judged, std::size_t k) {
   if (k < 2 || k + 2 >= judged.rows.size()) return true;
   const double h = judged.t(1) - judged.t(0);
@@ -254,11 +276,13 @@ inline void allow_swings(Judged& judged) {
 }
 
 /// Whether the straight move keeps `more` than it must, m, and its ends.
-inline bool is_clear(const Judged& judged, World::Query& query, const Config& from, const Config& to, double more) {
+inline bool is_clear(const Judged& judged, World::Query& query, const Config& from,
+                     const Config& to, double more) {
   constexpr int kParts = 64;
   (void)judged;
   for (int part = 0; part <= kParts; ++part)
-    if (query.find_violating_pair(from + static_cast<double>(part) / kParts * (to - from), Threshold(ClearanceRule::kNode, more)))
+    if (query.find_violating_pair(from + static_cast<double>(part) / kParts * (to - from),
+                                  Threshold(ClearanceRule::kNode, more)))
       return false;
   return true;
 }
@@ -280,7 +304,9 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          const double gap = h * std::pow(10, random.uniform(0.3, 3));
          delay(m, k, gap);
          const double most = std::max(jolt(m, k - 1, h), jolt(m, k, h));
-         return most > kSurely ? words("of %.3g s: the speed jumps by %.3g times what can be", gap, most) : "";
+         return most > kSurely
+                    ? words("of %.3g s: the speed jumps by %.3g times what can be", gap, most)
+                    : "";
        }},
       {"time stands nearly still", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
@@ -290,7 +316,9 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          m.rows[k].t = m.t(k - 1) + h * random.uniform(1e-6, 0.3);
          double most = 0;
          for (int j = 0; j < kDof; ++j)
-           if (m.is_joint(j)) most = std::max(most, std::abs(speed(m, k)[j] - speed(m, k - 1)[j]) / h / rates.acceleration[j]);
+           if (m.is_joint(j))
+             most = std::max(
+                 most, std::abs(speed(m, k)[j] - speed(m, k - 1)[j]) / h / rates.acceleration[j]);
          return most > kSurely ? words("the speed jumps by %.3g times what can be", most) : "";
        }},
       {"times swapped", true, false, Column::kJoints,
@@ -329,9 +357,13 @@ inline const std::vector<MotionMutation>& motion_mutations() {
       {"rows left out on a bend", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          if (!m.problem.limits.tool_path_error || m.rows.size() < 6) return "";
-         const std::size_t a = some(0, m.rows.size() - 3, random), b = some(a + 2, m.rows.size(), random);
-         // The middle of the move is far from every pose that was left out, and these lie close together.
-         const auto tool = [&](const Config& q) -> Vector3d { return m.chain().tool(q).translation(); };
+         const std::size_t a = some(0, m.rows.size() - 3, random),
+                           b = some(a + 2, m.rows.size(), random);
+         // The middle of the move is far from every pose that was left out, and these lie close
+         // together.
+         const auto tool = [&](const Config& q) -> Vector3d {
+           return m.chain().tool(q).translation();
+         };
          const Vector3d middle = tool((m.q(a) + m.q(b)) / 2);
          double least = 1e9, between = 0;
          for (std::size_t k = a; k <= b; ++k) {
@@ -340,15 +372,18 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          }
          const double off = least - between;
          if (!(off > 1.5 * *m.problem.limits.tool_path_error + 1e-4)) return "";
-         m.rows.erase(m.rows.begin() + static_cast<std::ptrdiff_t>(a) + 1, m.rows.begin() + static_cast<std::ptrdiff_t>(b));
-         return words("the tool is off by %.3g m, allowed are %.3g", off, *m.problem.limits.tool_path_error);
+         m.rows.erase(m.rows.begin() + static_cast<std::ptrdiff_t>(a) + 1,
+                      m.rows.begin() + static_cast<std::ptrdiff_t>(b));
+         return words("the tool is off by %.3g m, allowed are %.3g", off,
+                      *m.problem.limits.tool_path_error);
        }},
       {"beginning or end left out", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const bool end = random.coin();
          const std::size_t k = some(1, m.rows.size() - 2, random);
          const auto tool = [&](std::size_t row) { return m.chain().tool(m.q(row)); };
-         const std::size_t kept = end ? m.rows.size() - 1 - k : k, left = end ? m.rows.size() - 1 : 0;
+         const std::size_t kept = end ? m.rows.size() - 1 - k : k,
+                           left = end ? m.rows.size() - 1 : 0;
          const double off = (tool(kept).translation() - tool(left).translation()).norm();
          if (!(off > 1e-4)) return "";
          if (end)
@@ -385,27 +420,33 @@ inline const std::vector<MotionMutation>& motion_mutations() {
       {"order reversed", true, true, Column::kJoints,
        [](Judged& m, Random&) -> std::string {
          const double end = m.rows.back().t;
-         if ((m.chain().tool(m.q(0)).translation() - m.chain().tool(m.rows.back().row.q).translation()).norm() < 1e-3) return "";
+         if ((m.chain().tool(m.q(0)).translation() -
+              m.chain().tool(m.rows.back().row.q).translation())
+                 .norm() < 1e-3)
+           return "";
          std::reverse(m.rows.begin(), m.rows.end());
          for (TimedRow& row : m.rows) row.t = end - row.t, row.v = -row.v;
          return "begins at the end";
        }},
       {"tool sways in a swing at rest", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
-         const auto swing = some_swing(m, random.uniform(0.1, 0.9) * m.problem.limits.joint_step, random);
+         const auto swing =
+             some_swing(m, random.uniform(0.1, 0.9) * m.problem.limits.joint_step, random);
          if (!swing) return "";
          const auto [off, turned] = sway(m.chain(), m.q(swing->row), swing->other.row.q);
          const double allowed = m.problem.limits.tool_path_error.value_or(1e-3);
          if (!(off > 1.5 * allowed + 1e-4)) return "";
          insert(m, *swing);
-         return words(swing->row > 0 && swing->row + 2 < m.rows.size() ? "at a corner, by %.3g m, allowed are %.3g"
-                                                                       : "by %.3g m, allowed are %.3g",
+         return words(swing->row > 0 && swing->row + 2 < m.rows.size()
+                          ? "at a corner, by %.3g m, allowed are %.3g"
+                          : "by %.3g m, allowed are %.3g",
                       off, allowed);
        }},
       {"something is met in a swing at rest", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          if (m.problem.limits.edges != EdgeMode::kContinuous) return "";
-         const auto swing = some_swing(m, random.uniform(0.4, 0.9) * m.problem.limits.joint_step, random);
+         const auto swing =
+             some_swing(m, random.uniform(0.4, 0.9) * m.problem.limits.joint_step, random);
          if (!swing) return "";
          allow_swings(m);
          const Config &from = m.q(swing->row), &to = swing->other.row.q, middle = (from + to) / 2;
@@ -414,12 +455,14 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          std::vector<std::size_t> moving;
          const auto& bodies = m.robot->world().bodies();
          for (std::size_t b = 0; b < bodies.size(); ++b)
-           if (bodies[b].group > 0 && std::holds_alternative<Capsule>(bodies[b].shape)) moving.push_back(b);
+           if (bodies[b].group > 0 && std::holds_alternative<Capsule>(bodies[b].shape))
+             moving.push_back(b);
          for (int trial = 0; trial < 200 && !moving.empty(); ++trial) {
            const RobotBody& body = bodies[moving[some(0, moving.size(), random)]];
            const auto& capsule = std::get<Capsule>(body.shape);
-           const Vector3d in_body = Vector3d(0, 0, random.uniform(-0.5, 0.5) * capsule.length) +
-                                    random_vector(random, random.uniform(0.8, 0.95) * capsule.radius);
+           const Vector3d in_body =
+               Vector3d(0, 0, random.uniform(-0.5, 0.5) * capsule.length) +
+               random_vector(random, random.uniform(0.8, 0.95) * capsule.radius);
            Pose pose = Pose::Identity();
            pose.translation() = G[static_cast<std::size_t>(body.group)] * (body.pose * in_body);
            Judged other = m;
@@ -431,7 +474,8 @@ inline const std::vector<MotionMutation>& motion_mutations() {
              continue;
            bool free_at_rows = true;
            for (std::size_t k = 0; k < m.rows.size() && free_at_rows; k += 5)
-             free_at_rows = !query.find_violating_pair_incremental(m.q(k), Threshold(ClearanceRule::kNode, 1e-3));
+             free_at_rows = !query.find_violating_pair_incremental(
+                 m.q(k), Threshold(ClearanceRule::kNode, 1e-3));
            if (!free_at_rows) continue;
            m = std::move(other);
            insert(m, *swing);
@@ -442,23 +486,28 @@ inline const std::vector<MotionMutation>& motion_mutations() {
       {"row of another posture", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const std::size_t k = some(1, m.rows.size() - 1, random);
-         const double far = m.timed ? 0.02 * std::pow(10, random.uniform(0, 2)) : 2.2 * m.problem.limits.joint_step;
+         const double far = m.timed ? 0.02 * std::pow(10, random.uniform(0, 2))
+                                    : 2.2 * m.problem.limits.joint_step;
          const auto other = beside(m, k, far, random);
          if (!other) return "";
          m.rows[k].row = other->row;
-         if (!m.timed) return words("a joint moves by %.3g rad, allowed are %.3g", far, 2 * m.problem.limits.joint_step);
+         if (!m.timed)
+           return words("a joint moves by %.3g rad, allowed are %.3g", far,
+                        2 * m.problem.limits.joint_step);
          const double most = std::max(jolt(m, k - 1, m.t(1) - m.t(0)), jolt(m, k, m.t(1) - m.t(0)));
          return most > kSurely ? words("the speed jumps by %.3g times what can be", most) : "";
        }},
       {"body in the way", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
-         if (!m.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!m.problem.model->has_srdf)
+           return "";  // else the pairs that count depend on clearances
          const auto G = m.chain().displacements(m.q(some(0, m.rows.size(), random)));
          const auto& bodies = m.robot->world().bodies();
          const RobotBody& body = bodies[some(0, bodies.size(), random)];
          if (body.group == 0) return "";
          Pose pose = Pose::Identity();
-         pose.translation() = G[static_cast<std::size_t>(body.group)] * body.pose * inside(body.shape);
+         pose.translation() =
+             G[static_cast<std::size_t>(body.group)] * body.pose * inside(body.shape);
          m.problem.scene.push_back({"moved", Sphere{0.001}, pose, {}});
          return "inside '" + body.name + "'";
        }},
@@ -468,7 +517,8 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          const JointLimit& limit = m.chain().limit[static_cast<std::size_t>(j)];
          if (limit.continuous) return "";
          const double by = std::pow(10, random.uniform(-6, 0));
-         m.rows[some(0, m.rows.size(), random)].row.q[j] = random.coin() ? limit.upper + by : limit.lower - by;
+         m.rows[some(0, m.rows.size(), random)].row.q[j] =
+             random.coin() ? limit.upper + by : limit.lower - by;
          return words("by %.3g rad", by);
        }},
       {"limits narrower", true, true, Column::kJoints,
@@ -477,7 +527,8 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          for (const TimedRow& row : m.rows)
            for (int j = 0; j < kDof; ++j) {
              const JointLimit& limit = m.chain().limit[static_cast<std::size_t>(j)];
-             if (!limit.continuous) least = std::min({least, row.row.q[j] - limit.lower, limit.upper - row.row.q[j]});
+             if (!limit.continuous)
+               least = std::min({least, row.row.q[j] - limit.lower, limit.upper - row.row.q[j]});
            }
          if (least > 1) return "";
          m.problem.limits.joint_margin = least + 1e-7;
@@ -493,7 +544,9 @@ inline const std::vector<MotionMutation>& motion_mutations() {
       {"not a number", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          TimedRow& row = m.rows[some(0, m.rows.size(), random)];
-         const double bad = random.coin() ? std::nan("") : std::numeric_limits<double>::infinity() * (random.coin() ? 1 : -1);
+         const double bad =
+             random.coin() ? std::nan("")
+                           : std::numeric_limits<double>::infinity() * (random.coin() ? 1 : -1);
          (m.timed && random.coin(0.3) ? row.t : row.row.q[random.below(kDof)]) = bad;
          return "NaN or infinity";
        }},
@@ -501,7 +554,9 @@ inline const std::vector<MotionMutation>& motion_mutations() {
        [](Judged& m, Random& random) -> std::string {
          const std::size_t ends[] = {0, m.rows.size() - 1, some(0, m.rows.size(), random)};
          TimedRow& row = m.rows[ends[random.below(3)]];
-         const double bad = random.coin() ? std::nan("") : std::numeric_limits<double>::infinity() * (random.coin() ? 1 : -1);
+         const double bad =
+             random.coin() ? std::nan("")
+                           : std::numeric_limits<double>::infinity() * (random.coin() ? 1 : -1);
          (random.coin() ? row.v : row.a)[random.below(kDof)] = bad;
          return "NaN or infinity";
        }},
@@ -510,7 +565,8 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          const double h = m.t(1) - m.t(0);
          const int j = random.below(kDof);
          if (!m.is_joint(j)) return "";
-         const double by = (2.1 * m.rates().acceleration[j] * h + 1e-3) * std::pow(10, random.uniform(0, 4));
+         const double by =
+             (2.1 * m.rates().acceleration[j] * h + 1e-3) * std::pow(10, random.uniform(0, 4));
          (random.coin() ? m.rows.front() : m.rows.back()).v[j] += random.coin() ? by : -by;
          return words("by %.3g rad/s, more than it can change in two rows", by);
        }},
@@ -560,12 +616,14 @@ inline const std::vector<MotionMutation>& motion_mutations() {
        [](Judged& m, Random& random) -> std::string {
          TrajectoryRow& row = m.rows[some(0, m.rows.size(), random)].row;
          double* const value[] = {&row.s, &row.phi};
-         *value[random.below(2)] = random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
+         *value[random.below(2)] =
+             random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
          return "NaN or infinity";
        }},
       {"crawls, then goes on", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
-         // More than half of the rows stand far apart in time, so that the median of all steps is a long one.
+         // More than half of the rows stand far apart in time, so that the median of all steps is a
+         // long one.
          const double h = m.t(1) - m.t(0), begin = m.t(0), factor = random.uniform(30, 300);
          const std::size_t k = some(m.rows.size() / 2 + 2, m.rows.size() - 2, random);
          const double shift = (m.t(k) - begin) * (factor - 1);
@@ -581,7 +639,8 @@ inline const std::vector<MotionMutation>& motion_mutations() {
   return all;
 }
 
-/// Changes a legal trajectory or motion so that it stays legal. `change` says how, or nothing where this one cannot be changed so.
+/// Changes a legal trajectory or motion so that it stays legal. `change` says how, or nothing where
+/// this one cannot be changed so.
 struct LegalChange {
   std::string name;
   bool of_motions = true, of_trajectories = true;
@@ -625,7 +684,9 @@ inline const std::vector<LegalChange>& legal_changes() {
        [](Judged& m, Random& random) -> std::string {
          bool turned = false;
          for (int j = 0; j < kDof; ++j) {
-           if (!m.chain().limit[static_cast<std::size_t>(j)].continuous || m.problem.start || !m.is_joint(j)) continue;
+           if (!m.chain().limit[static_cast<std::size_t>(j)].continuous || m.problem.start ||
+               !m.is_joint(j))
+             continue;
            const double turns = kTwoPi * (random.below(7) - 3);
            for (TimedRow& row : m.rows) row.row.q[j] += turns;
            turned = turned || turns != 0;
@@ -645,16 +706,19 @@ inline const std::vector<LegalChange>& legal_changes() {
          World::Query query(world);
          if (!is_clear(m, query, m.q(swing->row), swing->other.row.q, 2e-3)) return "";
          insert(m, *swing);
-         return words(swing->row > 0 && swing->row + 2 < m.rows.size() ? "at a corner, the tool sways by %.3g m"
-                                                                       : "the tool sways by %.3g m",
+         return words(swing->row > 0 && swing->row + 2 < m.rows.size()
+                          ? "at a corner, the tool sways by %.3g m"
+                          : "the tool sways by %.3g m",
                       off);
        }},
       {"large swing at rest", true, false,
        [](Judged& m, Random& random) -> std::string {
          if (m.chain().tool_may_turn()) return "";
-         const auto swing = some_swing(m, random.uniform(0.3, 0.9) * m.problem.limits.joint_step, random);
+         const auto swing =
+             some_swing(m, random.uniform(0.3, 0.9) * m.problem.limits.joint_step, random);
          if (!swing || !can_leave(m, swing->row) ||
-             (swing->other.row.q - m.q(swing->row)).lpNorm<Eigen::Infinity>() > 0.95 * m.problem.limits.joint_step)
+             (swing->other.row.q - m.q(swing->row)).lpNorm<Eigen::Infinity>() >
+                 0.95 * m.problem.limits.joint_step)
            return "";
          allow_swings(m);
          const auto [off, turned] = sway(m.chain(), m.q(swing->row), swing->other.row.q);
@@ -663,8 +727,9 @@ inline const std::vector<LegalChange>& legal_changes() {
          World::Query query(world);
          if (!is_clear(m, query, m.q(swing->row), swing->other.row.q, 4e-3)) return "";
          insert(m, *swing);
-         return words(swing->row > 0 && swing->row + 2 < m.rows.size() ? "at a corner, the tool sways by %.3g m, which is allowed"
-                                                                       : "the tool sways by %.3g m, which is allowed",
+         return words(swing->row > 0 && swing->row + 2 < m.rows.size()
+                          ? "at a corner, the tool sways by %.3g m, which is allowed"
+                          : "the tool sways by %.3g m, which is allowed",
                       off);
        }},
       {"row left out where the speed is steady", true, false,
@@ -678,9 +743,12 @@ inline const std::vector<LegalChange>& legal_changes() {
            if (jolt(m, i, h) > 0.95) return "";
          const World world(m.robot->world(), as_a_motion(m));
          World::Query query(world);
-         if (!is_clear(m, query, from, to, 2e-3) || sway(m.chain(), from, to).first > 0.1) return "";
-         const Pose middle = m.chain().tool((from + to) / 2), a = m.chain().tool(from), b = m.chain().tool(to);
-         if ((middle.translation() - (a.translation() + b.translation()) / 2).norm() > 1e-4) return "";
+         if (!is_clear(m, query, from, to, 2e-3) || sway(m.chain(), from, to).first > 0.1)
+           return "";
+         const Pose middle = m.chain().tool((from + to) / 2), a = m.chain().tool(from),
+                    b = m.chain().tool(to);
+         if ((middle.translation() - (a.translation() + b.translation()) / 2).norm() > 1e-4)
+           return "";
          return "joints go straight over two steps";
        }},
   };

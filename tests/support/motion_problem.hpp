@@ -6,20 +6,24 @@
 
 namespace swivel::test {
 
-/// Two to four segments from a posture well inside the limits, a ball near the arm, sometimes a start, a turn on the spot or a
-/// metric other than l2. An arm of six joints has a roll.
-inline Problem motion_problem(const TestRobot& robot, Random& random, const std::optional<Roll>& roll = {}) {
+/// Two to four segments from a posture well inside the limits, a ball near the arm, sometimes a
+/// start, a turn on the spot or a metric other than l2. An arm of six joints has a roll.
+inline Problem motion_problem(const TestRobot& robot, Random& random,
+                              const std::optional<Roll>& roll = {}) {
   Problem problem = problem_for(robot);
   problem.roll = roll;
-  const Chain chain = build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity(), roll).chain;
+  const Chain chain =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity(), roll).chain;
   const Config q = inner_posture(chain, random);
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
-  const int more = 2 + random.below(3), on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
+  const int more = 2 + random.below(3),
+            on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
   for (int k = 0; k < more; ++k) {
     Waypoint to = problem.waypoints.back();
     if (k != on_the_spot) to.position += random_vector(random, random.uniform(0.04, 0.1));
     const Vector3d turn = random_vector(random, random.uniform(0.05, 0.4));
-    to.orientation = to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    to.orientation =
+        to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     problem.waypoints.push_back(to);
   }
   problem.resolution = {.ds = 0.01, .dphi = 0.1, .dalpha = 0.1};

@@ -4,9 +4,11 @@
 
 namespace swivel::test {
 
-/// The rule of motions by asking every midpoint in turn: what edge_blocked must agree with. The pair is that of the first midpoint
-/// that fails.
-[[nodiscard]] inline std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0,
+/// The rule of motions by asking every midpoint in turn: what edge_blocked must agree with. The
+/// pair is that of the first midpoint that fails.
+[[nodiscard]] inline std::optional<BodyPair> edge_blocked_plain(World::Query& query,
+                                                                const EdgeRule& rule,
+                                                                const Config& q0,
                                                                 const Config& q1) {
   const Config delta = q1 - q0;
   const auto midpoint = [&](std::int64_t m, std::int64_t leaves) -> Config {
@@ -14,7 +16,8 @@ namespace swivel::test {
   };
   const std::int64_t leaves = rule.midpoints(q0, q1);
   for (std::int64_t m = 0; m < leaves; ++m)
-    if (const auto pair = query.find_violating_pair(midpoint(m, leaves), ClearanceRule::kMidpoint)) return pair;
+    if (const auto pair = query.find_violating_pair(midpoint(m, leaves), ClearanceRule::kMidpoint))
+      return pair;
   for (const EdgeRule::Near& near : rule.near) {
     const std::int64_t own = rule.midpoints(q0, q1, near.h);
     for (std::int64_t m = 0; m < own; ++m)

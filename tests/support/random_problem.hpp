@@ -12,7 +12,8 @@ inline MeshPtr box_mesh(const Vector3d& size) {
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->source = "box mesh";
   for (int corner = 0; corner < 8; ++corner)
-    mesh->vertices.push_back(Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).cwiseProduct(size / 2));
+    mesh->vertices.push_back(Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1)
+                                 .cwiseProduct(size / 2));
   mesh->triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   mesh->closed = is_closed(*mesh);
@@ -21,15 +22,18 @@ inline MeshPtr box_mesh(const Vector3d& size) {
 
 inline Pose random_pose(Random& random, const Vector3d& center, double spread) {
   Pose pose;
-  pose.translation() = center + spread * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  pose.linear() = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+  pose.translation() = center + spread * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1),
+                                                  random.uniform(-1, 1));
+  pose.linear() = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                              random.uniform(-1, 1))
                       .normalized()
                       .toRotationMatrix();
   return pose;
 }
 
-/// A small random problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near the arm, random limits, both
-/// edge modes, with and without a start. Small enough for brute force over all pairs of nodes.
+/// A small random problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near
+/// the arm, random limits, both edge modes, with and without a start. Small enough for brute force
+/// over all pairs of nodes.
 inline Problem random_problem(const TestRobot& robot, Random& random) {
   Problem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
@@ -41,7 +45,9 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
   for (int k = 1; k < waypoints; ++k) {
     for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.2, 0.2);
     problem.waypoints.push_back(waypoint_of(chain.tool(q)));
-    length += (problem.waypoints.back().position - problem.waypoints[static_cast<std::size_t>(k) - 1].position).norm();
+    length += (problem.waypoints.back().position -
+               problem.waypoints[static_cast<std::size_t>(k) - 1].position)
+                  .norm();
   }
   const int obstacles = random.below(5);
   const Vector3d near = chain.displacements(q0)[4] * chain.point[4];
@@ -69,13 +75,15 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
     problem.scene.push_back(object);
   }
   problem.resolution.ds = std::max(0.01, length / (3 + random.below(5)));
-  problem.resolution.dphi = robot.name == "windings" ? random.uniform(0.5, 0.9) : random.uniform(0.25, 0.6);
+  problem.resolution.dphi =
+      robot.name == "windings" ? random.uniform(0.5, 0.9) : random.uniform(0.25, 0.6);
   problem.resolution.dalpha = random.uniform(0.2, 1);
   Limits& limits = problem.limits;
   limits.arm_slope = random.uniform(0.8, 3.2) * problem.resolution.dphi / problem.resolution.ds;
   limits.joint_step = random.uniform(0.4, 1.2);
   limits.clearance = random.coin() ? 0.005 : random.uniform(0, 0.03);
-  limits.tool_path_error = random.coin() ? std::optional<double>(random.uniform(0.005, 0.05)) : std::nullopt;
+  limits.tool_path_error =
+      random.coin() ? std::optional<double>(random.uniform(0.005, 0.05)) : std::nullopt;
   if (random.coin(0.2)) limits.tool_angle_error = random.uniform(0.02, 0.2);
   if (random.coin(0.2)) limits.step_error = random.uniform(0.05, 0.5);
   if (random.coin(0.3)) limits.manipulability = random.uniform(0, 0.03);
@@ -89,8 +97,8 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
     bool fits = true;
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-      fits =
-          fits && (limit.continuous || (q0[j] >= limit.lower + limits.joint_margin && q0[j] <= limit.upper - limits.joint_margin));
+      fits = fits && (limit.continuous || (q0[j] >= limit.lower + limits.joint_margin &&
+                                           q0[j] <= limit.upper - limits.joint_margin));
     }
     if (fits) problem.start = q0;
   }

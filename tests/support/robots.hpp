@@ -31,15 +31,15 @@ inline TestRobot data_robot(const std::string& name) {
   return robot;
 }
 
-/// An arm of seven joints in a row, built from axes and origins: for classes that no file of the data folder has. Link k carries a
-/// capsule along the way to joint k + 1.
+/// An arm of seven joints in a row, built from axes and origins: for classes that no file of the
+/// data folder has. Link k carries a capsule along the way to joint k + 1.
 struct SyntheticJoint {
   Vector3d origin, axis;
   double lower, upper;
   bool continuous = false;
 };
-inline TestRobot synthetic_robot(const std::string& name, const std::vector<SyntheticJoint>& joints, const Vector3d& tip,
-                                 double radius) {
+inline TestRobot synthetic_robot(const std::string& name, const std::vector<SyntheticJoint>& joints,
+                                 const Vector3d& tip, double radius) {
   auto model = std::make_shared<RobotModel>();
   model->name = model->source = name;
   model->links.push_back({"base", {}, -1});
@@ -78,7 +78,8 @@ inline TestRobot synthetic_robot(const std::string& name, const std::vector<Synt
 
 /// z-y-z shoulder and wrist, continuous joints 1, 3, 5, 7.
 inline TestRobot continuous_robot() {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
   (void)x;
   return synthetic_robot("continuous",
                          {{z * 0.3, z, 0, 0, true},
@@ -92,7 +93,8 @@ inline TestRobot continuous_robot() {
 }
 /// x-y-z triples, in-plane elbow offset, asymmetric windows, joints 1 and 7 of more than a turn.
 inline TestRobot windings_robot() {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
   return synthetic_robot("windings",
                          {{z * 0.3, x, -4.4, 4.0},
                           {o, y, -2.6, 2.6},
@@ -118,12 +120,15 @@ inline TestRobot offset_robot() {
                          z * 0.12, 0.04);
 }
 
-/// The same robot with other limits of its arm's joints: change(number of the joint, 0 ... 6, joint).
+/// The same robot with other limits of its arm's joints: change(number of the joint, 0 ... 6,
+/// joint).
 template <class Change>
 TestRobot with_limits(const TestRobot& robot, const Change& change) {
   auto model = std::make_shared<RobotModel>(*robot.model);
   int number = 0;
-  for (const std::string& name : build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity()).chain.joint_names)
+  for (const std::string& name :
+       build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity())
+           .chain.joint_names)
     change(number++, model->joints[static_cast<std::size_t>(model->find_joint(name))]);
   return {robot.name, model, robot.base_link, robot.tip_link};
 }
@@ -138,7 +143,8 @@ inline TestRobot without_srdf(TestRobot robot) {
   return robot;
 }
 
-/// Links 5 and 7 are some 2 mm apart, whatever the joints, and meet where sin q6 cos q7 > 0.91. No SRDF.
+/// Links 5 and 7 are some 2 mm apart, whatever the joints, and meet where sin q6 cos q7 > 0.91. No
+/// SRDF.
 inline TestRobot near_wrist_robot() {
   TestRobot robot = continuous_robot();
   auto model = std::make_shared<RobotModel>(*robot.model);
@@ -157,7 +163,8 @@ inline TestRobot near_wrist_robot() {
 }
 
 inline std::vector<TestRobot> all_robots() {
-  return {data_robot("sda5f"), data_robot("sda10f"), data_robot("iiwa14"), continuous_robot(), windings_robot()};
+  return {data_robot("sda5f"), data_robot("sda10f"), data_robot("iiwa14"), continuous_robot(),
+          windings_robot()};
 }
 
 inline ArmModel arm_of(const TestRobot& robot) {

@@ -6,15 +6,16 @@
 
 namespace swivel::test {
 
-/// Whether two nodes of neighbouring layers may be joined, by the definition: from the grid angles nearest to theirs. A given start
-/// stands at its own angle.
+/// Whether two nodes of neighbouring layers may be joined, by the definition: from the grid angles
+/// nearest to theirs. A given start stands at its own angle.
 inline bool window_allows(const SrsLattice& lattice, int layer, int a, int b) {
   const double step = kTwoPi / lattice.angles();
   const auto cell = [&](int i, int slot) {
     const double phi = lattice.phi(i, slot);
     return i == 0 && lattice.has_start() ? phi : step * std::round((phi + kPi) / step) - kPi;
   };
-  return std::abs(std::remainder(cell(layer + 1, b) - cell(layer, a), kTwoPi)) <= lattice.window() * step + 1e-9;
+  return std::abs(std::remainder(cell(layer + 1, b) - cell(layer, a), kTwoPi)) <=
+         lattice.window() * step + 1e-9;
 }
 
 }  // namespace swivel::test

@@ -8,7 +8,8 @@
 
 namespace swivel::test {
 
-/// The problem without what the cause names; none where nothing can be taken away: reach and singular poses.
+/// The problem without what the cause names; none where nothing can be taken away: reach and
+/// singular poses.
 inline std::optional<Problem> without(const Cause& cause, Problem problem) {
   Limits& limits = problem.limits;
   switch (cause.kind) {
@@ -23,7 +24,8 @@ inline std::optional<Problem> without(const Cause& cause, Problem problem) {
     case Cause::Kind::kPair:
     case Cause::Kind::kContact: {
       if (!cause.object.empty()) {
-        std::erase_if(problem.scene, [&](const SceneObject& object) { return object.name == cause.object; });
+        std::erase_if(problem.scene,
+                      [&](const SceneObject& object) { return object.name == cause.object; });
         return problem;
       }
       for (SceneObject& object : problem.scene)

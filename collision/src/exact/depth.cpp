@@ -48,7 +48,8 @@ Patch point(const Vector3d& at, double depth) {
   patch.add(at, depth);
   return patch;
 }
-Patch triangle(const Vector3d& a, double of_a, const Vector3d& b, double of_b, const Vector3d& c, double of_c) {
+Patch triangle(const Vector3d& a, double of_a, const Vector3d& b, double of_b, const Vector3d& c,
+               double of_c) {
   Patch patch;
   patch.add(a, of_a);
   patch.add(b, of_b);
@@ -93,7 +94,8 @@ Medial medial_of(const Box& box) {
           sign[along] = side;
           return Vector3d(size.cwiseProduct(sign));
         };
-        add_quad({corner(half, -1), corner(half, 1), corner(inner, 1), corner(inner, -1)}, {0, 0, deepest, deepest});
+        add_quad({corner(half, -1), corner(half, 1), corner(inner, 1), corner(inner, -1)},
+                 {0, 0, deepest, deepest});
       }
   const Eigen::Index u = (least + 1) % 3, v = (least + 2) % 3;
   const auto middle = [&](double side_u, double side_v) {
@@ -102,7 +104,8 @@ Medial medial_of(const Box& box) {
     p[v] = side_v * inner[v];
     return p;
   };
-  add_quad({middle(-1, -1), middle(1, -1), middle(1, 1), middle(-1, 1)}, {deepest, deepest, deepest, deepest});
+  add_quad({middle(-1, -1), middle(1, -1), middle(1, 1), middle(-1, 1)},
+           {deepest, deepest, deepest, deepest});
   return medial;
 }
 
@@ -110,9 +113,11 @@ Medial medial_of(const Box& box) {
 /// between their inner ends, which is a part of the axis or, in a flat cylinder, a disc. Circles
 /// are replaced by polygons.
 Medial medial_of(const Cylinder& cylinder) {
-  const double radius = cylinder.radius, half = cylinder.length / 2, deepest = std::min(radius, half);
+  const double radius = cylinder.radius, half = cylinder.length / 2,
+               deepest = std::min(radius, half);
   const double inner = radius - deepest, height = half - deepest;
-  const int sides = std::clamp(static_cast<int>(std::ceil(kPi / std::sqrt(2 * kTolerance / (4 * radius)))), 8, 64);
+  const int sides = std::clamp(
+      static_cast<int>(std::ceil(kPi / std::sqrt(2 * kTolerance / (4 * radius)))), 8, 64);
   Medial medial;
   medial.off = radius * (1 - std::cos(kPi / sides));
   const auto on_circle = [&](int k, double r, double z) {
@@ -121,14 +126,16 @@ Medial medial_of(const Cylinder& cylinder) {
   };
   for (int k = 0; k < sides; ++k) {
     for (const double side : {-1.0, 1.0}) {
-      const Vector3d a = on_circle(k, radius, side * half), b = on_circle(k + 1, radius, side * half);
-      const Vector3d c = on_circle(k + 1, inner, side * height), d = on_circle(k, inner, side * height);
+      const Vector3d a = on_circle(k, radius, side * half),
+                     b = on_circle(k + 1, radius, side * half);
+      const Vector3d c = on_circle(k + 1, inner, side * height),
+                     d = on_circle(k, inner, side * height);
       medial.patches.push_back(triangle(a, 0, b, 0, c, deepest));
       if (inner > 0) medial.patches.push_back(triangle(a, 0, c, deepest, d, deepest));
     }
     if (inner > 0)
-      medial.patches.push_back(
-          triangle(Vector3d::Zero(), deepest, on_circle(k, inner, 0), deepest, on_circle(k + 1, inner, 0), deepest));
+      medial.patches.push_back(triangle(Vector3d::Zero(), deepest, on_circle(k, inner, 0), deepest,
+                                        on_circle(k + 1, inner, 0), deepest));
   }
   if (height > 0) medial.patches.push_back(axis_of(deepest, 2 * height).patches[0]);
   return medial;
@@ -156,7 +163,9 @@ Tangent about(const Vector3d& nearest, double radius, const Vector3d& p) {
 struct TangentAt {
   const Vector3d& p;
   Tangent operator()(const Sphere& s) const { return about(Vector3d::Zero(), s.radius, p); }
-  Tangent operator()(const Capsule& c) const { return about({0, 0, std::clamp(p.z(), -c.length / 2, c.length / 2)}, c.radius, p); }
+  Tangent operator()(const Capsule& c) const {
+    return about({0, 0, std::clamp(p.z(), -c.length / 2, c.length / 2)}, c.radius, p);
+  }
   Tangent operator()(const Box& b) const {
     const Vector3d out = p.cwiseAbs() - b.size / 2;
     Eigen::Index most = 0;
@@ -168,12 +177,15 @@ struct TangentAt {
     return about(p.cwiseMin(b.size / 2).cwiseMax(-b.size / 2), 0, p);
   }
   Tangent operator()(const Cylinder& c) const {
-    const double r = std::hypot(p.x(), p.y()), aside = c.radius - r, above = c.length / 2 - std::abs(p.z());
+    const double r = std::hypot(p.x(), p.y()), aside = c.radius - r,
+                 above = c.length / 2 - std::abs(p.z());
     const Vector3d inwards = r > 0 ? Vector3d(-p.x() / r, -p.y() / r, 0) : Vector3d::Zero();
     if (aside >= 0 && above >= 0)
-      return aside < above ? Tangent{aside, inwards} : Tangent{above, Vector3d(0, 0, p.z() > 0 ? -1 : 1)};
+      return aside < above ? Tangent{aside, inwards}
+                           : Tangent{above, Vector3d(0, 0, p.z() > 0 ? -1 : 1)};
     const double kept = r > c.radius ? c.radius / r : 1;
-    return about({kept * p.x(), kept * p.y(), std::clamp(p.z(), -c.length / 2, c.length / 2)}, 0, p);
+    return about({kept * p.x(), kept * p.y(), std::clamp(p.z(), -c.length / 2, c.length / 2)}, 0,
+                 p);
   }
   Tangent operator()(const MeshPtr&) const { return {}; }
 };
@@ -187,7 +199,8 @@ class Solid {
     point_ = p;
     if (const auto& mesh = shape_->mesh) {
       constexpr double kFarAway = 1e6;  // m
-      const double surface = mesh->triangles().distance({p, Vector3d::Zero()}, 0, kFarAway, nearest_);
+      const double surface =
+          mesh->triangles().distance({p, Vector3d::Zero()}, 0, kFarAway, nearest_);
       tangent_.depth = mesh->solid().contains(p) ? surface : -surface;
     } else {
       tangent_ = std::visit(TangentAt{p}, shape_->shape);
@@ -209,7 +222,8 @@ class Solid {
       const Vector3d way = patch.at[k] - point_;
       by_tangent = std::max(by_tangent, patch.depth[k] + tangent_.depth + way.norm());
       // No point lies deeper than its distance from any one triangle, and that distance is convex.
-      by_triangle = std::max(by_triangle, patch.depth[k] + shape_->mesh->triangles().distance_at(patch.at[k], nearest_));
+      by_triangle = std::max(by_triangle, patch.depth[k] + shape_->mesh->triangles().distance_at(
+                                                               patch.at[k], nearest_));
     }
     return std::min(by_tangent, by_triangle);
   }
@@ -229,8 +243,11 @@ class Solid {
   /// one of these points reaches beyond the plane.
   [[nodiscard]] std::optional<Vector3d> slope_outside(double radius) const {
     const TriangleTree& tree = shape_->mesh->triangles();
-    const Vector3d nearest = tree.nearest_on(point_, nearest_), normal = (nearest - point_) / tangent_.depth;
-    if (tree.reaches_beyond(point_, 3 * radius - tangent_.depth, normal, normal.dot(nearest) + kApart)) return std::nullopt;
+    const Vector3d nearest = tree.nearest_on(point_, nearest_),
+                   normal = (nearest - point_) / tangent_.depth;
+    if (tree.reaches_beyond(point_, 3 * radius - tangent_.depth, normal,
+                            normal.dot(nearest) + kApart))
+      return std::nullopt;
     return Vector3d(-normal);
   }
 
@@ -261,7 +278,8 @@ double deepest_corner(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   Solid solid(*b.shape);
   double found = -kInfinity;
   for (std::size_t k = 0; k < corners.size(); k += stride)
-    if (const Vector3d p = in_b * corners[k]; b.shape->mesh->solid().contains(p)) found = std::max(found, solid.depth(p));
+    if (const Vector3d p = in_b * corners[k]; b.shape->mesh->solid().contains(p))
+      found = std::max(found, solid.depth(p));
   return found;
 }
 
@@ -269,7 +287,8 @@ double deepest_corner(const PlacedShapeRef& a, const PlacedShapeRef& b) {
 
 Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from, double enough) {
   if (!has_inside(*a.shape) || !has_inside(*b.shape)) return {-kInfinity, kInfinity};
-  if (a.shape->mesh && b.shape->mesh) return {std::max(deepest_corner(a, b), deepest_corner(b, a)), kInfinity};
+  if (a.shape->mesh && b.shape->mesh)
+    return {std::max(deepest_corner(a, b), deepest_corner(b, a)), kInfinity};
   if (patches_of(*b.shape) < patches_of(*a.shape)) return depth(b, a, from, enough);
 
   const Medial medial = std::visit(MedialOf{}, a.shape->shape);
@@ -278,7 +297,9 @@ Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from, doubl
     double most;
     int asked;
     Patch patch;
-    bool operator<(const Open& other) const { return std::pair(most, -asked) < std::pair(other.most, -other.asked); }
+    bool operator<(const Open& other) const {
+      return std::pair(most, -asked) < std::pair(other.most, -other.asked);
+    }
   };
   std::priority_queue<Open> open;
   Solid solid(*b.shape);
@@ -305,7 +326,8 @@ Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from, doubl
     look_at(patch);
   }
   const double sought = from - medial.off;
-  while (!open.empty() && asked < kMostPatches && open.top().most > std::max(found + kTolerance / 2, sought) &&
+  while (!open.empty() && asked < kMostPatches &&
+         open.top().most > std::max(found + kTolerance / 2, sought) &&
          found - medial.off <= enough) {
     const auto [first, second] = open.top().patch.halves();
     open.pop();

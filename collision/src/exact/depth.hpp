@@ -15,7 +15,8 @@ namespace swivel::detail {
 /// m. If it is cut short before that, at_most is still a bound. For two meshes at_most is infinite;
 /// if a mesh is not closed, at_least is minus infinity as well. The result depends on the arguments
 /// alone. Safe to call from many threads.
-[[nodiscard]] Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from = -std::numeric_limits<double>::infinity(),
+[[nodiscard]] Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b,
+                          double from = -std::numeric_limits<double>::infinity(),
                           double enough = std::numeric_limits<double>::infinity());
 
 }  // namespace swivel::detail

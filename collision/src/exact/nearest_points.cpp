@@ -40,8 +40,8 @@ struct Core {
   double radius = 0;
 };
 
-fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b,
-                              const Pose& X_b) {
+fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a,
+                              const fcl::CollisionGeometryd& b, const Pose& X_b) {
   const fcl::DistanceRequestd request(true, false, 0.0, 0.0, kGjkTolerance, fcl::GST_LIBCCD);
   fcl::DistanceResultd result;
   try {
@@ -57,12 +57,14 @@ fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a,
 /// if both lie on the surfaces.
 bool belongs(const Vector3d& point, const Core& core) {
   const Pose at(Eigen::Translation3d{point});
-  return distance(fcl::Sphered(0), at, *core.geometry, core.pose).min_distance <= core.radius + kTolerance;
+  return distance(fcl::Sphered(0), at, *core.geometry, core.pose).min_distance <=
+         core.radius + kTolerance;
 }
 
 }  // namespace
 
-std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, const PlacedShapeRef& b, double clearance) {
+std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a,
+                                                      const PlacedShapeRef& b, double clearance) {
   if (!(clearance > 0)) return std::nullopt;
   // FCL leaves the points of a sphere before a mesh unset, not those of a mesh before a sphere.
   if (b.shape->mesh && !a.shape->mesh) {
@@ -72,12 +74,15 @@ std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, c
   const Core core_a(a), core_b(b);
   // FCL gives the points in the base frame for most kinds of pairs, in the frames of their bodies
   // for others. Either reading has to pass the test before it is used.
-  const fcl::DistanceResultd found = distance(*core_a.geometry, core_a.pose, *core_b.geometry, core_b.pose);
+  const fcl::DistanceResultd found =
+      distance(*core_a.geometry, core_a.pose, *core_b.geometry, core_b.pose);
   const Vector3d p = found.nearest_points[0], q = found.nearest_points[1];
-  const std::array<std::array<Vector3d, 2>, 2> readings{{{p, q}, {core_a.pose * p, core_b.pose * q}}};
+  const std::array<std::array<Vector3d, 2>, 2> readings{
+      {{p, q}, {core_a.pose * p, core_b.pose * q}}};
   for (const auto& [from, to] : readings) {
     const double cores_apart = (to - from).norm();
-    if (!(std::abs(cores_apart - core_a.radius - core_b.radius - clearance) <= kTolerance)) continue;
+    if (!(std::abs(cores_apart - core_a.radius - core_b.radius - clearance) <= kTolerance))
+      continue;
     const Vector3d along = (to - from) / cores_apart;
     const Vector3d on_a = from + core_a.radius * along, on_b = to - core_b.radius * along;
     if (belongs(on_a, core_a) && belongs(on_b, core_b)) return std::array{on_a, on_b};
@@ -102,7 +107,9 @@ std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeR
     Vector3d middle;
     double half;
   };
-  const auto later = [](const Cube& x, const Cube& y) { return std::tie(x.apart, x.order) > std::tie(y.apart, y.order); };
+  const auto later = [](const Cube& x, const Cube& y) {
+    return std::tie(x.apart, x.order) > std::tie(y.apart, y.order);
+  };
   std::priority_queue<Cube, std::vector<Cube>, decltype(later)> cubes(later);
   const PlacedShapeRef& smaller = a.shape->bound.reach < b.shape->bound.reach ? a : b;
   const Vector3d middle = *smaller.pose * smaller.shape->bound.center;

@@ -24,20 +24,24 @@ class PairTest {
   /// counted.
   bool below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
   /// Returns the clearance of a and b, m; 0 if they touch, if one is inside the other, or if FCL
-  /// fails. `warm_start` is a warm start for the search for near triangles: on entry the triangles at
-  /// which it begins, on return those at which it ended. The answer does not depend on it.
-  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* warm_start = nullptr);
+  /// fails. `warm_start` is a warm start for the search for near triangles: on entry the triangles
+  /// at which it begins, on return those at which it ended. The answer does not depend on it.
+  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b,
+                   TrianglePair* warm_start = nullptr);
   [[nodiscard]] const CollisionCounters& counters() const { return counters_; }
 
  private:
-  bool inflated_meets(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first, double d);
-  bool meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b);
+  bool inflated_meets(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first,
+                      double d);
+  bool meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b,
+             const Pose& X_b);
   double core_distance(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first);
-  double distance(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b,
-                  double bound);
+  double distance(const fcl::CollisionGeometryd& a, const Pose& X_a,
+                  const fcl::CollisionGeometryd& b, const Pose& X_b, double bound);
 
   double whole_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double bound);
-  double near_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double limit, double bound);
+  double near_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double limit,
+                       double bound);
 
   Meshes meshes_;
   CollisionCounters counters_;

@@ -27,7 +27,8 @@ struct Range {
         far(high + margin) {}
   [[nodiscard]] Proof of(double distance) const {
     if (distance < low) return kCollides;
-    return {distance >= high ? DistanceProof::kFree : DistanceProof::kNone, distance - growth - kRounding};
+    return {distance >= high ? DistanceProof::kFree : DistanceProof::kNone,
+            distance - growth - kRounding};
   }
 };
 
@@ -61,7 +62,8 @@ Segment core_of(const PlacedShapeRef& round) {
 }
 
 Segment in_frame(const Segment& s, const Pose& frame) {
-  return {frame.linear().transpose() * (s.start - frame.translation()), frame.linear().transpose() * s.along};
+  return {frame.linear().transpose() * (s.start - frame.translation()),
+          frame.linear().transpose() * s.along};
 }
 
 /// Returns the vector from the nearest point of a solid to the point p, in the solid's frame.
@@ -71,12 +73,14 @@ Vector3d way_out(const Box& box, const Vector3d& p) {
 Vector3d way_out(const Cylinder& cylinder, const Vector3d& p) {
   const double r = std::hypot(p.x(), p.y());
   const double aside = r > cylinder.radius ? 1 - cylinder.radius / r : 0;
-  return {aside * p.x(), aside * p.y(), std::copysign(std::max(0.0, std::abs(p.z()) - cylinder.length / 2), p.z())};
+  return {aside * p.x(), aside * p.y(),
+          std::copysign(std::max(0.0, std::abs(p.z()) - cylinder.length / 2), p.z())};
 }
 
 /// Returns how deep a point p inside the solid lies beneath its surface, m.
 double depth(const Cylinder& cylinder, const Vector3d& p) {
-  return std::min(cylinder.radius - std::hypot(p.x(), p.y()), cylinder.length / 2 - std::abs(p.z()));
+  return std::min(cylinder.radius - std::hypot(p.x(), p.y()),
+                  cylinder.length / 2 - std::abs(p.z()));
 }
 
 /// Compares the distance of a segment from a convex solid with a range. The distance is convex
@@ -97,24 +101,33 @@ Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
     if (std::min(left.distance, right.distance) < range.low) return kCollides;
     if (left.slope >= 0) return range.of(left.distance);
     if (right.slope <= 0) return range.of(right.distance);
-    const double to_crossing = (right.distance - left.distance - right.slope * (right.t - left.t)) / (left.slope - right.slope);
-    if (const Proof proof = range.of(left.distance + left.slope * to_crossing); proof.proved == DistanceProof::kFree) return proof;
+    const double to_crossing = (right.distance - left.distance - right.slope * (right.t - left.t)) /
+                               (left.slope - right.slope);
+    if (const Proof proof = range.of(left.distance + left.slope * to_crossing);
+        proof.proved == DistanceProof::kFree)
+      return proof;
     const Place middle = at(left.t + to_crossing);
     (middle.slope < 0 ? left : right) = middle;
   }
   return {};
 }
 
-Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double margin, int& triangle) {
+Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double margin,
+                  int& triangle) {
   const Segment core = core_of(round);
   const double radius = radius_of(round);
-  if (is_round(other)) return Range(d, margin, radius + radius_of(other)).of(std::sqrt(squared_distance(core, core_of(other))));
+  if (is_round(other))
+    return Range(d, margin, radius + radius_of(other))
+        .of(std::sqrt(squared_distance(core, core_of(other))));
   const Segment there = in_frame(core, *other.pose);
   const Range range(d, margin, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
-  if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
-  const Proof surface = range.of(other.shape->triangles().distance(there, range.low, range.far, triangle));
-  return surface.proved != DistanceProof::kColliding && one_inside_other(round, other) ? kCollides : surface;
+  if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape))
+    return bracket(there, *cylinder, range);
+  const Proof surface =
+      range.of(other.shape->triangles().distance(there, range.low, range.far, triangle));
+  return surface.proved != DistanceProof::kColliding && one_inside_other(round, other) ? kCollides
+                                                                                       : surface;
 }
 
 /// Returns the distance of a point from a solid, m; if the point is inside, minus its depth.
@@ -167,23 +180,28 @@ bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& b
 
 }  // namespace
 
-double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& warm_start) {
+double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough,
+                        double limit, TrianglePair& warm_start) {
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
   return a.shape->triangles().distance(b.shape->triangles(), b_in_a, enough, limit, warm_start);
 }
 
-double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const TrianglePair& warm_start) {
-  if (!a.shape->has_triangles() || !b.shape->has_triangles()) return std::numeric_limits<double>::infinity();
-  return a.shape->triangles().distance_at(b.shape->triangles(), a.pose->inverse(Eigen::Isometry) * *b.pose, warm_start);
+double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b,
+                   const TrianglePair& warm_start) {
+  if (!a.shape->has_triangles() || !b.shape->has_triangles())
+    return std::numeric_limits<double>::infinity();
+  return a.shape->triangles().distance_at(b.shape->triangles(),
+                                          a.pose->inverse(Eigen::Isometry) * *b.pose, warm_start);
 }
 
 namespace {
 
-Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& warm_start,
-                      Expected expected) {
+Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin,
+                      TrianglePair& warm_start, Expected expected) {
   if (!a.shape->has_triangles() || !b.shape->has_triangles()) return {};
   const Range range(d, margin, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
-  if (expected == Expected::kAny && (finds_nearer(range.low, b, a, warm_start.a) || finds_nearer(range.low, a, b, warm_start.b)))
+  if (expected == Expected::kAny &&
+      (finds_nearer(range.low, b, a, warm_start.a) || finds_nearer(range.low, a, b, warm_start.b)))
     return kCollides;
   const Proof surface = range.of(surface_distance(a, b, range.low, range.far, warm_start));
   if (surface.proved == DistanceProof::kColliding) return surface;
@@ -194,34 +212,42 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 
 }  // namespace
 
-Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& warm_start,
-            Expected expected) {
+Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin,
+            TrianglePair& warm_start, Expected expected) {
   if (is_round(a)) return prove_round(a, b, d, margin, warm_start.b);
   if (is_round(b)) return prove_round(b, a, d, margin, warm_start.a);
   // The capsule around a rod often proves more than the prism with its long triangles does.
   if (is_rod(a))
-    if (const Proof proof = prove_round(a, b, d, margin, warm_start.b); proof.proved == DistanceProof::kFree) return proof;
+    if (const Proof proof = prove_round(a, b, d, margin, warm_start.b);
+        proof.proved == DistanceProof::kFree)
+      return proof;
   if (is_rod(b))
-    if (const Proof proof = prove_round(b, a, d, margin, warm_start.a); proof.proved == DistanceProof::kFree) return proof;
+    if (const Proof proof = prove_round(b, a, d, margin, warm_start.a);
+        proof.proved == DistanceProof::kFree)
+      return proof;
   return prove_triangles(a, b, d, margin, warm_start, expected);
 }
 
 bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b) {
-  return a.shape->has_triangles() && b.shape->has_triangles() && a.shape->beyond_triangles == 0 && b.shape->beyond_triangles == 0;
+  return a.shape->has_triangles() && b.shape->has_triangles() && a.shape->beyond_triangles == 0 &&
+         b.shape->beyond_triangles == 0;
 }
 
-double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& warm_start) {
+double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough,
+                         double limit, TrianglePair& warm_start) {
   const double surfaces = surface_distance(a, b, enough, limit, warm_start);
   return surfaces > 0 && (one_inside_other(a, b) || one_inside_solid(a, b)) ? 0 : surfaces;
 }
 
-bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& warm_start) {
+bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d,
+                   TrianglePair& warm_start) {
   if (!are_triangles(a, b)) return prove(a, b, d, 0, warm_start).proved == DistanceProof::kFree;
   const double far = d + kTriangleBand;
   return triangle_distance(a, b, far, far, warm_start) >= far;
 }
 
-bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& warm_start) {
+bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d,
+                  TrianglePair& warm_start) {
   if (is_round(b) && !is_round(a)) {
     TrianglePair swapped{warm_start.b, warm_start.a};
     const bool proved = proves_below(b, a, d, swapped);
@@ -229,11 +255,14 @@ bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, Tr
     return proved;
   }
   const double low = d - kVerdictBand - kRounding;
-  if (!is_round(a)) return finds_deeper(low, b, a, warm_start.a) || finds_deeper(low, a, b, warm_start.b);
+  if (!is_round(a))
+    return finds_deeper(low, b, a, warm_start.a) || finds_deeper(low, a, b, warm_start.b);
   if (b.shape->mesh) {
     const Segment core = in_frame(core_of(a), *b.pose);
     const double radius = radius_of(a);
-    const auto gap = [&](const Vector3d& p) { return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius; };
+    const auto gap = [&](const Vector3d& p) {
+      return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius;
+    };
     const auto nearer = [&](const Vector3d& p) { return gap(p) < low; };
     return b.shape->triangles().seek(
         low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, warm_start.b);

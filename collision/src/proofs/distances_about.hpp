@@ -11,7 +11,8 @@ namespace swivel::detail {
 /// enough, limit) is as TriangleTree::distance: the distance k where it lies in [enough, limit],
 /// something below `enough` where it is less, `limit` where it is more. None is `most` or more.
 template <class Distance>
-std::vector<double> distances_about(std::size_t count, std::size_t rank, double most, double beside, const Distance& distance) {
+std::vector<double> distances_about(std::size_t count, std::size_t rank, double most, double beside,
+                                    const Distance& distance) {
   // The first ones, known exactly, tell between which two the answer lies: their ranks are off by
   // 2.5 at most, mostly.
   constexpr std::size_t kFirst = 25, kApart = 4;
@@ -22,10 +23,12 @@ std::vector<double> distances_about(std::size_t count, std::size_t rank, double 
   std::vector<double> sorted = found;
   std::sort(sorted.begin(), sorted.end());
   const std::size_t near = rank * kFirst / count;
-  const double low = near < kApart ? 0 : sorted[near - kApart], high = near + kApart < kFirst ? sorted[near + kApart] : most;
+  const double low = near < kApart ? 0 : sorted[near - kApart],
+               high = near + kApart < kFirst ? sorted[near + kApart] : most;
   while (found.size() < count) found.push_back(distance(found.size(), low, high));
   const auto at_most = [&](double d) {
-    return static_cast<std::size_t>(std::count_if(found.begin(), found.end(), [&](double x) { return x <= d; }));
+    return static_cast<std::size_t>(
+        std::count_if(found.begin(), found.end(), [&](double x) { return x <= d; }));
   };
   const auto again = [&](const auto& beyond) {
     for (std::size_t k = kFirst; k < count; ++k)

@@ -30,12 +30,15 @@ struct PlacedBound {
 
 /// Returns a lower bound of the distance of two bodies, m: the widest gap along the line of centres
 /// and the six box axes. Negative if their bounds overlap.
-[[nodiscard]] double distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
+[[nodiscard]] double distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b,
+                                    const PlacedBound& at_b);
 /// Returns a lower bound of the distance of two bodies, m, by the balls about their centres alone.
 /// Cheaper and weaker than distance_bound().
-[[nodiscard]] double ball_distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
+[[nodiscard]] double ball_distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b,
+                                         const PlacedBound& at_b);
 /// Returns true if the distance of the two bodies is proved to be at least d, m, by the criterion
 /// of distance_bound(). Tests the cheap balls first.
-[[nodiscard]] bool proved_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d);
+[[nodiscard]] bool proved_apart(const Bound& a, const PlacedBound& at_a, const Bound& b,
+                                const PlacedBound& at_b, double d);
 
 }  // namespace swivel::detail

@@ -28,7 +28,8 @@ bool ray_crosses(const std::array<Vector3d, 3>& c, const Vector3d& p) {
   const double u = p.x();
   if (u < c[0].x() || u >= c[2].x()) return false;
   const Eigen::Vector2d far_side = crossing(c[0], c[2], u);
-  const Eigen::Vector2d near_side = u < c[1].x() ? crossing(c[0], c[1], u) : crossing(c[1], c[2], u);
+  const Eigen::Vector2d near_side =
+      u < c[1].x() ? crossing(c[0], c[1], u) : crossing(c[1], c[2], u);
   if ((far_side.x() > p.y()) == (near_side.x() > p.y())) return false;
   const double t = (p.y() - far_side.x()) / (near_side.x() - far_side.x());
   return far_side.y() + t * (near_side.y() - far_side.y()) > p.z();
@@ -89,7 +90,8 @@ bool ClosedMesh::contains(const Vector3d& point) const {
   if (!box_.contains(p)) return false;
   const std::size_t cell = static_cast<std::size_t>(column(p.x())) * rows_ + row(p.y());
   bool inside = false;
-  for (int k = first_[cell]; k < first_[cell + 1]; ++k) inside ^= ray_crosses(corners_[members_[k]], p);
+  for (int k = first_[cell]; k < first_[cell + 1]; ++k)
+    inside ^= ray_crosses(corners_[members_[k]], p);
   return inside;
 }
 

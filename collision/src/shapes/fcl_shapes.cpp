@@ -15,7 +15,8 @@ namespace swivel::detail {
 namespace {
 
 template <class Tree>
-std::unique_ptr<Tree> fcl_tree(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& with_area) {
+std::unique_ptr<Tree> fcl_tree(const TriangleMesh& mesh,
+                               const std::vector<std::array<int, 3>>& with_area) {
   std::vector<fcl::Triangle> triangles;
   for (const auto& t : with_area) triangles.emplace_back(t[0], t[1], t[2]);
   auto tree = std::make_unique<Tree>();
@@ -33,15 +34,21 @@ struct PrimitiveVisitor {
   using Geometry = std::shared_ptr<const fcl::CollisionGeometryd>;
   Geometry operator()(const Sphere& s) const { return std::make_shared<fcl::Sphered>(s.radius); }
   Geometry operator()(const Box& b) const { return std::make_shared<fcl::Boxd>(b.size); }
-  Geometry operator()(const Cylinder& c) const { return std::make_shared<fcl::Cylinderd>(c.radius, c.length); }
-  Geometry operator()(const Capsule& c) const { return std::make_shared<fcl::Capsuled>(c.radius, c.length); }
+  Geometry operator()(const Cylinder& c) const {
+    return std::make_shared<fcl::Cylinderd>(c.radius, c.length);
+  }
+  Geometry operator()(const Capsule& c) const {
+    return std::make_shared<fcl::Capsuled>(c.radius, c.length);
+  }
   Geometry operator()(const MeshPtr&) const { return nullptr; }
 };
 
 }  // namespace
 
-MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)), with_area_(triangles_with_area(*mesh_)) {
-  if (with_area_.empty()) throw InputError(mesh_->source, "mesh: no triangle with an area: allowed is at least one");
+MeshModel::MeshModel(MeshPtr mesh)
+    : mesh_(std::move(mesh)), with_area_(triangles_with_area(*mesh_)) {
+  if (with_area_.empty())
+    throw InputError(mesh_->source, "mesh: no triangle with an area: allowed is at least one");
 }
 
 const TriangleTree& MeshModel::triangles() const {
@@ -49,11 +56,13 @@ const TriangleTree& MeshModel::triangles() const {
 }
 
 const fcl::BVHModel<fcl::OBBd>& MeshModel::boolean_tree() const {
-  return boolean_tree_.get([this] { return fcl_tree<fcl::BVHModel<fcl::OBBd>>(*mesh_, with_area_); });
+  return boolean_tree_.get(
+      [this] { return fcl_tree<fcl::BVHModel<fcl::OBBd>>(*mesh_, with_area_); });
 }
 
 const fcl::BVHModel<fcl::RSSd>& MeshModel::distance_tree() const {
-  return distance_tree_.get([this] { return fcl_tree<fcl::BVHModel<fcl::RSSd>>(*mesh_, with_area_); });
+  return distance_tree_.get(
+      [this] { return fcl_tree<fcl::BVHModel<fcl::RSSd>>(*mesh_, with_area_); });
 }
 
 bool MeshModel::is_closed() const {
@@ -65,10 +74,12 @@ const ClosedMesh& MeshModel::solid() const {
 }
 
 const std::vector<Vector3d>& MeshModel::part_points() const {
-  return part_points_.get([this] { return std::make_unique<std::vector<Vector3d>>(one_point_per_part(*mesh_)); });
+  return part_points_.get(
+      [this] { return std::make_unique<std::vector<Vector3d>>(one_point_per_part(*mesh_)); });
 }
 
-std::unique_ptr<fcl::BVHModel<fcl::RSSd>> MeshModel::distance_tree_of(const std::vector<int>& places) const {
+std::unique_ptr<fcl::BVHModel<fcl::RSSd>> MeshModel::distance_tree_of(
+    const std::vector<int>& places) const {
   auto tree = std::make_unique<fcl::BVHModel<fcl::RSSd>>();
   tree->beginModel(static_cast<int>(places.size()), static_cast<int>(3 * places.size()));
   for (const int place : places) {
@@ -93,7 +104,8 @@ FclShape make_fcl_shape(const Shape& shape, MeshStore& store) {
     result.kind = FclShape::Kind::kMesh;
     result.mesh = store.model(*mesh);
   } else {
-    const bool round = std::holds_alternative<Sphere>(shape) || std::holds_alternative<Capsule>(shape);
+    const bool round =
+        std::holds_alternative<Sphere>(shape) || std::holds_alternative<Capsule>(shape);
     result.kind = round ? FclShape::Kind::kRound : FclShape::Kind::kSolid;
     result.geometry = std::visit(PrimitiveVisitor{}, shape);
     if (const auto* box = std::get_if<Box>(&shape)) result.surface = tree_of_all(surface_of(*box));

@@ -36,7 +36,8 @@ class MeshModel {
   [[nodiscard]] const fcl::BVHModel<fcl::RSSd>& distance_tree() const;
   /// Returns FCL's tree for distance queries, made only of the triangles at `places` in the list
   /// that triangles() was made of. `places` must not be empty.
-  [[nodiscard]] std::unique_ptr<fcl::BVHModel<fcl::RSSd>> distance_tree_of(const std::vector<int>& places) const;
+  [[nodiscard]] std::unique_ptr<fcl::BVHModel<fcl::RSSd>> distance_tree_of(
+      const std::vector<int>& places) const;
   /// Returns true if the mesh is a closed surface.
   [[nodiscard]] bool is_closed() const;
   /// Returns the point-in-solid test. The mesh must be closed.
@@ -84,9 +85,13 @@ struct FclShape {
   [[nodiscard]] bool has_triangles() const { return mesh || surface; }
   /// Returns the triangles of a mesh or box, or of the prism in a cylinder. The shape must have
   /// triangles.
-  [[nodiscard]] const TriangleTree& triangles() const { return mesh ? mesh->triangles() : *surface; }
+  [[nodiscard]] const TriangleTree& triangles() const {
+    return mesh ? mesh->triangles() : *surface;
+  }
   /// Returns the geometry that FCL's distance queries use.
-  [[nodiscard]] const fcl::CollisionGeometryd& distance_geometry() const { return mesh ? mesh->distance_tree() : *geometry; }
+  [[nodiscard]] const fcl::CollisionGeometryd& distance_geometry() const {
+    return mesh ? mesh->distance_tree() : *geometry;
+  }
 };
 /// Returns the geometry of a shape; takes the model of a mesh from `store`. Throws InputError for a
 /// mesh without a triangle that has an area.

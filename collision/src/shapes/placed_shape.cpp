@@ -15,7 +15,8 @@ bool holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
   const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
   if (!inner.shape->mesh) return solid.contains(to_outer.translation());
   const auto& points = inner.shape->mesh->part_points();
-  return std::any_of(points.begin(), points.end(), [&](const Vector3d& p) { return solid.contains(to_outer * p); });
+  return std::any_of(points.begin(), points.end(),
+                     [&](const Vector3d& p) { return solid.contains(to_outer * p); });
 }
 
 bool holds(const Box& box, const Vector3d& p) {
@@ -31,7 +32,8 @@ bool solid_holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inne
   const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
   const auto held = [&](const Vector3d& p) {
     const auto* box = std::get_if<Box>(&outer.shape->shape);
-    return box ? holds(*box, to_outer * p) : holds(std::get<Cylinder>(outer.shape->shape), to_outer * p);
+    return box ? holds(*box, to_outer * p)
+               : holds(std::get<Cylinder>(outer.shape->shape), to_outer * p);
   };
   if (!inner.shape->mesh) return held(Vector3d::Zero());
   const auto& points = inner.shape->mesh->part_points();

@@ -29,7 +29,8 @@ std::vector<std::array<int, 3>> triangles_with_area(const TriangleMesh& mesh) {
   return triangles;
 }
 
-std::unique_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some) {
+std::unique_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh,
+                                            const std::vector<std::array<int, 3>>& some) {
   std::vector<Triangle> triangles;
   triangles.reserve(some.size());
   for (const auto& t : some) triangles.emplace_back(at(mesh, t[0]), at(mesh, t[1]), at(mesh, t[2]));
@@ -39,22 +40,26 @@ std::unique_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std:
 TriangleMesh surface_of(const Box& box) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k)
-    mesh.vertices.push_back(Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(box.size / 2));
+    mesh.vertices.push_back(
+        Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(box.size / 2));
   constexpr std::array<std::array<int, 4>, 6> kFaces{
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
-  for (const auto& f : kFaces) mesh.triangles.insert(mesh.triangles.end(), {{f[0], f[1], f[2]}, {f[0], f[2], f[3]}});
+  for (const auto& f : kFaces)
+    mesh.triangles.insert(mesh.triangles.end(), {{f[0], f[1], f[2]}, {f[0], f[2], f[3]}});
   return mesh;
 }
 
 TriangleMesh surface_of(const Cylinder& cylinder) {
   TriangleMesh mesh;
   for (int k = 0; k < kSides; ++k) {
-    const double angle = kTwoPi * k / kSides, x = cylinder.radius * std::cos(angle), y = cylinder.radius * std::sin(angle);
+    const double angle = kTwoPi * k / kSides, x = cylinder.radius * std::cos(angle),
+                 y = cylinder.radius * std::sin(angle);
     mesh.vertices.emplace_back(x, y, -cylinder.length / 2);
     mesh.vertices.emplace_back(x, y, cylinder.length / 2);
     const int low = 2 * k, next = 2 * ((k + 1) % kSides);
     mesh.triangles.insert(mesh.triangles.end(), {{low, next, next + 1}, {low, next + 1, low + 1}});
-    if (k >= 2) mesh.triangles.insert(mesh.triangles.end(), {{0, low, low - 2}, {1, low - 1, low + 1}});
+    if (k >= 2)
+      mesh.triangles.insert(mesh.triangles.end(), {{0, low, low - 2}, {1, low - 1, low + 1}});
   }
   return mesh;
 }

@@ -12,7 +12,8 @@ namespace swivel::detail {
 /// distance for a triangle without area.
 [[nodiscard]] std::vector<std::array<int, 3>> triangles_with_area(const TriangleMesh& mesh);
 /// Returns a tree of the given triangles (vertex indices) of the mesh; null if there are none.
-[[nodiscard]] std::unique_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some);
+[[nodiscard]] std::unique_ptr<const TriangleTree> tree_of(
+    const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some);
 
 /// Returns the surface of the box as twelve triangles, in the box's frame.
 [[nodiscard]] TriangleMesh surface_of(const Box& box);

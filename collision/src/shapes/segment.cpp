@@ -15,7 +15,8 @@ double on_unit(double t) {
 
 /// Returns true if x, relative to corner a and in the triangle's plane, lies in the triangle.
 bool holds(const Triangle& t, const Vector3d& x) {
-  return t.normal.dot(t.ab.cross(x)) >= 0 && t.normal.dot(x.cross(t.ac)) >= 0 && t.normal.dot((t.ac - t.ab).cross(x - t.ab)) >= 0;
+  return t.normal.dot(t.ab.cross(x)) >= 0 && t.normal.dot(x.cross(t.ac)) >= 0 &&
+         t.normal.dot((t.ac - t.ab).cross(x - t.ab)) >= 0;
 }
 
 constexpr double kNotInside = std::numeric_limits<double>::max();
@@ -28,7 +29,8 @@ double squared_distance_over_inside(const Segment& s, const Triangle& t, double 
   const Vector3d from = s.start - t.a;
   const double height = t.normal.dot(from), end_height = height + t.normal.dot(s.along);
   if (height * end_height <= 0) {  // meets the plane
-    const Vector3d x = height == end_height ? from : Vector3d(from + height / (height - end_height) * s.along);
+    const Vector3d x =
+        height == end_height ? from : Vector3d(from + height / (height - end_height) * s.along);
     return holds(t, x) ? 0 : kNotInside;
   }
   const bool start_nearer = std::abs(height) <= std::abs(end_height);
@@ -42,12 +44,17 @@ double squared_distance_over_inside(const Segment& s, const Triangle& t, double 
 /// normal, by their boxes, or along the line that joins their middles.
 bool surely_further(const Triangle& s, const Triangle& t, double limit) {
   const auto above = [limit](const Triangle& below, const Triangle& other) {
-    const double h = below.normal.dot(other.a - below.a), hb = h + below.normal.dot(other.ab), hc = h + below.normal.dot(other.ac);
+    const double h = below.normal.dot(other.a - below.a), hb = h + below.normal.dot(other.ab),
+                 hc = h + below.normal.dot(other.ac);
     const double least = std::max(std::min({h, hb, hc}), -std::max({h, hb, hc}));
     return least > 0 && least * least >= limit;
   };
-  const auto low = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMin(x.ac).cwiseMin(0)); };
-  const auto high = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMax(x.ac).cwiseMax(0)); };
+  const auto low = [](const Triangle& x) {
+    return Vector3d(x.a + x.ab.cwiseMin(x.ac).cwiseMin(0));
+  };
+  const auto high = [](const Triangle& x) {
+    return Vector3d(x.a + x.ab.cwiseMax(x.ac).cwiseMax(0));
+  };
   const Vector3d gap = (low(s) - high(t)).cwiseMax(low(t) - high(s)).cwiseMax(0);
   if (gap.squaredNorm() >= limit) return true;
   if (above(s, t) || above(t, s)) return true;
@@ -62,7 +69,9 @@ Vector3d shortest(const Segment& s, const Segment& t) {
   const Vector3d between = s.start - t.start;
   const double ss = s.along.squaredNorm(), tt = t.along.squaredNorm(), st = s.along.dot(t.along);
   const double s_between = s.along.dot(between), t_between = t.along.dot(between);
-  const auto nearest_on_s = [&](double y) { return ss > 0 ? on_unit((y * st - s_between) / ss) : 0; };
+  const auto nearest_on_s = [&](double y) {
+    return ss > 0 ? on_unit((y * st - s_between) / ss) : 0;
+  };
   const double determinant = ss * tt - st * st;
   double x = determinant > 0 ? on_unit((st * t_between - s_between * tt) / determinant) : 0;
   double y = tt > 0 ? (st * x + t_between) / tt : 0;
@@ -106,7 +115,8 @@ double squared_distance(const Segment& s, const Segment& t) {
 double squared_distance(const Segment& s, const Triangle& t, double limit) {
   const double over_inside = squared_distance_over_inside(s, t, limit);
   if (over_inside < kNotInside) return over_inside;
-  return std::min({squared_distance(s, t.edge(0)), squared_distance(s, t.edge(1)), squared_distance(s, t.edge(2))});
+  return std::min({squared_distance(s, t.edge(0)), squared_distance(s, t.edge(1)),
+                   squared_distance(s, t.edge(2))});
 }
 
 double squared_distance(const Triangle& s, const Triangle& t, double limit) {

@@ -49,7 +49,8 @@ Single in_single(const Vector3d& v) {
 class BoxPairBound {
  public:
   BoxPairBound(const Pose& pose, double reach)
-      : at_(in_single(pose.translation())), lost_(static_cast<float>(kLost * (reach + pose.translation().norm()))) {
+      : at_(in_single(pose.translation())),
+        lost_(static_cast<float>(kLost * (reach + pose.translation().norm()))) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       turn_[k] = in_single(pose.linear().col(axis));
@@ -65,7 +66,8 @@ class BoxPairBound {
     const Single offset = at_ + product(turn_, other.center) - box.center;
     const float along_box = squared(offset.abs() - box.half - product(spread_, other.half));
     if (along_box >= limit) return along_box;
-    return std::max(along_box, squared(product(back_, offset).abs() - other.half - product(back_spread_, box.half)));
+    return std::max(along_box, squared(product(back_, offset).abs() - other.half -
+                                       product(back_spread_, box.half)));
   }
   /// Squared distances of four boxes from one.
   struct FourGaps {
@@ -85,7 +87,9 @@ class BoxPairBound {
       along_boxes += over_gap(offset[k].abs() - boxes.half[k] - reach[axis]);
     }
     for (std::size_t k = 0; k < 3; ++k)
-      along_other += over_gap(dot(turn_[k], offset).abs() - other.half[static_cast<Eigen::Index>(k)] - dot(spread_[k], boxes.half));
+      along_other +=
+          over_gap(dot(turn_[k], offset).abs() - other.half[static_cast<Eigen::Index>(k)] -
+                   dot(spread_[k], boxes.half));
     return {along_boxes.max(along_other), squared_norm(offset)};
   }
   /// Returns true if two boxes with axes of their own are proved to be apart by at least
@@ -95,12 +99,14 @@ class BoxPairBound {
     const Single offset = product(box.rows, at_ + product(turn_, other.center) - box.center);
     std::array<Single, 3> axes;  // the other's, along this one's
     for (std::size_t k = 0; k < 3; ++k) axes[k] = product(box.rows, product(turn_, other.axes[k]));
-    const Single reach = axes[0].abs() * other.half[0] + axes[1].abs() * other.half[1] + axes[2].abs() * other.half[2];
+    const Single reach = axes[0].abs() * other.half[0] + axes[1].abs() * other.half[1] +
+                         axes[2].abs() * other.half[2];
     if (squared(offset.abs() - box.half - reach) >= limit) return true;
     Single gaps = Single::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      gaps[axis] = std::abs((axes[k] * offset).sum()) - other.half[axis] - (axes[k].abs() * box.half).sum();
+      gaps[axis] =
+          std::abs((axes[k] * offset).sum()) - other.half[axis] - (axes[k].abs() * box.half).sum();
     }
     return squared(gaps) >= limit;
   }
@@ -110,12 +116,16 @@ class BoxPairBound {
   static Single product(const std::array<Single, 3>& columns, const Single& v) {
     return columns[0] * v[0] + columns[1] * v[1] + columns[2] * v[2];
   }
-  [[nodiscard]] float squared(const Single& gaps) const { return (gaps - lost_).max(0).matrix().squaredNorm(); }
+  [[nodiscard]] float squared(const Single& gaps) const {
+    return (gaps - lost_).max(0).matrix().squaredNorm();
+  }
   using Three = std::array<Single, 3>;  // coordinates of four
   static Single dot(const Single& axis, const Three& of_four) {
     return axis[0] * of_four[0] + axis[1] * of_four[1] + axis[2] * of_four[2];
   }
-  static Single squared_norm(const Three& of_four) { return of_four[0].square() + of_four[1].square() + of_four[2].square(); }
+  static Single squared_norm(const Three& of_four) {
+    return of_four[0].square() + of_four[1].square() + of_four[2].square();
+  }
   [[nodiscard]] Single over_gap(const Single& gaps) const { return (gaps - lost_).max(0).square(); }
 
   std::array<Single, 3> turn_, back_, spread_, back_spread_;  // columns
@@ -127,7 +137,8 @@ class BoxPairBound {
 /// the box's axes.
 double squared_gap(const Triangle& t, const Vector3d& center, const Vector3d& half) {
   const Vector3d from = t.a - center;
-  const Vector3d low = from + t.ab.cwiseMin(t.ac).cwiseMin(0), high = from + t.ab.cwiseMax(t.ac).cwiseMax(0);
+  const Vector3d low = from + t.ab.cwiseMin(t.ac).cwiseMin(0),
+                 high = from + t.ab.cwiseMax(t.ac).cwiseMax(0);
   return (low - half).cwiseMax(-high - half).cwiseMax(0).squaredNorm();
 }
 
@@ -136,7 +147,8 @@ double squared_gap(const Triangle& t, const Vector3d& center, const Vector3d& ha
 TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
   std::vector<Item> items;
   items.reserve(triangles_.size());
-  for (const Triangle& t : triangles_) items.push_back({t.a + (t.ab + t.ac) / 3, static_cast<int>(items.size())});
+  for (const Triangle& t : triangles_)
+    items.push_back({t.a + (t.ab + t.ac) / 3, static_cast<int>(items.size())});
   nodes_.reserve(triangles_.size());
   build(items, 0, static_cast<int>(items.size()));
   std::vector<Triangle> in_order;
@@ -206,7 +218,10 @@ TriangleTree::OrientedBox TriangleTree::oriented_box(const Node& leaf) const {
   }
   const auto column = [&](int k) { return in_single(axes.col(k)); };
   const auto row = [&](int k) { return in_single(axes.row(k).transpose()); };
-  return {{column(0), column(1), column(2)}, {row(0), row(1), row(2)}, in_single(axes * box.center()), in_single(box.sizes() / 2)};
+  return {{column(0), column(1), column(2)},
+          {row(0), row(1), row(2)},
+          in_single(axes * box.center()),
+          in_single(box.sizes() / 2)};
 }
 
 Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int end) {
@@ -224,8 +239,9 @@ Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int
     int axis = 0;
     centers.sizes().maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;
-    std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
-                     [axis](const Item& s, const Item& t) { return s.center[axis] < t.center[axis]; });
+    std::nth_element(
+        items.begin() + begin, items.begin() + middle, items.begin() + end,
+        [axis](const Item& s, const Item& t) { return s.center[axis] < t.center[axis]; });
     box = build(items, begin, middle);
     nodes_[index].right = static_cast<int>(nodes_.size());
     box.extend(build(items, middle, end));
@@ -235,7 +251,8 @@ Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int
   return box;
 }
 
-double TriangleTree::distance(const Segment& segment, double enough, double limit, int& first) const {
+double TriangleTree::distance(const Segment& segment, double enough, double limit,
+                              int& first) const {
   const BoxBound bound(segment);
   struct Open {
     int node;
@@ -276,15 +293,18 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
   return std::sqrt(least);
 }
 
-double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit, TrianglePair& first) const {
+double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough,
+                              double limit, TrianglePair& first) const {
   // triangles are held against the box itself
   if (triangles_.size() > kBox && other.triangles_.size() <= kBox) {
     TrianglePair swapped{first.b, first.a};
-    const double found = other.distance(*this, pose.inverse(Eigen::Isometry), enough, limit, swapped);
+    const double found =
+        other.distance(*this, pose.inverse(Eigen::Isometry), enough, limit, swapped);
     first = {swapped.b, swapped.a};
     return found;
   }
-  const BoxPairBound bound(pose, reach_ + other.reach_), bound_from_other(pose.inverse(Eigen::Isometry), reach_ + other.reach_);
+  const BoxPairBound bound(pose, reach_ + other.reach_),
+      bound_from_other(pose.inverse(Eigen::Isometry), reach_ + other.reach_);
   const Matrix3d back = pose.linear().transpose();
   struct Open {
     int a, b;
@@ -314,8 +334,10 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     if (here.bound >= least) continue;
     const Node &m = nodes_[here.a], &n = other.nodes_[here.b];
     if (m.right == 0 && n.right == 0) {
-      if (bound.further(leaves_[m.place], other.leaves_[n.place], static_cast<float>(least))) continue;
-      const Vector3d there = back * (m.center - pose.translation()), half_there = back.cwiseAbs() * m.half;  // around m's box
+      if (bound.further(leaves_[m.place], other.leaves_[n.place], static_cast<float>(least)))
+        continue;
+      const Vector3d there = back * (m.center - pose.translation()),
+                     half_there = back.cwiseAbs() * m.half;  // around m's box
       for (int j = n.begin; j < n.end; ++j) {
         if (squared_gap(other.triangles_[j], there, half_there) >= least) continue;
         const Triangle moved = other.triangles_[j].moved(pose);
@@ -326,17 +348,21 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
       continue;
     }
     // The larger box is quartered.
-    const bool part_a = n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm());
+    const bool part_a =
+        n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm());
     const FourBoxes& parts = part_a ? below_[m.place] : other.below_[n.place];
     const BoxPairBound::FourGaps gaps =
-        part_a ? bound.squared_of_four(parts, other.single_[here.b]) : bound_from_other.squared_of_four(parts, single_[here.a]);
+        part_a ? bound.squared_of_four(parts, other.single_[here.b])
+               : bound_from_other.squared_of_four(parts, single_[here.a]);
     const std::size_t others = open;
     for (int k = 0; k < parts.count; ++k) {
       const int node = parts.node[static_cast<std::size_t>(k)];
-      const Open part{part_a ? node : here.a, part_a ? here.b : node, gaps.bound[k], gaps.between[k]};
+      const Open part{part_a ? node : here.a, part_a ? here.b : node, gaps.bound[k],
+                      gaps.between[k]};
       if (part.bound >= least) continue;
       std::size_t place = open++;  // the first to look into last
-      for (; place > others && !part.before(stack[place - 1]); --place) stack[place] = stack[place - 1];
+      for (; place > others && !part.before(stack[place - 1]); --place)
+        stack[place] = stack[place - 1];
       stack[place] = part;
     }
   }
@@ -345,7 +371,8 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
 
 double TriangleTree::distance_at(const Vector3d& point, int triangle) const {
   constexpr double kFarAway = 1e12;  // m^2
-  return std::sqrt(squared_distance(Segment{point, Vector3d::Zero()}, triangles_[triangle], kFarAway));
+  return std::sqrt(
+      squared_distance(Segment{point, Vector3d::Zero()}, triangles_[triangle], kFarAway));
 }
 
 Vector3d TriangleTree::nearest_on(const Vector3d& point, int triangle) const {
@@ -358,13 +385,15 @@ Vector3d TriangleTree::nearest_on(const Vector3d& point, int triangle) const {
   for (int k = 0; k < 3; ++k) {
     const Segment edge = t.edge(k);
     const double length = edge.along.squaredNorm();
-    const Vector3d here = edge.at(length > 0 ? std::clamp((point - edge.start).dot(edge.along) / length, 0.0, 1.0) : 0);
+    const Vector3d here = edge.at(
+        length > 0 ? std::clamp((point - edge.start).dot(edge.along) / length, 0.0, 1.0) : 0);
     if ((here - point).squaredNorm() < (nearest - point).squaredNorm()) nearest = here;
   }
   return nearest;
 }
 
-bool TriangleTree::reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal, double offset) const {
+bool TriangleTree::reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal,
+                                  double offset) const {
   const Segment at{point, Vector3d::Zero()};
   const double limit = radius * radius;
   std::array<int, kDeepest> stack;
@@ -390,12 +419,15 @@ bool TriangleTree::reaches_beyond(const Vector3d& point, double radius, const Ve
   return false;
 }
 
-double TriangleTree::distance_at(const TriangleTree& other, const Pose& pose, const TrianglePair& pair) const {
+double TriangleTree::distance_at(const TriangleTree& other, const Pose& pose,
+                                 const TrianglePair& pair) const {
   constexpr double kFarAway = 1e12;  // m^2
-  return std::sqrt(squared_distance(triangles_[pair.a], other.triangles_[pair.b].moved(pose), kFarAway));
+  return std::sqrt(
+      squared_distance(triangles_[pair.a], other.triangles_[pair.b].moved(pose), kFarAway));
 }
 
-std::array<std::vector<int>, 2> TriangleTree::nearer(const TriangleTree& other, const Pose& pose, double limit) const {
+std::array<std::vector<int>, 2> TriangleTree::nearer(const TriangleTree& other, const Pose& pose,
+                                                     double limit) const {
   const BoxPairBound bound(pose, reach_ + other.reach_);
   const auto squared_limit = static_cast<float>(limit * limit);
   std::array<std::vector<int>, 2> near;

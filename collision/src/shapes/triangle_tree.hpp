@@ -24,28 +24,32 @@ class TriangleTree {
   /// it is more, `limit`. `first` is a warm start: the search begins with this triangle and stores
   /// the nearest one that it meets, so that the next call for bodies that have moved little is
   /// faster.
-  [[nodiscard]] double distance(const Segment& segment, double enough, double limit, int& first) const;
+  [[nodiscard]] double distance(const Segment& segment, double enough, double limit,
+                                int& first) const;
   /// Returns the distance of this tree's triangles from those of `other`, m, whose frame lies at
   /// `pose` in this tree's frame, if it lies in [enough, limit]; if it is less, the first distance
   /// found that is below `enough`; if it is more, `limit`. `first` is a warm start: the search
   /// begins with this pair and stores the nearest one that it meets.
-  [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
-                                TrianglePair& first) const;
+  [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough,
+                                double limit, TrianglePair& first) const;
   /// Returns the distance of a point from one of the triangles, m.
   [[nodiscard]] double distance_at(const Vector3d& point, int triangle) const;
   /// Returns the point of one of the triangles that is nearest to `point`.
   [[nodiscard]] Vector3d nearest_on(const Vector3d& point, int triangle) const;
   /// Returns true if a triangle that is nearer than `radius`, m, to the point reaches beyond the
   /// plane of the points x with normal . x = offset.
-  [[nodiscard]] bool reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal, double offset) const;
+  [[nodiscard]] bool reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal,
+                                    double offset) const;
   /// Returns the distance of triangle pair.a of this tree from triangle pair.b of `other`, m, whose
   /// frame lies at `pose` in this tree's frame.
-  [[nodiscard]] double distance_at(const TriangleTree& other, const Pose& pose, const TrianglePair& pair) const;
+  [[nodiscard]] double distance_at(const TriangleTree& other, const Pose& pose,
+                                   const TrianglePair& pair) const;
   /// Returns the triangles of this tree that are nearer than `limit`, m, to a triangle of `other`,
   /// and those of `other` that are nearer than it to one of this tree: indices into the lists that
   /// the trees were made of, in ascending order. The frame of `other` lies at `pose` in this tree's
   /// frame.
-  [[nodiscard]] std::array<std::vector<int>, 2> nearer(const TriangleTree& other, const Pose& pose, double limit) const;
+  [[nodiscard]] std::array<std::vector<int>, 2> nearer(const TriangleTree& other, const Pose& pose,
+                                                       double limit) const;
   /// Looks for a triangle for which `proves` returns true, where `gap`, a signed distance from some
   /// solid, m, is least, and returns true if it finds one. `first` is a warm start: the search
   /// begins with this triangle and stores the one found. Only a few boxes are searched, and none

@@ -37,13 +37,14 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tole
 namespace {
 
 /// Searches the motion from q0 to q1 for a pair that is too near, by bisection down to `leaves`
-/// midpoints. below(q, threshold, suspected, segment) returns a pair that is too near at q, or none; if
-/// `stretch` is not null, what it asks of a pair is limited to how much nearer the pair can come on
-/// that stretch about q. No pair comes nearer by more than `bound`, m, on the whole motion, and no
-/// point's path bends by more than `bend`, m, on half of it. Throws Stopped.
+/// midpoints. below(q, threshold, suspected, segment) returns a pair that is too near at q, or
+/// none; if `stretch` is not null, what it asks of a pair is limited to how much nearer the pair
+/// can come on that stretch about q. No pair comes nearer by more than `bound`, m, on the whole
+/// motion, and no point's path bends by more than `bend`, m, on half of it. Throws Stopped.
 template <class Below>
-std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, double tangent_deviation,
-                               const Budget& budget, const Below& below) {
+std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves,
+                               double bound, double tangent_deviation, const Budget& budget,
+                               const Below& below) {
   const double step = bound / static_cast<double>(leaves);
   const Config delta = q1 - q0;
 
@@ -58,13 +59,16 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
     next.clear();
     for (const std::int64_t first : open) {
       budget.poll();
-      const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) / static_cast<double>(leaves);
+      const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) /
+                            static_cast<double>(leaves);
       const Config q = q0 + middle * delta;
       if (size == 1) {
-        if (const auto pair = below(q, ClearanceRule::kMidpoint, std::nullopt, nullptr)) return pair;
+        if (const auto pair = below(q, ClearanceRule::kMidpoint, std::nullopt, nullptr))
+          return pair;
         continue;
       }
-      const auto suspected = below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &segment);
+      const auto suspected =
+          below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &segment);
       if (!suspected) continue;
       if (const auto pair = below(q, ClearanceRule::kMotion, suspected, nullptr)) return pair;
       next.push_back(first);
@@ -80,10 +84,13 @@ double distance_of(const Threshold& threshold, const EdgeRule::Near& pair) {
   return pair.d_edge + (threshold.rule == ClearanceRule::kMidpoint ? pair.h : 0) + threshold.more;
 }
 
-bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                const Budget& budget) {
-  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const MotionSegment*) {
-    return query.pair_violates(q, near.pair, distance_of(threshold, near)) ? std::optional(near.pair) : std::nullopt;
+bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule,
+                const Config& q0, const Config& q1, const Budget& budget) {
+  const auto this_one = [&](const Config& q, const Threshold& threshold,
+                            const std::optional<BodyPair>&, const MotionSegment*) {
+    return query.pair_violates(q, near.pair, distance_of(threshold, near))
+               ? std::optional(near.pair)
+               : std::nullopt;
   };
   const double bound = rule.motion(q0, q1, near.first_joint, near.last);
   return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, 0, budget, this_one).has_value();
@@ -91,20 +98,21 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
 
 }  // namespace
 
-std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                                     const Budget& budget, double* slack) {
+std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0,
+                                     const Config& q1, const Budget& budget, double* slack) {
   if (slack) *slack = std::numeric_limits<double>::infinity();
-  const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& suspected,
-                       const MotionSegment* segment) {
+  const auto any = [&](const Config& q, const Threshold& threshold,
+                       const std::optional<BodyPair>& suspected, const MotionSegment* segment) {
     const auto pair = segment ? query.find_violating_pair_over_motion(*segment, q, threshold)
                               : query.find_violating_pair_incremental(q, threshold, suspected);
     // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
     // slack.
-    if (slack && !pair && threshold.rule == ClearanceRule::kMidpoint) *slack = std::min(*slack, query.slack(threshold));
+    if (slack && !pair && threshold.rule == ClearanceRule::kMidpoint)
+      *slack = std::min(*slack, query.slack(threshold));
     return pair;
   };
-  if (const auto pair =
-          bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.tangent_deviation((q1 - q0) / 2), budget, any))
+  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1),
+                               rule.tangent_deviation((q1 - q0) / 2), budget, any))
     return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
@@ -112,14 +120,16 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
   return std::nullopt;
 }
 
-bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                     const Budget& budget) {
+bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& rule,
+                     const Config& q0, const Config& q1, const Budget& budget) {
   for (const EdgeRule::Near& near : rule.near)
     if (near.pair == pair) return blocked_by(near, query, rule, q0, q1, budget);
-  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const MotionSegment*) {
+  const auto this_one = [&](const Config& q, const Threshold& threshold,
+                            const std::optional<BodyPair>&, const MotionSegment*) {
     return query.pair_violates(q, pair, threshold) ? std::optional(pair) : std::nullopt;
   };
-  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one).has_value();
+  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one)
+      .has_value();
 }
 
 }  // namespace swivel

@@ -26,7 +26,9 @@ class Clusters {
     return link;
   }
   /// Returns true if one movable joint joins the clusters of the two links.
-  [[nodiscard]] bool parent_and_child(int a, int b) const { return of_parent(of(a)) == of(b) || of_parent(of(b)) == of(a); }
+  [[nodiscard]] bool parent_and_child(int a, int b) const {
+    return of_parent(of(a)) == of(b) || of_parent(of(b)) == of(a);
+  }
 
  private:
   [[nodiscard]] const Joint* above(int link) const {
@@ -42,7 +44,8 @@ class Clusters {
 
 }  // namespace
 
-std::vector<BodyPair> candidate_robot_pairs(const RobotModel& robot, const std::vector<RobotBody>& bodies) {
+std::vector<BodyPair> candidate_robot_pairs(const RobotModel& robot,
+                                            const std::vector<RobotBody>& bodies) {
   std::set<NamePair> disabled;
   for (const auto& [a, b] : robot.disabled_pairs) disabled.insert(ordered(a, b));
   const Clusters clusters(robot);

@@ -31,7 +31,8 @@ class Samples {
     Config q;
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_->limit[j];
-      const double lower = limit.continuous ? -kPi : limit.lower, upper = limit.continuous ? kPi : limit.upper;
+      const double lower = limit.continuous ? -kPi : limit.lower,
+                   upper = limit.continuous ? kPi : limit.upper;
       // The standard library's distributions differ by vendor.
       q[j] = lower + static_cast<double>(random_() >> 11) * 0x1.0p-53 * (upper - lower);
     }
@@ -50,18 +51,21 @@ struct PlacedPair {
         shape_b(&part.shapes[pair.b]),
         pose_a(pose(part.bodies[pair.a], moved)),
         pose_b(pose(part.bodies[pair.b], moved)) {}
-  static Pose pose(const RobotBody& body, const std::vector<Pose>& moved) { return moved[body.group] * body.pose; }
+  static Pose pose(const RobotBody& body, const std::vector<Pose>& moved) {
+    return moved[body.group] * body.pose;
+  }
   [[nodiscard]] PlacedShapeRef a() const { return {shape_a, &pose_a}; }
   [[nodiscard]] PlacedShapeRef b() const { return {shape_b, &pose_b}; }
   [[nodiscard]] DistanceProof prove(double d) const {
-    if (proved_apart(shape_a->bound, place(shape_a->bound, pose_a), shape_b->bound, place(shape_b->bound, pose_b),
-                     d + kVerdictBand))
+    if (proved_apart(shape_a->bound, place(shape_a->bound, pose_a), shape_b->bound,
+                     place(shape_b->bound, pose_b), d + kVerdictBand))
       return DistanceProof::kFree;
     return prove_distance(a(), b(), d);
   }
   [[nodiscard]] bool touching(PairTest& fcl) const {
     const DistanceProof proof = prove(0);
-    return proof == DistanceProof::kNone ? fcl.below(a(), b(), 0) : proof == DistanceProof::kColliding;
+    return proof == DistanceProof::kNone ? fcl.below(a(), b(), 0)
+                                         : proof == DistanceProof::kColliding;
   }
   const FclShape *shape_a, *shape_b;
   Pose pose_a, pose_b;
@@ -69,7 +73,8 @@ struct PlacedPair {
 
 /// Returns a warning for each joint that moves no collision shape: what it moves is kept clear of
 /// nothing.
-std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel& arm, const std::vector<RobotBody>& bodies) {
+std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel& arm,
+                                         const std::vector<RobotBody>& bodies) {
   std::vector<bool> has_shape(kDof + 1 + arm.chain.followers.size());
   for (const RobotBody& body : bodies) has_shape[body.group] = true;
   if (std::find(has_shape.begin() + 1, has_shape.end(), true) == has_shape.end())
@@ -80,9 +85,10 @@ std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel
     if (has_shape[group]) continue;
     std::string links;
     for (std::size_t l = 0; l < robot.links.size(); ++l)
-      if (arm.links[l].group == static_cast<int>(group)) links += (links.empty() ? "" : ", ") + robot.links[l].name;
-    warnings.push_back(links + ": no collision shape on what joint " + arm.chain.joint_names[group - 1] +
-                       " moves: it is kept clear of nothing");
+      if (arm.links[l].group == static_cast<int>(group))
+        links += (links.empty() ? "" : ", ") + robot.links[l].name;
+    warnings.push_back(links + ": no collision shape on what joint " +
+                       arm.chain.joint_names[group - 1] + " moves: it is kept clear of nothing");
   }
   return warnings;
 }
@@ -91,12 +97,14 @@ std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel
 /// extra midpoints on motions.
 double far_enough(const Limits& limits) {
   constexpr double kNoBurden = 0.01;
-  return std::max({2 * limits.d_self(), 4 * limits.d_self_edge(), 2 * limits.edge_tolerance, kNoBurden});
+  return std::max(
+      {2 * limits.d_self(), 4 * limits.d_self_edge(), 2 * limits.edge_tolerance, kNoBurden});
 }
 
 }  // namespace
 
-RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem, MeshStore& meshes, const Budget& budget)
+RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+                     MeshStore& meshes, const Budget& budget)
     : chain(arm.chain),
       bodies(robot_bodies(robot, arm, problem.attached)),
       followers(follower_motion(chain, bodies)),
@@ -130,14 +138,16 @@ void RobotPart::drop_always_touching(const Budget& budget) {
   for (Candidate* candidate : open) candidate->dropped = true;
 }
 
-double RobotPart::median(const BodyPair& pair, double far, const std::vector<std::vector<Pose>>& samples,
+double RobotPart::median(const BodyPair& pair, double far,
+                         const std::vector<std::vector<Pose>>& samples,
                          const Budget& budget) const {
   constexpr std::size_t kHalf = kMedianSamples / 2;
   std::vector<const std::vector<Pose>*> near;
   near.reserve(samples.size());
   for (const auto& moved : samples) {
     budget.poll();
-    if (far == kFar || PlacedPair(*this, pair, moved).prove(far) != DistanceProof::kFree) near.push_back(&moved);
+    if (far == kFar || PlacedPair(*this, pair, moved).prove(far) != DistanceProof::kFree)
+      near.push_back(&moved);
     const std::size_t asked = static_cast<std::size_t>(&moved - samples.data()) + 1;
     if (asked - near.size() > kHalf) return kFar;
   }
@@ -159,11 +169,13 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   const bool triangles = are_triangles(first.a(), first.b());
   std::vector<double> clearances;
   if (triangles)
-    clearances = distances_about(near.size(), kHalf, kFarAway, 3 * kTriangleBand, [&](std::size_t k, double enough, double limit) {
-      budget.poll();
-      const PlacedPair placed(*this, pair, *near[k]);
-      return triangle_distance(placed.a(), placed.b(), enough, limit, warm_start);
-    });
+    clearances = distances_about(near.size(), kHalf, kFarAway, 3 * kTriangleBand,
+                                 [&](std::size_t k, double enough, double limit) {
+                                   budget.poll();
+                                   const PlacedPair placed(*this, pair, *near[k]);
+                                   return triangle_distance(placed.a(), placed.b(), enough, limit,
+                                                            warm_start);
+                                 });
   else
     for (const auto* moved : near) clearances.push_back(exact(*moved));
   const double middle = middle_of(clearances);
@@ -173,8 +185,8 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   return middle_of(clearances);
 }
 
-std::shared_ptr<const RobotPart> RobotPart::for_limits(const std::shared_ptr<const RobotPart>& part, const Limits& limits,
-                                                       const Budget& budget) {
+std::shared_ptr<const RobotPart> RobotPart::for_limits(const std::shared_ptr<const RobotPart>& part,
+                                                       const Limits& limits, const Budget& budget) {
   if (far_enough(limits) <= part->medians_up_to_) return part;
   auto more = std::make_shared<RobotPart>(*part);
   more->find_medians(far_enough(limits), budget);
@@ -213,8 +225,8 @@ std::vector<RobotPair> RobotPart::pairs(const Limits& limits) const {
       pair.required = {std::min(limits.d_self(), m / 2), std::min(limits.d_self_edge(), m / 4),
                        std::min(h, std::max(m / 2, kVerdictBand))};
       pair.near = m < far_enough(limits);
-      pair.reduced =
-          pair.required.node < limits.d_self() || pair.required.motion < limits.d_self_edge() || pair.required.tolerance < h;
+      pair.reduced = pair.required.node < limits.d_self() ||
+                     pair.required.motion < limits.d_self_edge() || pair.required.tolerance < h;
     }
     pairs.push_back(pair);
   }

@@ -15,11 +15,12 @@ class RobotPart {
   /// Builds the shapes of the robot's bodies, with mesh models from `meshes`, and samples the robot
   /// pairs for which no SRDF speaks, up to the clearances that problem.limits need. Throws
   /// InputError for a mesh without a triangle that has an area.
-  RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem, MeshStore& meshes, const Budget& budget);
+  RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem, MeshStore& meshes,
+            const Budget& budget);
   /// Returns `part` itself if its medians reach as far as these limits need, else a copy in which
   /// they do.
-  [[nodiscard]] static std::shared_ptr<const RobotPart> for_limits(const std::shared_ptr<const RobotPart>& part,
-                                                                   const Limits& limits, const Budget& budget);
+  [[nodiscard]] static std::shared_ptr<const RobotPart> for_limits(
+      const std::shared_ptr<const RobotPart>& part, const Limits& limits, const Budget& budget);
 
   /// Returns the robot pairs by a problem's limits. The part must know the medians that these
   /// limits need.
@@ -43,7 +44,8 @@ class RobotPart {
   };
   void find_medians(double far, const Budget& budget);
   void drop_always_touching(const Budget& budget);
-  [[nodiscard]] double median(const BodyPair& pair, double far, const std::vector<std::vector<Pose>>& samples,
+  [[nodiscard]] double median(const BodyPair& pair, double far,
+                              const std::vector<std::vector<Pose>>& samples,
                               const Budget& budget) const;
 
   std::vector<Candidate> candidates_;

@@ -49,8 +49,10 @@ std::string millimetres(double metres) {
 std::string list_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 5;
   std::string list;
-  for (std::size_t k = 0; k < std::min(names.size(), kMost); ++k) list += (k == 0 ? "" : ", ") + names[k];
-  return names.size() <= kMost ? list : list + " and " + std::to_string(names.size() - kMost) + " more";
+  for (std::size_t k = 0; k < std::min(names.size(), kMost); ++k)
+    list += (k == 0 ? "" : ", ") + names[k];
+  return names.size() <= kMost ? list
+                               : list + " and " + std::to_string(names.size() - kMost) + " more";
 }
 
 }  // namespace
@@ -76,8 +78,9 @@ struct World::Impl {
   std::vector<std::string> warnings;
   double forgiven;  // m, by which pairs may be nearer than they should
 
-  Impl(std::shared_ptr<const RobotPart> robot_part, MeshStore store, const std::vector<SceneObject>& scene,
-       const Limits& of_problem, const Budget& budget, double forgive, const Impl* like = nullptr)
+  Impl(std::shared_ptr<const RobotPart> robot_part, MeshStore store,
+       const std::vector<SceneObject>& scene, const Limits& of_problem, const Budget& budget,
+       double forgive, const Impl* like = nullptr)
       : robot(std::move(robot_part)),
         meshes(std::move(store)),
         limits(of_problem),
@@ -92,14 +95,15 @@ struct World::Impl {
     for (const SceneObject& object : scene) {
       budget.poll();
       const Body* known = like ? like->scene_body(object.shape) : nullptr;
-      add(object.name, {known ? known->shape : make_fcl_shape(object.shape, meshes), 0, object.pose});
+      add(object.name,
+          {known ? known->shape : make_fcl_shape(object.shape, meshes), 0, object.pose});
       const int index = static_cast<int>(bodies.size()) - 1;
       for (std::size_t i = 0; i < robot->bodies.size(); ++i) {
         const RobotBody& body = robot->bodies[i];
         if (body.group == 0) continue;
         const BodyPair pair{static_cast<int>(i), index};
-        const auto found =
-            std::find_if(object.allow.begin(), object.allow.end(), [&](const Allowed& a) { return a.body == body.name; });
+        const auto found = std::find_if(object.allow.begin(), object.allow.end(),
+                                        [&](const Allowed& a) { return a.body == body.name; });
         if (found != object.allow.end()) allowed.push_back({pair, found->depth});
         if (found == object.allow.end() || found->depth) pairs.push_back(pair);
       }
@@ -112,7 +116,8 @@ struct World::Impl {
       const RobotPair* known = robot_pair(p);
       may_touch.push_back(known == nullptr && depth_of(p));
       if (may_touch.back())
-        required_by_pair.back() = {kAskedNothing, asked.node - forgiven, asked.motion - forgiven, kAskedNothing};
+        required_by_pair.back() = {kAskedNothing, asked.node - forgiven, asked.motion - forgiven,
+                                   kAskedNothing};
       if (known ? !known->near : !may_touch.back()) continue;
       RequiredByRule& own = required_by_pair.back();
       const Chain::Joints joints = robot->chain.joints_between(body(p.a).group, body(p.b).group);
@@ -129,7 +134,9 @@ struct World::Impl {
     return required_by_pair[k][static_cast<std::size_t>(threshold.rule)] + threshold.more;
   }
   /// Returns true for a pair of two robot bodies. These come last in `pairs`.
-  [[nodiscard]] bool is_own(const BodyPair& p) const { return p.b < static_cast<int>(robot->bodies.size()); }
+  [[nodiscard]] bool is_own(const BodyPair& p) const {
+    return p.b < static_cast<int>(robot->bodies.size());
+  }
   [[nodiscard]] double required(const BodyPair& p, const Threshold& threshold) const {
     if (threshold.rule == ClearanceRule::kNothing) return threshold.more;
     const auto number = number_of(p);
@@ -137,7 +144,9 @@ struct World::Impl {
   }
   /// Returns true if a threshold d, m, has to be tested for pair k: a negative one only for pairs
   /// that keep a depth.
-  [[nodiscard]] bool is_asked(std::size_t k, double d) const { return d >= 0 || (may_touch[k] && d > kAskedNothing); }
+  [[nodiscard]] bool is_asked(std::size_t k, double d) const {
+    return d >= 0 || (may_touch[k] && d > kAskedNothing);
+  }
   [[nodiscard]] bool is_asked(const BodyPair& p, double d) const {
     const auto number = number_of(p);
     return d >= 0 || (number && is_asked(*number, d));
@@ -151,7 +160,8 @@ struct World::Impl {
   }
   void number_pairs() {
     numbers.assign(robot->bodies.size() * bodies.size(), -1);
-    for (std::size_t k = 0; k < pairs.size(); ++k) numbers[place_of(pairs[k])] = static_cast<int>(k);
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      numbers[place_of(pairs[k])] = static_cast<int>(k);
   }
   [[nodiscard]] RequiredClearance required_of(const BodyPair& p) const {
     if (const RobotPair* known = robot_pair(p)) return known->required;
@@ -166,18 +176,21 @@ struct World::Impl {
   [[nodiscard]] RequiredClearance required_of_depth(double depth) const {
     if (forgiven > 0) return {-depth, -depth, kVerdictBand};
     const double tolerance = std::min(limits.edge_tolerance, std::max(depth / 32, kVerdictBand));
-    const double margin = limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
+    const double margin =
+        limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
     return {margin - depth, -depth, tolerance};
   }
   /// Returns how deep, m, the bodies of a pair may be in each other; none if no depth bounds the
   /// pair.
   [[nodiscard]] std::optional<double> depth_of(const BodyPair& p) const {
-    const auto found = std::find_if(allowed.begin(), allowed.end(), [&](const AllowedPair& x) { return x.pair == p; });
+    const auto found = std::find_if(allowed.begin(), allowed.end(),
+                                    [&](const AllowedPair& x) { return x.pair == p; });
     return found == allowed.end() ? std::nullopt : found->depth;
   }
   [[nodiscard]] const RobotPair* robot_pair(const BodyPair& p) const {
     if (p.b >= static_cast<int>(robot->bodies.size())) return nullptr;
-    return &*std::find_if(robot_pairs.begin(), robot_pairs.end(), [&](const RobotPair& x) { return x.pair == p; });
+    return &*std::find_if(robot_pairs.begin(), robot_pairs.end(),
+                          [&](const RobotPair& x) { return x.pair == p; });
   }
 
   void keep_pairs(const std::vector<int>& objects, Pairs wanted) {
@@ -189,7 +202,8 @@ struct World::Impl {
     required_by_pair.clear();
     may_touch.clear();
     const auto is_wanted = [&](const BodyPair& p) {
-      return (std::find(objects.begin(), objects.end(), p.b - robot_bodies) != objects.end()) == (wanted == Pairs::kOf);
+      return (std::find(objects.begin(), objects.end(), p.b - robot_bodies) != objects.end()) ==
+             (wanted == Pairs::kOf);
     };
     for (std::size_t k = 0; k < all.size(); ++k)
       if (is_wanted(all[k])) {
@@ -212,15 +226,18 @@ struct World::Impl {
       else if (p.required.node < limits.d_self())
         reduced.push_back(text + " " + millimetres(p.required.node));
     }
-    if (!dropped.empty()) warnings.push_back("robot pairs that touch in every posture are not kept apart: " + list_of(dropped));
+    if (!dropped.empty())
+      warnings.push_back("robot pairs that touch in every posture are not kept apart: " +
+                         list_of(dropped));
     if (!reduced.empty())
-      warnings.push_back("robot pairs that are near by design keep less than " + millimetres(limits.d_self()) + ": " +
-                         list_of(reduced));
+      warnings.push_back("robot pairs that are near by design keep less than " +
+                         millimetres(limits.d_self()) + ": " + list_of(reduced));
   }
 
   void add(const std::string& name, Body body) {
     if (const auto* mesh = std::get_if<MeshPtr>(&body.shape.shape); mesh && !(*mesh)->closed)
-      warnings.push_back(name + ": mesh " + (*mesh)->source + " is not closed: it is treated as a surface, with nothing inside");
+      warnings.push_back(name + ": mesh " + (*mesh)->source +
+                         " is not closed: it is treated as a surface, with nothing inside");
     bodies.push_back(std::move(body));
     names.push_back(name);
   }
@@ -228,7 +245,8 @@ struct World::Impl {
   /// Returns a scene object of this shape; null if there is none.
   const Body* scene_body(const Shape& shape) const {
     const auto first = bodies.begin() + static_cast<std::ptrdiff_t>(robot->bodies.size());
-    const auto found = std::find_if(first, bodies.end(), [&](const Body& body) { return body.shape.shape == shape; });
+    const auto found = std::find_if(first, bodies.end(),
+                                    [&](const Body& body) { return body.shape.shape == shape; });
     return found == bodies.end() ? nullptr : &*found;
   }
 
@@ -238,10 +256,12 @@ struct World::Impl {
     const int robot_bodies = static_cast<int>(robot->bodies.size());
     const auto round = [&](int i) { return body(i).shape.kind == FclShape::Kind::kRound; };
     const auto key = [&](const BodyPair& p) {
-      const int outermost = std::max(robot->chain.root_of(body(p.a).group), robot->chain.root_of(body(p.b).group));
+      const int outermost =
+          std::max(robot->chain.root_of(body(p.a).group), robot->chain.root_of(body(p.b).group));
       return std::tuple(p.b < robot_bodies, !round(p.a) && !round(p.b), -outermost, -p.a, -p.b);
     };
-    std::sort(pairs.begin(), pairs.end(), [&](const BodyPair& p, const BodyPair& q) { return key(p) < key(q); });
+    std::sort(pairs.begin(), pairs.end(),
+              [&](const BodyPair& p, const BodyPair& q) { return key(p) < key(q); });
   }
 
   /// Calls FCL once, because it builds its dispatch tables at the first call and does not promise
@@ -257,21 +277,27 @@ struct World::Impl {
   }
 };
 
-World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget)
+World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+             const Budget& budget)
     : World(MeshStore(), robot, arm, problem, budget) {}
-World::World(const World& like, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget)
+World::World(const World& like, const RobotModel& robot, const ArmModel& arm,
+             const Problem& problem, const Budget& budget)
     : World(like.impl_->meshes, robot, arm, problem, budget) {}
-World::World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget) {
+World::World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+             const Budget& budget) {
   auto part = std::make_shared<const RobotPart>(robot, arm, problem, meshes, budget);
-  impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, problem.limits, budget, 0);
+  impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, problem.limits,
+                                 budget, 0);
 }
 World::World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget)
-    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_->limits, budget, 0, like.impl_.get())) {
-}
+    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_->limits,
+                                   budget, 0, like.impl_.get())) {}
 World::World(const World& like, const Problem& problem, const Budget& budget, double forgiven)
-    : impl_(std::make_unique<Impl>(RobotPart::for_limits(like.impl_->robot, problem.limits, budget), like.impl_->meshes,
-                                   problem.scene, problem.limits, budget, forgiven, like.impl_.get())) {}
-World::World(const World& whole, const std::vector<int>& objects, Pairs pairs) : impl_(std::make_unique<Impl>(*whole.impl_)) {
+    : impl_(std::make_unique<Impl>(RobotPart::for_limits(like.impl_->robot, problem.limits, budget),
+                                   like.impl_->meshes, problem.scene, problem.limits, budget,
+                                   forgiven, like.impl_.get())) {}
+World::World(const World& whole, const std::vector<int>& objects, Pairs pairs)
+    : impl_(std::make_unique<Impl>(*whole.impl_)) {
   impl_->keep_pairs(objects, pairs);
 }
 World::~World() = default;
@@ -294,13 +320,16 @@ const std::vector<RobotBody>& World::bodies() const {
   return impl_->robot->bodies;
 }
 bool World::has_meshes() const {
-  const auto is_mesh = [](const Impl::Body& body) { return std::holds_alternative<MeshPtr>(body.shape.shape); };
+  const auto is_mesh = [](const Impl::Body& body) {
+    return std::holds_alternative<MeshPtr>(body.shape.shape);
+  };
   return std::any_of(impl_->bodies.begin(), impl_->bodies.end(), is_mesh);
 }
 std::size_t World::triangles_to_make_ready() const {
   std::size_t sum = 0;
   for (const Impl::Body& body : impl_->bodies)
-    if (const auto& mesh = body.shape.mesh; mesh && !mesh->is_ready()) sum += std::get<MeshPtr>(body.shape.shape)->triangles.size();
+    if (const auto& mesh = body.shape.mesh; mesh && !mesh->is_ready())
+      sum += std::get<MeshPtr>(body.shape.shape)->triangles.size();
   return sum;
 }
 void World::make_ready(const std::function<bool()>& stop) const {
@@ -328,7 +357,8 @@ double World::required(std::size_t pair, ClearanceRule rule) const {
   return impl_->required(pair, Threshold(rule));
 }
 double World::displacement(int object, const Pose& from, const Pose& to) const {
-  const Bound& bound = impl_->bodies[impl_->robot->bodies.size() + static_cast<std::size_t>(object)].shape.bound;
+  const Bound& bound =
+      impl_->bodies[impl_->robot->bodies.size() + static_cast<std::size_t>(object)].shape.bound;
   return motion(bound, place(bound, from), place(bound, to)) + kBoundSafety;
 }
 const std::vector<RobotPair>& World::robot_pairs() const {
@@ -357,9 +387,9 @@ struct World::Query::Impl {
   std::array<Pose, kDof + 1> displacements;
   int displaced = 0;           // up to this group of the chain
   std::vector<char> in_place;  // bodies, at q
-  // For find_violating_pair_incremental(): what a pair's two bodies have moved in all is subtracted from the pair's
-  // lower bound of the distance.
-  // by body, up to `moved_to`: in all, and from the posture before, m
+  // For find_violating_pair_incremental(): what a pair's two bodies have moved in all is subtracted
+  // from the pair's lower bound of the distance. by body, up to `moved_to`: in all, and from the
+  // posture before, m
   std::vector<double> moved, step;
   std::vector<PlacedBound> moved_to;     // by body; empty before the first posture
   std::vector<double> lower_bound;       // by pair, m
@@ -409,8 +439,9 @@ struct World::Query::Impl {
       chain.displace(q, displaced, root, displacements);
       displaced = root;
     }
-    poses[i] = body.group <= static_cast<int>(kDof) ? product(displacements[body.group], body.pose)
-                                                    : product(chain.displacement(body.group, q, displacements), body.pose);
+    poses[i] = body.group <= static_cast<int>(kDof)
+                   ? product(displacements[body.group], body.pose)
+                   : product(chain.displacement(body.group, q, displacements), body.pose);
     bounds[i] = place(body.shape.bound, poses[i]);
     in_place[i] = 1;
   }
@@ -425,17 +456,20 @@ struct World::Query::Impl {
     for (int j = 0; j < displaced; ++j) {
       const auto k = static_cast<std::size_t>(j);
       const Vector3d turn = asked.half[j] * (displacements[k].linear() * chain.axis[k]);
-      twists[k + 1] = {twists[k].turn + turn, twists[k].origin + (displacements[k] * chain.point[k]).cross(turn)};
+      twists[k + 1] = {twists[k].turn + turn,
+                       twists[k].origin + (displacements[k] * chain.point[k]).cross(turn)};
     }
     for (std::size_t f = 0; f < chain.followers.size(); ++f) {
       const Chain::Follower& follower = chain.followers[f];
       if (follower.root > displaced) continue;  // it carries no body
       const Pose parent = chain.displacement(follower.parent, q, displacements);
-      const Vector3d motion = asked.half[follower.leader] * follower.multiplier * (parent.linear() * follower.axis);
+      const Vector3d motion =
+          asked.half[follower.leader] * follower.multiplier * (parent.linear() * follower.axis);
       const Twist& carried = twists[static_cast<std::size_t>(follower.parent)];
       twists[kDof + 1 + f] = follower.slides
                                  ? Twist{carried.turn, carried.origin + motion}
-                                 : Twist{carried.turn + motion, carried.origin + (parent * follower.point).cross(motion)};
+                                 : Twist{carried.turn + motion,
+                                         carried.origin + (parent * follower.point).cross(motion)};
     }
   }
   /// Returns how much nearer two bodies can come on the segment, m, to first order: the sum of
@@ -453,12 +487,14 @@ struct World::Query::Impl {
   /// Returns the highest speed of any point of a body of `group` relative to the group `still`, m
   /// per stretch.
   [[nodiscard]] double speed_against(int still, int group, int body) const {
-    const Twist &far = twists[static_cast<std::size_t>(group)], &near = twists[static_cast<std::size_t>(still)];
+    const Twist &far = twists[static_cast<std::size_t>(group)],
+                &near = twists[static_cast<std::size_t>(still)];
     const Vector3d turn = far.turn - near.turn;
     const PlacedBound& at = placed_bound(body);
     double speed = (far.origin - near.origin + turn.cross(at.center)).norm();
     for (int k = 0; k < 3; ++k)
-      if (const double half = bound(body).half[k]; half > 0) speed += half * turn.cross(at.axes.col(k)).norm();
+      if (const double half = bound(body).half[k]; half > 0)
+        speed += half * turn.cross(at.axes.col(k)).norm();
     return speed;
   }
   /// Returns the clearance required of pair k at this threshold, m. On a stretch, level.more is
@@ -466,18 +502,20 @@ struct World::Query::Impl {
   [[nodiscard]] double required(std::size_t k, const Threshold& threshold) const {
     const double d = world->required(k, threshold);
     if (!segment || !(threshold.more > 0)) return d;
-    return std::min(
-        d, world->required(k, threshold.rule) + comes_nearer(world->pairs[k]) + segment->tangent_deviation + segment->margin);
+    return std::min(d, world->required(k, threshold.rule) + comes_nearer(world->pairs[k]) +
+                           segment->tangent_deviation + segment->margin);
   }
 
-  std::optional<BodyPair> find_violating_pair(const Threshold& threshold, const std::optional<BodyPair>& suspected, bool keep,
+  std::optional<BodyPair> find_violating_pair(const Threshold& threshold,
+                                              const std::optional<BodyPair>& suspected, bool keep,
                                               bool own_too = true) {
     all_proved = distance_proofs != DistanceProofs::kOff;
     const auto found = first(threshold, suspected, keep && all_proved, own_too);
     (found ? own.proved_colliding : own.proved_free) += all_proved;
     return found;
   }
-  std::optional<BodyPair> first(const Threshold& threshold, const std::optional<BodyPair>& suspected, bool keep, bool own_too) {
+  std::optional<BodyPair> first(const Threshold& threshold,
+                                const std::optional<BodyPair>& suspected, bool keep, bool own_too) {
     if (suspected && below(*suspected, threshold)) return suspected;
     place_bodies();
     if (keep) return first_open(threshold, suspected, own_too);
@@ -489,7 +527,8 @@ struct World::Query::Impl {
     }
     return std::nullopt;
   }
-  std::optional<BodyPair> first_open(const Threshold& threshold, const std::optional<BodyPair>& suspected, bool own_too) {
+  std::optional<BodyPair> first_open(const Threshold& threshold,
+                                     const std::optional<BodyPair>& suspected, bool own_too) {
     move_on();
     find_open(threshold);
     for (const std::size_t k : open) {
@@ -518,7 +557,8 @@ struct World::Query::Impl {
     place_body(p.b);
     const double d = world->required(p, threshold);
     if (d < 0 && world->may_touch[*k])
-      last_proved = detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
+      last_proved =
+          detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
     else
       last_proved = proves_below(placed(p.a), placed(p.b), d, warm_start[*k]);
     own.proved_colliding += last_proved;
@@ -531,7 +571,9 @@ struct World::Query::Impl {
   /// depth that the search leaves open counts as more. FCL is not called.
   bool is_deeper(const BodyPair& p, double d) {
     last_proved = true;
-    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), kBoundSafety - d)) return false;
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b),
+                     kBoundSafety - d))
+      return false;
     return is_deeper(detail::depth(placed(p.a), placed(p.b), d, d + kTelling), d);
   }
   bool is_deeper(const Depth& found, double d) {
@@ -543,7 +585,8 @@ struct World::Query::Impl {
   bool is_deeper_now(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
-    lower_bound[k] = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)) + so_far;
+    lower_bound[k] =
+        distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)) + so_far;
     last_proved = true;
     if (lower_bound[k] - so_far >= kBoundSafety - d) return false;
     const Depth found = detail::depth(placed(p.a), placed(p.b), d, d + kTelling);
@@ -553,18 +596,26 @@ struct World::Query::Impl {
   bool is_below(const BodyPair& p, double d, DistanceProof proved) {
     last_proved = proved != DistanceProof::kNone;
     all_proved &= last_proved;
-    return last_proved ? proved == DistanceProof::kColliding : test.below(placed(p.a), placed(p.b), d);
+    return last_proved ? proved == DistanceProof::kColliding
+                       : test.below(placed(p.a), placed(p.b), d);
   }
   [[nodiscard]] DistanceProof prove_pair(const BodyPair& p, double d, TrianglePair& from) const {
-    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return DistanceProof::kFree;
-    return distance_proofs == DistanceProofs::kOff ? DistanceProof::kNone : prove(placed(p.a), placed(p.b), d, 0, from).proved;
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b),
+                     d + kBoundSafety))
+      return DistanceProof::kFree;
+    return distance_proofs == DistanceProofs::kOff
+               ? DistanceProof::kNone
+               : prove(placed(p.a), placed(p.b), d, 0, from).proved;
   }
 
   /// Returns true if the clearance of pair k is proved to exceed d, m, without FCL.
   [[nodiscard]] bool proved_beyond(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
-    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return true;
-    return distance_proofs == DistanceProofs::kOn && proves_beyond(placed(p.a), placed(p.b), d, warm_start[k]);
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b),
+                     d + kBoundSafety))
+      return true;
+    return distance_proofs == DistanceProofs::kOn &&
+           proves_beyond(placed(p.a), placed(p.b), d, warm_start[k]);
   }
 
   void move_on() {
@@ -593,12 +644,14 @@ struct World::Query::Impl {
     std::size_t found = 0;
     for (std::size_t k = 0; k < lower_bound.size(); ++k) {
       open[found] = k;
-      found += !(lower_bound[k] - moved_together(world->pairs[k]) >= world->required(k, threshold) + kKeptSafety);  // NaN is open
+      found += !(lower_bound[k] - moved_together(world->pairs[k]) >=
+                 world->required(k, threshold) + kKeptSafety);  // NaN is open
     }
     open.resize(found);
     if (segment) {
       std::erase_if(open, [&](std::size_t k) {
-        return lower_bound[k] - moved_together(world->pairs[k]) >= required(k, threshold) + kKeptSafety;
+        return lower_bound[k] - moved_together(world->pairs[k]) >=
+               required(k, threshold) + kKeptSafety;
       });
       found = open.size();
     }
@@ -609,14 +662,17 @@ struct World::Query::Impl {
   DistanceProof renewed(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
-    double bound_now = ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
-    if (bound_now < d + kMargin) bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    double bound_now =
+        ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (bound_now < d + kMargin)
+      bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     lower_bound[k] = bound_now + so_far;
     if (bound_now >= d + kMargin) return DistanceProof::kFree;
     // A margin that the next step uses up is not worth searching for: for bodies that are near by
     // design that search takes most of the time.
     const double last_step = step[p.a] + step[p.b];
-    const bool lasts = last_step < kMargin && !(distance_at(placed(p.a), placed(p.b), warm_start[k]) < d + last_step);
+    const bool lasts = last_step < kMargin &&
+                       !(distance_at(placed(p.a), placed(p.b), warm_start[k]) < d + last_step);
     const double margin = lasts ? kMargin : kBoundSafety;
     if (bound_now >= d + margin) return DistanceProof::kFree;
     // Most pairs are free.
@@ -630,12 +686,15 @@ struct World::Query::Impl {
     place_body(p.a);
     place_body(p.b);
     const double sought = enough + kKeptSafety;
-    double found = ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
-    if (!(found >= sought)) found = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    double found =
+        ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (!(found >= sought))
+      found = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     if (!(found >= sought) && world->may_touch[k]) {
       found = std::max(found, -detail::depth(placed(p.a), placed(p.b), -sought).at_most);
     } else if (!(found >= sought) && distance_proofs == DistanceProofs::kOn) {
-      const Proof proof = prove(placed(p.a), placed(p.b), least, std::max(kBoundSafety, sought - least), warm_start[k]);
+      const Proof proof = prove(placed(p.a), placed(p.b), least,
+                                std::max(kBoundSafety, sought - least), warm_start[k]);
       if (proof.proved == DistanceProof::kFree) found = std::max(found, proof.bound);
     }
     return found - kKeptSafety;
@@ -651,28 +710,29 @@ World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
-std::optional<BodyPair> World::Query::find_violating_pair(const Config& q, const Threshold& threshold,
-                                                          const std::optional<BodyPair>& suspected) {
+std::optional<BodyPair> World::Query::find_violating_pair(
+    const Config& q, const Threshold& threshold, const std::optional<BodyPair>& suspected) {
   impl_->move_to(q);
   impl_->segment.reset();
   return impl_->find_violating_pair(threshold, suspected, false);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_incremental(const Config& q, const Threshold& threshold,
-                                                                      const std::optional<BodyPair>& suspected) {
+std::optional<BodyPair> World::Query::find_violating_pair_incremental(
+    const Config& q, const Threshold& threshold, const std::optional<BodyPair>& suspected) {
   impl_->move_to(q);
   impl_->segment.reset();
   return impl_->find_violating_pair(threshold, suspected, true);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
-                                                                     const std::optional<BodyPair>& suspected) {
+std::optional<BodyPair> World::Query::find_violating_pair_with_scene(
+    const Config& q, const Threshold& threshold, const std::optional<BodyPair>& suspected) {
   impl_->move_to(q);
   impl_->segment.reset();
   return impl_->find_violating_pair(threshold, suspected, true, false);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const MotionSegment& segment, const Config& q,
+std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const MotionSegment& segment,
+                                                                      const Config& q,
                                                                       const Threshold& threshold) {
   impl_->move_to(q);
   impl_->begin(segment);
@@ -683,7 +743,8 @@ double World::Query::slack(const Threshold& threshold) const {
   return impl_->slack(threshold);
 }
 
-double World::Query::clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough) {
+double World::Query::clearance_lower_bound(const Config& q, std::size_t pair, double least,
+                                           double enough) {
   impl_->move_to(q);
   return impl_->clearance_lower_bound(pair, least, enough);
 }
@@ -699,12 +760,14 @@ bool World::Query::violation_is_proved() const {
   return impl_->last_proved;
 }
 
-bool World::Query::pair_violates(const Config& q, const BodyPair& pair, const Threshold& threshold) {
+bool World::Query::pair_violates(const Config& q, const BodyPair& pair,
+                                 const Threshold& threshold) {
   impl_->move_to(q);
   return impl_->below(pair, threshold);
 }
 
-bool World::Query::proves_violation(const Config& q, const BodyPair& pair, const Threshold& threshold) {
+bool World::Query::proves_violation(const Config& q, const BodyPair& pair,
+                                    const Threshold& threshold) {
   impl_->move_to(q);
   return impl_->proves_violation(pair, threshold);
 }
@@ -717,7 +780,8 @@ bool World::Query::violation_proof_is_cheap(const BodyPair& pair) const {
     const auto* mesh = std::get_if<MeshPtr>(&body.shape);
     return mesh && (*mesh)->triangles.size() >= kHeavy && solid.kind == FclShape::Kind::kSolid;
   };
-  return impl_->distance_proofs != DistanceProofs::kOff && (held_against(a, b) || held_against(b, a));
+  return impl_->distance_proofs != DistanceProofs::kOff &&
+         (held_against(a, b) || held_against(b, a));
 }
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {
@@ -726,7 +790,8 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   return impl_->nearest({kMost, {}, 0, kMost});
 }
 
-std::optional<World::Query::Clearance> World::Query::clearance_if_less(const Config& q, const Clearance& so_far) {
+std::optional<World::Query::Clearance> World::Query::clearance_if_less(const Config& q,
+                                                                       const Clearance& so_far) {
   impl_->move_to(q);
   return impl_->nearest(so_far);
 }
@@ -746,8 +811,8 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (world->may_touch[k]) continue;
     const BodyPair& p = pairs[k];
-    order.push_back({distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)), k,
-                     world->required(k, ClearanceRule::kNode)});
+    order.push_back({distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)),
+                     k, world->required(k, ClearanceRule::kNode)});
   }
   std::sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
     return std::tuple(x.bound - x.required, x.pair) < std::tuple(y.bound - y.required, y.pair);
@@ -758,13 +823,18 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
   Clearance answer{std::numeric_limits<double>::max(), {}, 0, so_far.least};
   bool nearer = false;
   for (const Candidate& c : order) {
-    const bool may_touch = c.bound <= kBoundSafety, may_be_nearest = c.bound - kBoundSafety <= answer.least;
-    if (!may_touch && !may_be_nearest && c.bound - c.required - kBoundSafety > std::get<1>(least)) continue;
+    const bool may_touch = c.bound <= kBoundSafety,
+               may_be_nearest = c.bound - kBoundSafety <= answer.least;
+    if (!may_touch && !may_be_nearest && c.bound - c.required - kBoundSafety > std::get<1>(least))
+      continue;
     // A pair that is proved to be further away than both has neither the least margin nor the least
     // clearance.
     const double beyond = std::max(std::get<1>(least) + c.required, answer.least);
-    if (std::get<0>(least) && beyond < std::numeric_limits<double>::max() && proved_beyond(c.pair, beyond)) continue;
-    const double found = test.clearance(placed(pairs[c.pair].a), placed(pairs[c.pair].b), &warm_start[c.pair]);
+    if (std::get<0>(least) && beyond < std::numeric_limits<double>::max() &&
+        proved_beyond(c.pair, beyond))
+      continue;
+    const double found =
+        test.clearance(placed(pairs[c.pair].a), placed(pairs[c.pair].b), &warm_start[c.pair]);
     nearer = nearer || found < answer.least;
     answer.least = std::min(answer.least, found);
     if (const std::tuple mine{found > 0, found - c.required, c.pair}; mine < least) {
@@ -778,10 +848,12 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
   return nearer ? std::optional(answer) : std::nullopt;
 }
 
-std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {
+std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q,
+                                                                    const Clearance& clearance) {
   impl_->move_to(q);
   impl_->place_bodies();
-  return detail::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
+  return detail::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b),
+                                clearance.distance);
 }
 
 std::optional<Vector3d> World::Query::common_point(const Config& q, const BodyPair& pair) {
@@ -794,9 +866,10 @@ Depth World::Query::depth(const Config& q, const BodyPair& pair, double from) {
   impl_->move_to(q);
   impl_->place_body(pair.a);
   impl_->place_body(pair.b);
-  const double apart =
-      distance_bound(impl_->bound(pair.a), impl_->placed_bound(pair.a), impl_->bound(pair.b), impl_->placed_bound(pair.b));
-  if (kBoundSafety - apart <= from) return {std::numeric_limits<double>::lowest(), kBoundSafety - apart};
+  const double apart = distance_bound(impl_->bound(pair.a), impl_->placed_bound(pair.a),
+                                      impl_->bound(pair.b), impl_->placed_bound(pair.b));
+  if (kBoundSafety - apart <= from)
+    return {std::numeric_limits<double>::lowest(), kBoundSafety - apart};
   return detail::depth(impl_->placed(pair.a), impl_->placed(pair.b), from);
 }
 

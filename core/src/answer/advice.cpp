@@ -39,7 +39,8 @@ std::string words(const Vector3d& offset) {
   const double most = offset.cwiseAbs().maxCoeff(&axis);
   if (offset.norm() > most * (1 + 1e-9))
     return formatted("(%.3g, %.3g, %.3g) mm", 1e3 * offset.x(), 1e3 * offset.y(), 1e3 * offset.z());
-  return formatted("%.3g mm along %c%c", 1e3 * most, offset[axis] < 0 ? '-' : '+', static_cast<char>('x' + axis));
+  return formatted("%.3g mm along %c%c", 1e3 * most, offset[axis] < 0 ? '-' : '+',
+                   static_cast<char>('x' + axis));
 }
 
 }  // namespace
@@ -83,9 +84,12 @@ std::string words(const Advice& advice) {
   for (const Limit& limit : kLimits)
     if (limit.change == advice.change) {
       const auto shown = [&](const std::optional<double>& value) {
-        return value ? formatted("%.3g%s%s", limit.scale * *value, *limit.unit ? " " : "", limit.unit) : std::string("none");
+        return value
+                   ? formatted("%.3g%s%s", limit.scale * *value, *limit.unit ? " " : "", limit.unit)
+                   : std::string("none");
       };
-      return std::string(limit.phrase) + " of " + shown(advice.to) + " instead of " + shown(advice.from);
+      return std::string(limit.phrase) + " of " + shown(advice.to) + " instead of " +
+             shown(advice.from);
     }
   switch (advice.change) {
     case Advice::Change::kFreeStart:
@@ -96,7 +100,8 @@ std::string words(const Advice& advice) {
       return "half the steps of the lattice, and nodes on narrow arcs (--ds, --dphi, --arcs)";
     case Advice::Change::kDepth:
       return "contact with '" + advice.object +
-             formatted("' up to %.3g mm deep instead of %.3g mm", 1e3 * *advice.to, 1e3 * *advice.from);
+             formatted("' up to %.3g mm deep instead of %.3g mm", 1e3 * *advice.to,
+                       1e3 * *advice.from);
     case Advice::Change::kMoveObject:
       return "'" + advice.object + "' moved by " + words(advice.offset);
     default:

@@ -20,13 +20,14 @@ std::string cause_text(const Cause& cause, std::optional<double> most = {}) {
 }
 
 std::string line_of(const EmptyLayers& run) {
-  std::string line =
-      run.first == run.last ? formatted("  layer %d", run.first) : formatted("  layers %d to %d", run.first, run.last);
+  std::string line = run.first == run.last ? formatted("  layer %d", run.first)
+                                           : formatted("  layers %d to %d", run.first, run.last);
   if (run.first_waypoint >= 0)
-    line += run.first_waypoint == run.last_waypoint ? formatted(" (waypoint %d)", run.first_waypoint)
-                                                    : formatted(" (waypoints %d to %d)", run.first_waypoint, run.last_waypoint);
-  line +=
-      run.first == run.last ? formatted(", s = %.4f m", run.first_s) : formatted(", s = %.4f to %.4f m", run.first_s, run.last_s);
+    line += run.first_waypoint == run.last_waypoint
+                ? formatted(" (waypoint %d)", run.first_waypoint)
+                : formatted(" (waypoints %d to %d)", run.first_waypoint, run.last_waypoint);
+  line += run.first == run.last ? formatted(", s = %.4f m", run.first_s)
+                                : formatted(", s = %.4f to %.4f m", run.first_s, run.last_s);
   return line + ": no valid node: " + cause_text(run.cause, run.most) + '\n';
 }
 
@@ -36,39 +37,48 @@ std::string without_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
   if (!d.together.empty()) {
     std::string line = "  no single thing stands in the way: besides it";
-    for (std::size_t k = 0; k < d.together.size(); ++k) line += (k == 0 ? " " : ", ") + cause_text(d.together[k]);
+    for (std::size_t k = 0; k < d.together.size(); ++k)
+      line += (k == 0 ? " " : ", ") + cause_text(d.together[k]);
     return line + '\n';
   }
   if (!d.without_it) return "";
   const std::string removed = d.cause.object.empty() ? "it" : d.cause.object;
   return formatted("  without ") + removed +
-         formatted(" there are paths to layer %d (s = %.4f m) at least\n", *d.without_it, *d.without_it_s);
+         formatted(" there are paths to layer %d (s = %.4f m) at least\n", *d.without_it,
+                   *d.without_it_s);
 }
 
 std::string diagnosis_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
-  const std::string claim = d.holds() == Diagnosis::Holds::kEveryResolution ? "no path at any resolution"
-                            : d.holds() == Diagnosis::Holds::kExactTool     ? "no path for a tool that follows exactly"
-                            : result.lattice.complete                       ? "no path at this resolution"
-                                                                            : "no path found, among the solutions that were found";
+  const std::string claim =
+      d.holds() == Diagnosis::Holds::kEveryResolution ? "no path at any resolution"
+      : d.holds() == Diagnosis::Holds::kExactTool     ? "no path for a tool that follows exactly"
+      : result.lattice.complete                       ? "no path at this resolution"
+                                : "no path found, among the solutions that were found";
   const std::string none = claim + with_held(result.held);
-  if (d.cause.kind == Cause::Kind::kNone) return none + "; stopped before it was known what ends every one\n";
+  if (d.cause.kind == Cause::Kind::kNone)
+    return none + "; stopped before it was known what ends every one\n";
   const std::string why = cause_text(d.cause);
-  std::string answer = d.reached_layer ? none +
-                                             formatted(": every one ends by layer %d of %d (s = %.4f m), where ", *d.reached_layer,
-                                                       result.lattice.layers - 1, *d.reached_s) +
-                                             why + " stops it\n"
-                                       : none + ": the first layer has no valid node: " + why + '\n';
+  std::string answer =
+      d.reached_layer ? none +
+                            formatted(": every one ends by layer %d of %d (s = %.4f m), where ",
+                                      *d.reached_layer, result.lattice.layers - 1, *d.reached_s) +
+                            why + " stops it\n"
+                      : none + ": the first layer has no valid node: " + why + '\n';
   answer += without_text(result);
   if (d.unreachable) {
     answer += formatted("  layer %d", d.unreachable->layer);
-    if (d.unreachable->waypoint >= 0) answer += formatted(" (waypoint %d)", d.unreachable->waypoint);
-    answer += formatted(", s = %.4f m: no joints within their limits reach it, at any arm angle\n", d.unreachable->s);
+    if (d.unreachable->waypoint >= 0)
+      answer += formatted(" (waypoint %d)", d.unreachable->waypoint);
+    answer += formatted(", s = %.4f m: no joints within their limits reach it, at any arm angle\n",
+                        d.unreachable->s);
   }
   constexpr std::size_t kMostLines = 40;
-  for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k) answer += line_of(d.empty_layers[k]);
+  for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k)
+    answer += line_of(d.empty_layers[k]);
   if (d.empty_layers.size() > kMostLines)
-    answer += formatted("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
+    answer +=
+        formatted("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
   if (!d.complete && d.layers_known < result.lattice.layers)
     answer += formatted("  layers from %d on were not looked at\n", d.layers_known);
   return answer;
@@ -82,18 +92,24 @@ std::string solved_text(const PlanResult& result) {
   const auto s_of = [&](int row) { return result.trajectory[static_cast<std::size_t>(row)].s; };
   std::string line = formatted("solved: %d layers, cost %.6g", result.lattice.layers, result.cost);
   if (const auto& least = result.min_margin)
-    line += formatted(" | least clearance %.1f mm (asked %.3g) at s %.3f: ", 1e3 * least->clearance, 1e3 * least->required,
-                      s_of(least->row)) +
+    line += formatted(" | least clearance %.1f mm (asked %.3g) at s %.3f: ", 1e3 * least->clearance,
+                      1e3 * least->required, s_of(least->row)) +
             least->bodies[0] + " - " + least->bodies[1];
   if (const auto& contact = result.deepest_contact)
-    line += formatted(" | contact %s%.2f mm deep", contact->at_most ? "" : "at least ", 1e3 * contact->depth) +
+    line += formatted(" | contact %s%.2f mm deep", contact->at_most ? "" : "at least ",
+                      1e3 * contact->depth) +
             (contact->allowed ? formatted(" (allowed %.3g)", 1e3 * *contact->allowed) : "") +
-            formatted(" at s %.3f: ", s_of(contact->row)) + contact->bodies[0] + " - " + contact->bodies[1];
+            formatted(" at s %.3f: ", s_of(contact->row)) + contact->bodies[0] + " - " +
+            contact->bodies[1];
   if (const auto& limit = result.nearest_limit)
-    line += " | " + limit->joint + formatted(" %.1f deg from its limit at s %.3f", limit->margin * 180 / kPi, s_of(limit->row));
+    line += " | " + limit->joint +
+            formatted(" %.1f deg from its limit at s %.3f", limit->margin * 180 / kPi,
+                      s_of(limit->row));
   if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
-    line += formatted(" | tool %.3f mm off", error.max) + (error.allowed ? formatted(" (allowed %.3g)", 1e3 * *error.allowed) : "");
-  if (const auto& top = result.top_tool_speed) line += formatted(" | tool speed up to %.3g m/s (", top->speed) + top->joint + ")";
+    line += formatted(" | tool %.3f mm off", error.max) +
+            (error.allowed ? formatted(" (allowed %.3g)", 1e3 * *error.allowed) : "");
+  if (const auto& top = result.top_tool_speed)
+    line += formatted(" | tool speed up to %.3g m/s (", top->speed) + top->joint + ")";
   return line + held_text(result) + '\n';
 }
 
@@ -117,7 +133,8 @@ std::string advice_text(const std::vector<Advice>& advice) {
         lines += "  would help: " + words(one) + formatted(" (solved, cost %.6g)\n", *one.cost);
         break;
       case Advice::Outcome::kFurther:
-        lines += "  not enough: " + words(one) + formatted(" (paths to s = %.4f m)\n", *one.reached_s);
+        lines +=
+            "  not enough: " + words(one) + formatted(" (paths to s = %.4f m)\n", *one.reached_s);
         break;
       case Advice::Outcome::kNoHelp:
         lines += "  no help: " + words(one) + '\n';
@@ -136,21 +153,25 @@ std::string removed_text(const InfeasibilityCertificate& certificate) {
     sum.nodes += counts.by_witness[k].nodes;
     sum.edges += counts.by_witness[k].edges;
   }
-  std::vector<std::pair<std::string, CertificateCounts::Removed>> most(by_words.begin(), by_words.end());
-  std::stable_sort(most.begin(), most.end(),
-                   [](const auto& x, const auto& y) { return x.second.nodes + x.second.edges > y.second.nodes + y.second.edges; });
+  std::vector<std::pair<std::string, CertificateCounts::Removed>> most(by_words.begin(),
+                                                                       by_words.end());
+  std::stable_sort(most.begin(), most.end(), [](const auto& x, const auto& y) {
+    return x.second.nodes + x.second.edges > y.second.nodes + y.second.edges;
+  });
   constexpr std::size_t kShown = 5;
   std::string list;
   for (std::size_t k = 0; k < std::min(kShown, most.size()); ++k) {
     const auto& [reason, sum] = most[k];
-    list += (k == 0 ? "" : ", ") + reason + (sum.nodes > 0 ? formatted(" %lld nodes", static_cast<long long>(sum.nodes)) : "") +
+    list += (k == 0 ? "" : ", ") + reason +
+            (sum.nodes > 0 ? formatted(" %lld nodes", static_cast<long long>(sum.nodes)) : "") +
             (sum.nodes > 0 && sum.edges > 0 ? " and" : "") +
             (sum.edges > 0 ? formatted(" %lld edges", static_cast<long long>(sum.edges)) : "");
   }
   if (most.size() > kShown) list += formatted(" and %zu more", most.size() - kShown);
   const int last = certificate.first_layer + static_cast<int>(certificate.band.size()) - 1;
-  return (certificate.first_layer == last ? formatted("layer %d", last)
-                                          : formatted("layers %d to %d", certificate.first_layer, last)) +
+  return (certificate.first_layer == last
+              ? formatted("layer %d", last)
+              : formatted("layers %d to %d", certificate.first_layer, last)) +
          formatted(", %lld nodes reached; removed by ", static_cast<long long>(counts.reached)) +
          (list.empty() ? "nothing else" : list);
 }

@@ -46,8 +46,9 @@ const char* Cause::unit() const {
 }
 
 bool Cause::same_thing(const Cause& other) const {
-  return kind == other.kind && side == other.side && joint == other.joint && other_joints == other.other_joints &&
-         unwinds == other.unwinds && (object.empty() ? bodies == other.bodies : true) && object == other.object &&
+  return kind == other.kind && side == other.side && joint == other.joint &&
+         other_joints == other.other_joints && unwinds == other.unwinds &&
+         (object.empty() ? bodies == other.bodies : true) && object == other.object &&
          between_layers == other.between_layers && check == other.check;
 }
 
@@ -103,7 +104,8 @@ std::string words(const Cause& cause) {
       return "manipulability";
     case Cause::Kind::kPair:
     case Cause::Kind::kContact:
-      return cause.bodies[0] + " - " + cause.bodies[1] + (cause.between_layers ? " between layers" : "");
+      return cause.bodies[0] + " - " + cause.bodies[1] +
+             (cause.between_layers ? " between layers" : "");
     case Cause::Kind::kArmSlope:
       return "arm slope";
     case Cause::Kind::kRollSlope:
@@ -129,11 +131,16 @@ std::string words(const Cause& cause) {
 std::string figures(const Cause& cause, std::optional<double> most) {
   const auto by = cause.by();
   if (!by) return "";
-  const auto misses = [&](double unit) { return range(unit * *by, unit * std::max(*by, most.value_or(*by))); };
-  const auto of = [&](const char* format, double unit) { return formatted(format, unit * *cause.value, unit * *cause.limit); };
+  const auto misses = [&](double unit) {
+    return range(unit * *by, unit * std::max(*by, most.value_or(*by)));
+  };
+  const auto of = [&](const char* format, double unit) {
+    return formatted(format, unit * *cause.value, unit * *cause.limit);
+  };
   switch (cause.kind) {
     case Cause::Kind::kReach:
-      return (cause.side == Cause::Side::kUpper ? "out of reach by " : "too near to the shoulder by ") +
+      return (cause.side == Cause::Side::kUpper ? "out of reach by "
+                                                : "too near to the shoulder by ") +
              (*by < 10 ? misses(kMillimetres) + " mm" : misses(1) + " m");
     case Cause::Kind::kLimit:
       return (cause.other_joints ? cause.joint + ": " : "") + misses(kDegrees) + " deg beyond " +
@@ -142,14 +149,18 @@ std::string figures(const Cause& cause, std::optional<double> most) {
     case Cause::Kind::kPair:
       if (*cause.limit >= 0) return of("%.3g mm apart, asked %.3g mm", kMillimetres);
       return of("%.3g mm deep, allowed %.3g mm", -kMillimetres) +
-             (cause.over ? formatted(": %.3g mm less what motions need", kMillimetres * *cause.over) : "");
+             (cause.over ? formatted(": %.3g mm less what motions need", kMillimetres * *cause.over)
+                         : "");
     case Cause::Kind::kContact:
       return formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit);
     case Cause::Kind::kRollSlope:
-      return cause.joint + formatted(": %.3g rad in %.3g mm, allowed %.3g rad: roll_slope %.3g rad/m", *cause.value,
-                                     kMillimetres * *cause.over, *cause.limit, *cause.limit / *cause.over);
+      return cause.joint +
+             formatted(": %.3g rad in %.3g mm, allowed %.3g rad: roll_slope %.3g rad/m",
+                       *cause.value, kMillimetres * *cause.over, *cause.limit,
+                       *cause.limit / *cause.over);
     case Cause::Kind::kJointStep:
-      return cause.joint + ": " + of("%.3g rad in one layer, allowed %.3g rad: of a layer, so a smaller ds may help", 1);
+      return cause.joint + ": " +
+             of("%.3g rad in one layer, allowed %.3g rad: of a layer, so a smaller ds may help", 1);
     case Cause::Kind::kSpeed:
       return cause.joint + ": " + of("%.3g rad, allowed %.3g rad", 1);
     case Cause::Kind::kPathError:

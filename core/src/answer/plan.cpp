@@ -8,7 +8,8 @@
 namespace swivel {
 
 bool any_rolls(const std::vector<TrajectoryRow>& rows) {
-  return std::any_of(rows.begin(), rows.end(), [](const TrajectoryRow& row) { return row.roll != 0; });
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const TrajectoryRow& row) { return row.roll != 0; });
 }
 
 std::vector<double> rolls_of(const std::vector<TrajectoryRow>& rows) {

@@ -16,7 +16,8 @@ bool has(Isa isa) {
     case Isa::kAvx2:
       return __builtin_cpu_supports("avx2");
     case Isa::kAvx512:
-      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512vl");
   }
 #endif
   return isa == Isa::kScalar;

@@ -25,7 +25,8 @@ std::vector<SelfTime> self_times(const std::vector<Timeline::Event>& events) {
     sum.stage = stage;
     times.push_back(std::move(sum));
   }
-  std::stable_sort(times.begin(), times.end(), [](const SelfTime& a, const SelfTime& b) { return a.self_ns > b.self_ns; });
+  std::stable_sort(times.begin(), times.end(),
+                   [](const SelfTime& a, const SelfTime& b) { return a.self_ns > b.self_ns; });
   return times;
 }
 

@@ -28,7 +28,8 @@ struct Timeline::Impl {
 
 Timeline::Timeline() : impl_(std::make_unique<Impl>()) {
   Timeline* none = nullptr;
-  if (!active_.compare_exchange_strong(none, this)) throw std::logic_error("a timeline is being recorded already");
+  if (!active_.compare_exchange_strong(none, this))
+    throw std::logic_error("a timeline is being recorded already");
 }
 Timeline::~Timeline() {
   active_ = nullptr;
@@ -47,7 +48,8 @@ void Timeline::add(const Event& event) {
   thread_local Place place;
   if (place.timeline != impl_->number) {
     const std::lock_guard lock(impl_->mutex);
-    place = {impl_->number, static_cast<int>(impl_->threads.size()), &impl_->threads.emplace_back()};
+    place = {impl_->number, static_cast<int>(impl_->threads.size()),
+             &impl_->threads.emplace_back()};
   }
   place.events->push_back(event);
   place.events->back().thread = place.thread;
@@ -56,7 +58,8 @@ void Timeline::add(const Event& event) {
 std::vector<Timeline::Event> Timeline::events() const {
   const std::lock_guard lock(impl_->mutex);
   std::vector<Event> all;
-  for (const std::vector<Event>& events : impl_->threads) all.insert(all.end(), events.begin(), events.end());
+  for (const std::vector<Event>& events : impl_->threads)
+    all.insert(all.end(), events.begin(), events.end());
   return all;
 }
 

@@ -28,7 +28,8 @@ constexpr double kFinest = 1e-3;  // rad, of an axis
 
 /// Returns directions spread evenly over the sphere (Fibonacci's spiral).
 Vector3d spiral(int k, int count) {
-  const double z = 1 - (2 * k + 1.0) / count, turn = k * kPi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+  const double z = 1 - (2 * k + 1.0) / count, turn = k * kPi * (3 - std::sqrt(5.0)),
+               r = std::sqrt(1 - z * z);
   return {r * std::cos(turn), r * std::sin(turn), z};
 }
 
@@ -43,7 +44,8 @@ struct Bar {
   [[nodiscard]] double volume() const { return volume_of(radius, (b - a).norm()); }
   [[nodiscard]] double distance(const Vector3d& p) const {
     const Vector3d way = b - a;
-    const double length2 = way.squaredNorm(), along = length2 > 0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0;
+    const double length2 = way.squaredNorm(),
+                 along = length2 > 0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0;
     return (p - (a + along * way)).norm();
   }
 };
@@ -51,7 +53,9 @@ struct Bar {
 struct Circle {
   Vector2d centre = Vector2d::Zero();
   double radius = 0;
-  [[nodiscard]] bool holds(const Vector2d& p) const { return (p - centre).norm() <= radius * (1 + 1e-12) + 1e-15; }
+  [[nodiscard]] bool holds(const Vector2d& p) const {
+    return (p - centre).norm() <= radius * (1 + 1e-12) + 1e-15;
+  }
 };
 
 Circle about(const Vector2d& a, const Vector2d& b) {
@@ -67,8 +71,9 @@ Circle about(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
       if (other.radius > circle.radius) circle = other;
     return circle;
   }
-  const Vector2d off =
-      Vector2d(v.y() * u.squaredNorm() - u.y() * v.squaredNorm(), u.x() * v.squaredNorm() - v.x() * u.squaredNorm()) / twice;
+  const Vector2d off = Vector2d(v.y() * u.squaredNorm() - u.y() * v.squaredNorm(),
+                                u.x() * v.squaredNorm() - v.x() * u.squaredNorm()) /
+                       twice;
   return {a + off, off.norm()};
 }
 
@@ -103,7 +108,8 @@ Bar bar_along(const Vector3d& direction, const Points& points) {
     // Between them the segment may begin and end.
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const double off2 = (seen[k] - circle.centre).squaredNorm(), cap = std::sqrt(std::max(0.0, bar.radius * bar.radius - off2));
+      const double off2 = (seen[k] - circle.centre).squaredNorm(),
+                   cap = std::sqrt(std::max(0.0, bar.radius * bar.radius - off2));
       low = std::min(low, direction.dot(points[k]) + cap);
       high = std::max(high, direction.dot(points[k]) - cap);
     }
@@ -153,7 +159,9 @@ Bar bar_about(const Points& all, const Effort& effort) {
     Bar bar;
   };
   std::vector<Tried> tried;
-  const auto add = [&](const Vector3d& direction) { tried.push_back({direction, bar_along(direction, points)}); };
+  const auto add = [&](const Vector3d& direction) {
+    tried.push_back({direction, bar_along(direction, points)});
+  };
   const Matrix3d axes = principal_axes(points);
   for (int k = 0; k < 3; ++k) {
     add(axes.col(k).normalized());
@@ -161,15 +169,20 @@ Bar bar_about(const Points& all, const Effort& effort) {
   }
   // a half sphere: an axis has no sign
   for (int k = 0; k < effort.directions; ++k) add(spiral(k, 2 * effort.directions));
-  const auto smaller = [](const Tried& a, const Tried& b) { return a.bar.volume() < b.bar.volume(); };
+  const auto smaller = [](const Tried& a, const Tried& b) {
+    return a.bar.volume() < b.bar.volume();
+  };
   std::stable_sort(tried.begin(), tried.end(), smaller);
   for (int n = 0; n < effort.refined; ++n) {
     Tried& best = tried[static_cast<std::size_t>(n)];
     for (double step = 0.15; step > kFinest;) {
-      const Vector3d x = best.direction.unitOrthogonal(), y = best.direction.cross(x), before = best.direction;
+      const Vector3d x = best.direction.unitOrthogonal(), y = best.direction.cross(x),
+                     before = best.direction;
       for (int k = 0; k < 6; ++k) {
-        const Vector3d other = (before + step * (std::cos(k * kPi / 3) * x + std::sin(k * kPi / 3) * y)).normalized();
-        if (const Bar bar = bar_along(other, points); bar.volume() < best.bar.volume()) best = {other, bar};
+        const Vector3d other =
+            (before + step * (std::cos(k * kPi / 3) * x + std::sin(k * kPi / 3) * y)).normalized();
+        if (const Bar bar = bar_along(other, points); bar.volume() < best.bar.volume())
+          best = {other, bar};
       }
       if (best.direction == before) step /= 2;
     }
@@ -203,7 +216,8 @@ Part below(const Part& part, const Vector3d& normal, double height) {
       const Vector3d &p = polygon[k], &next = polygon[(k + 1) % polygon.size()];
       const double at = normal.dot(p) - height, then = normal.dot(next) - height;
       if (at <= 0) inside.push_back(p);
-      if ((at < 0 && then > 0) || (at > 0 && then < 0)) inside.push_back(p + (at / (at - then)) * (next - p));
+      if ((at < 0 && then > 0) || (at > 0 && then < 0))
+        inside.push_back(p + (at / (at - then)) * (next - p));
     }
     if (!inside.empty()) kept.push_back(std::move(inside));
   }
@@ -234,7 +248,8 @@ std::optional<std::array<Piece, 2>> cut_in_two(const Piece& piece) {
     if (!(high - low > 100 * kGrain)) continue;
     for (int k = 1; k < 8; ++k) {
       const double height = low + k * (high - low) / 8;
-      const Points one = corners_of(below(piece.part, normal, height)), other = corners_of(below(piece.part, -normal, -height));
+      const Points one = corners_of(below(piece.part, normal, height)),
+                   other = corners_of(below(piece.part, -normal, -height));
       if (one.empty() || other.empty()) continue;
       const double volume = bar_about(one, kQuick).volume() + bar_about(other, kQuick).volume();
       if (volume < least) least = volume, best_normal = normal, best_height = height;
@@ -254,7 +269,8 @@ CapsuleFit fit_capsules(const TriangleMesh& mesh, int most) {
   Piece whole;
   for (const auto& triangle : mesh.triangles) {
     Points& polygon = whole.part.emplace_back();
-    for (const int vertex : triangle) polygon.push_back(mesh.vertices[static_cast<std::size_t>(vertex)]);
+    for (const int vertex : triangle)
+      polygon.push_back(mesh.vertices[static_cast<std::size_t>(vertex)]);
   }
   const Points all = corners_of(whole.part);
   whole.bar = bar_about(all, kThorough);
@@ -271,7 +287,8 @@ CapsuleFit fit_capsules(const TriangleMesh& mesh, int most) {
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       auto cut = cut_in_two(pieces[k]);
       if (!cut) continue;
-      const double gained = pieces[k].bar.volume() - (*cut)[0].bar.volume() - (*cut)[1].bar.volume();
+      const double gained =
+          pieces[k].bar.volume() - (*cut)[0].bar.volume() - (*cut)[1].bar.volume();
       if (gained > most_gained) most_gained = gained, at = k, halves = std::move(*cut);
     }
     if (at == pieces.size()) break;
@@ -289,14 +306,16 @@ CapsuleFit fit_capsules(const TriangleMesh& mesh, int most) {
     else
       placed.shape = Sphere{bar.radius};
     placed.pose.translation() = (bar.a + bar.b) / 2;
-    if (way.norm() > 0) placed.pose.linear() = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way).toRotationMatrix();
+    if (way.norm() > 0)
+      placed.pose.linear() = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way).toRotationMatrix();
   }
   for (int k = 0; k < kThorough.supports; ++k) {
     const Vector3d u = spiral(k, kThorough.supports);
     double its = -std::numeric_limits<double>::infinity(), theirs = its;
     for (const Vector3d& p : all) its = std::max(its, u.dot(p));
     for (const Piece& piece : pieces)
-      theirs = std::max(theirs, std::max(u.dot(piece.bar.a), u.dot(piece.bar.b)) + piece.bar.radius);
+      theirs =
+          std::max(theirs, std::max(u.dot(piece.bar.a), u.dot(piece.bar.b)) + piece.bar.radius);
     fit.excess = std::max(fit.excess, theirs - its);
   }
   return fit;

@@ -9,13 +9,16 @@
 namespace swivel {
 
 ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem,
-                                 std::vector<std::vector<Point>> layers, const std::array<bool, kDof>& circles)
+                                 std::vector<std::vector<Point>> layers,
+                                 const std::array<bool, kDof>& circles)
     : Lattice(chain, path, problem), points_(std::move(layers)) {
   if (static_cast<int>(points_.size()) != path.size())
     throw std::invalid_argument("explicit lattice: " + std::to_string(points_.size()) +
-                                " layers of nodes: allowed are as many as the path has, " + std::to_string(path.size()));
+                                " layers of nodes: allowed are as many as the path has, " +
+                                std::to_string(path.size()));
   if (limits_.step_error)
-    throw InputError(problem.source, "limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
+    throw InputError(problem.source,
+                     "limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
   for (std::size_t j = 0; j < kDof; ++j) continuous_[j] = continuous_[j] || circles[j];
   for (const auto& layer : points_) nodes_ += static_cast<std::int64_t>(layer.size());
 }
@@ -25,7 +28,8 @@ void ExplicitLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   for (int slot = 0; slot < slots(layer); ++slot) out.push_back({slot, point(layer, slot).q});
 }
 
-void ExplicitLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+void ExplicitLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
+                                                 std::vector<int>& out) const {
   if (!shares_body_poses(groups)) return out.assign(1, slot);
   out.resize(static_cast<std::size_t>(slots(layer)));
   std::iota(out.begin(), out.end(), 0);

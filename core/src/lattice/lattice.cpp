@@ -16,7 +16,8 @@ namespace swivel {
 
 namespace {
 
-/// Rounds to a multiple of 2^-40 units (for |x| < 2048 units): sums of costs are then exact in any order.
+/// Rounds to a multiple of 2^-40 units (for |x| < 2048 units): sums of costs are then exact in any
+/// order.
 double rounded(double x, double unit) {
   const double shift = 6144.0 * unit;  // 1.5 * 2^12, whose last place is 2^-40
   return (x + shift) - shift;
@@ -61,52 +62,68 @@ class Step {
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& fit_error)
-    : chain_(&chain), path_(&path), limits_(problem.limits), cost_(problem.cost), fit_error_(fit_error) {
+Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem,
+                 const Config& fit_error)
+    : chain_(&chain),
+      path_(&path),
+      limits_(problem.limits),
+      cost_(problem.cost),
+      fit_error_(fit_error) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
     const bool roll = chain.roll && k + 1 == kDof;
     if (!roll && (timed || cost_.metric == CostMetric::kTime) && limit.velocity <= 0)
-      throw InputError(problem.source, std::string(timed ? "limits.tool_speed" : "cost.metric: time") + ": joint '" +
-                                           chain.joint_names[k] +
-                                           "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+      throw InputError(
+          problem.source,
+          std::string(timed ? "limits.tool_speed" : "cost.metric: time") + ": joint '" +
+              chain.joint_names[k] +
+              "' has no speed limit in the URDF: allowed are robots whose joints all have one");
     continuous_[k] = limit.continuous || limit.wide();
-    if (!roll && !continuous_[k] && limit.lower + limits_.joint_margin > limit.upper - limits_.joint_margin)
-      throw InputError(problem.source, "limits.joint_margin: leaves no range for joint '" + chain.joint_names[k] + "'" +
-                                           ": allowed is at most " + formatted("%.9g", (limit.upper - limit.lower) / 2));
-    cost_scale_[k] = cost_.metric != CostMetric::kTime ? cost_.weights[k] : roll ? 0 : 1 / limit.velocity;
+    if (!roll && !continuous_[k] &&
+        limit.lower + limits_.joint_margin > limit.upper - limits_.joint_margin)
+      throw InputError(problem.source, "limits.joint_margin: leaves no range for joint '" +
+                                           chain.joint_names[k] + "'" + ": allowed is at most " +
+                                           formatted("%.9g", (limit.upper - limit.lower) / 2));
+    cost_scale_[k] = cost_.metric != CostMetric::kTime ? cost_.weights[k]
+                     : roll                            ? 0
+                                                       : 1 / limit.velocity;
     if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[k]))
-      throw InputError(problem.source,
-                       "joint '" + chain.joint_names[k] +
-                           "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
+      throw InputError(problem.source, "joint '" + chain.joint_names[k] +
+                                           "': its speed limit in the URDF does not suit "
+                                           "cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
   }
   double most_costly = *std::max_element(cost_scale_.begin(), cost_scale_.end());
   if (problem.roll && cost_.roll > 0) {
     roll_weights_ = path.shares();
-    for (double& weight : roll_weights_) most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
+    for (double& weight : roll_weights_)
+      most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
   }
   cost_unit_ = power_of_two_from(most_costly);
   steps_ = 0x1p24 / cost_unit_;
   const double heaviest = *std::max_element(cost_scale_.begin(), cost_scale_.end());
-  for (std::size_t k = 0; k < kDof; ++k) middle_weight_[k] = heaviest > 0 ? std::max(cost_scale_[k], 0.01 * heaviest) : 1;
+  for (std::size_t k = 0; k < kDof; ++k)
+    middle_weight_[k] = heaviest > 0 ? std::max(cost_scale_[k], 0.01 * heaviest) : 1;
   set_row_step_bounds(step_bounds_along(chain, path, limits_, problem.resolution));
 }
 
-std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPath& path, const Limits& limits,
-                                               const Resolution& resolution) {
+std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPath& path,
+                                               const Limits& limits, const Resolution& resolution) {
   const bool timed = limits.tool_speed || limits.tool_turn_speed, differ = timed || chain.roll;
-  std::vector<Config> bounds(differ ? static_cast<std::size_t>(path.size()) - 1 : 1, Config::Constant(limits.joint_step));
+  std::vector<Config> bounds(differ ? static_cast<std::size_t>(path.size()) - 1 : 1,
+                             Config::Constant(limits.joint_step));
   for (int i = 0; differ && i + 1 < path.size(); ++i) {
     const PathLayer& layer = path.layer(i);
-    if (chain.roll) bounds[static_cast<std::size_t>(i)][kDof - 1] = roll_step_bound(path, i, limits, resolution);
+    if (chain.roll)
+      bounds[static_cast<std::size_t>(i)][kDof - 1] = roll_step_bound(path, i, limits, resolution);
     double dt = 0;
     if (limits.tool_speed) dt = std::max(dt, layer.step_length / *limits.tool_speed);
     if (limits.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits.tool_turn_speed);
     if (dt <= 0) continue;  // a step that the given speed does not time
     for (int k = 0; k < kDof; ++k) {
       double& most = bounds[static_cast<std::size_t>(i)][k];
-      if (!chain.roll || k + 1 < kDof) most = std::min(most, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
+      if (!chain.roll || k + 1 < kDof)
+        most = std::min(most, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
     }
   }
   return bounds;
@@ -118,7 +135,8 @@ void Lattice::set_row_step_bounds(std::vector<Config> bounds) {
   for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * fit_error_);
 }
 
-Lattice::InterpolatedEdge Lattice::interpolate_edge(int, int, const Config&, int, const Config&) const {
+Lattice::InterpolatedEdge Lattice::interpolate_edge(int, int, const Config&, int,
+                                                    const Config&) const {
   return {};
 }
 
@@ -150,7 +168,8 @@ bool Lattice::row_step_allowed(int layer, const Config& delta) const {
   return within(delta, row_step_bound(layer));
 }
 
-std::optional<Lattice::RollStep> Lattice::roll_step(int layer, int, const Config& q0, int, const Config& q1) const {
+std::optional<Lattice::RollStep> Lattice::roll_step(int layer, int, const Config& q0, int,
+                                                    const Config& q1) const {
   if (!chain_->roll) return std::nullopt;
   const double change = std::abs(delta(q0, q1)[kDof - 1]), most = row_step_bound(layer)[kDof - 1];
   return RollStep{change, most, most / limits_.roll_slope, change <= most};
@@ -185,12 +204,13 @@ double Lattice::roll_cost(int layer, double roll) const {
 
 double Lattice::edge_cost(const Config& delta) const {
   double x[kDof];
-  for (std::size_t k = 0; k < kDof; ++k) x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];
+  for (std::size_t k = 0; k < kDof; ++k)
+    x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];
   if (cost_.metric == CostMetric::kL2)
     // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
-    return rounded(
-        std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])),
-        cost_unit_);
+    return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] +
+                             ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])),
+                   cost_unit_);
   double most = 0;
   for (const double value : x) most = std::max(most, std::abs(value));
   return rounded(most, cost_unit_);
@@ -198,22 +218,27 @@ double Lattice::edge_cost(const Config& delta) const {
 
 bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {
   const auto stays_within = [](const std::array<double, 3>& deviation, double limit) {
-    return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
+    return std::all_of(deviation.begin(), deviation.end(),
+                       [limit](double x) { return x <= limit; });
   };
   const Config move = delta(q0, q1);
-  if (limits_.tool_path_error && !stays_within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error))
+  if (limits_.tool_path_error &&
+      !stays_within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error))
     return false;
-  if (limits_.tool_angle_error && !stays_within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
+  if (limits_.tool_angle_error &&
+      !stays_within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
     return false;
   return keeps_step_error(layer, a, b);
 }
 
-double roll_step_bound(const ToolPath& path, int step, const Limits& limits, const Resolution& resolution) {
+double roll_step_bound(const ToolPath& path, int step, const Limits& limits,
+                       const Resolution& resolution) {
   const double travel = path.layer(step + 1).travel - path.layer(step).travel;
   return std::min(kPi, limits.roll_slope * std::max(travel, resolution.ds / 2));
 }
 
-std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer,
+                                     const Config& q0, const Config& delta) {
   const Step step(path, layer);
   // t = 1/2 as it is; 1/4 and 3/4 are a quarter of the move, h, before and after it.
   Config c, s, c_before, s_before, c_after, s_after;
@@ -228,7 +253,8 @@ std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, i
           step.aside(chain.tool_point(c_after, s_after))};
 }
 
-std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, int layer,
+                                      const Config& q0, const Config& delta) {
   const Step step(path, layer);
   std::array<double, 3> deviation{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -236,9 +262,10 @@ std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, 
     const Pose tool = chain.tool(q0 + t * delta);
     const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
     // Of a tool that may turn about its z axis, the angle between the axes counts.
-    deviation[k] = chain.tool_may_turn() ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
-                                                      asked.linear().col(2).dot(tool.linear().col(2)))
-                                         : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
+    deviation[k] = chain.tool_may_turn()
+                       ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
+                                    asked.linear().col(2).dot(tool.linear().col(2)))
+                       : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
   }
   return deviation;
 }

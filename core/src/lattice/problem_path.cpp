@@ -10,7 +10,8 @@ namespace swivel {
 
 ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
                       const std::optional<PathSmoothing>& otherwise) {
-  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget, problem.smooth ? problem.smooth : otherwise,
+  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget,
+                problem.smooth ? problem.smooth : otherwise,
                 problem.roll && problem.roll->circle());
   if (problem.start) {
     Pose tool = chain.tool(*problem.start);
@@ -18,7 +19,8 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
       const double s = problem.start_at.value_or(0);
       int i = 0;
       while (i + 2 < path.size() && path.layer(i + 1).s < s) ++i;
-      const double length = path.layer(i).step_length, t = length > 0 ? std::clamp((s - path.layer(i).s) / length, 0.0, 1.0) : 0;
+      const double length = path.layer(i).step_length,
+                   t = length > 0 ? std::clamp((s - path.layer(i).s) / length, 0.0, 1.0) : 0;
       const Pose there = path.at(i, t);
       tool = rolled(tool, -roll_between(there, tool));
     }
@@ -26,7 +28,8 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
   }
   if (!problem.rolls.empty()) {
     if (problem.rolls.size() != static_cast<std::size_t>(path.size()))
-      throw InvalidArgument("Task: " + std::to_string(problem.rolls.size()) + " rolls: allowed is one for each layer, " +
+      throw InvalidArgument("Task: " + std::to_string(problem.rolls.size()) +
+                            " rolls: allowed is one for each layer, " +
                             std::to_string(path.size()));
     return path.with_rolls(problem.rolls);
   }

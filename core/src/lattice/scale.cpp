@@ -14,7 +14,8 @@ namespace {
 
 /// How far the arm reaches without the tool, m: the sum of the distances from axis to axis.
 double reach_of_arm(const Chain& chain, const Pose& tool) {
-  const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll is no joint: its axis is the tool's
+  const std::size_t joints =
+      chain.roll ? kDof - 1 : kDof;  // the roll is no joint: its axis is the tool's
   double reach = ((chain.home * tool.inverse()).translation() - chain.point[joints - 1]).norm();
   for (std::size_t j = 1; j < joints; ++j) reach += (chain.point[j] - chain.point[j - 1]).norm();
   return reach;
@@ -25,18 +26,24 @@ struct Size {
 };
 Size size_of(const Shape& shape) {
   const auto of = [](double a, double b) { return Size{std::min(a, b), std::max(a, b)}; };
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return of(2 * sphere->radius, 2 * sphere->radius);
-  if (const auto* box = std::get_if<Box>(&shape)) return of(box->size.minCoeff(), box->size.maxCoeff());
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return of(2 * cylinder->radius, cylinder->length);
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) return of(2 * capsule->radius, capsule->length + 2 * capsule->radius);
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    return of(2 * sphere->radius, 2 * sphere->radius);
+  if (const auto* box = std::get_if<Box>(&shape))
+    return of(box->size.minCoeff(), box->size.maxCoeff());
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape))
+    return of(2 * cylinder->radius, cylinder->length);
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    return of(2 * capsule->radius, capsule->length + 2 * capsule->radius);
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Vector3d& vertex : std::get<MeshPtr>(shape)->vertices) low = low.cwiseMin(vertex), high = high.cwiseMax(vertex);
+  for (const Vector3d& vertex : std::get<MeshPtr>(shape)->vertices)
+    low = low.cwiseMin(vertex), high = high.cwiseMax(vertex);
   const Vector3d edges = (high - low).cwiseMax(0);
   return of(edges.minCoeff(), edges.maxCoeff());
 }
 
 std::string suspicion(double reach) {
-  return formatted(", and the arm reaches %.3g m: are these millimetres? Lengths are read as metres", reach);
+  return formatted(
+      ", and the arm reaches %.3g m: are these millimetres? Lengths are read as metres", reach);
 }
 
 class Scale {
@@ -76,7 +83,9 @@ double most_reach(const Chain& chain) {
 std::optional<int> first_far_waypoint(const Chain& chain, const ToolPath& path) {
   const double most = kFar * most_reach(chain);
   for (int i = 0; i < path.size(); ++i)
-    if (path.layer(i).waypoint >= 0 && (path.layer(i).tool.translation() - chain.point[0]).norm() > most) return i;
+    if (path.layer(i).waypoint >= 0 &&
+        (path.layer(i).tool.translation() - chain.point[0]).norm() > most)
+      return i;
   return std::nullopt;
 }
 
@@ -90,8 +99,11 @@ std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& proble
   const double reach = reach_of_arm(chain, problem.tool);
   const Limits& limits = problem.limits;
   std::vector<LargeLength> found;
-  const auto look = [&](const char* section, const char* key, const std::optional<double>& value, double most, const char* unit) {
-    if (value && *value > most) found.push_back({section, key, formatted("is %.4g ", *value) + unit + suspicion(reach), most});
+  const auto look = [&](const char* section, const char* key, const std::optional<double>& value,
+                        double most, const char* unit) {
+    if (value && *value > most)
+      found.push_back(
+          {section, key, formatted("is %.4g ", *value) + unit + suspicion(reach), most});
   };
   const double tolerance = reach / 4, speed = 10 * reach;
   look("limits", "clearance", limits.clearance, reach, "m");
@@ -106,7 +118,8 @@ std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& proble
 
 std::vector<std::string> limit_scale_warnings(const Chain& chain, const Problem& problem) {
   std::vector<std::string> warnings;
-  for (const LargeLength& one : large_lengths(chain, problem)) warnings.push_back(one.section + "." + one.key + " " + one.fault);
+  for (const LargeLength& one : large_lengths(chain, problem))
+    warnings.push_back(one.section + "." + one.key + " " + one.fault);
   return warnings;
 }
 
@@ -114,19 +127,23 @@ std::vector<std::string> scale_warnings(const Chain& chain, const Robot& robot) 
   Scale scale(reach_of_arm(chain, robot.tool));
   scale.length("robot.tool", robot.tool.translation().norm());
   for (const Link& link : robot.model->links)
-    for (const PlacedShape& body : link.collision) scale.size("robot: link '" + link.name + "'", body.shape);
+    for (const PlacedShape& body : link.collision)
+      scale.size("robot: link '" + link.name + "'", body.shape);
   for (const AttachedBody& body : robot.attached) {
     scale.size("robot.attached: '" + body.name + "'", body.shape);
-    scale.length("robot.attached: the way from its link to '" + body.name + "'", body.pose.translation().norm());
+    scale.length("robot.attached: the way from its link to '" + body.name + "'",
+                 body.pose.translation().norm());
   }
   return scale.take();
 }
 
-std::vector<std::string> scale_warnings(const Chain& chain, const ToolPath& path, const std::vector<SceneObject>& scene) {
+std::vector<std::string> scale_warnings(const Chain& chain, const ToolPath& path,
+                                        const std::vector<SceneObject>& scene) {
   Scale scale(most_reach(chain));
   const auto away = [&](const Pose& pose) { return (pose.translation() - chain.point[0]).norm(); };
   if (const auto far = first_far_waypoint(chain, path))
-    scale.distance("path: waypoint " + std::to_string(path.layer(*far).waypoint), away(path.layer(*far).tool));
+    scale.distance("path: waypoint " + std::to_string(path.layer(*far).waypoint),
+                   away(path.layer(*far).tool));
   for (const SceneObject& object : scene) {
     scale.size("scene: '" + object.name + "'", object.shape);
     scale.distance("scene: '" + object.name + "'", away(object.pose) - size_of(object.shape).most);

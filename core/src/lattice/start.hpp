@@ -11,6 +11,7 @@ void validate_start(const Problem& problem, const Chain& chain, const ToolPath& 
 
 /// The roll of the start at the path's first layer, rad, within `range` where that is less than a
 /// turn. Throws InputError where the range or the waypoints do not allow it.
-[[nodiscard]] double roll_of_start(const Problem& problem, const Chain& chain, const ToolPath& path, const Roll& range);
+[[nodiscard]] double roll_of_start(const Problem& problem, const Chain& chain, const ToolPath& path,
+                                   const Roll& range);
 
 }  // namespace swivel

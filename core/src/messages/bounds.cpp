@@ -21,14 +21,17 @@ bool is_invisible_control(unsigned code) {
                                                                   {0xfff9, 0xfffb},
                                                                   {0x200b, 0x200b},
                                                                   {0xe0000, 0xe007f}}};
-  return std::any_of(kRanges.begin(), kRanges.end(),
-                     [&](const auto& range) { return code >= range.first && code <= range.second; });
+  return std::any_of(kRanges.begin(), kRanges.end(), [&](const auto& range) {
+    return code >= range.first && code <= range.second;
+  });
 }
 
 /// Returns how many bytes the printable UTF-8 character at the begin of `text` has, 0 if there is
 /// none. Not for an empty text.
 std::size_t character(std::string_view text) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
+  const auto byte = [&](std::size_t k) {
+    return static_cast<unsigned>(static_cast<unsigned char>(text[k]));
+  };
   const unsigned first = byte(0);
   if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
   const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
@@ -39,8 +42,8 @@ std::size_t character(std::string_view text) {
     code = code << 6 | (byte(k) & 0x3f);
   }
   const bool shortest = code >= (size == 2 ? 0x80u : size == 3 ? 0x800u : 0x10000u);
-  const bool control = code < 0xa0 || is_invisible_control(code), surrogate = code >= 0xd800 && code < 0xe000,
-             none = (code & 0xfffe) == 0xfffe;
+  const bool control = code < 0xa0 || is_invisible_control(code),
+             surrogate = code >= 0xd800 && code < 0xe000, none = (code & 0xfffe) == 0xfffe;
   return shortest && !control && !surrogate && !none && code < 0x110000 ? size : 0;
 }
 

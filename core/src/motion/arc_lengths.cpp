@@ -47,9 +47,11 @@ bool ArcLengths::follow(Curve& curve, std::size_t side, const Pose& tool) const 
     const double turn = found->tangent.dot(last.tangent);
     if (std::abs(turn) < kStraight) continue;
     // The length of the circle arc through both points with these tangents.
-    const double half = std::acos(std::min(1.0, std::abs(turn))) / 2, chord = (found->q - last.q).norm();
+    const double half = std::acos(std::min(1.0, std::abs(turn))) / 2,
+                 chord = (found->q - last.q).norm();
     const double length = half > 1e-6 ? chord * half / std::sin(half) : chord;
-    curve.side[side].push_back({found->q, turn < 0 ? Config(-found->tangent) : found->tangent, last.length + length});
+    curve.side[side].push_back(
+        {found->q, turn < 0 ? Config(-found->tangent) : found->tangent, last.length + length});
     return true;
   }
   curve.ended[side] = true;
@@ -66,12 +68,14 @@ std::optional<ArcLengths::Point> ArcLengths::point(int layer, double length) con
   const double away = std::abs(length);
   while (points.back().length < away || points.size() < 2)
     if (!follow(curve, side, tool)) return std::nullopt;
-  const auto after = std::upper_bound(points.begin() + 1, points.end() - 1, away,
-                                      [](double value, const Point& point) { return value < point.length; });
+  const auto after =
+      std::upper_bound(points.begin() + 1, points.end() - 1, away,
+                       [](double value, const Point& point) { return value < point.length; });
   const Point &a = *(after - 1), &b = *after;
   const double h = b.length - a.length, u = (away - a.length) / h;
   const Config chord = b.q - a.q, m0 = h * a.tangent, m1 = h * b.tangent;
-  const Config guess = a.q + u * m0 + (u * u) * (3 * chord - 2 * m0 - m1) + (u * u * u) * (m0 + m1 - 2 * chord);
+  const Config guess =
+      a.q + u * m0 + (u * u) * (3 * chord - 2 * m0 - m1) + (u * u * u) * (m0 + m1 - 2 * chord);
   const auto near = newton_->nearest(guess, tool, Config::Ones(), kNewtonSteps);
   if (!near) return std::nullopt;
   // One step more: second derivatives are differences of these digits.
@@ -93,13 +97,15 @@ double ArcLengths::between(int layer, int before, double x, int after, double y)
   const auto from = joints(before, x), to = joints(after, y);
   if (!from || !to) return 0;
   const double t = (travel(layer) - travel(before)) / (travel(after) - travel(before));
-  const auto goal = newton_->nearest(*from + t * (*to - *from), path_->layer(layer).tool, Config::Ones(), kNewtonSteps);
+  const auto goal = newton_->nearest(*from + t * (*to - *from), path_->layer(layer).tool,
+                                     Config::Ones(), kNewtonSteps);
   double length = 0;
   for (int step = 0; goal && step < kSteps; ++step) {
     const auto here = point(layer, length);
     if (!here) break;
     const Config off = goal->q - here->q;
-    const double move = std::clamp(off.dot(length < 0 ? Config(-here->tangent) : here->tangent), -kLongest, kLongest);
+    const double move = std::clamp(off.dot(length < 0 ? Config(-here->tangent) : here->tangent),
+                                   -kLongest, kLongest);
     if (std::abs(move) < kSettled) return off.norm() < kOnCurve ? length : 0;
     length += move;
   }

@@ -7,11 +7,16 @@
 
 namespace swivel {
 
-ArcMotion::ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
-                     double apart, double off_limits, const std::vector<BetweenRow>& between)
-    : PathMotion(chain, path, rows, apart, between), lock_(lock), newton_(chain), alignments_(alignments_of(chain)) {
+ArcMotion::ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path,
+                     const std::vector<TrajectoryRow>& rows, double apart, double off_limits,
+                     const std::vector<BetweenRow>& between)
+    : PathMotion(chain, path, rows, apart, between),
+      lock_(lock),
+      newton_(chain),
+      alignments_(alignments_of(chain)) {
   // An alignment with the axis of the roll makes no joint of the arm move fast.
-  if (chain.roll) std::erase_if(alignments_, [](const Alignment& a) { return a.joint + 2 == kDof; });
+  if (chain.roll)
+    std::erase_if(alignments_, [](const Alignment& a) { return a.joint + 2 == kDof; });
   move_off_limits(off_limits);
   for (Eigen::Index j = 0; j < kDof; ++j) {
     std::vector<double> values;
@@ -37,7 +42,8 @@ void ArcMotion::move_off_limits(double by) {
       const double value = rows_[k].q[joint], inside = std::clamp(value, lower + by, upper - by);
       if (inside == value) continue;
       const auto moved = newton_.with_joint_at(rows_[k].q, pose_of(k), static_cast<int>(j), inside);
-      if (moved && (moved->q - rows_[k].q).lpNorm<Eigen::Infinity>() < kFarthest) rows_[k].q = moved->q;
+      if (moved && (moved->q - rows_[k].q).lpNorm<Eigen::Infinity>() < kFarthest)
+        rows_[k].q = moved->q;
     }
 }
 
@@ -81,8 +87,8 @@ void ArcMotion::find_jumps() {
         q = next;
         continue;
       }
-      jumps_.push_back(
-          {rows_[k].s, q && next ? "the joints would have to jump to the next layer" : "the arm has no solution between layers"});
+      jumps_.push_back({rows_[k].s, q && next ? "the joints would have to jump to the next layer"
+                                              : "the arm has no solution between layers"});
       break;
     }
   }
@@ -95,7 +101,8 @@ TrajectoryRow ArcMotion::row(double travel, const Config& q) const {
 std::optional<PathMotion::Singular> ArcMotion::nearest_singular(const Config& q) const {
   std::optional<Singular> nearest;
   for (const Alignment& a : alignments_)
-    if (const double away = a.away(q); !nearest || away < nearest->angle) nearest = {a.where(), away};
+    if (const double away = a.away(q); !nearest || away < nearest->angle)
+      nearest = {a.where(), away};
   return nearest;
 }
 

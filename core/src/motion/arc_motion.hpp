@@ -11,8 +11,9 @@ namespace swivel {
 /// onto the path.
 class ArcMotion final : public PathMotion {
  public:
-  ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
-            double off_limits, const std::vector<BetweenRow>& between);
+  ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path,
+            const std::vector<TrajectoryRow>& rows, double apart, double off_limits,
+            const std::vector<BetweenRow>& between);
   [[nodiscard]] std::optional<Config> joints(double travel) const override;
   [[nodiscard]] TrajectoryRow row(double travel, const Config& q) const override;
   [[nodiscard]] std::optional<Singular> nearest_singular(const Config& q) const override;

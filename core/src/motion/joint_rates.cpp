@@ -11,31 +11,37 @@ JointRates joint_rates(const Chain& chain, const Limits& limits, const std::stri
   // of small and middle-sized arms, on the slow side
   constexpr double kAcceleration = 10, kJerk = 100;
   JointRates rates;
-  JointRates::Assumed no_acceleration{
-      JointRate::kAcceleration,
-      {},
-      "joint accelerations are stated neither by the URDF nor as limits.joint_acceleration: 10 rad/s^2"};
+  JointRates::Assumed no_acceleration{JointRate::kAcceleration,
+                                      {},
+                                      "joint accelerations are stated neither by the URDF nor as "
+                                      "limits.joint_acceleration: 10 rad/s^2"};
   JointRates::Assumed no_jerk{
-      JointRate::kJerk, {}, "joint jerks are stated neither by the URDF nor as limits.joint_jerk: 100 rad/s^3"};
+      JointRate::kJerk,
+      {},
+      "joint jerks are stated neither by the URDF nor as limits.joint_jerk: 100 rad/s^3"};
   for (std::size_t j = 0; j < kDof; ++j) {
     const auto joint = static_cast<Eigen::Index>(j);
     const JointLimit& model = chain.limit[j];
     if (chain.roll && j + 1 == kDof) {  // it is no joint
-      rates.speed[joint] = rates.acceleration[joint] = rates.jerk[joint] = std::numeric_limits<double>::infinity();
+      rates.speed[joint] = rates.acceleration[joint] = rates.jerk[joint] =
+          std::numeric_limits<double>::infinity();
       continue;
     }
     rates.speed[joint] = limits.joint_speed ? (*limits.joint_speed)[j] : model.velocity;
-    rates.acceleration[joint] = limits.joint_acceleration ? (*limits.joint_acceleration)[j] : model.acceleration;
+    rates.acceleration[joint] =
+        limits.joint_acceleration ? (*limits.joint_acceleration)[j] : model.acceleration;
     rates.jerk[joint] = limits.joint_jerk ? (*limits.joint_jerk)[j] : model.jerk;
     if (!(rates.speed[joint] > 0))
-      throw InputError(source,
-                       "joint '" + chain.joint_names[j] +
-                           "' has no speed limit in the URDF: allowed are robots whose joints all have one, or limits.joint_speed");
-    if (!(rates.acceleration[joint] > 0)) rates.acceleration[joint] = kAcceleration, no_acceleration.of[j] = true;
+      throw InputError(source, "joint '" + chain.joint_names[j] +
+                                   "' has no speed limit in the URDF: allowed are robots whose "
+                                   "joints all have one, or limits.joint_speed");
+    if (!(rates.acceleration[joint] > 0))
+      rates.acceleration[joint] = kAcceleration, no_acceleration.of[j] = true;
     if (!(rates.jerk[joint] > 0)) rates.jerk[joint] = kJerk, no_jerk.of[j] = true;
   }
   for (const JointRates::Assumed& assumed : {no_acceleration, no_jerk})
-    if (std::any_of(assumed.of.begin(), assumed.of.end(), [](bool one) { return one; })) rates.assumed.push_back(assumed);
+    if (std::any_of(assumed.of.begin(), assumed.of.end(), [](bool one) { return one; }))
+      rates.assumed.push_back(assumed);
   return rates;
 }
 

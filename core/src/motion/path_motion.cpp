@@ -11,7 +11,8 @@
 
 namespace swivel {
 
-PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
+PathMotion::PathMotion(const Chain& chain, const ToolPath& path,
+                       const std::vector<TrajectoryRow>& rows, double apart,
                        const std::vector<BetweenRow>& between)
     : chain_(&chain), path_(&path) {
   constexpr double kSame = 1e-9;  // m
@@ -25,7 +26,8 @@ PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vect
       for (++layer; layer < path.size() && path.layer(layer).s < rows[k].s - kSame;) ++layer;
     if (layer >= path.size() || std::abs(path.layer(layer).s - rows[k].s) > kSame)
       throw InputError("row " + std::to_string(k) + " (s = " + formatted("%.9g", rows[k].s) +
-                       "): is at no layer of the path: allowed are rows at layers, of the resolution that they were planned with");
+                       "): is at no layer of the path: allowed are rows at layers, of the "
+                       "resolution that they were planned with");
     const double travel = path.layer(layer).travel;
     constexpr double kRounding = 1e-9;  // m
     if (k == 0 || k + 1 == rows.size() || travel - travel_.back() >= apart - kRounding) {
@@ -40,7 +42,8 @@ PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vect
     }
   }
   if (rows.size() < 2 || layer + 1 != path.size())
-    throw InputError("the rows end before the path: allowed are rows from its first layer to its last");
+    throw InputError(
+        "the rows end before the path: allowed are rows from its first layer to its last");
   for (const BetweenRow& one : between) {
     const auto after = std::upper_bound(travel_.begin(), travel_.end(), one.travel);
     if (after == travel_.begin() || after == travel_.end()) continue;
@@ -71,10 +74,13 @@ PathMotion::Place PathMotion::place(double travel) const {
   return {t == 1 ? to.s : from.s + t * (to.s - from.s), t, i};
 }
 
-std::unique_ptr<PathMotion> make_path_motion(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                                             const std::vector<TrajectoryRow>& rows, double apart, double off_limits,
+std::unique_ptr<PathMotion> make_path_motion(const Chain& chain, const ArmClass& arm,
+                                             const ToolPath& path,
+                                             const std::vector<TrajectoryRow>& rows, double apart,
+                                             double off_limits,
                                              const std::vector<BetweenRow>& between) {
-  if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsMotion>(chain, *arm.srs, path, rows, apart, between);
+  if (arm.kind == ArmKind::kSrs)
+    return std::make_unique<SrsMotion>(chain, *arm.srs, path, rows, apart, between);
   return std::make_unique<ArcMotion>(chain, arm.lock, path, rows, apart, off_limits, between);
 }
 

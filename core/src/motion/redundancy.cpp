@@ -23,8 +23,9 @@ namespace {
 /// Returns the joints at an arm angle, with the row's branch and the whole turns nearest to its
 /// joints.
 std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
-                                  const std::array<ElbowCircle, 2>& circles, const Pose& tool, double angle,
-                                  const TrajectoryRow& row, const std::optional<double>& last_joint = {}) {
+                                  const std::array<ElbowCircle, 2>& circles, const Pose& tool,
+                                  double angle, const TrajectoryRow& row,
+                                  const std::optional<double>& last_joint = {}) {
   std::optional<Config> q = srs_ik(arm, circles, angle, row.branch);
   if (last_joint) (*q)[kDof - 1] = *last_joint;
   if (!arm.exact)
@@ -39,21 +40,26 @@ std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const A
 /// those of the rows.
 class ArmAngles final : public LayerSolver {
  public:
-  ArmAngles(const SrsLattice& lattice, const std::vector<TrajectoryRow>& rows) : lattice_(&lattice), rows_(&rows) {
+  ArmAngles(const SrsLattice& lattice, const std::vector<TrajectoryRow>& rows)
+      : lattice_(&lattice), rows_(&rows) {
     for (int i = 0; i < layers(); ++i) {
       const Pose& tool = lattice.path().layer(i).tool;
-      reachable_.push_back(reach_status(lattice.arm(), lattice.plane(i).reach) == ReachStatus::kReachable);
-      circles_.push_back(reachable_.back() ? elbow_circles(lattice.arm(), lattice.plane(i), tool) : std::array<ElbowCircle, 2>{});
+      reachable_.push_back(reach_status(lattice.arm(), lattice.plane(i).reach) ==
+                           ReachStatus::kReachable);
+      circles_.push_back(reachable_.back() ? elbow_circles(lattice.arm(), lattice.plane(i), tool)
+                                           : std::array<ElbowCircle, 2>{});
     }
   }
   [[nodiscard]] int layers() const override { return lattice_->layers(); }
-  [[nodiscard]] double travel(int layer) const override { return lattice_->path().layer(layer).travel; }
+  [[nodiscard]] double travel(int layer) const override {
+    return lattice_->path().layer(layer).travel;
+  }
   [[nodiscard]] std::optional<Config> joints(int layer, double angle) const override {
     const auto i = static_cast<std::size_t>(layer);
     const TrajectoryRow& row = (*rows_)[i];
     if (!reachable_[i]) return std::nullopt;
-    return joints_near(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), circles_[i], lattice_->path().layer(layer).tool,
-                       angle, row, lattice_->last_joint());
+    return joints_near(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), circles_[i],
+                       lattice_->path().layer(layer).tool, angle, row, lattice_->last_joint());
   }
 
  private:
@@ -64,8 +70,8 @@ class ArmAngles final : public LayerSolver {
 };
 
 double nearest_sine(const SrsArm& arm, const Config& q) {
-  return std::min(
-      {std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))), std::abs(std::sin(arm.wrist_angle(q)))});
+  return std::min({std::abs(std::sin(arm.shoulder_angle(q))),
+                   std::abs(std::sin(arm.elbow_angle(q))), std::abs(std::sin(arm.wrist_angle(q)))});
 }
 
 std::vector<int> changes_of_branch(const std::vector<TrajectoryRow>& rows) {
@@ -77,30 +83,42 @@ std::vector<int> changes_of_branch(const std::vector<TrajectoryRow>& rows) {
 
 class ArmAngleRedundancy final : public Redundancy {
  public:
-  ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
+  ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                     const Problem& problem, const Budget& budget,
                      std::optional<double> last_joint = {})
       : grid_(chain, arm, path, problem, budget, {}, last_joint) {}
   [[nodiscard]] const Lattice& lattice() const override { return grid_; }
   [[nodiscard]] bool has_grid() const override { return true; }
-  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
-    for (std::size_t i = 1; i < rows.size(); ++i) rows[i].phi = rows[i - 1].phi + wrap_angle(rows[i].phi - rows[i - 1].phi);
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(
+      std::vector<TrajectoryRow>& rows) const override {
+    for (std::size_t i = 1; i < rows.size(); ++i)
+      rows[i].phi = rows[i - 1].phi + wrap_angle(rows[i].phi - rows[i - 1].phi);
     return std::make_unique<ArmAngles>(grid_, rows);
   }
   [[nodiscard]] double coordinate(int layer, const Config& q) const override {
     const ArmPlane& plane = grid_.plane(layer);
-    return arm_angle(grid_.arm(), grid_.last_joint() ? carry_plane(grid_.arm(), plane, grid_.chain().tool(q)) : plane, q);
+    return arm_angle(
+        grid_.arm(),
+        grid_.last_joint() ? carry_plane(grid_.arm(), plane, grid_.chain().tool(q)) : plane, q);
   }
   void label(std::vector<TrajectoryRow>& rows) const override {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       TrajectoryRow& row = rows[i];
       row.phi = wrap_angle(row.phi);
-      if (grid_.last_joint()) row.roll = roll_between(grid_.path().layer(static_cast<int>(i)).tool, grid_.chain().tool(row.q));
+      if (grid_.last_joint())
+        row.roll =
+            roll_between(grid_.path().layer(static_cast<int>(i)).tool, grid_.chain().tool(row.q));
     }
   }
   [[nodiscard]] double most_change() const override { return grid_.most_turn(); }
-  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
-  [[nodiscard]] double singular_sine(const Config& q) const override { return nearest_sine(grid_.arm(), q); }
-  [[nodiscard]] double step_error(int layer, const TrajectoryRow& a, const TrajectoryRow& b) const override {
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override {
+    return changes_of_branch(rows);
+  }
+  [[nodiscard]] double singular_sine(const Config& q) const override {
+    return nearest_sine(grid_.arm(), q);
+  }
+  [[nodiscard]] double step_error(int layer, const TrajectoryRow& a,
+                                  const TrajectoryRow& b) const override {
     return std::max(swivel::step_error(grid_, layer, 0, a.branch, a.phi, b.phi - a.phi),
                     swivel::step_error(grid_, layer, 1, b.branch, b.phi, b.phi - a.phi));
   }
@@ -114,9 +132,15 @@ class ArmAngleRedundancy final : public Redundancy {
 class Rolls final : public LayerSolver {
  public:
   /// Takes rows whose phi is the roll, and their arm angles.
-  Rolls(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<ArmPlane>& planes,
-        const std::vector<TrajectoryRow>& rows, std::vector<double> angles)
-      : chain_(&chain), arm_(&arm), path_(&path), planes_(&planes), rows_(&rows), angles_(std::move(angles)) {}
+  Rolls(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+        const std::vector<ArmPlane>& planes, const std::vector<TrajectoryRow>& rows,
+        std::vector<double> angles)
+      : chain_(&chain),
+        arm_(&arm),
+        path_(&path),
+        planes_(&planes),
+        rows_(&rows),
+        angles_(std::move(angles)) {}
   [[nodiscard]] int layers() const override { return path_->size(); }
   [[nodiscard]] double travel(int layer) const override { return path_->layer(layer).travel; }
   [[nodiscard]] std::optional<Config> joints(int layer, double roll) const override {
@@ -124,7 +148,8 @@ class Rolls final : public LayerSolver {
     const Pose tool = rolled(path_->layer(layer).tool, roll);
     const ArmPlane plane = carry_plane(*arm_, (*planes_)[i], tool);
     if (reach_status(*arm_, plane.reach) != ReachStatus::kReachable) return std::nullopt;
-    return joints_near(*chain_, *arm_, plane, elbow_circles(*arm_, plane, tool), tool, angles_[i], (*rows_)[i]);
+    return joints_near(*chain_, *arm_, plane, elbow_circles(*arm_, plane, tool), tool, angles_[i],
+                       (*rows_)[i]);
   }
 
  private:
@@ -138,10 +163,13 @@ class Rolls final : public LayerSolver {
 
 class RollRedundancy final : public Redundancy {
  public:
-  RollRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
+  RollRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                 const Problem& problem, const Budget& budget)
       : arm_(&arm),
         // The lattice has no nodes: refinement does not need them.
-        lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
+        lattice_(chain, path, problem,
+                 std::vector<std::vector<ExplicitLattice::Point>>(
+                     static_cast<std::size_t>(path.size()))),
         planes_(carried_planes(arm, path, budget)),
         roll_slope_(problem.limits.roll_slope),
         most_change_(problem.limits.roll_slope * problem.resolution.ds) {
@@ -155,14 +183,16 @@ class RollRedundancy final : public Redundancy {
   }
   [[nodiscard]] const Lattice& lattice() const override { return lattice_; }
   [[nodiscard]] bool has_grid() const override { return false; }
-  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(
+      std::vector<TrajectoryRow>& rows) const override {
     std::vector<double> angles;
     const std::vector<double> rolls = rolls_of(rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       angles.push_back(rows[i].phi);
       rows[i].phi = rolls[i];
     }
-    return std::make_unique<Rolls>(lattice_.chain(), *arm_, lattice_.path(), planes_, rows, std::move(angles));
+    return std::make_unique<Rolls>(lattice_.chain(), *arm_, lattice_.path(), planes_, rows,
+                                   std::move(angles));
   }
   [[nodiscard]] double coordinate(int layer, const Config& q) const override {
     return roll_between(lattice_.path().layer(layer).tool, lattice_.chain().tool(q));
@@ -178,10 +208,16 @@ class RollRedundancy final : public Redundancy {
   [[nodiscard]] double most_change() const override { return most_change_; }
   [[nodiscard]] double most_change_on(int step) const override {
     constexpr double kRounding = 1e-9;  // rad
-    return roll_slope_ * (lattice_.path().layer(step + 1).travel - lattice_.path().layer(step).travel) + kRounding;
+    return roll_slope_ *
+               (lattice_.path().layer(step + 1).travel - lattice_.path().layer(step).travel) +
+           kRounding;
   }
-  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
-  [[nodiscard]] double singular_sine(const Config& q) const override { return nearest_sine(*arm_, q); }
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override {
+    return changes_of_branch(rows);
+  }
+  [[nodiscard]] double singular_sine(const Config& q) const override {
+    return nearest_sine(*arm_, q);
+  }
   [[nodiscard]] double step_error(int, const TrajectoryRow&, const TrajectoryRow&) const override {
     throw std::logic_error("step error of a tool that may turn");
   }
@@ -196,14 +232,18 @@ class RollRedundancy final : public Redundancy {
 
 class ArcLengthRedundancy final : public Redundancy {
  public:
-  ArcLengthRedundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem)
+  ArcLengthRedundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
+                      const Problem& problem)
       : arm_(&arm),
         // The lattice has no nodes: refinement does not need them.
-        lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
+        lattice_(chain, path, problem,
+                 std::vector<std::vector<ExplicitLattice::Point>>(
+                     static_cast<std::size_t>(path.size()))),
         alignments_(alignments_of(chain)) {}
   [[nodiscard]] const Lattice& lattice() const override { return lattice_; }
   [[nodiscard]] bool has_grid() const override { return false; }
-  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(
+      std::vector<TrajectoryRow>& rows) const override {
     std::vector<Config> origins;
     for (TrajectoryRow& row : rows) {
       row.phi = 0;
@@ -219,8 +259,12 @@ class ArcLengthRedundancy final : public Redundancy {
       row.branch = arc_branch(lattice_.chain(), arm_->lock, row.q);
     }
   }
-  [[nodiscard]] double most_change() const override { return std::numeric_limits<double>::infinity(); }
-  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>&) const override { return {}; }
+  [[nodiscard]] double most_change() const override {
+    return std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>&) const override {
+    return {};
+  }
   [[nodiscard]] double singular_sine(const Config& q) const override {
     double least = 1;
     for (const Alignment& a : alignments_) least = std::min(least, std::abs(std::sin(a.away(q))));
@@ -238,19 +282,23 @@ class ArcLengthRedundancy final : public Redundancy {
 
 }  // namespace
 
-std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                                                  const Problem& problem, const Budget& budget) {
+std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm,
+                                                  const ToolPath& path, const Problem& problem,
+                                                  const Budget& budget) {
   if (arm.srs) return std::make_unique<ArmAngleRedundancy>(chain, *arm.srs, path, problem, budget);
   return std::make_unique<ArcLengthRedundancy>(chain, arm, path, problem);
 }
 
-std::unique_ptr<const Redundancy> make_coaxial_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                                                          const Problem& problem, double last_joint, const Budget& budget) {
+std::unique_ptr<const Redundancy> make_coaxial_redundancy(const Chain& chain, const SrsArm& arm,
+                                                          const ToolPath& path,
+                                                          const Problem& problem, double last_joint,
+                                                          const Budget& budget) {
   return std::make_unique<ArmAngleRedundancy>(chain, arm, path, problem, budget, last_joint);
 }
 
-std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                                                       const Problem& problem, const Budget& budget) {
+std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm,
+                                                       const ToolPath& path, const Problem& problem,
+                                                       const Budget& budget) {
   return std::make_unique<RollRedundancy>(chain, arm, path, problem, budget);
 }
 

@@ -42,7 +42,8 @@ class Objective {
     scale_ = Config::Map(objective.weights.data());
     bends_.resize(static_cast<std::size_t>(n_));
     for (int i = 1; i + 1 < n_; ++i) {
-      const double h0 = solver.travel(i) - solver.travel(i - 1), h1 = solver.travel(i + 1) - solver.travel(i), h = (h0 + h1) / 2;
+      const double h0 = solver.travel(i) - solver.travel(i - 1),
+                   h1 = solver.travel(i + 1) - solver.travel(i), h = (h0 + h1) / 2;
       bends_[at(i)] = {{1 / (h0 * h), -1 / (h0 * h) - 1 / (h1 * h), 1 / (h1 * h)}, h};
     }
     for (const int jump : objective.jumps) bends_[at(jump)] = bends_[at(jump + 1)] = {};
@@ -65,8 +66,10 @@ class Objective {
       const double over = std::abs(x[at(i + 1)] - x[at(i)]) - objective_->most_change;
       if (over > 0) sum += kChange * over * over;
     }
-    for (int i = 1; i + 1 < n_; ++i) sum += objective_->bending * bends_[at(i)].h * bend(q, i).squaredNorm();
-    for (std::size_t i = 0; i < objective_->roll.size(); ++i) sum += objective_->roll[i] * off(wrap_angle(roll(x[i], q[i])));
+    for (int i = 1; i + 1 < n_; ++i)
+      sum += objective_->bending * bends_[at(i)].h * bend(q, i).squaredNorm();
+    for (std::size_t i = 0; i < objective_->roll.size(); ++i)
+      sum += objective_->roll[i] * off(wrap_angle(roll(x[i], q[i])));
     return sum;
   }
 
@@ -78,7 +81,8 @@ class Objective {
     l.first.resize(x.size());
     l.second.resize(x.size());
     for (int i = 0; i < n_; ++i) {
-      const auto before = solver_->joints(i, x[at(i)] - kStep), after = solver_->joints(i, x[at(i)] + kStep);
+      const auto before = solver_->joints(i, x[at(i)] - kStep),
+                 after = solver_->joints(i, x[at(i)] + kStep);
       if (!before || !after) return false;
       l.first[at(i)] = (*after - *before) / (2 * kStep);
       l.second[at(i)] = ((*after - l.q[at(i)]) - (l.q[at(i)] - *before)) / (kStep * kStep);
@@ -89,11 +93,14 @@ class Objective {
       const std::size_t a = at(i), b = at(i + 1);
       const Norm n = norm(scale_.cwiseProduct(l.q[b] - l.q[a]));
       const Config ja = scale_.cwiseProduct(l.first[a]), jb = scale_.cwiseProduct(l.first[b]);
-      const double wa = n.way.dot(ja), wb = n.way.dot(jb), bent = (objective_->power - 1) / n.length;
+      const double wa = n.way.dot(ja), wb = n.way.dot(jb),
+                   bent = (objective_->power - 1) / n.length;
       g[a] -= wa;
       g[b] += wb;
-      H[0][a] += bent * (ja.cwiseProduct(n.spread).dot(ja) - wa * wa) - n.way.dot(scale_.cwiseProduct(l.second[a]));
-      H[0][b] += bent * (jb.cwiseProduct(n.spread).dot(jb) - wb * wb) + n.way.dot(scale_.cwiseProduct(l.second[b]));
+      H[0][a] += bent * (ja.cwiseProduct(n.spread).dot(ja) - wa * wa) -
+                 n.way.dot(scale_.cwiseProduct(l.second[a]));
+      H[0][b] += bent * (jb.cwiseProduct(n.spread).dot(jb) - wb * wb) +
+                 n.way.dot(scale_.cwiseProduct(l.second[b]));
       H[1][a] -= bent * (ja.cwiseProduct(n.spread).dot(jb) - wa * wb);
       const double change = x[b] - x[a], over = std::abs(change) - objective_->most_change;
       if (over <= 0) continue;
@@ -130,12 +137,16 @@ class Objective {
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  [[nodiscard]] double roll(double x, const Config& q) const { return objective_->roll_is_coordinate ? x : q[kDof - 1]; }
+  [[nodiscard]] double roll(double x, const Config& q) const {
+    return objective_->roll_is_coordinate ? x : q[kDof - 1];
+  }
   [[nodiscard]] double length(const Config& r) const {
     const int power = objective_->power;
     if (power == 2) return std::sqrt(r.squaredNorm() + kLeastMove * kLeastMove);
     const double unit = std::max(r.lpNorm<Eigen::Infinity>(), kLeastMove);
-    return unit * std::pow(raised(r / unit, power).sum() + raised(Config::Constant(kLeastMove / unit), power)[0], 1.0 / power);
+    return unit * std::pow(raised(r / unit, power).sum() +
+                               raised(Config::Constant(kLeastMove / unit), power)[0],
+                           1.0 / power);
   }
   static double off(double roll) { return std::sqrt(roll * roll + kLeastRoll * kLeastRoll); }
   [[nodiscard]] Norm norm(const Config& r) const {
@@ -168,8 +179,8 @@ class Objective {
 
 /// Solves (H + shift) p = -g over the free coordinates, where p is as given for the others, by L D
 /// L^T. Returns false unless the matrix is positive definite.
-bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, const std::vector<bool>& free,
-                 double shift, std::vector<double>& p) {
+bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g,
+                 const std::vector<bool>& free, double shift, std::vector<double>& p) {
   const std::size_t n = g.size();
   std::vector<double> d(n), l1(n, 0), l2(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
@@ -204,9 +215,9 @@ bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<
 /// Kunisch 2002). Coordinates that would leave their box end on the bound, and those whose bound no
 /// longer holds them back are free again, all at once: one at a time would need as many steps as a
 /// path has layers on bounds. Where that does not settle, bounds are only added.
-bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, std::vector<bool> free,
-                        double shift, const std::vector<double>& x, const std::vector<CoordinateBox>& boxes,
-                        std::vector<double>& p) {
+bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g,
+                        std::vector<bool> free, double shift, const std::vector<double>& x,
+                        const std::vector<CoordinateBox>& boxes, std::vector<double>& p) {
   constexpr int kRounds = 40, kSettling = 25;
   const std::size_t n = x.size();
   std::fill(p.begin(), p.end(), 0);
@@ -239,14 +250,16 @@ bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::
 
 }  // namespace
 
-double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x) {
+double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective,
+                   const std::vector<double>& x) {
   const Objective f(solver, objective);
   std::vector<Config> q;
   return f.solve(x, q) ? f.value(x, q) : std::numeric_limits<double>::infinity();
 }
 
 std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
-                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x, const Budget& budget) {
+                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x,
+                                   const Budget& budget) {
   constexpr int kIterations = 60;
   constexpr double kGain = 1e-9, kFirstShift = 1e-3, kLastShift = 1e9;
   const Objective f(solver, objective);
@@ -264,13 +277,16 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
     budget.poll();
     if (!f.derive(x, here, g, H)) return x;
     for (std::size_t i = 0; i < x.size(); ++i)
-      free[i] = boxes[i].low < boxes[i].high && !(x[i] <= boxes[i].low && g[i] > 0) && !(x[i] >= boxes[i].high && g[i] < 0);
+      free[i] = boxes[i].low < boxes[i].high && !(x[i] <= boxes[i].low && g[i] > 0) &&
+                !(x[i] >= boxes[i].high && g[i] < 0);
     bool better = false;
     while (!better && shift <= kLastShift) {
       if (newton_step_inside(H, g, free, shift, x, boxes, p)) {
         // A Newton step gains half of g . p.
-        done = shift == 0 && std::abs(std::inner_product(g.begin(), g.end(), p.begin(), 0.0)) < kGain * (1 + value);
-        for (std::size_t i = 0; i < x.size(); ++i) next[i] = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
+        done = shift == 0 && std::abs(std::inner_product(g.begin(), g.end(), p.begin(), 0.0)) <
+                                 kGain * (1 + value);
+        for (std::size_t i = 0; i < x.size(); ++i)
+          next[i] = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
         if (f.solve(next, q)) {
           const double there = f.value(next, q);
           if (there < value) {

@@ -23,7 +23,8 @@ Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
         if (x == 0 && y == 0 && z == 0) continue;
         const Vector3d direction = Vector3d(x, y, z).normalized();
         double least = 1;
-        for (const ArmPlane& plane : planes) least = std::min(least, plane.u.cross(direction).norm());
+        for (const ArmPlane& plane : planes)
+          least = std::min(least, plane.u.cross(direction).norm());
         if (least > most + 1e-9) best = direction, most = least;
       }
   return best;
@@ -31,8 +32,9 @@ Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
 
 }  // namespace
 
-SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
-                     double apart, const std::vector<BetweenRow>& between)
+SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                     const std::vector<TrajectoryRow>& rows, double apart,
+                     const std::vector<BetweenRow>& between)
     : PathMotion(chain, path, rows, apart, between),
       arm_(&arm),
       planes_(carried_planes(arm, path.unturned() ? *path.unturned() : path)),
@@ -44,7 +46,8 @@ SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path
   }
   for (std::size_t k = 1; k < rows.size(); ++k)
     if (rows[k].branch != rows[k - 1].branch)
-      jumps_.push_back({rows[k].s, "the solution changes from branch " + std::to_string(rows[k - 1].branch) + " to " +
+      jumps_.push_back({rows[k].s, "the solution changes from branch " +
+                                       std::to_string(rows[k - 1].branch) + " to " +
                                        std::to_string(rows[k].branch)});
   angle_.emplace(travel_, std::move(angles));
 }
@@ -65,7 +68,8 @@ std::optional<Config> SrsMotion::joints(double travel) const {
   const auto [k, t] = between(travel);
   const TrajectoryRow &from = rows_[k], &to = rows_[k + 1];
   const double angle = angle_->at(travel);
-  std::optional<Config> q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), angle, t < 0.5 ? from.branch : to.branch);
+  std::optional<Config> q =
+      srs_ik(*arm_, elbow_circles(*arm_, plane, tool), angle, t < 0.5 ? from.branch : to.branch);
   if (!arm_->exact) q = solve_exact_chain(*chain_, *arm_, plane, tool, angle, *q);
   if (!q) return std::nullopt;
   const Config expected = from.q + t * (to.q - from.q);
@@ -77,14 +81,16 @@ TrajectoryRow SrsMotion::row(double travel, const Config& q) const {
   const auto [s, t, i] = place(travel);
   const auto layer = static_cast<std::size_t>(i);
   const ToolPath& unturned = path_->unturned() ? *path_->unturned() : *path_;
-  ArmPlane plane = t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
+  ArmPlane plane =
+      t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
   if (path_->unturned()) plane = carry_plane(*arm_, plane, path_->at_travel(travel));
   return {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q, path_->roll_at(travel)};
 }
 
 std::optional<PathMotion::Singular> SrsMotion::nearest_singular(const Config& q) const {
-  const std::pair<const char*, double> angles[] = {
-      {"shoulder", arm_->shoulder_angle(q)}, {"elbow", arm_->elbow_angle(q)}, {"wrist", arm_->wrist_angle(q)}};
+  const std::pair<const char*, double> angles[] = {{"shoulder", arm_->shoulder_angle(q)},
+                                                   {"elbow", arm_->elbow_angle(q)},
+                                                   {"wrist", arm_->wrist_angle(q)}};
   std::optional<Singular> nearest;
   for (const auto& [where, angle] : angles) {
     const double away = std::abs(std::asin(std::clamp(std::sin(angle), -1.0, 1.0)));

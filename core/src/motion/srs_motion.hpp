@@ -9,7 +9,8 @@ namespace swivel {
 /// The motion of an S-R-S arm (make_path_motion()): a spline of the arm angle.
 class SrsMotion final : public PathMotion {
  public:
-  SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
+  SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+            const std::vector<TrajectoryRow>& rows, double apart,
             const std::vector<BetweenRow>& between);
   [[nodiscard]] std::optional<Config> joints(double travel) const override;
   [[nodiscard]] TrajectoryRow row(double travel, const Config& q) const override;

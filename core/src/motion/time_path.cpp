@@ -14,12 +14,16 @@ namespace swivel {
 
 namespace {
 
-bool roll_allowed(const Chain& chain, const ToolPath& path, double travel, const TrajectoryRow& row) {
+bool roll_allowed(const Chain& chain, const ToolPath& path, double travel,
+                  const TrajectoryRow& row) {
   if (!chain.tool_may_turn()) return true;
   // rad; check allows a little more
   const double roll = roll_of(chain, row), slack = std::max(0.9 * path.rounding(), 5e-7);
-  const auto within = [&](const Roll& range) { return roll >= range.lower - slack && roll <= range.upper + slack; };
-  return within(path.window_at(travel)) && (!chain.free_roll || chain.free_roll->circle() || within(*chain.free_roll));
+  const auto within = [&](const Roll& range) {
+    return roll >= range.lower - slack && roll <= range.upper + slack;
+  };
+  return within(path.window_at(travel)) &&
+         (!chain.free_roll || chain.free_roll->circle() || within(*chain.free_roll));
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -45,7 +49,8 @@ Eigen::Matrix<double, 5, 4> derivative_weights(const double* places, double x) {
       const double c3 = places[i] - places[j];
       c2 *= c3;
       if (j == i - 1) {
-        for (int k = orders; k >= 1; --k) c(i, k) = c1 * (k * c(i - 1, k - 1) - c5 * c(i - 1, k)) / c2;
+        for (int k = orders; k >= 1; --k)
+          c(i, k) = c1 * (k * c(i - 1, k - 1) - c5 * c(i - 1, k)) / c2;
         c(i, 0) = -c1 * c5 * c(i - 1, 0) / c2;
       }
       for (int k = orders; k >= 1; --k) c(j, k) = (c4 * c(j, k) - k * c(j, k - 1)) / c3;
@@ -87,22 +92,29 @@ class RestToRest {
     const auto r = [](double limit, double value) { return value > 0 ? limit / value : kInfinity; };
     filter_ = 0;
     for (int j = 0; j < kDof; ++j)
-      if (std::isfinite(rates.acceleration[j])) filter_ = std::max(filter_, kShare * rates.acceleration[j] / rates.jerk[j]);
+      if (std::isfinite(rates.acceleration[j]))
+        filter_ = std::max(filter_, kShare * rates.acceleration[j] / rates.jerk[j]);
     filter_ = std::max(filter_, 1e-4);
     for (std::size_t k = 0; k < n_; ++k) {
       const PathSample& place = places_[k];
       asked_[k] = r(options.speed, place.along > kStill ? place.along : 0);
-      if (options.turn_speed) asked_[k] = std::min(asked_[k], r(*options.turn_speed, place.turning));
-      if (options.chord) asked_[k] = std::min(asked_[k], options.rate * std::sqrt(kTarget * r(*options.chord, place.chord)));
+      if (options.turn_speed)
+        asked_[k] = std::min(asked_[k], r(*options.turn_speed, place.turning));
+      if (options.chord)
+        asked_[k] =
+            std::min(asked_[k], options.rate * std::sqrt(kTarget * r(*options.chord, place.chord)));
       speed_cap_[k] = asked_[k];
       acceleration_cap_[k] = kInfinity;
       double joint_speed = kInfinity;
       for (int j = 0; j < kDof; ++j) {
         joint_speed = std::min(joint_speed, r(rates.speed[j], std::abs(place.first[j])));
         lower(k, kTarget * r(rates.speed[j], std::abs(place.first[j])), {j, JointRate::kSpeed});
-        lower(k, std::sqrt(kTarget * r(rates.acceleration[j], std::abs(place.second[j]))), {j, JointRate::kAcceleration});
-        lower(k, std::cbrt(kTarget * r(rates.jerk[j], std::abs(place.third[j]))), {j, JointRate::kJerk});
-        acceleration_cap_[k] = std::min(acceleration_cap_[k], kShare * r(rates.acceleration[j], std::abs(place.first[j])));
+        lower(k, std::sqrt(kTarget * r(rates.acceleration[j], std::abs(place.second[j]))),
+              {j, JointRate::kAcceleration});
+        lower(k, std::cbrt(kTarget * r(rates.jerk[j], std::abs(place.third[j]))),
+              {j, JointRate::kJerk});
+        acceleration_cap_[k] = std::min(
+            acceleration_cap_[k], kShare * r(rates.acceleration[j], std::abs(place.first[j])));
       }
       if (!std::isfinite(asked_[k])) asked_[k] = joint_speed;
       // Nothing moves: any speed serves.
@@ -117,7 +129,8 @@ class RestToRest {
   /// Returns the time at the speed asked for throughout, s.
   [[nodiscard]] double ideal() const {
     double time = 0;
-    for (std::size_t k = 1; k < n_; ++k) time += (places_[k].x - places_[k - 1].x) * 0.5 * (1 / asked_[k] + 1 / asked_[k - 1]);
+    for (std::size_t k = 1; k < n_; ++k)
+      time += (places_[k].x - places_[k - 1].x) * 0.5 * (1 / asked_[k] + 1 / asked_[k - 1]);
     return time;
   }
 
@@ -159,8 +172,9 @@ class RestToRest {
     seek(x, node);
     const PathSample &a = places_[node], &b = places_[node + 1];
     const double u = std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0), v = 1 - u;
-    return {v * a.first + u * b.first, v * a.second + u * b.second,   v * a.third + u * b.third,
-            v * a.along + u * b.along, v * a.turning + u * b.turning, v * asked_[node] + u * asked_[node + 1],
+    return {v * a.first + u * b.first,     v * a.second + u * b.second,
+            v * a.third + u * b.third,     v * a.along + u * b.along,
+            v * a.turning + u * b.turning, v * asked_[node] + u * asked_[node + 1],
             u < 0.5 ? node : node + 1};
   }
 
@@ -198,9 +212,11 @@ class RestToRest {
     double least = end_;
     while (duration() > kNearIdeal * ideal() && rounds < kRounds && few < kFew) {
       for (std::size_t k = 0; k < n_; ++k) {
-        speed_scale_[k] = std::min(1.0, speed_scale_[k] * std::clamp(std::cbrt(kUse / used_[k]), 1.0, kFaster));
-        acceleration_scale_[k] = std::min(std::max(acceleration_scale_[k], kHardest),
-                                          acceleration_scale_[k] * std::clamp(kUse / used_[k], 1.0, kHarder));
+        speed_scale_[k] =
+            std::min(1.0, speed_scale_[k] * std::clamp(std::cbrt(kUse / used_[k]), 1.0, kFaster));
+        acceleration_scale_[k] =
+            std::min(std::max(acceleration_scale_[k], kHardest),
+                     acceleration_scale_[k] * std::clamp(kUse / used_[k], 1.0, kHarder));
       }
       bool kept = false;
       for (int repair = 0; repair < kRepairs && !kept; ++repair) {
@@ -228,7 +244,8 @@ class RestToRest {
   /// Slows down by factors of speeds and of accelerations along the path, one for each place;
   /// plan() must follow.
   void slow_down(const std::vector<double>& slower, const std::vector<double>& acceleration_scale) {
-    for (std::size_t k = 0; k < n_; ++k) speed_scale_[k] *= slower[k], acceleration_scale_[k] *= acceleration_scale[k];
+    for (std::size_t k = 0; k < n_; ++k)
+      speed_scale_[k] *= slower[k], acceleration_scale_[k] *= acceleration_scale[k];
   }
   [[nodiscard]] const SpeedLimiter& limiter(std::size_t node) const { return limiter_[node]; }
   [[nodiscard]] const std::vector<PathSample>& places() const { return places_; }
@@ -263,15 +280,17 @@ class RestToRest {
       const double reach = cap[k] * filter_ / 2;
       for (std::size_t i = k; i-- > 0 && places_[k].x - places_[i].x <= reach && cap[i] >= cap[k];)
         speed_[i] = std::min(speed_[i], cap[k]);
-      for (std::size_t i = k + 1; i < n_ && places_[i].x - places_[k].x <= reach && cap[i] >= cap[k]; ++i)
+      for (std::size_t i = k + 1;
+           i < n_ && places_[i].x - places_[k].x <= reach && cap[i] >= cap[k]; ++i)
         speed_[i] = std::min(speed_[i], cap[k]);
     }
     speed_.front() = speed_.back() = 0;
     const auto bound = [&](std::size_t from, std::size_t to) {
-      const double acceleration_cap =
-          std::min(acceleration_cap_[from] * acceleration_scale_[from], acceleration_cap_[to] * acceleration_scale_[to]);
+      const double acceleration_cap = std::min(acceleration_cap_[from] * acceleration_scale_[from],
+                                               acceleration_cap_[to] * acceleration_scale_[to]);
       speed_[to] = std::min(
-          speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * acceleration_cap * std::abs(places_[to].x - places_[from].x)));
+          speed_[to], std::sqrt(speed_[from] * speed_[from] +
+                                2 * acceleration_cap * std::abs(places_[to].x - places_[from].x)));
     };
     for (std::size_t k = 1; k < n_; ++k) bound(k - 1, k);
     for (std::size_t k = n_ - 1; k-- > 0;) bound(k + 1, k);
@@ -292,7 +311,8 @@ class RestToRest {
     if (t >= end_) return {area_.back() + (t - end_) * places_.back().x, places_.back().x, 0, 0};
     if (node + 2 > n_ || time_[node] > t) node = 0;
     while (node + 2 < n_ && time_[node + 1] <= t) ++node;
-    const double u = t - time_[node], a = (speed_[node + 1] - speed_[node]) / (time_[node + 1] - time_[node]);
+    const double u = t - time_[node],
+                 a = (speed_[node + 1] - speed_[node]) / (time_[node + 1] - time_[node]);
     const double x = places_[node].x, v = speed_[node];
     return {area_[node] + u * (x + u * (v / 2 + u * a / 6)), x + u * (v + u * a / 2), v + u * a, a};
   }
@@ -318,15 +338,20 @@ class RestToRest {
       double path = 1, along = 1;  // factors of speed and of acceleration along the path
       double used = kNothing;
       for (int j = 0; j < kDof; ++j) {
-        const double speed = d.first[j] * v, bend = d.second[j] * v * v, third = d.third[j] * v * v * v;
+        const double speed = d.first[j] * v, bend = d.second[j] * v * v,
+                     third = d.third[j] * v * v * v;
         const double limit[3] = {rates_->speed[j], rates_->acceleration[j], rates_->jerk[j]};
-        const double all[3] = {speed, bend + d.first[j] * a, third + 3 * d.second[j] * v * a + d.first[j] * jerk};
+        const double all[3] = {speed, bend + d.first[j] * a,
+                               third + 3 * d.second[j] * v * a + d.first[j] * jerk};
         const double of_path[3] = {speed, bend, third};  // at a steady speed
         for (int n = 0; n < 3; ++n) {
-          const double ratio = std::abs(all[n]) / (kTarget * limit[n]), share = std::abs(of_path[n]) / (kTarget * limit[n]);
+          const double ratio = std::abs(all[n]) / (kTarget * limit[n]),
+                       share = std::abs(of_path[n]) / (kTarget * limit[n]);
           used = std::max(used, ratio);
           if (ratio <= 1) continue;
-          const auto root = [n](double of) { return n == 0 ? of : n == 1 ? std::sqrt(of) : std::cbrt(of); };
+          const auto root = [n](double of) {
+            return n == 0 ? of : n == 1 ? std::sqrt(of) : std::cbrt(of);
+          };
           worst = std::max(worst, root(ratio));
           const bool of_speed = both || n == 0 || share > kPath;
           if (of_speed) {
@@ -342,7 +367,8 @@ class RestToRest {
       }
       seek(at.from, low);
       seek(at.to, high);
-      for (std::size_t k = low; k <= std::min(high + 1, n_ - 1); ++k) used_[k] = std::max(used_[k], used);
+      for (std::size_t k = low; k <= std::min(high + 1, n_ - 1); ++k)
+        used_[k] = std::max(used_[k], used);
       if (path >= 1 && along >= 1) continue;
       for (std::size_t k = low > 0 ? low - 1 : 0; k <= std::min(high + 2, n_ - 1); ++k) {
         slower[k] = std::min(slower[k], std::max(kLeast, path));
@@ -450,7 +476,9 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
     // Half-way along a straight move over a travel of h the joints are off by q'' h^2 / 8. What is
     // along the path only shifts the time.
     const double least = 1e-4 / std::max(1.0, place.second.norm());
-    const auto moved = [&](double by) -> Vector3d { return motion.chain().tool(place.q + by * place.second).translation(); };
+    const auto moved = [&](double by) -> Vector3d {
+      return motion.chain().tool(place.q + by * place.second).translation();
+    };
     Vector3d off = (moved(least) - moved(-least)) / (2 * least);
     if (place.along > 0) off -= off.dot(along) / along.squaredNorm() * along;
     place.chord = off.norm() / 8;
@@ -461,8 +489,8 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
 /// The sampled motion, and its measures.
 class Samples {
  public:
-  Samples(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, std::vector<RestToRest>& pieces,
-          const Budget& budget)
+  Samples(const PathMotion& motion, const JointRates& rates, const TimingOptions& options,
+          std::vector<RestToRest>& pieces, const Budget& budget)
       : motion_(&motion),
         rates_(&rates),
         options_(&options),
@@ -492,7 +520,9 @@ class Samples {
         if (k % 256 == 0) budget_->poll();
         const RestToRest::State at = walk.at(std::min(here, piece.duration()));
         const auto q = motion_->joints(at.x);
-        if (!q) return NoMotion{motion_->row(at.x, Config::Zero()).s, "the arm has no solution between layers"};
+        if (!q)
+          return NoMotion{motion_->row(at.x, Config::Zero()).s,
+                          "the arm has no solution between layers"};
         const RestToRest::Derivatives d = piece.derivatives(at.x, node);
         TimedRow row;
         row.t = t;
@@ -500,7 +530,8 @@ class Samples {
         if (!near_ && here > 0 && here < piece.duration() && !differ(piece, beside, here, row))
           return NoMotion{row.row.s, "the arm has no solution between layers"};
         if (!roll_allowed(motion_->chain(), motion_->path(), at.x, row.row))
-          return NoMotion{row.row.s, "the tool would turn further than its waypoints allow between layers"};
+          return NoMotion{row.row.s,
+                          "the tool would turn further than its waypoints allow between layers"};
         out.rows.push_back(row);
         travel_.push_back(at.x);
         tool_.push_back(motion_->path().at_travel(at.x));
@@ -511,7 +542,8 @@ class Samples {
       before += piece.duration();
     }
     for (std::size_t i = 1; near_ && i + 1 < out.rows.size(); ++i) {
-      const Config &q0 = out.rows[i - 1].row.q, &q1 = out.rows[i].row.q, &q2 = out.rows[i + 1].row.q;
+      const Config &q0 = out.rows[i - 1].row.q, &q1 = out.rows[i].row.q,
+                   &q2 = out.rows[i + 1].row.q;
       out.rows[i].v = (q2 - q0) / (2 * dt);
       out.rows[i].a = ((q2 - q1) - (q1 - q0)) / (dt * dt);
     }
@@ -532,14 +564,17 @@ class Samples {
       for (int order = 0; order < 3; ++order)
         for (int j = 0; j < kDof; ++j) {
           const double ratio = ratio_at(out, k, order, j);
-          TimedPath::Peak& peak = out.peaks[static_cast<std::size_t>(order)][static_cast<std::size_t>(j)];
+          TimedPath::Peak& peak =
+              out.peaks[static_cast<std::size_t>(order)][static_cast<std::size_t>(j)];
           if (ratio <= peak.ratio) continue;
-          const TimedRow& row = out.rows[static_cast<std::size_t>(std::clamp(k - order / 2 - (order > 0 ? 1 : 0), 0LL, n - 1))];
+          const TimedRow& row = out.rows[static_cast<std::size_t>(
+              std::clamp(k - order / 2 - (order > 0 ? 1 : 0), 0LL, n - 1))];
           peak = {ratio, j, row.t, row.row.s};
           if (const double by = slower_by(ratio, order); by > worst.by) worst = {by, row.row.s};
         }
     for (std::size_t k = 0; k < out.rows.size(); ++k)
-      if (const double by = std::max(slower_for_chord(k), slower_for_tool(k)); by > worst.by) worst = {by, out.rows[k].row.s};
+      if (const double by = std::max(slower_for_chord(k), slower_for_tool(k)); by > worst.by)
+        worst = {by, out.rows[k].row.s};
     return worst;
   }
 
@@ -561,11 +596,14 @@ class Samples {
         for (int j = 0; j < kDof; ++j)
           if (const double ratio = ratio_at(out, k, order, j); ratio > 1) {
             speed = std::min(speed, std::max(kLeast, 0.995 / slower_by(ratio, order)));
-            if (order > 0) acceleration_cap = std::min(acceleration_cap, std::max(kLeast, 0.98 / ratio));
+            if (order > 0)
+              acceleration_cap = std::min(acceleration_cap, std::max(kLeast, 0.98 / ratio));
           }
-      if (const double by = slower_for_chord(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))); by > 1)
+      if (const double by = slower_for_chord(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1)));
+          by > 1)
         speed = std::min(speed, std::max(kLeast, 0.995 / by));
-      if (const double by = slower_for_tool(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))); by > 1)
+      if (const double by = slower_for_tool(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1)));
+          by > 1)
         tool = std::max(kLeast, 1 / (1 + kTool * (by - 1)));
       speed = std::min(speed, tool);
       if (speed == 1) continue;
@@ -575,7 +613,8 @@ class Samples {
         auto &speeds = slower[at->piece], &pulls = acceleration_scale[at->piece];
         const std::size_t first = at->piece == from.piece ? from.node : 0,
                           last = at->piece == to.piece ? to.node : speeds.size() - 1;
-        for (std::size_t place = first > 0 ? first - 1 : 0; place <= std::min(last + 1, speeds.size() - 1); ++place) {
+        for (std::size_t place = first > 0 ? first - 1 : 0;
+             place <= std::min(last + 1, speeds.size() - 1); ++place) {
           speeds[place] = std::min(speeds[place], speed);
           pulls[place] = std::min(pulls[place], acceleration_cap);
           for_tool[at->piece][place] = std::min(for_tool[at->piece][place], tool);
@@ -640,7 +679,9 @@ class Samples {
   [[nodiscard]] double ratio_at(const TimedPath& out, long long k, int order, int j) const {
     const auto n = static_cast<long long>(out.rows.size());
     const double dt = 1 / options_->rate;
-    const auto q = [&](long long i) { return out.rows[static_cast<std::size_t>(std::clamp(i, 0LL, n - 1))].row.q[j]; };
+    const auto q = [&](long long i) {
+      return out.rows[static_cast<std::size_t>(std::clamp(i, 0LL, n - 1))].row.q[j];
+    };
     const double step = q(k) - q(k - 1);
     if (order == 0) return std::abs(step / dt) / rates_->speed[j];
     const double before = q(k - 1) - q(k - 2);
@@ -650,7 +691,9 @@ class Samples {
   /// Returns the factor by which the move that ends at a sample would have to be slower for the
   /// tool to stay as near its path as asked.
   [[nodiscard]] double slower_for_chord(std::size_t k) const {
-    return options_->chord && strayed_[k] > *options_->chord ? std::sqrt(strayed_[k] / *options_->chord) : 1;
+    return options_->chord && strayed_[k] > *options_->chord
+               ? std::sqrt(strayed_[k] / *options_->chord)
+               : 1;
   }
   /// Returns the factor by which slow_down() has lowered the speed about a place, so that the tool
   /// is no faster than asked.
@@ -665,9 +708,11 @@ class Samples {
   /// the larger of its speed along the path and in turning.
   [[nodiscard]] double tool_share(std::size_t k) const {
     if (k == 0) return 0;
-    const double along = (tool_[k].translation() - tool_[k - 1].translation()).norm() * options_->rate / options_->speed;
+    const double along = (tool_[k].translation() - tool_[k - 1].translation()).norm() *
+                         options_->rate / options_->speed;
     if (!options_->turn_speed) return along;
-    return std::max(along, angle_between(tool_[k - 1], tool_[k]) * options_->rate / *options_->turn_speed);
+    return std::max(along,
+                    angle_between(tool_[k - 1], tool_[k]) * options_->rate / *options_->turn_speed);
   }
   /// Returns the factor by which the move that ends at a sample would have to be slower for the
   /// tool to be no faster than asked.
@@ -676,7 +721,9 @@ class Samples {
     const double share = tool_share(k);
     return share > 1 + kRounding ? share : 1;
   }
-  static double slower_by(double ratio, int order) { return order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio); }
+  static double slower_by(double ratio, int order) {
+    return order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio);
+  }
 
   /// Computes speeds and accelerations of a row from differences over a few milliseconds. Returns
   /// false where the arm has no solution.
@@ -684,7 +731,8 @@ class Samples {
     constexpr double kStep = 1e-3, kLeast = 1e-4;  // s
     const double step = std::min({kStep, t, piece.duration() - t});
     if (step < kLeast) return true;  // at rest
-    const auto before = motion_->joints(walk.at(t - step).x), after = motion_->joints(walk.at(t + step).x);
+    const auto before = motion_->joints(walk.at(t - step).x),
+               after = motion_->joints(walk.at(t + step).x);
     if (!before || !after) return false;
     row.v = (*after - *before) / (2 * step);
     row.a = ((*after - row.row.q) - (row.row.q - *before)) / (step * step);
@@ -719,7 +767,8 @@ class Samples {
     slow.joint = std::max(limiter.joint, 0);
     slow.reason = limiter.rate;
     const auto singular = motion_->nearest_singular(out.rows[lowest].row.q);
-    if (singular && singular->angle < 0.3) slow.singular = singular->where, slow.singular_angle = singular->angle;
+    if (singular && singular->angle < 0.3)
+      slow.singular = singular->where, slow.singular_angle = singular->angle;
     out.slow.push_back(std::move(slow));
   }
 
@@ -740,7 +789,8 @@ class Samples {
 
 /// Returns the end of the warning about an assumed rate, where the motion goes as far as it allows
 /// and takes longer than at the speed asked for; else "".
-std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath& motion, const Chain& chain) {
+std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath& motion,
+                            const Chain& chain) {
   // motions are planned up to 0.99 of a rate, and slowed down to a little less
   constexpr double kLonger = 1.02, kReached = 0.9;
   TimedPath::Peak most;
@@ -749,17 +799,21 @@ std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath&
         assumed.of[j] && peak.ratio > most.ratio)
       most = peak;
   if (motion.duration < kLonger * motion.ideal || most.ratio < kReached) return "";
-  return ", and this decides how long the motion takes: joint '" + chain.joint_names[static_cast<std::size_t>(most.joint)] +
+  return ", and this decides how long the motion takes: joint '" +
+         chain.joint_names[static_cast<std::size_t>(most.joint)] +
          formatted("' reaches it at s = %.4f m", most.s);
 }
 
 }  // namespace
 
 const char* to_string(JointRate rate) {
-  return rate == JointRate::kSpeed ? "speed" : rate == JointRate::kAcceleration ? "acceleration" : "jerk";
+  return rate == JointRate::kSpeed          ? "speed"
+         : rate == JointRate::kAcceleration ? "acceleration"
+                                            : "jerk";
 }
 
-TimingResult time_path(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, const Budget& budget) {
+TimingResult time_path(const PathMotion& motion, const JointRates& rates,
+                       const TimingOptions& options, const Budget& budget) {
   TimingResult result;
   if (!motion.jumps().empty()) {
     result.failure = motion.jumps().front();
@@ -786,7 +840,8 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   std::vector<RestToRest> pieces;
   for (std::size_t k = 1; k < rests.size(); ++k) {
     std::vector<PathSample> places;
-    result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]), options.chord.has_value(), places);
+    result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]),
+                            options.chord.has_value(), places);
     if (result.failure) return result;
     pieces.emplace_back(rates, options, std::move(places));
     const int rounds = pieces.back().plan(budget);
@@ -820,8 +875,9 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   for (const JointRates::Assumed& assumed : rates.assumed)
     out.warnings.push_back(assumed.text + what_it_decides(assumed, out, motion.chain()));
   if (out.between_position > 10e-6) {
-    const std::string text = formatted("between samples the tool leaves its path by up to %.3g mm: a higher --rate brings less",
-                                       1e3 * out.between_position);
+    const std::string text = formatted(
+        "between samples the tool leaves its path by up to %.3g mm: a higher --rate brings less",
+        1e3 * out.between_position);
     out.warnings.emplace_back(text);
   }
   result.motion = std::move(out);

@@ -18,7 +18,8 @@ template <class Of>
 std::string list(const std::vector<HeldJoint>& held, const Of& of) {
   constexpr std::size_t kMost = 5;
   std::string text;
-  for (std::size_t k = 0; k < held.size() && k < kMost; ++k) text += (k == 0 ? "" : ", ") + of(held[k]);
+  for (std::size_t k = 0; k < held.size() && k < kMost; ++k)
+    text += (k == 0 ? "" : ", ") + of(held[k]);
   return held.size() <= kMost ? text : text + formatted(" and %zu more", held.size() - kMost);
 }
 
@@ -26,13 +27,16 @@ std::string list(const std::vector<HeldJoint>& held, const Of& of) {
 
 std::string words(const std::vector<HeldJoint>& held) {
   return list(held, [](const HeldJoint& joint) {
-    return joint.name + " at " + position_of(joint) + (joint.leader.empty() ? "" : " (as " + joint.leader + ")");
+    return joint.name + " at " + position_of(joint) +
+           (joint.leader.empty() ? "" : " (as " + joint.leader + ")");
   });
 }
 
 std::string with_held(const std::vector<HeldJoint>& held) {
   if (held.empty()) return "";
-  return " with " + list(held, [](const HeldJoint& joint) { return joint.name + " held at " + position_of(joint); });
+  return " with " + list(held, [](const HeldJoint& joint) {
+           return joint.name + " held at " + position_of(joint);
+         });
 }
 
 std::vector<std::string> held_warnings(const std::vector<HeldJoint>& held) {
@@ -41,8 +45,10 @@ std::vector<std::string> held_warnings(const std::vector<HeldJoint>& held) {
   for (const HeldJoint& joint : held) {
     const std::string& own = joint.leader.empty() ? joint.name : joint.leader;
     if (joint.given || !said.insert(own).second) continue;
-    warnings.push_back("joint '" + joint.name + "' lies between base and tip and is not planned: it is held at " +
-                       position_of(joint) + (joint.leader.empty() ? "" : ", since it mimics '" + joint.leader + "'") +
+    warnings.push_back("joint '" + joint.name +
+                       "' lies between base and tip and is not planned: it is held at " +
+                       position_of(joint) +
+                       (joint.leader.empty() ? "" : ", since it mimics '" + joint.leader + "'") +
                        ": robot.hold: {" + own + ": POSITION} says where it stands");
   }
   return warnings;

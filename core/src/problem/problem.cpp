@@ -11,11 +11,12 @@ namespace swivel {
 std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
   Pose frame = Pose::Identity();
   if (problem.path_frame != problem.base_link && !problem.path_frame.empty()) {
-    const auto object =
-        std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == problem.path_frame; });
+    const auto object = std::find_if(problem.scene.begin(), problem.scene.end(),
+                                     [&](const auto& o) { return o.name == problem.path_frame; });
     if (object == problem.scene.end())
-      throw InputError(problem.source, "path.frame: unknown frame '" + problem.path_frame +
-                                           "': allowed are the base link and the names of scene objects");
+      throw InputError(problem.source,
+                       "path.frame: unknown frame '" + problem.path_frame +
+                           "': allowed are the base link and the names of scene objects");
     frame = object->pose;
   }
   std::vector<Waypoint> result;
@@ -24,15 +25,18 @@ std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
     const Waypoint& w = problem.waypoints[k];
     const double norm = w.orientation.norm();
     if (!w.position.allFinite() || !std::isfinite(norm) || std::abs(norm - 1) > 1e-3)
-      throw InputError(problem.source, "path: waypoint " + std::to_string(k) +
-                                           ": not a pose: allowed are finite numbers and a quaternion of length 1 within 1e-3");
+      throw InputError(
+          problem.source,
+          "path: waypoint " + std::to_string(k) +
+              ": not a pose: allowed are finite numbers and a quaternion of length 1 within 1e-3");
     Waypoint moved = w;
     moved.position = frame * w.position;
     moved.orientation = (Quaterniond(frame.linear()) * w.orientation.normalized()).normalized();
     result.push_back(moved);
   }
   if (result.size() < 2)
-    throw InputError(problem.source, "path: " + std::to_string(result.size()) + " waypoint(s): allowed are at least two");
+    throw InputError(problem.source, "path: " + std::to_string(result.size()) +
+                                         " waypoint(s): allowed are at least two");
   return result;
 }
 

@@ -28,7 +28,8 @@ std::vector<int> vertex_numbers(const TriangleMesh& mesh) {
   int known = 0;
   for (const Vector3d& p : mesh.vertices) {
     std::size_t place = place_of(p);
-    while (first[place] >= 0 && mesh.vertices[static_cast<std::size_t>(first[place])] != p) place = (place + 1) & (places - 1);
+    while (first[place] >= 0 && mesh.vertices[static_cast<std::size_t>(first[place])] != p)
+      place = (place + 1) & (places - 1);
     if (first[place] < 0) {
       first[place] = static_cast<int>(numbers.size());
       numbers.push_back(known++);
@@ -45,18 +46,21 @@ bool is_closed(const TriangleMesh& mesh) {
   edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
     std::array<std::uint64_t, 3> v{};
-    for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<std::uint64_t>(number[static_cast<std::size_t>(triangle[k])]);
+    for (std::size_t k = 0; k < 3; ++k)
+      v[k] = static_cast<std::uint64_t>(number[static_cast<std::size_t>(triangle[k])]);
     // a sliver has no area and bounds nothing
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint64_t from = v[k], to = v[(k + 1) % 3];
-      edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 | static_cast<std::uint64_t>(from < to));
+      edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 |
+                      static_cast<std::uint64_t>(from < to));
     }
   }
   // A closed surface walks each edge once from either end.
   std::sort(edges.begin(), edges.end());
   bool closed = !edges.empty() && edges.size() % 2 == 0;
-  for (std::size_t k = 0; closed && k < edges.size(); k += 2) closed = edges[k] % 2 == 0 && edges[k + 1] == edges[k] + 1;
+  for (std::size_t k = 0; closed && k < edges.size(); k += 2)
+    closed = edges[k] % 2 == 0 && edges[k + 1] == edges[k] + 1;
   return closed;
 }
 
@@ -66,11 +70,15 @@ std::vector<Ball> bounding_balls(const Shape& shape) {
     std::vector<Ball> operator()(const Capsule& c) const {
       return {{Vector3d(0, 0, -c.length / 2), c.radius}, {Vector3d(0, 0, c.length / 2), c.radius}};
     }
-    std::vector<Ball> operator()(const Cylinder& c) const { return (*this)(Capsule{c.radius, c.length}); }
+    std::vector<Ball> operator()(const Cylinder& c) const {
+      return (*this)(Capsule{c.radius, c.length});
+    }
     std::vector<Ball> operator()(const Box& b) const {
       std::vector<Ball> balls;
       for (int corner = 0; corner < 8; ++corner)
-        balls.push_back({Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).cwiseProduct(b.size / 2), 0.0});
+        balls.push_back({Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1)
+                             .cwiseProduct(b.size / 2),
+                         0.0});
       return balls;
     }
     std::vector<Ball> operator()(const MeshPtr& mesh) const {

@@ -21,7 +21,9 @@ struct Field {
   const char* name = "";
   std::ptrdiff_t index = -1;
   [[nodiscard]] Field operator()(const char* member) const { return {this, member}; }
-  [[nodiscard]] Field operator()(const char* list, std::size_t at) const { return {this, list, static_cast<std::ptrdiff_t>(at)}; }
+  [[nodiscard]] Field operator()(const char* list, std::size_t at) const {
+    return {this, list, static_cast<std::ptrdiff_t>(at)};
+  }
   [[nodiscard]] std::string text() const {
     std::string result = parent ? parent->text() : "";
     if (!result.empty()) result += parent->parent ? "." : ": ";
@@ -40,7 +42,8 @@ enum class Range { kFinite, kNonNegative, kPositive, kLength };
 void number(const Field& field, double value, Range range) {
   if (range == Range::kLength
           ? value > 0 && value <= kMostMetres
-          : std::isfinite(value) && (range == Range::kFinite || value > 0 || (value == 0 && range == Range::kNonNegative)))
+          : std::isfinite(value) && (range == Range::kFinite || value > 0 ||
+                                     (value == 0 && range == Range::kNonNegative)))
     return;
   const std::string text = formatted("is %g", value);
   fail(field, text,
@@ -54,17 +57,20 @@ void number(const Field& field, const std::optional<double>& value, Range range)
 }
 template <class Vector>
 void numbers(const Field& field, const Vector& values, Range range) {
-  for (Eigen::Index k = 0; k < values.size(); ++k) number({field.parent, field.name, k}, values[k], range);
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    number({field.parent, field.name, k}, values[k], range);
 }
 
 void pose(const Field& field, const Pose& pose) {
   constexpr double kTolerance = 1e-6;
   const Matrix3d R = pose.linear();
-  if (!pose.matrix().allFinite()) fail(field, "has numbers that are not finite", "a rotation and a finite translation");
+  if (!pose.matrix().allFinite())
+    fail(field, "has numbers that are not finite", "a rotation and a finite translation");
   // The bound is twice that of files, since campaigns move objects.
-  if (!(pose.translation().array().abs() <= 2 * kMostMetres).all()) fail(field, "is too far away", "a translation within 2000 m");
-  if (!((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance && R.determinant() > 0 &&
-        pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
+  if (!(pose.translation().array().abs() <= 2 * kMostMetres).all())
+    fail(field, "is too far away", "a translation within 2000 m");
+  if (!((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance &&
+        R.determinant() > 0 && pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
     fail(field, "is no rigid transform", "a rotation within 1e-6 and a finite translation");
 }
 
@@ -76,11 +82,13 @@ void mesh(const Field& field, const MeshPtr& mesh) {
   const auto count = static_cast<int>(mesh->vertices.size());
   for (const auto& triangle : mesh->triangles)
     for (const int corner : triangle)
-      if (corner < 0 || corner >= count) fail(field, "has a triangle without a vertex", "indices of the mesh's vertices");
+      if (corner < 0 || corner >= count)
+        fail(field, "has a triangle without a vertex", "indices of the mesh's vertices");
 }
 
 void shape(const Field& field, const Shape& shape) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) number(field("radius"), sphere->radius, Range::kLength);
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    number(field("radius"), sphere->radius, Range::kLength);
   if (const auto* box = std::get_if<Box>(&shape)) numbers(field("size"), box->size, Range::kLength);
   const auto round = [&](const auto& body) {
     number(field("radius"), body.radius, Range::kLength);
@@ -98,38 +106,47 @@ void names(const Field& parent, const char* list, const std::vector<Item>& items
   sorted.reserve(items.size());
   for (std::size_t k = 0; k < items.size(); ++k) {
     if (items[k].name.empty()) fail(parent(list, k)("name"), "is empty", "a name of its own");
-    if (!is_valid_name(items[k].name)) fail(parent(list, k)("name"), "is '" + printable(items[k].name) + "'", kValidName);
+    if (!is_valid_name(items[k].name))
+      fail(parent(list, k)("name"), "is '" + printable(items[k].name) + "'", kValidName);
     sorted.emplace_back(items[k].name, k);
   }
   std::sort(sorted.begin(), sorted.end());
   const auto twice =
-      std::adjacent_find(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+      std::adjacent_find(sorted.begin(), sorted.end(),
+                         [](const auto& a, const auto& b) { return a.first == b.first; });
   if (twice != sorted.end())
-    fail(parent(list, std::next(twice)->second)("name"), "'" + std::string(twice->first) + "' is taken", "a name of its own");
+    fail(parent(list, std::next(twice)->second)("name"),
+         "'" + std::string(twice->first) + "' is taken", "a name of its own");
 }
 
 bool named(const std::vector<SceneObject>& scene, const std::string& name) {
-  return std::any_of(scene.begin(), scene.end(), [&](const auto& object) { return object.name == name; });
+  return std::any_of(scene.begin(), scene.end(),
+                     [&](const auto& object) { return object.name == name; });
 }
 bool named(const std::vector<AttachedBody>& attached, const std::string& name) {
-  return std::any_of(attached.begin(), attached.end(), [&](const auto& body) { return body.name == name; });
+  return std::any_of(attached.begin(), attached.end(),
+                     [&](const auto& body) { return body.name == name; });
 }
 
 void validate_robot(const Field& root, const Problem& problem) {
   if (!problem.model) fail(root("model"), "is null", "a robot model, as io::load_robot gives it");
   pose(root("tool"), problem.tool);
-  for (const auto& [joint, position] : problem.hold) number(root("hold")(joint.c_str()), position, Range::kFinite);
+  for (const auto& [joint, position] : problem.hold)
+    number(root("hold")(joint.c_str()), position, Range::kFinite);
   if (problem.roll) {
     number(root("roll")("lower"), problem.roll->lower, Range::kFinite);
     number(root("roll")("upper"), problem.roll->upper, Range::kFinite);
-    if (!(problem.roll->lower < problem.roll->upper)) fail(root("roll")("lower"), "is not below `upper`", "lower < upper");
+    if (!(problem.roll->lower < problem.roll->upper))
+      fail(root("roll")("lower"), "is not below `upper`", "lower < upper");
   }
   names(root, "attached", problem.attached);
   for (std::size_t k = 0; k < problem.attached.size(); ++k) {
     const AttachedBody& body = problem.attached[k];
     const Field field = root("attached", k);
-    if (problem.model->find_link(body.name) >= 0) fail(field("name"), "'" + body.name + "' is a link", "a name of its own");
-    if (problem.model->find_link(body.link) < 0) fail(field("link"), "unknown link '" + body.link + "'", "a link of the robot");
+    if (problem.model->find_link(body.name) >= 0)
+      fail(field("name"), "'" + body.name + "' is a link", "a name of its own");
+    if (problem.model->find_link(body.link) < 0)
+      fail(field("link"), "unknown link '" + body.link + "'", "a link of the robot");
     shape(field("shape"), body.shape);
     pose(field("pose"), body.pose);
   }
@@ -140,8 +157,10 @@ void validate_scene(const Field& root, const Problem& problem) {
   for (std::size_t k = 0; k < problem.scene.size(); ++k) {
     const SceneObject& object = problem.scene[k];
     const Field field = root("scene", k);
-    if (object.name == problem.base_link) fail(field("name"), "'" + object.name + "' is the base link", "a name of its own");
-    if (named(problem.attached, object.name)) fail(field("name"), "'" + object.name + "' is an attached body", "a name of its own");
+    if (object.name == problem.base_link)
+      fail(field("name"), "'" + object.name + "' is the base link", "a name of its own");
+    if (named(problem.attached, object.name))
+      fail(field("name"), "'" + object.name + "' is an attached body", "a name of its own");
     shape(field("shape"), object.shape);
     pose(field("pose"), object.pose);
     for (std::size_t i = 0; i < object.allow.size(); ++i) {
@@ -150,13 +169,15 @@ void validate_scene(const Field& root, const Problem& problem) {
         fail(field("allow", i), "unknown body '" + printable(allowed.body) + "'",
              "a link of the robot or the name of an attached body");
       number(field("allow", i)("depth"), allowed.depth, Range::kLength);
-      if (const auto fault = depth_fault(problem, object, allowed)) fail(field("allow", i)("depth"), fault->what, fault->allowed);
+      if (const auto fault = depth_fault(problem, object, allowed))
+        fail(field("allow", i)("depth"), fault->what, fault->allowed);
     }
   }
   for (std::size_t k = 0; k < problem.vary.size(); ++k) {
     const Field field = root("vary", k);
     if (!named(problem.scene, problem.vary[k].object))
-      fail(field("object"), "unknown object '" + problem.vary[k].object + "'", "the name of a scene object");
+      fail(field("object"), "unknown object '" + problem.vary[k].object + "'",
+           "the name of a scene object");
     numbers(field("xyz"), problem.vary[k].xyz, Range::kNonNegative);
     numbers(field("rpy"), problem.vary[k].rpy, Range::kNonNegative);
   }
@@ -183,27 +204,34 @@ std::optional<DepthFault> depth_fault(const Shape& body, const Shape& object, do
   const auto* const mesh_of_object = std::get_if<MeshPtr>(&object);
   for (const auto* mesh : {mesh_of_body, mesh_of_object})
     if (mesh && !(*mesh)->closed)
-      return DepthFault{"mesh " + printable((*mesh)->source) + " is not closed: nothing is deep in it",
-                        "a closed mesh, or no depth"};
+      return DepthFault{
+          "mesh " + printable((*mesh)->source) + " is not closed: nothing is deep in it",
+          "a closed mesh, or no depth"};
   if (mesh_of_body && mesh_of_object)
     return DepthFault{"both are meshes, of which no depth can be proved",
-                      "a depth where one of the two is a sphere, capsule, cylinder or box (swivel fit makes capsules)"};
+                      "a depth where one of the two is a sphere, capsule, cylinder or box (swivel "
+                      "fit makes capsules)"};
   if (const double most = most_beneath(body) + most_beneath(object); depth >= most)
-    return DepthFault{formatted("is %.6g, which no depth exceeds: the two are at most %.6g m deep in each other", depth, most),
-                      formatted("a number below %.6g, or no depth", most)};
+    return DepthFault{
+        formatted("is %.6g, which no depth exceeds: the two are at most %.6g m deep in each other",
+                  depth, most),
+        formatted("a number below %.6g, or no depth", most)};
   return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object, const Allowed& allowed) {
+std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object,
+                                      const Allowed& allowed) {
   if (!allowed.depth) return std::nullopt;
   for (const AttachedBody& body : robot.attached)
     if (body.name == allowed.body) return depth_fault(body.shape, object.shape, *allowed.depth);
   const int link = robot.model->find_link(allowed.body);
   if (link < 0) return std::nullopt;
   const auto& shapes = robot.model->links[static_cast<std::size_t>(link)].collision;
-  if (shapes.empty()) return DepthFault{"'" + printable(allowed.body) + "' has no collision shape", "a body that has one"};
+  if (shapes.empty())
+    return DepthFault{"'" + printable(allowed.body) + "' has no collision shape",
+                      "a body that has one"};
   for (const PlacedShape& placed : shapes)
     if (auto fault = depth_fault(placed.shape, object.shape, *allowed.depth)) return fault;
   return std::nullopt;
@@ -217,17 +245,21 @@ void validate_window(const Field& field, const Problem& problem, const Waypoint&
   if (!waypoint.roll) return;
   number(field("lower"), waypoint.roll->lower, Range::kFinite);
   number(field("upper"), waypoint.roll->upper, Range::kFinite);
-  if (!(waypoint.roll->lower <= waypoint.roll->upper)) fail(field("lower"), "is above `upper`", "lower <= upper");
+  if (!(waypoint.roll->lower <= waypoint.roll->upper))
+    fail(field("lower"), "is above `upper`", "lower <= upper");
   if (!problem.roll || problem.roll->circle())
-    fail(field, "is given, but the robot's roll is " + std::string(problem.roll ? "a circle" : "not free"),
+    fail(field,
+         "is given, but the robot's roll is " + std::string(problem.roll ? "a circle" : "not free"),
          "a robot whose roll has a range of less than a turn");
   if (!(waypoint.roll->lower >= problem.roll->lower && waypoint.roll->upper <= problem.roll->upper))
     fail(field, "is not within the robot's roll", "a part of its range");
 }
 
 void validate_path(const Field& root, const Problem& problem) {
-  if (!problem.path_frame.empty() && problem.path_frame != problem.base_link && !named(problem.scene, problem.path_frame))
-    fail(root("path_frame"), "unknown frame '" + problem.path_frame + "'", "the base link or the name of a scene object");
+  if (!problem.path_frame.empty() && problem.path_frame != problem.base_link &&
+      !named(problem.scene, problem.path_frame))
+    fail(root("path_frame"), "unknown frame '" + problem.path_frame + "'",
+         "the base link or the name of a scene object");
   for (std::size_t k = 0; k < problem.waypoints.size(); ++k) {
     const Waypoint& waypoint = problem.waypoints[k];
     const Field field = root("waypoints", k);
@@ -243,7 +275,8 @@ void validate_numbers(const Field& root, const Problem& problem) {
   const Field resolution = root("resolution");
   number(resolution("ds"), problem.resolution.ds, kPositive);
   number(resolution("dphi"), problem.resolution.dphi, kPositive);
-  if (problem.resolution.dphi > kTwoPi) fail(resolution("dphi"), "is more than a turn", "a finite number > 0, at most 2*pi");
+  if (problem.resolution.dphi > kTwoPi)
+    fail(resolution("dphi"), "is more than a turn", "a finite number > 0, at most 2*pi");
   number(resolution("dalpha"), problem.resolution.dalpha, kPositive);
   number(resolution("droll"), problem.resolution.droll, kPositive);
   number(resolution("knot"), problem.resolution.knot, Range::kLength);
@@ -265,7 +298,8 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(field("edge_clearance"), limits.edge_clearance, kNonNegative);
   number(field("edge_tolerance"), limits.edge_tolerance, kPositive);
   const auto rates = [&](const char* name, const std::optional<std::array<double, kDof>>& values) {
-    for (std::size_t k = 0; values && k < kDof; ++k) number(field(name, k), (*values)[k], kPositive);
+    for (std::size_t k = 0; values && k < kDof; ++k)
+      number(field(name, k), (*values)[k], kPositive);
   };
   rates("joint_speed", limits.joint_speed);
   rates("joint_acceleration", limits.joint_acceleration);
@@ -279,17 +313,20 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(refine("joint_margin"), problem.refinement.joint_margin, kNonNegative);
   number(refine("singular_margin"), problem.refinement.singular_margin, kNonNegative);
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
-  if (problem.start_at && !problem.start) fail(root("start_at"), "is given without a start", "a number beside a start");
+  if (problem.start_at && !problem.start)
+    fail(root("start_at"), "is given without a start", "a number beside a start");
   number(root("start_at"), problem.start_at, kNonNegative);
   number(root("start_tolerance"), problem.start_tolerance, kPositive);
-  if (problem.start_tolerance > kMostStartTolerance) fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");
+  if (problem.start_tolerance > kMostStartTolerance)
+    fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");
   for (std::size_t k = 0; k < kDof; ++k) {
     const double weight = problem.cost.weights[k];
     if (weight_allowed(weight)) continue;
     const std::string text = formatted("is %g", weight);
     fail(root("cost")("weights", k), text, kAllowedWeights);
   }
-  if (!weight_allowed(problem.cost.roll)) fail(root("cost")("roll"), "is no weight", kAllowedWeights);
+  if (!weight_allowed(problem.cost.roll))
+    fail(root("cost")("roll"), "is no weight", kAllowedWeights);
   if (problem.cost.roll > 0 && !problem.roll)
     fail(root("cost")("roll"), "is given, but no roll is free", "0, or a problem with a roll");
 }
@@ -305,9 +342,12 @@ void validate_joint(const Field& field, const Joint& joint, const RobotModel& ro
   if (!joint.movable()) return;
   if (!(std::abs(joint.axis.norm() - 1) <= 1e-6))
     fail(field("axis"), "is no unit vector", "a finite vector of length 1 within 1e-6");
-  if (!(joint.velocity >= 0)) fail(field("velocity"), "is negative or not a number", "a number >= 0, 0 for none");
-  if (!(joint.acceleration >= 0)) fail(field("acceleration"), "is negative or not a number", "a number >= 0, 0 for none");
-  if (!(joint.jerk >= 0)) fail(field("jerk"), "is negative or not a number", "a number >= 0, 0 for none");
+  if (!(joint.velocity >= 0))
+    fail(field("velocity"), "is negative or not a number", "a number >= 0, 0 for none");
+  if (!(joint.acceleration >= 0))
+    fail(field("acceleration"), "is negative or not a number", "a number >= 0, 0 for none");
+  if (!(joint.jerk >= 0))
+    fail(field("jerk"), "is negative or not a number", "a number >= 0, 0 for none");
   if (joint.type != Joint::Type::kContinuous && !(joint.lower <= joint.upper))
     fail(field("lower"), "is not a number up to `upper`", "lower <= upper");
   if (!joint.mimic) return;
@@ -341,12 +381,15 @@ void validate(const RobotModel& robot) {
   names(root, "joints", robot.joints);
   if (robot.root_link < 0 || static_cast<std::size_t>(robot.root_link) >= robot.links.size())
     fail(root("root_link"), "is " + std::to_string(robot.root_link), "an index of the robot model");
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) validate_joint(root("joints", j), robot.joints[j], robot);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j)
+    validate_joint(root("joints", j), robot.joints[j], robot);
   for (std::size_t k = 0; k < robot.links.size(); ++k) {
     const Link& link = robot.links[k];
     const Field field = root("links", k);
     if (link.parent_joint >= static_cast<int>(robot.joints.size()) ||
-        (link.parent_joint >= 0 && robot.joints[static_cast<std::size_t>(link.parent_joint)].child_link != static_cast<int>(k)))
+        (link.parent_joint >= 0 &&
+         robot.joints[static_cast<std::size_t>(link.parent_joint)].child_link !=
+             static_cast<int>(k)))
       fail(field("parent_joint"), "is " + std::to_string(link.parent_joint),
            "the index of the joint that has this link as its child");
     for (std::size_t i = 0; i < link.collision.size(); ++i) {
@@ -358,10 +401,12 @@ void validate(const RobotModel& robot) {
   std::vector<std::size_t> seen(robot.links.size(), 0);
   for (std::size_t first = 0; first < robot.links.size(); ++first)
     for (std::size_t link = first; seen[link] == 0 || seen[link] == first + 1;) {
-      if (seen[link] == first + 1) fail(root("links", first)("parent_joint"), "closes a loop", "a tree of links");
+      if (seen[link] == first + 1)
+        fail(root("links", first)("parent_joint"), "closes a loop", "a tree of links");
       seen[link] = first + 1;
       if (robot.links[link].parent_joint < 0) break;
-      link = static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(robot.links[link].parent_joint)].parent_link);
+      link = static_cast<std::size_t>(
+          robot.joints[static_cast<std::size_t>(robot.links[link].parent_joint)].parent_link);
     }
 }
 

@@ -27,7 +27,8 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
   const auto quantile = [&](double q) {
     const double position = q * static_cast<double>(values.size() - 1);
     const auto below = static_cast<std::size_t>(position);
-    return std::lerp(values[below], values[std::min(below + 1, values.size() - 1)], position - static_cast<double>(below));
+    return std::lerp(values[below], values[std::min(below + 1, values.size() - 1)],
+                     position - static_cast<double>(below));
   };
   return {quantile(0.5), quantile(0.05), quantile(0.95)};
 }
@@ -36,13 +37,14 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
 
 Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
   Problem result = problem;
-  draw_episode(problem.vary, seed, episode, [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
-    for (SceneObject& object : result.scene)
-      if (object.name == one.object) {
-        object.pose.translation() += offset;
-        object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
-      }
-  });
+  draw_episode(problem.vary, seed, episode,
+               [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
+                 for (SceneObject& object : result.scene)
+                   if (object.name == one.object) {
+                     object.pose.translation() += offset;
+                     object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
+                   }
+               });
   return result;
 }
 
@@ -50,29 +52,37 @@ std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary) 
   std::vector<std::string> names;
   for (const Variation& one : vary)
     for (int k = 0; k < 6; ++k)
-      if (varies(one, k)) names.push_back(one.object + "." + kCoordinates[static_cast<std::size_t>(k)]);
+      if (varies(one, k))
+        names.push_back(one.object + "." + kCoordinates[static_cast<std::size_t>(k)]);
   return names;
 }
 
-std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode) {
+std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uint64_t seed,
+                                    std::uint64_t episode) {
   std::vector<double> offsets;
-  draw_episode(vary, seed, episode, [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
-    for (int k = 0; k < 6; ++k)
-      if (varies(one, k)) offsets.push_back(k < 3 ? offset[k] : rpy[k - 3]);
-  });
+  draw_episode(vary, seed, episode,
+               [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
+                 for (int k = 0; k < 6; ++k)
+                   if (varies(one, k)) offsets.push_back(k < 3 ? offset[k] : rpy[k - 3]);
+               });
   return offsets;
 }
 
 EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const Problem& problem)
-    : episode(number), status(result.status), nodes_checked(result.counters.nodes_checked), fcl_calls(result.counters.fcl_calls) {
-  if (const auto plan = result.time_ms.find("plan"); plan != result.time_ms.end()) plan_ms = plan->second;
+    : episode(number),
+      status(result.status),
+      nodes_checked(result.counters.nodes_checked),
+      fcl_calls(result.counters.fcl_calls) {
+  if (const auto plan = result.time_ms.find("plan"); plan != result.time_ms.end())
+    plan_ms = plan->second;
   if (status == PlanStatus::kSolved) {
     cost = result.cost;
     tool_path_error_mm_mean = result.tool_path_error_mm.mean;
     tool_path_error_mm_max = result.tool_path_error_mm.max;
   } else if (status == PlanStatus::kInfeasible) {
     failed_s = result.diagnosis.reached_s;
-    if (result.diagnosis.cause.kind != Cause::Kind::kNone) cause = to_string(result.diagnosis.cause.kind);
+    if (result.diagnosis.cause.kind != Cause::Kind::kNone)
+      cause = to_string(result.diagnosis.cause.kind);
     by = subject_of(result.diagnosis.cause, problem);
     reason = words(result.diagnosis.cause);
   }

@@ -11,7 +11,8 @@ namespace swivel {
 /// Calls each(variation, offset (m), (roll, pitch, yaw) (rad)) with what is drawn for each
 /// variation in an episode.
 template <class Each>
-void draw_episode(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode, const Each& each) {
+void draw_episode(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode,
+                  const Each& each) {
   SplitMix64 random(seed, episode);
   for (const Variation& one : vary) {
     Vector3d offset, rpy;

@@ -17,7 +17,9 @@ std::vector<std::uint64_t> listed(const std::set<std::uint64_t>& cells) {
 }  // namespace
 
 GridRefinement::GridRefinement(PlacementGrid grid, std::vector<PlacementCriterion> criteria)
-    : grid_(std::move(grid)), criteria_(std::move(criteria)), left_(static_cast<std::size_t>(grid_.size() / 3)) {
+    : grid_(std::move(grid)),
+      criteria_(std::move(criteria)),
+      left_(static_cast<std::size_t>(grid_.size() / 3)) {
   int longest = 1;
   for (std::size_t a = 0; a < grid_.axes().size(); ++a) {
     const int count = grid_.axes()[a].count;
@@ -41,7 +43,8 @@ std::vector<std::uint64_t> GridRefinement::next() {
     return at_most(coarse_cells(), left_);
   }
   for (;;) {
-    if (std::vector<std::uint64_t> cells = at_most(beside_the_best(), left_); !cells.empty()) return cells;
+    if (std::vector<std::uint64_t> cells = at_most(beside_the_best(), left_); !cells.empty())
+      return cells;
     std::vector<std::uint64_t> cells = at_most(along_the_border(), for_border_);
     for_border_ -= cells.size();
     if (!cells.empty()) return cells;
@@ -104,7 +107,9 @@ std::vector<std::uint64_t> GridRefinement::along_the_border() const {
         there[a] = std::min(here[a] + far, grid_.axes()[a].count - 1);
         const auto other = known_.find(grid_.cell(there));
         if (other == known_.end()) continue;
-        if ((rows_[other->second].status == PlanStatus::kSolved) == (row.status == PlanStatus::kSolved)) continue;
+        if ((rows_[other->second].status == PlanStatus::kSolved) ==
+            (row.status == PlanStatus::kSolved))
+          continue;
         for (const int k : {here[a], std::min(here[a] + stride_, there[a]), there[a]}) {
           std::vector<int> index = here;
           index[a] = k;
@@ -123,7 +128,8 @@ std::vector<std::uint64_t> GridRefinement::along_the_border() const {
 }
 
 /// Returns at most so many of the cells, spread evenly, and counts them as planned.
-std::vector<std::uint64_t> GridRefinement::at_most(std::vector<std::uint64_t> cells, std::size_t most) {
+std::vector<std::uint64_t> GridRefinement::at_most(std::vector<std::uint64_t> cells,
+                                                   std::size_t most) {
   most = std::min(most, left_);
   if (cells.size() > most) {
     std::vector<std::uint64_t> some;

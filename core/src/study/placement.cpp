@@ -48,7 +48,8 @@ Vector3d as_written(const Vector3d& position, const Vector3d& before) {
   return result;
 }
 
-void turn_and_shift(const Matrix3d& turn, const Vector3d& shift, bool turns, std::vector<Waypoint>& waypoints) {
+void turn_and_shift(const Matrix3d& turn, const Vector3d& shift, bool turns,
+                    std::vector<Waypoint>& waypoints) {
   for (Waypoint& waypoint : waypoints) {
     if (turns) {
       waypoint.position = turn * waypoint.position;
@@ -65,7 +66,8 @@ bool in_base_frame(const Problem& problem) {
 }  // namespace
 
 Vector3d written_rpy(const Matrix3d& r) {
-  const double pitch = tidy(std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)))), level = std::cos(pitch);
+  const double pitch = tidy(std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)))),
+               level = std::cos(pitch);
   // With a pitch of a quarter turn, roll and yaw turn about the same axis.
   if (level < 5e-13) return {0, pitch, tidy(std::atan2(-r(0, 1), r(1, 1)))};
   // The nearer the pitch is to a quarter turn, the less the rotation says of yaw, and the less yaw
@@ -80,8 +82,10 @@ Problem placed_problem(const Problem& problem, const Movable& thing, const Offse
   Problem result = problem;
   const Motion motion = motion_of(offset);
   const auto named = [&](const std::string& name) {
-    const auto found = std::find_if(result.scene.begin(), result.scene.end(), [&](const auto& o) { return o.name == name; });
-    if (found == result.scene.end()) throw InvalidArgument("'" + name + "': no such object: allowed are names of the scene");
+    const auto found = std::find_if(result.scene.begin(), result.scene.end(),
+                                    [&](const auto& o) { return o.name == name; });
+    if (found == result.scene.end())
+      throw InvalidArgument("'" + name + "': no such object: allowed are names of the scene");
     return found;
   };
   if (thing.kind == Movable::Kind::kObject) {
@@ -89,17 +93,22 @@ Problem placed_problem(const Problem& problem, const Movable& thing, const Offse
     pose.translation() = as_written(pose.translation() + motion.shift, pose.translation());
     if (motion.turns) pose.linear() = as_written(Matrix3d(motion.turn * pose.linear()));
   } else if (thing.kind == Movable::Kind::kPath) {
-    const Matrix3d frame = in_base_frame(problem) ? Matrix3d::Identity() : Matrix3d(named(problem.path_frame)->pose.linear());
-    turn_and_shift(frame.transpose() * motion.turn * frame, frame.transpose() * motion.shift, motion.turns, result.waypoints);
+    const Matrix3d frame = in_base_frame(problem)
+                               ? Matrix3d::Identity()
+                               : Matrix3d(named(problem.path_frame)->pose.linear());
+    turn_and_shift(frame.transpose() * motion.turn * frame, frame.transpose() * motion.shift,
+                   motion.turns, result.waypoints);
   } else {
     const Matrix3d back = motion.turn.transpose();
     for (SceneObject& object : result.scene) {
       Pose& pose = object.pose;
       const Vector3d seen = pose.translation() - motion.shift;
-      pose.translation() = as_written(motion.turns ? Vector3d(back * seen) : seen, pose.translation());
+      pose.translation() =
+          as_written(motion.turns ? Vector3d(back * seen) : seen, pose.translation());
       if (motion.turns) pose.linear() = as_written(Matrix3d(back * pose.linear()));
     }
-    if (in_base_frame(problem)) turn_and_shift(back, -(back * motion.shift), motion.turns, result.waypoints);
+    if (in_base_frame(problem))
+      turn_and_shift(back, -(back * motion.shift), motion.turns, result.waypoints);
   }
   return result;
 }
@@ -113,7 +122,8 @@ PlacementAxis placement_axis(int coordinate, double from, double to, double step
   if (!(std::abs(from) <= kMostMetres && std::abs(to) <= kMostMetres && from <= to && step >= 0))
     throw InvalidArgument(name + ": allowed are from <= to, from -1000 to 1000, and step >= 0");
   const double steps = step > 0 ? (to - from) / step : 0;
-  if (!(steps < std::numeric_limits<int>::max() - 1)) throw InvalidArgument(name + ": too many values: allowed is a larger step");
+  if (!(steps < std::numeric_limits<int>::max() - 1))
+    throw InvalidArgument(name + ": too many values: allowed is a larger step");
   return {coordinate, from, to, step, static_cast<int>(steps + 1e-6) + 1};
 }
 
@@ -134,14 +144,16 @@ std::vector<int> PlacementGrid::indices(std::uint64_t cell) const {
 std::uint64_t PlacementGrid::cell(const std::vector<int>& indices) const {
   std::uint64_t result = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
-    result = result * static_cast<std::uint64_t>(axes_[a].count) + static_cast<std::uint64_t>(indices[a]);
+    result = result * static_cast<std::uint64_t>(axes_[a].count) +
+             static_cast<std::uint64_t>(indices[a]);
   return result;
 }
 
 Offset PlacementGrid::offset(std::uint64_t cell) const {
   Offset result{};
   const std::vector<int> index = indices(cell);
-  for (std::size_t a = 0; a < axes_.size(); ++a) result[static_cast<std::size_t>(axes_[a].coordinate)] = axes_[a].at(index[a]);
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    result[static_cast<std::size_t>(axes_[a].coordinate)] = axes_[a].at(index[a]);
   return result;
 }
 
@@ -149,14 +161,16 @@ Offset sampled_offset(const std::vector<PlacementAxis>& axes, std::uint64_t seed
   Offset result{};
   SplitMix64 random(seed, k);
   for (const PlacementAxis& axis : axes)
-    result[static_cast<std::size_t>(axis.coordinate)] = tidy(std::lerp(axis.from, axis.to, (random.symmetric() + 1) / 2));
+    result[static_cast<std::size_t>(axis.coordinate)] =
+        tidy(std::lerp(axis.from, axis.to, (random.symmetric() + 1) / 2));
   return result;
 }
 
 std::string subject_of(const Cause& cause, const Problem& problem) {
   if (!cause.object.empty()) return cause.object;
   const auto is_object = [&](const std::string& name) {
-    return std::any_of(problem.scene.begin(), problem.scene.end(), [&](const auto& object) { return object.name == name; });
+    return std::any_of(problem.scene.begin(), problem.scene.end(),
+                       [&](const auto& object) { return object.name == name; });
   };
   for (const std::string& body : cause.bodies)
     if (is_object(body)) return body;
@@ -196,7 +210,8 @@ std::optional<double> merit(const PlacementRow& row, PlacementCriterion criterio
   return std::round((criterion == kCost ? -*value : *value) * 1e9) / 1e9;
 }
 
-bool better(const PlacementRow& a, const PlacementRow& b, const std::vector<PlacementCriterion>& criteria) {
+bool better(const PlacementRow& a, const PlacementRow& b,
+            const std::vector<PlacementCriterion>& criteria) {
   for (const PlacementCriterion criterion : criteria) {
     constexpr double kWorst = -std::numeric_limits<double>::infinity();
     const double x = merit(a, criterion).value_or(kWorst), y = merit(b, criterion).value_or(kWorst);
@@ -205,13 +220,15 @@ bool better(const PlacementRow& a, const PlacementRow& b, const std::vector<Plac
   return a.cell < b.cell;
 }
 
-std::vector<PlacementRow> best_placements(const std::vector<PlacementRow>& rows, const std::vector<PlacementCriterion>& criteria,
+std::vector<PlacementRow> best_placements(const std::vector<PlacementRow>& rows,
+                                          const std::vector<PlacementCriterion>& criteria,
                                           std::size_t most) {
   std::vector<const PlacementRow*> solved;
   for (const PlacementRow& row : rows)
     if (row.status == PlanStatus::kSolved) solved.push_back(&row);
   const auto end = solved.begin() + static_cast<std::ptrdiff_t>(std::min(most, solved.size()));
-  std::partial_sort(solved.begin(), end, solved.end(), [&](const auto* a, const auto* b) { return better(*a, *b, criteria); });
+  std::partial_sort(solved.begin(), end, solved.end(),
+                    [&](const auto* a, const auto* b) { return better(*a, *b, criteria); });
   std::vector<PlacementRow> best;
   for (auto row = solved.begin(); row != end; ++row) best.push_back(**row);
   return best;

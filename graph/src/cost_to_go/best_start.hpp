@@ -8,9 +8,11 @@ namespace swivel {
 /// where `least` is kUnreachable. cost(k) is the least cost of a path from node k, `least` the
 /// least of all, joints(k) the node's joints.
 template <class Cost, class Joints>
-int best_start(const Lattice& lattice, int count, double least, const Cost& cost, const Joints& joints) {
+int best_start(const Lattice& lattice, int count, double least, const Cost& cost,
+               const Joints& joints) {
   if (least == kUnreachable) return -1;
-  const double coarse = lattice.coarse_cost(least), most = lattice.largest_of_same_coarse_cost(least);
+  const double coarse = lattice.coarse_cost(least),
+               most = lattice.largest_of_same_coarse_cost(least);
   int best = -1;
   double nearest = kUnreachable;  // distance of `best` from the middle, once it has a rival
   for (int k = 0; k < count; ++k) {

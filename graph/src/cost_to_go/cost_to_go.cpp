@@ -27,7 +27,8 @@ void CostToGo::sweep(int goal_layer) {
   save_unremoved();
   goal_ = goal_layer;
   compute(goal_layer);
-  if (unremoved_ == Unremoved::kUnknown && goal_ == lattice().layers() - 1 && verdicts_.removed() == 0)
+  if (unremoved_ == Unremoved::kUnknown && goal_ == lattice().layers() - 1 &&
+      verdicts_.removed() == 0)
     unremoved_ = Unremoved::kPresent;
 }
 
@@ -38,11 +39,13 @@ void CostToGo::repair() {
 
 int CostToGo::first_slot() {
   return best_start(
-      lattice(), lattice().slots(0), best(), [&](int slot) { return at(0, slot); }, [&](int slot) { return config(0, slot); });
+      lattice(), lattice().slots(0), best(), [&](int slot) { return at(0, slot); },
+      [&](int slot) { return config(0, slot); });
 }
 
 void CostToGo::remove_edge(int layer, int a, int b) {
-  verdicts_.remove_edge(layer, a, b, lattice().edge_cost(lattice().delta(config(layer, a), config(layer + 1, b))));
+  verdicts_.remove_edge(
+      layer, a, b, lattice().edge_cost(lattice().delta(config(layer, a), config(layer + 1, b))));
 }
 
 }  // namespace swivel

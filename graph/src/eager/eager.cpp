@@ -21,7 +21,8 @@ struct EdgeCost {
 /// yields every node's cost-to-go and ties can be settled from layer 0 on. Vertex 0 is the goal,
 /// joined to every node of the last layer. The edges that lead to a node include what it costs
 /// itself.
-using Graph = boost::compressed_sparse_row_graph<boost::bidirectionalS, boost::no_property, EdgeCost>;
+using Graph =
+    boost::compressed_sparse_row_graph<boost::bidirectionalS, boost::no_property, EdgeCost>;
 using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
 
 struct Built {
@@ -29,7 +30,9 @@ struct Built {
   std::vector<std::size_t> first;    // [layer] vertex of the layer's first node
   std::vector<double> least_before;  // [layer] a lower bound on the cost from layer 0
   [[nodiscard]] std::size_t layer_of(Vertex v) const {
-    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), v) - first.begin()) - 1;
+    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), v) -
+                                    first.begin()) -
+           1;
   }
 };
 
@@ -43,7 +46,8 @@ struct PollingEdges {
   }
 };
 
-Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
+Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
+            const Budget& budget, EagerOutcome& outcome) {
   const TraceSpan span("all edges");
   Built built;
   std::size_t vertices = 1;
@@ -75,9 +79,11 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
       const ValidNodes::Node& node = valid.layers[i][a];
       successors.for_each(node, outcome.edges, [&](int b, const Config& delta) {
         const auto& head = next[static_cast<std::size_t>(b)];
-        candidate_ends.emplace_back(built.first[i + 1] + static_cast<std::size_t>(b), built.first[i] + a);
+        candidate_ends.emplace_back(built.first[i + 1] + static_cast<std::size_t>(b),
+                                    built.first[i] + a);
         candidate_costs.push_back({valid.cost(i, a) + lattice.edge_cost(delta)});
-        if (validity.asks_edges()) questions.push_back({layer, node.slot, head.slot, node.q, head.q});
+        if (validity.asks_edges())
+          questions.push_back({layer, node.slot, head.slot, node.q, head.q});
       });
     }
     answers.assign(candidate_ends.size(), 1);
@@ -93,7 +99,8 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
   }
   // reading the edges, which Boost does several times, takes seconds
   const PollingEdges polled{&budget};
-  built.graph = Graph(boost::edges_are_unsorted_multi_pass, boost::make_transform_iterator(ends.begin(), polled),
+  built.graph = Graph(boost::edges_are_unsorted_multi_pass,
+                      boost::make_transform_iterator(ends.begin(), polled),
                       boost::make_transform_iterator(ends.end(), polled), costs.begin(), vertices);
   return built;
 }
@@ -112,25 +119,29 @@ std::vector<double> costs_to_go(const Graph& graph, const Budget& budget, EagerO
   const TraceSpan span("graph search");
   std::vector<double> distance(num_vertices(graph), kUnreachable);
   const auto index = get(boost::vertex_index, graph);
-  boost::dijkstra_shortest_paths(graph, Vertex{0},
-                                 boost::weight_map(get(&EdgeCost::cost, graph))
-                                     .distance_map(boost::make_iterator_property_map(distance.begin(), index))
-                                     .distance_inf(kUnreachable)
-                                     .visitor(PollingVisitor(&budget)));
+  boost::dijkstra_shortest_paths(
+      graph, Vertex{0},
+      boost::weight_map(get(&EdgeCost::cost, graph))
+          .distance_map(boost::make_iterator_property_map(distance.begin(), index))
+          .distance_inf(kUnreachable)
+          .visitor(PollingVisitor(&budget)));
   outcome.expansions = static_cast<std::int64_t>(num_vertices(graph)) - 1;
   return distance;
 }
 
 /// Returns the best path from the node at which the answer begins, the smallest slots first among
 /// equal costs: vertices of a layer are numbered in slot order.
-SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& valid, const std::vector<double>& distance,
-                 double& cost) {
+SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& valid,
+                 const std::vector<double>& distance, double& cost) {
   cost = kUnreachable;
-  const auto of_start = [&](int k) { return distance[built.first[0] + static_cast<std::size_t>(k)]; };
+  const auto of_start = [&](int k) {
+    return distance[built.first[0] + static_cast<std::size_t>(k)];
+  };
   const int starts = static_cast<int>(valid.layers[0].size());
   for (int k = 0; k < starts; ++k) cost = std::min(cost, of_start(k));
-  const int first =
-      best_start(lattice, starts, cost, of_start, [&](int k) { return valid.layers[0][static_cast<std::size_t>(k)].q; });
+  const int first = best_start(lattice, starts, cost, of_start, [&](int k) {
+    return valid.layers[0][static_cast<std::size_t>(k)].q;
+  });
   if (first < 0) return {};
   Vertex at = built.first[0] + static_cast<std::size_t>(first);
   cost = distance[at];
@@ -147,11 +158,13 @@ SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& v
   }
 }
 
-std::optional<int> deepest_layer(const Built& built, const ValidNodes& valid, const Budget& budget) {
+std::optional<int> deepest_layer(const Built& built, const ValidNodes& valid,
+                                 const Budget& budget) {
   std::vector<char> reached(num_vertices(built.graph), 0);
   for (std::size_t k = 0; k < valid.layers[0].size(); ++k) reached[built.first[0] + k] = 1;
   int deepest = valid.layers[0].empty() ? -1 : 0;
-  for (std::size_t layer = 1; layer < valid.layers.size() && deepest == static_cast<int>(layer) - 1; ++layer)
+  for (std::size_t layer = 1; layer < valid.layers.size() && deepest == static_cast<int>(layer) - 1;
+       ++layer)
     for (std::size_t k = 0; k < valid.layers[layer].size(); ++k) {
       if (k % 1024 == 0 && budget.spent()) return std::nullopt;
       for (auto [e, end] = out_edges(built.first[layer] + k, built.graph); e != end; ++e)
@@ -165,7 +178,8 @@ std::optional<int> deepest_layer(const Built& built, const ValidNodes& valid, co
 
 }  // namespace
 
-void eager_search(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
+void eager_search(const Lattice& lattice, Validity& validity, const Budget& budget,
+                  EagerOutcome& outcome) {
   const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   const Built built = build(lattice, valid, validity, budget, outcome);
   const std::vector<double> distance = costs_to_go(built.graph, budget, outcome);

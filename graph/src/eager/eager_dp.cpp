@@ -9,7 +9,8 @@ namespace swivel {
 
 namespace {
 
-bool edge_valid(Validity& validity, int layer, const ValidNodes::Node& a, const ValidNodes::Node& b) {
+bool edge_valid(Validity& validity, int layer, const ValidNodes::Node& a,
+                const ValidNodes::Node& b) {
   if (!validity.asks_edges()) return true;
   const EdgeQuestion question{layer, a.slot, b.slot, a.q, b.q};
   std::uint8_t answer = 0;
@@ -17,8 +18,8 @@ bool edge_valid(Validity& validity, int layer, const ValidNodes::Node& a, const 
   return answer != 0;
 }
 
-int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& validity, const Budget& budget,
-                  std::int64_t& compared) {
+int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
+                  const Budget& budget, std::int64_t& compared) {
   std::vector<char> reached(valid.layers[0].size(), 1);
   int deepest = valid.layers[0].empty() ? -1 : 0;
   Successors successors(lattice);
@@ -43,7 +44,8 @@ int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& val
 
 }  // namespace
 
-void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
+void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget,
+              EagerOutcome& outcome) {
   const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   // best[layer][node] = index of the best successor; smallest slot among equals.
   std::vector<std::vector<int>> best(valid.layers.size());
@@ -68,10 +70,12 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
         const double rest = value[static_cast<std::size_t>(b)];
         if (rest != kUnreachable) candidates.push_back({lattice.edge_cost(delta) + rest, b});
       });
-      std::sort(candidates.begin(), candidates.end(),
-                [](const Candidate& x, const Candidate& y) { return x.total != y.total ? x.total < y.total : x.b < y.b; });
+      std::sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
+        return x.total != y.total ? x.total < y.total : x.b < y.b;
+      });
       for (const Candidate& candidate : candidates)
-        if (edge_valid(validity, layer, valid.layers[i][a], next[static_cast<std::size_t>(candidate.b)])) {
+        if (edge_valid(validity, layer, valid.layers[i][a],
+                       next[static_cast<std::size_t>(candidate.b)])) {
           here[a] = valid.cost(i, a) + candidate.total;
           best[i][a] = candidate.b;
           break;
@@ -81,7 +85,8 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
   }
   const double least = value.empty() ? kUnreachable : *std::min_element(value.begin(), value.end());
   int at = best_start(
-      lattice, static_cast<int>(value.size()), least, [&](int k) { return value[static_cast<std::size_t>(k)]; },
+      lattice, static_cast<int>(value.size()), least,
+      [&](int k) { return value[static_cast<std::size_t>(k)]; },
       [&](int k) { return valid.layers[0][static_cast<std::size_t>(k)].q; });
   if (at < 0) {
     try {

@@ -7,7 +7,8 @@
 
 namespace swivel {
 
-ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes) {
+ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget,
+                            std::int64_t& ik_nodes) {
   const TraceSpan span("all nodes");
   ValidNodes valid;
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
@@ -23,10 +24,12 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Bu
     for (const Lattice::Node& node : nodes) questions.push_back({layer, node.slot, node.q});
     answers.assign(questions.size(), {});
     validity.nodes(questions, answers);
-    valid.layers[static_cast<std::size_t>(layer)].reserve(static_cast<std::size_t>(
-        std::count_if(answers.begin(), answers.end(), [](const NodeAnswer& answer) { return answer.valid; })));
+    valid.layers[static_cast<std::size_t>(layer)].reserve(static_cast<std::size_t>(std::count_if(
+        answers.begin(), answers.end(), [](const NodeAnswer& answer) { return answer.valid; })));
     for (std::size_t k = 0; k < questions.size(); ++k)
-      if (answers[k].valid) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
+      if (answers[k].valid)
+        valid.layers[static_cast<std::size_t>(layer)].push_back(
+            {questions[k].slot, questions[k].q});
     if (valid.costs.empty()) continue;
     questions.clear();
     for (const ValidNodes::Node& node : valid.layers[static_cast<std::size_t>(layer)])
@@ -42,7 +45,8 @@ void Successors::enter(int layer, const std::vector<ValidNodes::Node>& next) {
   layer_ = layer;
   next_ = &next;
   index_of_slot_.assign(static_cast<std::size_t>(lattice_.slots(layer + 1)), -1);
-  for (std::size_t k = 0; k < next.size(); ++k) index_of_slot_[static_cast<std::size_t>(next[k].slot)] = static_cast<int>(k);
+  for (std::size_t k = 0; k < next.size(); ++k)
+    index_of_slot_[static_cast<std::size_t>(next[k].slot)] = static_cast<int>(k);
 }
 
 }  // namespace swivel

@@ -15,11 +15,14 @@ struct ValidNodes {
   /// What the nodes themselves cost; empty where none costs anything.
   std::vector<std::vector<double>> costs;
   /// Returns what the k-th valid node of a layer costs.
-  [[nodiscard]] double cost(std::size_t layer, std::size_t k) const { return costs.empty() ? 0.0 : costs[layer][k]; }
+  [[nodiscard]] double cost(std::size_t layer, std::size_t k) const {
+    return costs.empty() ? 0.0 : costs[layer][k];
+  }
 };
 /// Returns the valid nodes of a lattice: it asks about every node that exists. Adds to `ik_nodes`
 /// those whose IK was solved. Throws Stopped.
-[[nodiscard]] ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes);
+[[nodiscard]] ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity,
+                                          const Budget& budget, std::int64_t& ik_nodes);
 
 /// Finds the successors of nodes among the valid nodes of the next layer, one layer after the
 /// other.

@@ -9,7 +9,8 @@ BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<ImplicitLattice>));
 BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<ImplicitLattice>));
 BOOST_CONCEPT_ASSERT((boost::ReadablePropertyMapConcept<ImplicitCostMap, ImplicitLattice::Edge>));
 
-ImplicitLattice::ImplicitLattice(CostToGo& cost_to_go, double slack) : cost_to_go_(&cost_to_go), slack_(slack) {
+ImplicitLattice::ImplicitLattice(CostToGo& cost_to_go, double slack)
+    : cost_to_go_(&cost_to_go), slack_(slack) {
   for (int layer = 0; layer < cost_to_go_->lattice().layers(); ++layer)
     width_ = std::max<std::int64_t>(width_, cost_to_go_->lattice().slots(layer));
 }
@@ -20,7 +21,8 @@ const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) cons
   const int layer = layer_of(v);
   if (layer >= cost_to_go_->goal_layer()) return edges_;
   cost_to_go_->steps(layer, slot_of(v), bound, steps_);
-  for (const CostToGo::Step& step : steps_) edges_.push_back({v, vertex(layer + 1, step.slot), step.cost});
+  for (const CostToGo::Step& step : steps_)
+    edges_.push_back({v, vertex(layer + 1, step.slot), step.cost});
   return edges_;
 }
 

@@ -34,12 +34,16 @@ struct Estimate {
 };
 struct Combine {
   double operator()(double distance, double cost) const { return distance + cost; }
-  Rank operator()(double distance, const Estimate& rest) const { return {distance + rest.cost, rest.tie}; }
+  Rank operator()(double distance, const Estimate& rest) const {
+    return {distance + rest.cost, rest.tie};
+  }
 };
 struct Compare {
   bool operator()(double a, double b) const { return a < b; }
   bool operator()(double cost, const Rank& zero) const { return cost < zero.cost; }
-  bool operator()(const Rank& a, const Rank& b) const { return a.cost != b.cost ? a.cost < b.cost : a.tie < b.tie; }
+  bool operator()(const Rank& a, const Rank& b) const {
+    return a.cost != b.cost ? a.cost < b.cost : a.tie < b.tie;
+  }
 };
 
 /// What A* knows of a vertex that it has touched; these are few.
@@ -85,7 +89,9 @@ struct Visitor : boost::default_astar_visitor {
     if (++*expansions % 16 == 0) values.budget().poll();
     // An exception is the one way out of a Boost.Graph search.
     if (g.layer_of(v) == values.goal_layer()) throw Found{v, nullptr};
-    if (const SlotPath* path = earlier ? earlier->from(g.layer_of(v), g.slot_of(v), values) : nullptr) throw Found{v, path};
+    if (const SlotPath* path =
+            earlier ? earlier->from(g.layer_of(v), g.slot_of(v), values) : nullptr)
+      throw Found{v, path};
   }
 };
 
@@ -103,7 +109,8 @@ void PathCache::add(const SlotPath& path, const CostToGo& cost_to_go) {
 const SlotPath* PathCache::from(int layer, int slot, const CostToGo& cost_to_go) {
   for (Earlier& earlier : earlier_) {
     const bool of_goal = static_cast<int>(earlier.path.size()) == cost_to_go.goal_layer() + 1;
-    if (of_goal && earlier.path[static_cast<std::size_t>(layer)] == slot && still_optimal_from(layer, earlier, cost_to_go))
+    if (of_goal && earlier.path[static_cast<std::size_t>(layer)] == slot &&
+        still_optimal_from(layer, earlier, cost_to_go))
       return &earlier.path;
   }
   return nullptr;
@@ -115,7 +122,8 @@ bool PathCache::still_optimal_from(int layer, Earlier& earlier, const CostToGo& 
   for (const int goal = cost_to_go.goal_layer(); layer <= goal; ++layer) {
     const int slot = earlier.path[at(layer)];
     if (cost_to_go.at(layer, slot) != earlier.values[at(layer)] ||
-        (layer < goal && cost_to_go.verdicts().edge(layer, slot, earlier.path[at(layer) + 1]) == Verdict::kRemoved)) {
+        (layer < goal && cost_to_go.verdicts().edge(layer, slot, earlier.path[at(layer) + 1]) ==
+                             Verdict::kRemoved)) {
       earlier.deepest_changed_layer = layer;
       return false;
     }
@@ -135,21 +143,26 @@ SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, PathCache* ea
   const Vertex start = graph.vertex(0, first);
   const auto heuristic = [&](Vertex v) -> Estimate {
     const std::int64_t depth = graph.layer_of(v);
-    return {graph.cost_to_go(v), (cost_to_go.goal_layer() - depth) * graph.width() + graph.slot_of(v)};
+    return {graph.cost_to_go(v),
+            (cost_to_go.goal_layer() - depth) * graph.width() + graph.slot_of(v)};
   };
   record(records, start).distance = 0;
   record(records, start).rank = {cost, heuristic(start).tie};
   try {
-    boost::astar_search_no_init(graph, start, heuristic, Visitor(earlier, &expansions),
-                                Field<Vertex, &Record::predecessor>{&records}, Field<Rank, &Record::rank>{&records},
-                                Field<double, &Record::distance>{&records}, ImplicitCostMap{},
-                                Field<boost::default_color_type, &Record::color>{&records},
-                                Field<std::size_t, &Record::index>{&records}, Compare{}, Combine{}, Rank{}, Rank{0, 0});
+    boost::astar_search_no_init(
+        graph, start, heuristic, Visitor(earlier, &expansions),
+        Field<Vertex, &Record::predecessor>{&records}, Field<Rank, &Record::rank>{&records},
+        Field<double, &Record::distance>{&records}, ImplicitCostMap{},
+        Field<boost::default_color_type, &Record::color>{&records},
+        Field<std::size_t, &Record::index>{&records}, Compare{}, Combine{}, Rank{}, Rank{0, 0});
   } catch (const Found& found) {
     SlotPath path;
-    for (Vertex v = found.last; v >= 0; v = records.at(v).predecessor) path.push_back(graph.slot_of(v));
+    for (Vertex v = found.last; v >= 0; v = records.at(v).predecessor)
+      path.push_back(graph.slot_of(v));
     std::reverse(path.begin(), path.end());
-    if (found.then) path.insert(path.end(), found.then->begin() + static_cast<std::ptrdiff_t>(path.size()), found.then->end());
+    if (found.then)
+      path.insert(path.end(), found.then->begin() + static_cast<std::ptrdiff_t>(path.size()),
+                  found.then->end());
     return path;
   }
   throw std::logic_error("the cost-to-go knows a path that the search does not find");

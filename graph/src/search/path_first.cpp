@@ -24,7 +24,8 @@ class FailFirst {
   void failed(int layer) {
     // An obstacle blocks a stretch of layers, so the same place in neighbouring layers is asked
     // about too.
-    for (int i = std::max(0, layer - 2); i <= std::min(static_cast<int>(score_.size()) - 1, layer + 2); ++i)
+    for (int i = std::max(0, layer - 2);
+         i <= std::min(static_cast<int>(score_.size()) - 1, layer + 2); ++i)
       score_[static_cast<std::size_t>(i)] += i == layer ? 1.0 : 0.5;
   }
   void next_round() {
@@ -33,7 +34,8 @@ class FailFirst {
   void order(std::vector<int>& layers) const {
     const auto score = [&](int layer) { return score_[static_cast<std::size_t>(layer)]; };
     // Most layers never failed.
-    const auto others = std::stable_partition(layers.begin(), layers.end(), [&](int layer) { return score(layer) > 0; });
+    const auto others = std::stable_partition(layers.begin(), layers.end(),
+                                              [&](int layer) { return score(layer) > 0; });
     std::stable_sort(layers.begin(), others, [&](int a, int b) { return score(a) > score(b); });
   }
 
@@ -72,7 +74,8 @@ class Search {
       const std::int64_t removed = verdicts_.removed();
       if (valid(path)) return {path, cost_to_go_.at(0, path.front())};
       if (bars_a_layer()) return {};
-      if (verdicts_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
+      if (verdicts_.removed() == removed)
+        throw std::logic_error("a round of the search removed nothing: it would never end");
       cost_to_go_.repair();
     }
   }
@@ -85,9 +88,12 @@ class Search {
     for (std::size_t first = 0; first < failure_hints.size(); first += kAtOnce) {
       cost_to_go_.budget().poll();
       questions.clear();
-      for (const FailureHint& x : failure_hints.subspan(first, std::min(kAtOnce, failure_hints.size() - first)))
-        if (x.layer < lattice_.layers() && x.slot < lattice_.slots(x.layer) && verdicts_.node(x.layer, x.slot) == Verdict::kUnknown)
-          if (const auto q = cost_to_go_.node(x.layer, x.slot)) questions.push_back({x.layer, x.slot, *q, x.suspected});
+      for (const FailureHint& x :
+           failure_hints.subspan(first, std::min(kAtOnce, failure_hints.size() - first)))
+        if (x.layer < lattice_.layers() && x.slot < lattice_.slots(x.layer) &&
+            verdicts_.node(x.layer, x.slot) == Verdict::kUnknown)
+          if (const auto q = cost_to_go_.node(x.layer, x.slot))
+            questions.push_back({x.layer, x.slot, *q, x.suspected});
       if (2 * ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return;
     }
   }
@@ -128,7 +134,8 @@ class Search {
     std::vector<double> costs;
     constexpr std::size_t kMost = 4096;  // at once, so that the budget is polled
     for (std::size_t first = 0; first < questions.size(); first += kMost) {
-      const auto some = std::span<const NodeQuestion>(questions).subspan(first, std::min(kMost, questions.size() - first));
+      const auto some = std::span<const NodeQuestion>(questions).subspan(
+          first, std::min(kMost, questions.size() - first));
       costs.assign(some.size(), 0.0);
       validity_.costs(some, costs);
       for (std::size_t k = 0; k < some.size(); ++k) {
@@ -164,12 +171,18 @@ class Search {
       for (int i = 0; i < layers; ++i)
         if (verdicts_.node(i, path[at(i)]) == Verdict::kRemoved) return false;
     }
-    const auto node_unknown = [&](int i) { return verdicts_.node(i, path[at(i)]) == Verdict::kUnknown; };
+    const auto node_unknown = [&](int i) {
+      return verdicts_.node(i, path[at(i)]) == Verdict::kUnknown;
+    };
     const auto node = [&](int i) { return NodeQuestion{i, path[at(i)], joints(i)}; };
     if (!all_valid<NodeQuestion>(layers, layers, node_unknown, node)) return false;
     if (!validity_.asks_edges()) return true;
-    const auto edge_unknown = [&](int i) { return verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown; };
-    const auto edge = [&](int i) { return EdgeQuestion{i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)}; };
+    const auto edge_unknown = [&](int i) {
+      return verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown;
+    };
+    const auto edge = [&](int i) {
+      return EdgeQuestion{i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)};
+    };
     return all_valid<EdgeQuestion>(layers - 1, layers, edge_unknown, edge);
   }
 
@@ -186,7 +199,8 @@ class Search {
     const auto known = layers - static_cast<std::int64_t>(open.size());
     bool all = true;
     std::vector<Question> some;
-    for (std::size_t next = 0; next < open.size() && (all || asked_ < options_.min_questions_per_iteration);) {
+    for (std::size_t next = 0;
+         next < open.size() && (all || asked_ < options_.min_questions_per_iteration);) {
       cost_to_go_.budget().poll(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
       some.clear();
       for (; next < open.size() && some.size() < batch(); ++next)
@@ -207,15 +221,20 @@ class Search {
   /// within the limit of the sweep has a node left in it: questions about its other nodes take less
   /// than a sweep with a higher limit, and end at the first node that is valid.
   bool bars_a_layer() {
-    std::sort(failed_on_path_.begin(), failed_on_path_.end(), [](const Failure& a, const Failure& b) { return a.layer < b.layer; });
+    std::sort(failed_on_path_.begin(), failed_on_path_.end(),
+              [](const Failure& a, const Failure& b) { return a.layer < b.layer; });
     int slots_left = 100'000;  // so that looking through wide layers takes no longer than a round
     for (int last = -1; const Failure& x : failed_on_path_)
-      if (std::exchange(last, x.layer) != x.layer && slots_left > 0 && !any_left(x.layer, slots_left) && all_fail(x)) return true;
+      if (std::exchange(last, x.layer) != x.layer && slots_left > 0 &&
+          !any_left(x.layer, slots_left) && all_fail(x))
+        return true;
     return false;
   }
   [[nodiscard]] bool any_left(int layer, int& slots_left) const {
     for (int slot = 0; slot < lattice_.slots(layer); ++slot, --slots_left)
-      if (cost_to_go_.at(layer, slot) != kUnreachable && verdicts_.node(layer, slot) != Verdict::kRemoved) return true;
+      if (cost_to_go_.at(layer, slot) != kUnreachable &&
+          verdicts_.node(layer, slot) != Verdict::kRemoved)
+        return true;
     return false;
   }
   /// Returns true if all nodes of a layer fail as this one did. A few that lie apart are asked
@@ -231,7 +250,8 @@ class Search {
           const Verdict known = verdicts_.node(like.layer, slot);
           if (known == Verdict::kValid) return false;
           if (known == Verdict::kRemoved) continue;
-          if (const auto q = cost_to_go_.node(like.layer, slot)) questions.push_back({like.layer, slot, *q, like.failure});
+          if (const auto q = cost_to_go_.node(like.layer, slot))
+            questions.push_back({like.layer, slot, *q, like.failure});
         }
         if (ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return false;
       }
@@ -274,19 +294,22 @@ class Search {
       answers.clear();
       keys.clear();
     }
-    [[nodiscard]] bool has(std::int64_t key) const { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
+    [[nodiscard]] bool has(std::int64_t key) const {
+      return std::find(keys.begin(), keys.end(), key) != keys.end();
+    }
   };
   void expand_failed_region(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
     const auto add = [&](int layer, int slot, FailureId failure) {
-      if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown) frontier.push_back({layer, slot, failure});
+      if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown)
+        frontier.push_back({layer, slot, failure});
     };
     const auto add_neighbours = [&](const Failure& x) {
       for (const int by : {-1, 1})
         if (x.layer + by <= cost_to_go_.goal_layer())
           add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.slot, by), x.failure);
       for (const int by : {1, -1})
-        for (const int slot :
-             {lattice_.neighbour_in_redundancy(x.layer, x.slot, by), lattice_.neighbour_in_roll(x.layer, x.slot, by)})
+        for (const int slot : {lattice_.neighbour_in_redundancy(x.layer, x.slot, by),
+                               lattice_.neighbour_in_roll(x.layer, x.slot, by)})
           add(x.layer, slot, x.failure);
     };
     for (const Failure& node : failed) add_neighbours(node);
@@ -294,12 +317,15 @@ class Search {
     // that there mostly is another.
     const auto most = [&] {
       constexpr std::size_t kFewest = 16;
-      const std::size_t at_once =
-          options_.overlap_region_questions ? std::max(kFewest, frontier.size() / 2) : kRegionQuestionsAtOnce;
-      return std::min({at_once, kRegionQuestionsAtOnce, static_cast<std::size_t>(region_questions_left_)});
+      const std::size_t at_once = options_.overlap_region_questions
+                                      ? std::max(kFewest, frontier.size() / 2)
+                                      : kRegionQuestionsAtOnce;
+      return std::min(
+          {at_once, kRegionQuestionsAtOnce, static_cast<std::size_t>(region_questions_left_)});
     };
     const auto fill = [&](Wave& wave, const Wave& asked) {
-      for (const std::size_t enough = most(); !frontier.empty() && wave.questions.size() < enough;) {
+      for (const std::size_t enough = most();
+           !frontier.empty() && wave.questions.size() < enough;) {
         const auto [layer, slot, failure] = frontier.front();
         frontier.pop_front();
         if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
@@ -308,9 +334,11 @@ class Search {
           deferred_.push_back({layer, slot, failure});
           continue;
         }
-        if (const auto known = clear_of_scene_.find(key(layer, slot)); known != clear_of_scene_.end() && known->second == failure)
+        if (const auto known = clear_of_scene_.find(key(layer, slot));
+            known != clear_of_scene_.end() && known->second == failure)
           continue;
-        wave.questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
+        wave.questions.push_back(
+            {layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
         wave.keys.push_back(key(layer, slot));
       }
       region_questions_left_ -= static_cast<int>(wave.questions.size());
@@ -353,11 +381,14 @@ class Search {
       const auto shifted = [&](int layer, int slot, int by) {
         return by == 0 ? slot : lattice_.neighbour_in_redundancy(layer, slot, by);
       };
-      constexpr std::pair<int, int> kShifts[] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, -1}};
-      for (const auto& [da, db] : kShifts) add(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
+      constexpr std::pair<int, int> kShifts[] = {{0, 1},  {0, -1}, {1, 0},
+                                                 {-1, 0}, {1, 1},  {-1, -1}};
+      for (const auto& [da, db] : kShifts)
+        add(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
       for (const int by : {-1, 1})
         if (x.layer + by >= 0 && x.layer + by < cost_to_go_.goal_layer())
-          add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.a, by), lattice_.neighbour_along_path(x.layer + 1, x.b, by));
+          add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.a, by),
+              lattice_.neighbour_along_path(x.layer + 1, x.b, by));
     };
     for (const EdgeQuestion& edge : failed) add_neighbours(edge);
     std::vector<Edge> asked;
@@ -365,30 +396,38 @@ class Search {
     for (int& left = region_questions_left_; left > 0 && !frontier.empty();) {
       asked.clear();
       questions.clear();
-      while (!frontier.empty() && questions.size() < std::min(kRegionQuestionsAtOnce, static_cast<std::size_t>(left))) {
+      while (!frontier.empty() &&
+             questions.size() < std::min(kRegionQuestionsAtOnce, static_cast<std::size_t>(left))) {
         const Edge x = frontier.front();
         frontier.pop_front();
-        if (cost_to_go_.at(x.layer, x.a) == kUnreachable || cost_to_go_.at(x.layer + 1, x.b) == kUnreachable ||
-            verdicts_.node(x.layer, x.a) == Verdict::kRemoved || verdicts_.node(x.layer + 1, x.b) == Verdict::kRemoved ||
-            verdicts_.edge(x.layer, x.a, x.b) != Verdict::kUnknown || !lattice_.in_window(x.layer, x.a, x.b) ||
+        if (cost_to_go_.at(x.layer, x.a) == kUnreachable ||
+            cost_to_go_.at(x.layer + 1, x.b) == kUnreachable ||
+            verdicts_.node(x.layer, x.a) == Verdict::kRemoved ||
+            verdicts_.node(x.layer + 1, x.b) == Verdict::kRemoved ||
+            verdicts_.edge(x.layer, x.a, x.b) != Verdict::kUnknown ||
+            !lattice_.in_window(x.layer, x.a, x.b) ||
             std::find(asked.begin(), asked.end(), x) != asked.end())
           continue;
-        const EdgeQuestion edge{x.layer, x.a, x.b, cost_to_go_.config(x.layer, x.a), cost_to_go_.config(x.layer + 1, x.b)};
+        const EdgeQuestion edge{x.layer, x.a, x.b, cost_to_go_.config(x.layer, x.a),
+                                cost_to_go_.config(x.layer + 1, x.b)};
         if (!lattice_.step_allowed(x.layer, lattice_.delta(edge.qa, edge.qb))) continue;
         asked.push_back(x);
         questions.push_back(edge);
       }
       left -= static_cast<int>(questions.size());
-      for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions))) add_neighbours(edge);
+      for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions)))
+        add_neighbours(edge);
     }
   }
   [[nodiscard]] int most_region_questions() const {
     return options_.region_questions +
-           static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.nodes_per_region_question, 1'000'000));
+           static_cast<int>(std::min<std::int64_t>(
+               lattice_.nodes() / options_.nodes_per_region_question, 1'000'000));
   }
 
   /// Notes the answers to questions about nodes. Returns the nodes that failed.
-  std::vector<Failure> take(std::span<const NodeQuestion> questions, std::span<const NodeAnswer> answers) {
+  std::vector<Failure> take(std::span<const NodeQuestion> questions,
+                            std::span<const NodeAnswer> answers) {
     asked_ += static_cast<std::int64_t>(questions.size());
     std::vector<Failure> failed;
     failed.reserve(questions.size());
@@ -449,7 +488,8 @@ class Search {
   std::vector<Failure> failed_on_path_;  // in this round
   int region_questions_left_ = 0;        // questions about neighbours left in this round
   static constexpr std::size_t kRegionQuestionsAtOnce = 32;
-  // By key(): the failure that expand_failed_region() asked about last, of nodes that the scene did not block.
+  // By key(): the failure that expand_failed_region() asked about last, of nodes that the scene did
+  // not block.
   std::unordered_map<std::int64_t, FailureId> clear_of_scene_;
   static constexpr double kMuchDearer = 1.2;
   double first_cost_ = 0;          // cost of the first path
@@ -462,16 +502,18 @@ class Search {
 
 }  // namespace
 
-SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
-                         const PriorFailures& first) {
+SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
+                         SearchCounters& counters, const PriorFailures& first) {
   return Search(cost_to_go, validity, options).run(counters, first);
 }
 
-void check_failure_hints(CostToGo& cost_to_go, Validity& validity, std::span<const FailureHint> failure_hints) {
+void check_failure_hints(CostToGo& cost_to_go, Validity& validity,
+                         std::span<const FailureHint> failure_hints) {
   if (!failure_hints.empty()) Search(cost_to_go, validity, {}).check_failure_hints(failure_hints);
 }
 
-int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
+int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
+                        SearchCounters& counters) {
   for (;;) {
     const int optimistic = cost_to_go.deepest_reachable();
     if (optimistic < 0) return -1;

@@ -18,7 +18,8 @@ void Verdicts::begin_costs() {
   costs_.clear();
   if (!lattice_->has_node_costs()) return;
   for (int layer = 0; layer < lattice_->layers(); ++layer) {
-    std::vector<double>& costs = costs_.emplace_back(static_cast<std::size_t>(lattice_->slots(layer)));
+    std::vector<double>& costs =
+        costs_.emplace_back(static_cast<std::size_t>(lattice_->slots(layer)));
     for (int slot = 0; slot < lattice_->slots(layer); ++slot)
       costs[static_cast<std::size_t>(slot)] = lattice_->node_cost(layer, slot);
   }
@@ -82,7 +83,8 @@ void Verdicts::set_cost(int layer, int slot, double cost) {
   if (cost == this->cost(layer, slot)) return;
   const auto at = static_cast<std::size_t>(layer);
   costs_.resize(first_.size());
-  if (costs_[at].empty()) costs_[at].resize((at + 1 < first_.size() ? first_[at + 1] : node_.size()) - first_[at]);
+  if (costs_[at].empty())
+    costs_[at].resize((at + 1 < first_.size() ? first_[at + 1] : node_.size()) - first_[at]);
   costs_[at][static_cast<std::size_t>(slot)] = cost;
   pending[layer].raised.push_back(slot);
 }

@@ -12,7 +12,8 @@ void bad_input(const std::string& where, const std::string& what, const std::str
   // Files may hold words of any length.
   const auto part = [](const std::string& text) {
     constexpr std::size_t kMost = 400;
-    return text.size() <= kMost ? printable(text) : printable(std::string_view(text).substr(0, kMost)) + " ...";
+    return text.size() <= kMost ? printable(text)
+                                : printable(std::string_view(text).substr(0, kMost)) + " ...";
   };
   // A file's name is at the beginning, a key's at the end; enough of both is kept to tell them.
   const auto place = [](std::string_view text) {

@@ -5,7 +5,8 @@
 namespace swivel::io {
 
 /// Throws InputError "<where>: <what>: allowed is <allowed>", always one line.
-[[noreturn]] void bad_input(const std::string& where, const std::string& what, const std::string& allowed);
+[[noreturn]] void bad_input(const std::string& where, const std::string& what,
+                            const std::string& allowed);
 
 /// Completes "allowed is ..." for sizes in metres (kMostMetres).
 inline constexpr const char* kLengthAllowed = "a number > 0, at most 1000";

@@ -12,7 +12,8 @@
 namespace swivel::io {
 
 std::string csv_field(const std::string& text) {
-  const bool plain = text.find_first_of(",\"") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' ');
+  const bool plain = text.find_first_of(",\"") == std::string::npos && !text.starts_with(' ') &&
+                     !text.ends_with(' ');
   if (plain) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
@@ -57,7 +58,8 @@ std::vector<std::string> csv_fields(std::string_view line, std::size_t most) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
     if (line.starts_with('"')) {
       line.remove_prefix(1);
-      for (; !line.empty() && (line[0] != '"' || line.substr(0, 2) == "\"\""); line.remove_prefix(line[0] == '"' ? 2 : 1))
+      for (; !line.empty() && (line[0] != '"' || line.substr(0, 2) == "\"\"");
+           line.remove_prefix(line[0] == '"' ? 2 : 1))
         field += line[0];
       if (line.empty()) return {};  // left open
       line.remove_prefix(1);
@@ -75,8 +77,10 @@ namespace {
 /// Returns the requirement that the header is one of these.
 CsvTable::Header one_of(const std::vector<std::vector<std::string>>& headers) {
   std::string allowed;
-  for (const std::vector<std::string>& header : headers) allowed += (allowed.empty() ? "" : " or ") + joined(header);
-  return {"the header " + allowed, [headers, allowed](const std::vector<std::string>& fields, const std::string& where) {
+  for (const std::vector<std::string>& header : headers)
+    allowed += (allowed.empty() ? "" : " or ") + joined(header);
+  return {"the header " + allowed,
+          [headers, allowed](const std::vector<std::string>& fields, const std::string& where) {
             if (std::find(headers.begin(), headers.end(), fields) == headers.end())
               bad_input(where, "header is '" + joined(fields) + "'", "the header " + allowed);
           }};
@@ -84,12 +88,15 @@ CsvTable::Header one_of(const std::vector<std::vector<std::string>>& headers) {
 
 }  // namespace
 
-CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vector<std::string>>& headers)
+CsvTable::CsvTable(const std::filesystem::path& file,
+                   const std::vector<std::vector<std::string>>& headers)
     : CsvTable(file.string(), read_file(file, "CSV file", kMostTableBytes), one_of(headers)) {
-  header_ = static_cast<std::size_t>(std::find(headers.begin(), headers.end(), columns_) - headers.begin());
+  header_ = static_cast<std::size_t>(std::find(headers.begin(), headers.end(), columns_) -
+                                     headers.begin());
 }
 
-CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header) : file_(std::move(file)) {
+CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header)
+    : file_(std::move(file)) {
   constexpr std::size_t kMostRows = 1'000'000, kMostLineBytes = std::size_t{1} << 20;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
   bool header_seen = false;
@@ -100,7 +107,8 @@ CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header
     if (line.empty()) continue;
     // A field takes many times its bytes.
     if (line.size() > kMostLineBytes)
-      bad_input(at_line(file_, line_number), "has " + std::to_string(line.size()) + " bytes", "a line of at most 1 MiB");
+      bad_input(at_line(file_, line_number), "has " + std::to_string(line.size()) + " bytes",
+                "a line of at most 1 MiB");
     std::vector<std::string> fields = csv_fields(line, line.size());
     if (!header_seen) {
       header.require(fields, at_line(file_, line_number));
@@ -108,7 +116,9 @@ CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header
       header_seen = true;
       continue;
     }
-    if (rows() == kMostRows) bad_input(at_line(file_, line_number), "too many data rows", "at most " + std::to_string(kMostRows));
+    if (rows() == kMostRows)
+      bad_input(at_line(file_, line_number), "too many data rows",
+                "at most " + std::to_string(kMostRows));
     lines_.push_back(line_number);
     if (fields.size() != columns_.size())
       bad_input(where(rows() - 1), "has " + std::to_string(fields.size()) + " columns",
@@ -116,16 +126,20 @@ CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const auto value = to_number<double>(fields[k]);
       if (!value || !std::isfinite(*value))
-        bad_input(where(rows() - 1) + ": " + columns_[k], "'" + fields[k] + "' is not a number", "a finite number");
+        bad_input(where(rows() - 1) + ": " + columns_[k], "'" + fields[k] + "' is not a number",
+                  "a finite number");
       values_.push_back(*value);
     }
   }
   if (!header_seen) bad_input(file_, "is empty", header.allowed + " and at least two data rows");
-  if (rows() < 2) bad_input(file_, "has " + std::to_string(rows()) + " data row(s)", "at least two data rows after the header");
+  if (rows() < 2)
+    bad_input(file_, "has " + std::to_string(rows()) + " data row(s)",
+              "at least two data rows after the header");
 }
 
 std::string CsvTable::where(std::size_t k) const {
-  return at_line(file_, lines_[k]) + ": data row " + std::to_string(k + 1) + " (counted from 1 after the header)";
+  return at_line(file_, lines_[k]) + ": data row " + std::to_string(k + 1) +
+         " (counted from 1 after the header)";
 }
 
 }  // namespace swivel::io

@@ -15,13 +15,17 @@ namespace swivel::io {
 namespace fs = std::filesystem;
 
 std::string read_file(const fs::path& file, const std::string& kind, std::size_t most) {
-  const auto fail = [&](const std::string& what) { bad_input(file.string(), what, "a readable " + kind); };
+  const auto fail = [&](const std::string& what) {
+    bad_input(file.string(), what, "a readable " + kind);
+  };
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
   if (fs::is_directory(status)) fail("is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_fifo(status)) fail("is a device or a socket");
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_fifo(status))
+    fail("is a device or a socket");
   const auto too_large = [&] {
-    bad_input(file.string(), "is too large", "a " + kind + " of at most " + std::to_string(most >> 20) + " MiB");
+    bad_input(file.string(), "is too large",
+              "a " + kind + " of at most " + std::to_string(most >> 20) + " MiB");
   };
   if (fs::is_regular_file(status) && fs::file_size(file, ignored) > most && !ignored) too_large();
   errno = 0;
@@ -44,7 +48,9 @@ std::string read_file(const fs::path& file, const std::string& kind, std::size_t
 
 std::string format_double(double value) {
   std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 17).ptr;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                 std::chars_format::general, 17)
+                       .ptr;
   return {digits.data(), end};
 }
 

@@ -20,7 +20,8 @@ inline constexpr std::size_t kMostCertificateBytes = std::size_t{32} << 20;
 
 /// Returns the contents of a regular file or FIFO of at most `most` bytes, and notes it in
 /// InputFiles. `kind` completes "allowed is a readable ...". Throws InputError.
-[[nodiscard]] std::string read_file(const std::filesystem::path& file, const std::string& kind, std::size_t most);
+[[nodiscard]] std::string read_file(const std::filesystem::path& file, const std::string& kind,
+                                    std::size_t most);
 
 /// Returns a number with 17 significant digits, which suffice for every double, in any locale.
 [[nodiscard]] std::string format_double(double value);

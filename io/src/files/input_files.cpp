@@ -15,7 +15,8 @@ thread_local InputFiles* listening = nullptr;
 }  // namespace
 
 InputFiles::InputFiles(Contents contents) : contents_(contents) {
-  if (listening != nullptr) throw std::logic_error("the files that this thread reads are being noted already");
+  if (listening != nullptr)
+    throw std::logic_error("the files that this thread reads are being noted already");
   listening = this;
 }
 
@@ -26,7 +27,9 @@ InputFiles::~InputFiles() {
 void InputFiles::note(const std::filesystem::path& file, std::string_view text) {
   if (listening == nullptr) return;
   auto& files = listening->files_;
-  if (std::any_of(files.begin(), files.end(), [&](const File& known) { return known.name == file; })) return;
+  if (std::any_of(files.begin(), files.end(),
+                  [&](const File& known) { return known.name == file; }))
+    return;
   std::error_code error;
   std::optional<FileIdentity> identity;
   if (std::filesystem::is_regular_file(file, error)) identity = identity_of(file, file.string());

@@ -29,7 +29,8 @@ FileIdentity identity_of(const struct stat& status) {
 /// Returns the end of a chain of links, whether it exists or not.
 fs::path follow(fs::path file) {
   std::error_code error;
-  for (int links = 0; links < 40 && fs::is_symlink(file, error); ++links) file = file.parent_path() / fs::read_symlink(file, error);
+  for (int links = 0; links < 40 && fs::is_symlink(file, error); ++links)
+    file = file.parent_path() / fs::read_symlink(file, error);
   return file;
 }
 
@@ -43,7 +44,8 @@ int open_beside(const fs::path& target, fs::path& name) {
   static std::atomic<unsigned> count{0};
   int descriptor = -1;
   do {  // a killed process of the same number may have left one
-    name = target.parent_path() / (".swivel-" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".tmp");
+    name = target.parent_path() /
+           (".swivel-" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".tmp");
     descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) name.clear();
@@ -76,7 +78,8 @@ FileIdentity identity_of(const fs::path& file, const std::string& where) {
   struct stat status {};
   if (stat(file.c_str(), &status) == 0) return identity_of(status);
   const fs::path target = follow(file);
-  if (stat(folder_of(target).c_str(), &status) != 0) bad_input(where, std::strerror(errno), kWritable);
+  if (stat(folder_of(target).c_str(), &status) != 0)
+    bad_input(where, std::strerror(errno), kWritable);
   FileIdentity identity = identity_of(status);
   identity.name = target.filename().string();
   return identity;
@@ -109,25 +112,30 @@ void OutputFiles::add(const std::string& option, const fs::path& file) {
   // printed: it is not replaced.
   for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
     struct stat own {};
-    if (exists && output.descriptor < 0 && fstat(descriptor, &own) == 0 && identity_of(own) == identity_of(status))
+    if (exists && output.descriptor < 0 && fstat(descriptor, &own) == 0 &&
+        identity_of(own) == identity_of(status))
       output.descriptor = descriptor;
   }
-  output.stream = output.descriptor >= 0 || (exists && (S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode)));
+  output.stream =
+      output.descriptor >= 0 || (exists && (S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode)));
   if (exists && !output.stream && !S_ISREG(status.st_mode))
     bad_input(where, S_ISDIR(status.st_mode) ? "is a folder" : "is a block device or a socket",
               "a file, a pipe or a character device");
   if (!exists && fs::is_symlink(file) && !fs::is_directory(folder_of(output.target)))
-    bad_input(where, "is a link to " + output.target.string() + ", whose folder is not there", kWritable);
+    bad_input(where, "is a link to " + output.target.string() + ", whose folder is not there",
+              kWritable);
   output.identity = exists ? identity_of(status) : identity_of(output.target, where);
 
   const auto same = [&](const auto& other) { return other.identity == output.identity; };
-  if (std::any_of(inputs_.begin(), inputs_.end(), same)) bad_input(where, "is one of the files that are read", "a file of its own");
+  if (std::any_of(inputs_.begin(), inputs_.end(), same))
+    bad_input(where, "is one of the files that are read", "a file of its own");
   const auto twice = std::find_if(outputs_.begin(), outputs_.end(), same);
   if (twice != outputs_.end() && !S_ISCHR(status.st_mode))
     bad_input(where, "is the file of " + twice->option + " as well", "a file of its own");
 
   if (output.stream) {
-    if (output.descriptor < 0 && access(file.c_str(), W_OK) != 0) bad_input(where, std::strerror(errno), kWritable);
+    if (output.descriptor < 0 && access(file.c_str(), W_OK) != 0)
+      bad_input(where, std::strerror(errno), kWritable);
   } else {  // tried, and not left there: whatever ends the work, nothing stays behind
     fs::path beside;
     const int descriptor = open_beside(output.target, beside);
@@ -145,7 +153,8 @@ void OutputFiles::add_folder(const std::string& option, const fs::path& folder,
     for (const InputFiles::File& input : inputs_)
       if (input.identity == identity) return std::string("is one of the files that are read");
     for (const Output& output : outputs_)
-      if (!output.stream && output.identity == identity) return "is the file of " + output.option + " as well";
+      if (!output.stream && output.identity == identity)
+        return "is the file of " + output.option + " as well";
     return std::string();
   };
   const auto refuse = [&](const fs::path& file, const std::string& what) {
@@ -159,29 +168,37 @@ void OutputFiles::add_folder(const std::string& option, const fs::path& folder,
         bad_input(where, what, "a folder of its own");
     return;
   }
-  if (!fs::is_directory(folder, error)) bad_input(where, "is not a folder", "a folder, or a name for a new one");
+  if (!fs::is_directory(folder, error))
+    bad_input(where, "is not a folder", "a folder, or a name for a new one");
   for (const Output& output : outputs_)
-    if (!output.stream && is_one(output.target.filename().string()) && fs::equivalent(folder_of(output.target), folder, error))
+    if (!output.stream && is_one(output.target.filename().string()) &&
+        fs::equivalent(folder_of(output.target), folder, error))
       refuse(output.target, "is the file of " + output.option + " as well");
   // what is there may be linked to others
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (!is_one(entry.path().filename().string()) || !fs::is_directory(folder_of(follow(entry.path())), error)) continue;
-    if (const std::string what = taken_by(identity_of(entry.path(), where)); !what.empty()) refuse(entry.path(), what);
+    if (!is_one(entry.path().filename().string()) ||
+        !fs::is_directory(folder_of(follow(entry.path())), error))
+      continue;
+    if (const std::string what = taken_by(identity_of(entry.path(), where)); !what.empty())
+      refuse(entry.path(), what);
   }
   if (error) bad_input(where, error.message(), "a folder that can be read");
 }
 
 bool OutputFiles::takes_standard_output() const {
-  return std::any_of(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.descriptor == STDOUT_FILENO; });
+  return std::any_of(outputs_.begin(), outputs_.end(),
+                     [](const Output& output) { return output.descriptor == STDOUT_FILENO; });
 }
 
 OutputFiles::Output* OutputFiles::find(const std::string& option) {
-  const auto found = std::find_if(outputs_.begin(), outputs_.end(), [&](const Output& output) { return output.option == option; });
+  const auto found = std::find_if(outputs_.begin(), outputs_.end(),
+                                  [&](const Output& output) { return output.option == option; });
   return found == outputs_.end() ? nullptr : &*found;
 }
 
 bool OutputFiles::wants(const std::string& option) const {
-  return std::any_of(outputs_.begin(), outputs_.end(), [&](const Output& output) { return output.option == option; });
+  return std::any_of(outputs_.begin(), outputs_.end(),
+                     [&](const Output& output) { return output.option == option; });
 }
 
 void OutputFiles::write(const std::string& option, std::string text) {
@@ -222,7 +239,9 @@ void OutputFiles::stage() {
       error = descriptor < 0 ? errno : write_and_close(descriptor, *output.text);
     }
     if (error == EPIPE && output.descriptor == STDOUT_FILENO) throw ReaderLeft();
-    if (error != 0) bad_input(place(output.option, output.name), std::strerror(error), "a pipe or device that takes the text");
+    if (error != 0)
+      bad_input(place(output.option, output.name), std::strerror(error),
+                "a pipe or device that takes the text");
     output.text.reset();
   }
 }

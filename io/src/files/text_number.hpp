@@ -41,7 +41,8 @@ class Words {
   static constexpr std::string_view kSpace = " \t\r\n\v\f";
   void skip_space() {
     std::size_t k = 0;
-    for (; k < rest_.size() && kSpace.find(rest_[k]) != std::string_view::npos; ++k) line_ += rest_[k] == '\n';
+    for (; k < rest_.size() && kSpace.find(rest_[k]) != std::string_view::npos; ++k)
+      line_ += rest_[k] == '\n';
     rest_.remove_prefix(k);
   }
   std::string_view take(std::size_t size) {

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Appends a placed surface to a mesh, without the vertices that no triangle uses.
-void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh& mesh, const MeshFile& file) {
+void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh& mesh,
+            const MeshFile& file) {
   if (mesh.triangles.size() + surface.triangles().size() > kMostTriangles)
     file.fail(0, "too many triangles", "at most " + std::to_string(kMostTriangles));
   const bool mirrored = placed.linear().determinant() < 0;
@@ -30,8 +31,10 @@ void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh&
         mesh.vertices.push_back(placed * surface.points()[corner]);
         const Vector3d& vertex = mesh.vertices.back();
         if (!(vertex.array().abs() <= kMostMetres).all())
-          file.fail(0, "a vertex lies " + format_double(vertex.norm()) + " m from the origin, scale applied",
-                    "vertices within 1000 m");
+          file.fail(
+              0,
+              "a vertex lies " + format_double(vertex.norm()) + " m from the origin, scale applied",
+              "vertices within 1000 m");
       }
       corner = known;
     }
@@ -62,13 +65,15 @@ Reader reader_of(const fs::path& file) {
 }
 
 MeshPtr read_mesh(const fs::path& path, Reader read, const Vector3d& scale) {
-  const MeshFile file{path.string(), read_file(path, "mesh file", read == read_dae ? kMostXmlBytes : kMostMeshBytes)};
+  const MeshFile file{path.string(), read_file(path, "mesh file",
+                                               read == read_dae ? kMostXmlBytes : kMostMeshBytes)};
   const auto mesh = std::make_shared<TriangleMesh>();
   mesh->source = file.name;
   std::size_t work = 0;
   read(file, [&](const Surface& surface, const Eigen::Affine3d& pose) {
     // A surface that is placed often costs time even if it adds little.
-    if ((work += surface.points().size()) > 10 * kMostTriangles) file.fail(0, "too many vertices", "fewer parts");
+    if ((work += surface.points().size()) > 10 * kMostTriangles)
+      file.fail(0, "too many vertices", "fewer parts");
     append(surface, Eigen::Scaling(scale) * pose, *mesh, file);
   });
   const char* const allowed = "a mesh with at least one triangle of positive area";
@@ -85,9 +90,12 @@ MeshPtr load_mesh(const fs::path& file, const Vector3d& scale, MeshCache& cache)
   if (!scale.allFinite() || (scale.array() == 0).any())
     bad_input(where, "mesh scale is zero or not finite", "finite numbers other than 0");
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) bad_input(where, "no such file", "an existing STL, OBJ, DAE or PLY file");
+  if (!fs::is_regular_file(file, error))
+    bad_input(where, "no such file", "an existing STL, OBJ, DAE or PLY file");
   const Reader read = reader_of(file);
-  if (read == nullptr) bad_input(where, "unknown mesh format '" + file.extension().string() + "'", "an STL, OBJ, DAE or PLY file");
+  if (read == nullptr)
+    bad_input(where, "unknown mesh format '" + file.extension().string() + "'",
+              "an STL, OBJ, DAE or PLY file");
   std::string key = fs::weakly_canonical(file, error).string();
   for (const double factor : scale) key += '|' + format_double(factor);
   MeshPtr& mesh = cache[key];

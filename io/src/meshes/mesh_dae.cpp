@@ -38,27 +38,32 @@ class DaeReader {
           unit = *value;
         }
     const Element* scene = root.FirstChildElement("scene");
-    const Element* instance = scene == nullptr ? nullptr : scene->FirstChildElement("instance_visual_scene");
+    const Element* instance =
+        scene == nullptr ? nullptr : scene->FirstChildElement("instance_visual_scene");
     if (instance == nullptr) fail(root, "shows no scene", "a <scene> with <instance_visual_scene>");
     place_node(target(*instance, "url", "visual_scene"), Affine3d(Eigen::Scaling(unit)), 0);
   }
 
  private:
-  [[noreturn]] void fail(const Element& at, const std::string& what, const std::string& allowed) const {
+  [[noreturn]] void fail(const Element& at, const std::string& what,
+                         const std::string& allowed) const {
     file_.fail(at.GetLineNum(), std::string("<") + at.Name() + "> " + what, allowed);
   }
 
   /// Collects the elements that have an id. The parser bounds the depth of the recursion.
   void index(const Element& element) {
     if (const char* id = element.Attribute("id")) by_id_.emplace(id, &element);
-    for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) index(*child);
+    for (auto* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement())
+      index(*child);
   }
 
   /// Returns the element that an attribute of the form "#id" names. Throws InputError if there is
   /// none of this name.
   const Element& target(const Element& from, const char* attribute, std::string_view name) const {
     const char* const url = from.Attribute(attribute);
-    const auto found = url == nullptr || *url != '#' ? by_id_.end() : by_id_.find(std::string_view(url + 1));
+    const auto found =
+        url == nullptr || *url != '#' ? by_id_.end() : by_id_.find(std::string_view(url + 1));
     if (found == by_id_.end() || (!name.empty() && found->second->Name() != name))
       fail(from, std::string(attribute) + " is '" + (url == nullptr ? "" : url) + "'",
            "'#' and the id of a " + std::string(name.empty() ? "source" : name) + " of this file");
@@ -71,7 +76,8 @@ class DaeReader {
     Words words(text == nullptr ? "" : text, element.GetLineNum());
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       const auto value = to_number<double>(word);
-      if (!value || !std::isfinite(*value)) fail(element, "holds '" + std::string(word) + "'", "finite numbers");
+      if (!value || !std::isfinite(*value))
+        fail(element, "holds '" + std::string(word) + "'", "finite numbers");
       values.push_back(*value);
     }
     return values;
@@ -80,7 +86,9 @@ class DaeReader {
   Affine3d transform(const Element& element, std::string_view name) const {
     const std::vector<double> x = numbers(element);
     const std::size_t count = name == "matrix" ? 16 : name == "rotate" ? 4 : 3;
-    if (x.size() != count) fail(element, "has " + std::to_string(x.size()) + " numbers", std::to_string(count) + " numbers");
+    if (x.size() != count)
+      fail(element, "has " + std::to_string(x.size()) + " numbers",
+           std::to_string(count) + " numbers");
     if (name == "translate") return Affine3d(Eigen::Translation3d(x[0], x[1], x[2]));
     if (name == "scale") return Affine3d(Eigen::Scaling(x[0], x[1], x[2]));
     if (name == "rotate") {
@@ -107,7 +115,8 @@ class DaeReader {
     std::vector<Part>& parts = at->second;
     if (!fresh) return parts;
     const Element* unread = nullptr;
-    for (auto* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    for (auto* child = node.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
       const std::string_view name = child->Name();
       if (name == "matrix" || name == "rotate" || name == "scale" || name == "translate")
         parts.push_back({transform(*child, name)});
@@ -116,17 +125,21 @@ class DaeReader {
       if (name == "instance_node") parts.push_back({.node = &target(*child, "url", "node")});
       if (name != "instance_geometry" && name != "instance_controller") continue;
       if (unread != nullptr) fail(*unread, "of a mesh", "matrix, rotate, scale, translate");
-      if (const Element* geometry = geometry_of(*child)) parts.push_back({.surface = &surface(*geometry)});
+      if (const Element* geometry = geometry_of(*child))
+        parts.push_back({.surface = &surface(*geometry)});
     }
     return parts;
   }
 
   void place_node(const Element& node, Affine3d pose, int depth) {
     constexpr int kMostParts = 300'000, kMostDepth = 200;
-    if (depth > kMostDepth) fail(node, "is nested too deep, or in itself", "at most " + std::to_string(kMostDepth) + " levels");
+    if (depth > kMostDepth)
+      fail(node, "is nested too deep, or in itself",
+           "at most " + std::to_string(kMostDepth) + " levels");
     for (const Part& part : parts_of(node)) {
       if (++placed_parts_ > kMostParts)
-        fail(node, "too many parts, those of instances counted each time", "at most " + std::to_string(kMostParts));
+        fail(node, "too many parts, those of instances counted each time",
+             "at most " + std::to_string(kMostParts));
       if (part.node != nullptr)
         place_node(*part.node, pose, depth + 1);
       else if (part.surface != nullptr)
@@ -139,10 +152,12 @@ class DaeReader {
   /// Returns the geometry of an instance; for a skin or morph the one that it deforms, as it is
   /// stored. Null if there is none.
   const Element* geometry_of(const Element& instance) const {
-    if (std::string_view(instance.Name()) == "instance_geometry") return &target(instance, "url", "geometry");
+    if (std::string_view(instance.Name()) == "instance_geometry")
+      return &target(instance, "url", "geometry");
     const Element& controller = target(instance, "url", "controller");
     for (const char* kind : {"skin", "morph"})
-      if (const Element* deformed = controller.FirstChildElement(kind)) return &target(*deformed, "source", "geometry");
+      if (const Element* deformed = controller.FirstChildElement(kind))
+        return &target(*deformed, "source", "geometry");
     return nullptr;
   }
 
@@ -152,9 +167,11 @@ class DaeReader {
     if (!fresh || mesh == nullptr) return at->second;
     // Each <source> of positions is copied once, however many primitives use it.
     std::map<const Element*, std::pair<std::int64_t, std::int64_t>> placed;  // first point, number
-    for (auto* child = mesh->FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    for (auto* child = mesh->FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
       const std::string_view name = child->Name();
-      if (name == "triangles" || name == "polylist" || name == "polygons" || name == "tristrips" || name == "trifans")
+      if (name == "triangles" || name == "polylist" || name == "polygons" || name == "tristrips" ||
+          name == "trifans")
         read_faces(*child, name, at->second, placed);
     }
     return at->second;
@@ -164,22 +181,28 @@ class DaeReader {
                   std::map<const Element*, std::pair<std::int64_t, std::int64_t>>& placed) {
     std::size_t stride = 0, offset = 0;
     const Element* source = nullptr;
-    for (auto* input = faces.FirstChildElement("input"); input != nullptr; input = input->NextSiblingElement("input")) {
+    for (auto* input = faces.FirstChildElement("input"); input != nullptr;
+         input = input->NextSiblingElement("input")) {
       constexpr std::size_t kMostInputs = 64;
       const std::size_t here = size_attribute(*input, "offset", 0);
-      if (here >= kMostInputs) fail(*input, "has offset " + std::to_string(here), "at most " + std::to_string(kMostInputs - 1));
+      if (here >= kMostInputs)
+        fail(*input, "has offset " + std::to_string(here),
+             "at most " + std::to_string(kMostInputs - 1));
       stride = std::max(stride, here + 1);
       const char* const semantic = input->Attribute("semantic");
       if (semantic == nullptr || std::string_view(semantic) != "VERTEX") continue;
       offset = here;
       const Element& vertices = target(*input, "source", "vertices");
-      for (auto* e = vertices.FirstChildElement("input"); e != nullptr; e = e->NextSiblingElement("input"))
-        if (const char* s = e->Attribute("semantic"); s != nullptr && std::string_view(s) == "POSITION")
+      for (auto* e = vertices.FirstChildElement("input"); e != nullptr;
+           e = e->NextSiblingElement("input"))
+        if (const char* s = e->Attribute("semantic");
+            s != nullptr && std::string_view(s) == "POSITION")
           source = &target(*e, "source", "source");
     }
     const std::size_t count = size_attribute(faces, "count", 0);
     if (count == 0 && faces.FirstChildElement("p") == nullptr) return;
-    if (source == nullptr) fail(faces, "has no positions", "an input VERTEX with vertices of POSITION");
+    if (source == nullptr)
+      fail(faces, "has no positions", "an input VERTEX with vertices of POSITION");
     if (!placed.contains(source)) placed[source] = read_positions(*source, surface);
     const std::int64_t first = placed[source].first, points = placed[source].second;
 
@@ -194,15 +217,18 @@ class DaeReader {
         if (!value) fail(p, "holds '" + std::string(word) + "'", "whole numbers");
         if (k % stride != offset) continue;
         if (*value < 0 || *value >= points)
-          fail(p, "names vertex " + std::to_string(*value) + " of " + std::to_string(points), "an index of its source, from 0");
+          fail(p, "names vertex " + std::to_string(*value) + " of " + std::to_string(points),
+               "an index of its source, from 0");
         corners.push_back(first + *value);
       }
-      if (k % stride != 0) fail(p, "has " + std::to_string(k) + " indices", "a multiple of " + std::to_string(stride));
+      if (k % stride != 0)
+        fail(p, "has " + std::to_string(k) + " indices", "a multiple of " + std::to_string(stride));
     };
     const auto add = [&](std::int64_t a, std::int64_t b, std::int64_t c) {
       surface.add_polygon(std::array{a, b, c}, faces.GetLineNum());
     };
-    if (faces.FirstChildElement("ph") != nullptr) fail(faces, "has polygons with holes", "polygons without");
+    if (faces.FirstChildElement("ph") != nullptr)
+      fail(faces, "has polygons with holes", "polygons without");
     std::vector<double> sizes;
     if (kind == "polylist") {
       const Element* const vcount = faces.FirstChildElement("vcount");
@@ -215,19 +241,24 @@ class DaeReader {
     for (auto* p = faces.FirstChildElement("p"); p != nullptr; p = p->NextSiblingElement("p")) {
       read_p(*p);
       if (kind == "triangles") {
-        if (corners.size() % 3 != 0) fail(*p, "has " + std::to_string(corners.size()) + " corners", "three for each triangle");
-        for (std::size_t k = 0; k < corners.size(); k += 3, ++found) add(corners[k], corners[k + 1], corners[k + 2]);
+        if (corners.size() % 3 != 0)
+          fail(*p, "has " + std::to_string(corners.size()) + " corners", "three for each triangle");
+        for (std::size_t k = 0; k < corners.size(); k += 3, ++found)
+          add(corners[k], corners[k + 1], corners[k + 2]);
       } else if (kind == "polylist") {
         std::size_t next = 0;
         for (const double size : sizes) {
-          if (!(size >= 0) || size != std::floor(size) || !(size <= static_cast<double>(corners.size() - next)))
-            fail(faces, "has a polygon of more corners than <p> holds", "the same number of corners in <vcount> and <p>");
+          if (!(size >= 0) || size != std::floor(size) ||
+              !(size <= static_cast<double>(corners.size() - next)))
+            fail(faces, "has a polygon of more corners than <p> holds",
+                 "the same number of corners in <vcount> and <p>");
           surface.add_polygon(std::span(corners).subspan(next, size), p->GetLineNum());
           next += size;
           ++found;
         }
         if (next != corners.size())
-          fail(*p, "has " + std::to_string(corners.size()) + " corners of " + std::to_string(next), "as many as <vcount> says");
+          fail(*p, "has " + std::to_string(corners.size()) + " corners of " + std::to_string(next),
+               "as many as <vcount> says");
       } else if (kind == "polygons") {
         surface.add_polygon(corners, p->GetLineNum());
         ++found;
@@ -243,7 +274,8 @@ class DaeReader {
       }
     }
     if (faces.Attribute("count") != nullptr && found != count)
-      fail(faces, "has " + std::to_string(found) + " of " + std::to_string(count), "as many as its count says");
+      fail(faces, "has " + std::to_string(found) + " of " + std::to_string(count),
+           "as many as its count says");
   }
 
   std::size_t size_attribute(const Element& element, const char* name, std::size_t absent) const {
@@ -257,19 +289,23 @@ class DaeReader {
   /// Appends the points of a source; returns the index of the first and their number.
   std::pair<std::int64_t, std::int64_t> read_positions(const Element& source, Surface& surface) {
     const Element* const common = source.FirstChildElement("technique_common");
-    const Element* const accessor = common == nullptr ? nullptr : common->FirstChildElement("accessor");
+    const Element* const accessor =
+        common == nullptr ? nullptr : common->FirstChildElement("accessor");
     if (accessor == nullptr) fail(source, "has no accessor", "<technique_common> with <accessor>");
     const Element& array = target(*accessor, "source", "float_array");
     // read once, however many sources name it
     const auto [found, fresh] = arrays_.try_emplace(&array);
     if (fresh) found->second = numbers(array);
     const std::vector<double>& values = found->second;
-    const std::size_t stride = size_attribute(*accessor, "stride", 1), offset = size_attribute(*accessor, "offset", 0),
+    const std::size_t stride = size_attribute(*accessor, "stride", 1),
+                      offset = size_attribute(*accessor, "offset", 0),
                       count = size_attribute(*accessor, "count", 0);
     std::array<std::size_t, 3> at{0, 1, 2};
     std::size_t k = 0;
-    for (auto* param = accessor->FirstChildElement("param"); param != nullptr; param = param->NextSiblingElement("param"), ++k)
-      if (const char* name = param->Attribute("name"); name != nullptr && std::strlen(name) == 1 && *name >= 'X' && *name <= 'Z')
+    for (auto* param = accessor->FirstChildElement("param"); param != nullptr;
+         param = param->NextSiblingElement("param"), ++k)
+      if (const char* name = param->Attribute("name");
+          name != nullptr && std::strlen(name) == 1 && *name >= 'X' && *name <= 'Z')
         at[*name - 'X'] = k;
     const std::size_t last = *std::max_element(at.begin(), at.end());
     if (count == 0) return {static_cast<std::int64_t>(surface.points().size()), 0};

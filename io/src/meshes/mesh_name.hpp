@@ -12,7 +12,9 @@ using Packages = std::map<std::string, std::filesystem::path>;
 /// the URDF. A package's folder is taken from `packages`, else found by walking up from the URDF:
 /// by its name or, if that is not found, as a folder that holds the file and is no other package.
 /// Throws InputError prefixed by `where`.
-[[nodiscard]] std::filesystem::path resolve_mesh_name(const std::string& name, const std::filesystem::path& urdf,
-                                                      const Packages& packages, const std::string& where);
+[[nodiscard]] std::filesystem::path resolve_mesh_name(const std::string& name,
+                                                      const std::filesystem::path& urdf,
+                                                      const Packages& packages,
+                                                      const std::string& where);
 
 }  // namespace swivel::io

@@ -28,7 +28,8 @@ void read_obj(const MeshFile& file, const PlaceSurface& place) {
       if (part.ends_with('\r')) part.remove_suffix(1);
       more = part.ends_with('\\');
       if (more) part.remove_suffix(1);
-      if (joined.size() + part.size() > kMostLineBytes) file.fail(here, "is too long", "lines of at most 16 MiB");
+      if (joined.size() + part.size() > kMostLineBytes)
+        file.fail(here, "is too long", "lines of at most 16 MiB");
       joined += part;
       joined += ' ';
     }
@@ -39,7 +40,8 @@ void read_obj(const MeshFile& file, const PlaceSurface& place) {
       for (double& coordinate : x) {
         const std::string_view word = words.next();
         const auto value = to_number<double>(word);
-        if (!value) file.fail(here, quoted(word) + " is no coordinate", "v with three finite numbers");
+        if (!value)
+          file.fail(here, quoted(word) + " is no coordinate", "v with three finite numbers");
         coordinate = *value;
       }
       surface.add_point(x[0], x[1], x[2], here);

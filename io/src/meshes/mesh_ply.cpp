@@ -39,8 +39,8 @@ class PlyReader {
       // Every element of a binary file takes bytes, and of a text file a word, unless it has no
       // property.
       if (element.count > (element.properties.empty() ? 0 : file_.text.size()))
-        fail("has " + std::to_string(element.count) + " of " + std::string(element.name.substr(0, 400)) +
-                 ", more than the file holds",
+        fail("has " + std::to_string(element.count) + " of " +
+                 std::string(element.name.substr(0, 400)) + ", more than the file holds",
              "the number that follows the header");
       for (std::uint64_t k = 0; k < element.count; ++k) read_element(element);
     }
@@ -79,7 +79,8 @@ class PlyReader {
         binary_ = format != "ascii";
         big_ = format == "binary_big_endian";
         if (binary_ && !big_ && format != "binary_little_endian")
-          fail("unknown format " + quoted(format), "ascii, binary_little_endian, binary_big_endian");
+          fail("unknown format " + quoted(format),
+               "ascii, binary_little_endian, binary_big_endian");
         (void)words_.rest_of_line();
       } else if (word == "element") {
         Element element{words_.next(), 0, {}};
@@ -122,7 +123,8 @@ class PlyReader {
     const std::size_t size = size_of(type);
     if (data_.size() < size) fail("is cut short", "as many elements as the header says");
     std::uint64_t bits = 0;
-    for (std::size_t k = 0; k < size; ++k) bits = bits << 8 | static_cast<unsigned char>(data_[big_ ? k : size - 1 - k]);
+    for (std::size_t k = 0; k < size; ++k)
+      bits = bits << 8 | static_cast<unsigned char>(data_[big_ ? k : size - 1 - k]);
     data_.remove_prefix(size);
     switch (type) {
       case Type::kInt8:
@@ -143,7 +145,8 @@ class PlyReader {
   std::int64_t whole(Type type, std::int64_t most) {
     const double number = value(type);
     if (!(number >= 0 && number <= static_cast<double>(most)) || number != std::floor(number))
-      fail("a list has length or index " + std::to_string(number), "whole numbers that the file can hold");
+      fail("a list has length or index " + std::to_string(number),
+           "whole numbers that the file can hold");
     return static_cast<std::int64_t>(number);
   }
 
@@ -154,10 +157,13 @@ class PlyReader {
     corners_.clear();
     for (const Property& property : element.properties) {
       if (property.count) {
-        const bool corners = face && (property.name == "vertex_indices" || property.name == "vertex_index");
-        const std::int64_t count = whole(*property.count, static_cast<std::int64_t>(file_.text.size()));
+        const bool corners =
+            face && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const std::int64_t count =
+            whole(*property.count, static_cast<std::int64_t>(file_.text.size()));
         if (corners && count > static_cast<std::int64_t>(kMostTriangles) + 2)
-          fail("a face has " + std::to_string(count) + " corners", "at most " + std::to_string(kMostTriangles) + " triangles");
+          fail("a face has " + std::to_string(count) + " corners",
+               "at most " + std::to_string(kMostTriangles) + " triangles");
         for (std::int64_t k = 0; k < count; ++k) {
           if (corners)
             corners_.push_back(whole(property.type, INT32_MAX));
@@ -166,7 +172,9 @@ class PlyReader {
         }
       } else {
         const double number = value(property.type);
-        if (!vertex || property.name.size() != 1 || property.name[0] < 'x' || property.name[0] > 'z') continue;
+        if (!vertex || property.name.size() != 1 || property.name[0] < 'x' ||
+            property.name[0] > 'z')
+          continue;
         x[property.name[0] - 'x'] = number;
         ++found;
       }

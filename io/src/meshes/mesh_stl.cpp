@@ -27,7 +27,8 @@ void add_triangle(Surface& surface, int line) {
 void read_binary(const MeshFile& file, std::size_t count, Surface& surface) {
   for (std::size_t k = 0; k < count; ++k) {
     std::array<double, 9> x{};
-    for (std::size_t j = 0; j < 9; ++j) x[j] = std::bit_cast<float>(word_at(file.text, kHead + kEach * k + 12 + 4 * j));
+    for (std::size_t j = 0; j < 9; ++j)
+      x[j] = std::bit_cast<float>(word_at(file.text, kHead + kEach * k + 12 + 4 * j));
     for (std::size_t j = 0; j < 9; j += 3) surface.add_point(x[j], x[j + 1], x[j + 2], 0);
     add_triangle(surface, 0);
   }
@@ -37,7 +38,8 @@ void read_text(const MeshFile& file, Surface& surface) {
   Words words(file.text);
   const auto expect = [&](std::string_view wanted) {
     if (const std::string_view word = words.next(); word != wanted)
-      file.fail(words.line(), word.empty() ? "is cut short" : quoted(word), "'" + std::string(wanted) + "'");
+      file.fail(words.line(), word.empty() ? "is cut short" : quoted(word),
+                "'" + std::string(wanted) + "'");
   };
   const auto coordinate = [&] {
     const std::string_view word = words.next();
@@ -72,11 +74,14 @@ void read_text(const MeshFile& file, Surface& surface) {
 void read_stl(const MeshFile& file, const PlaceSurface& place) {
   const std::size_t size = file.text.size();
   Surface surface(file);
-  const std::size_t count = size < kHead ? 0 : word_at(file.text, 80), expected = kHead + kEach * count;
+  const std::size_t count = size < kHead ? 0 : word_at(file.text, 80),
+                    expected = kHead + kEach * count;
   // Binary files may begin with "solid" as well.
   const bool text = std::string_view(file.text).starts_with("solid") && size != expected;
   if (!text && (size < kHead || size < expected))
-    file.fail(0, "is cut short: " + std::to_string(size) + " bytes of " + std::to_string(size < kHead ? kHead : expected),
+    file.fail(0,
+              "is cut short: " + std::to_string(size) + " bytes of " +
+                  std::to_string(size < kHead ? kHead : expected),
               "an STL file, binary or text");
   if (text)
     read_text(file, surface);

@@ -23,7 +23,8 @@ inline constexpr std::size_t kMostTrajectoryRows = 1'000'000;
 /// as in ROS 2.
 class JointRows {
  public:
-  JointRows(const JointNames& joint_names, std::string file) : names_(joint_names), file_(std::move(file)) {}
+  JointRows(const JointNames& joint_names, std::string file)
+      : names_(joint_names), file_(std::move(file)) {}
 
   /// Sets the joints whose values follow, in this order. Throws InputError, prefixed by `where`,
   /// unless all of the arm's joints are there, each once, and no other; the roll of the tool may be
@@ -32,8 +33,8 @@ class JointRows {
   /// Adds a row: rad, rad/s, rad/s^2, in the order of joints(). Speeds or accelerations are empty
   /// in every row or in none. Throws InputError, prefixed by `where`, if they are not, or if times
   /// do not ascend.
-  void add(std::int64_t nanoseconds, std::span<const double> q, std::span<const double> v, std::span<const double> a,
-           const std::string& where);
+  void add(std::int64_t nanoseconds, std::span<const double> q, std::span<const double> v,
+           std::span<const double> a, const std::string& where);
   /// Returns the trajectory of all rows. Throws InputError if there are fewer than two.
   [[nodiscard]] TrajectoryFile finish();
 

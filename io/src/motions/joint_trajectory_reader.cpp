@@ -20,11 +20,13 @@ namespace swivel::io {
 
 namespace {
 
-/// A JointTrajectory, event by event, so that nothing is kept of a file but the numbers of its points. Lines are counted from 1;
-/// 0: not known. Each function throws InputError for what may not stand there.
+/// A JointTrajectory, event by event, so that nothing is kept of a file but the numbers of its
+/// points. Lines are counted from 1; 0: not known. Each function throws InputError for what may not
+/// stand there.
 class Message {
  public:
-  Message(const JointNames& joint_names, const std::string& file) : rows_(joint_names, file), file_(file) {}
+  Message(const JointNames& joint_names, const std::string& file)
+      : rows_(joint_names, file), file_(file) {}
 
   void begin(bool map, int line) {
     line_ = line;
@@ -46,16 +48,19 @@ class Message {
         }
         return here.key == "joint_names" ? push(!map, Level::kNames) : push(!map, Level::kPoints);
       case Level::kPoints:
-        if (lines_.size() == kMostTrajectoryRows) fail("too many points", "at most " + std::to_string(kMostTrajectoryRows));
+        if (lines_.size() == kMostTrajectoryRows)
+          fail("too many points", "at most " + std::to_string(kMostTrajectoryRows));
         lines_.push_back(line);
         sizes_.push_back({});
         nanoseconds_.push_back(0);
         return push(map, Level::kPoint);
       case Level::kPoint:
         need_key();
-        return here.key == "time_from_start" ? push(map, Level::kTime) : push(!map, Level::kNumbers);
+        return here.key == "time_from_start" ? push(map, Level::kTime)
+                                             : push(!map, Level::kNumbers);
       default:
-        fail(map ? "is a map" : "is a list", here.level == Level::kNames ? "the name of a joint" : "a number");
+        fail(map ? "is a map" : "is a list",
+             here.level == Level::kNames ? "the name of a joint" : "a number");
     }
   }
 
@@ -82,7 +87,8 @@ class Message {
       levels_.back().key.clear();
   }
 
-  /// How a scalar is written: a number or true and false, in quotes, or as a plain word of YAML, which may be either.
+  /// How a scalar is written: a number or true and false, in quotes, or as a plain word of YAML,
+  /// which may be either.
   enum class Scalar { kNumber, kText, kPlain };
 
   /// A key, a name or a number, whichever is due.
@@ -106,13 +112,15 @@ class Message {
         break;
     }
     if (here.key.empty()) return begin_key(text);
-    if (here.level != Level::kTime) fail("is '" + text + "'", "a map or list, as JointTrajectory has it");
+    if (here.level != Level::kTime)
+      fail("is '" + text + "'", "a map or list, as JointTrajectory has it");
     const auto value = to_number<std::int64_t>(text);
     const bool seconds = here.key == "sec";
     const std::int64_t least = seconds ? std::numeric_limits<std::int32_t>::min() : 0,
                        most = seconds ? std::numeric_limits<std::int32_t>::max() : 999'999'999;
     if (kind == Scalar::kText || !value || *value < least || *value > most)
-      fail(written(text, kind), "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+      fail(written(text, kind),
+           "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     (seconds ? sec_ : nanosec_) = *value;
     here.key.clear();
   }
@@ -129,9 +137,11 @@ class Message {
   /// Refuses what the text says: names the file, the line that is being read, and the point.
   [[noreturn]] void fail(const std::string& what, const std::string& allowed) const {
     std::string where = at_line(file_, line_);
-    if (!sizes_.empty() && levels_.size() > 1) where += ": points[" + std::to_string(sizes_.size() - 1) + "]";
+    if (!sizes_.empty() && levels_.size() > 1)
+      where += ": points[" + std::to_string(sizes_.size() - 1) + "]";
     for (const Here& here : levels_)
-      if (!here.key.empty() && here.key != "points") where += (here.level == Level::kTime ? "." : ": ") + here.key;
+      if (!here.key.empty() && here.key != "points")
+        where += (here.level == Level::kTime ? "." : ": ") + here.key;
     bad_input(where, what, allowed);
   }
 
@@ -147,7 +157,9 @@ class Message {
       // In the order of the file.
       std::array<std::span<const double>, 3> values;
       for (const int which : sizes_[k].order)
-        if (which >= 0) values[static_cast<std::size_t>(which)] = next(sizes_[k].count[static_cast<std::size_t>(which)]);
+        if (which >= 0)
+          values[static_cast<std::size_t>(which)] =
+              next(sizes_[k].count[static_cast<std::size_t>(which)]);
       rows_.add(nanoseconds_[k], values[0], values[1], values[2],
                 at_line(file_, lines_[k]) + ": points[" + std::to_string(k) + "]");
     }
@@ -156,7 +168,8 @@ class Message {
 
  private:
   static constexpr const char* kKeys =
-      "trajectory_msgs/msg/JointTrajectory: header, joint_names, points of positions, velocities, accelerations, effort and "
+      "trajectory_msgs/msg/JointTrajectory: header, joint_names, points of positions, velocities, "
+      "accelerations, effort and "
       "time_from_start of sec and nanosec";
   enum class Level { kRoot, kNames, kPoints, kPoint, kNumbers, kTime };
   struct Here {
@@ -164,7 +177,8 @@ class Message {
     std::string key;  // whose value is due
     std::set<std::string> seen;
   };
-  /// How many numbers of a point are positions, velocities, accelerations, and in what order the file has them.
+  /// How many numbers of a point are positions, velocities, accelerations, and in what order the
+  /// file has them.
   struct Sizes {
     std::array<std::uint8_t, 3> count{};
     std::array<std::int8_t, 3> order{-1, -1, -1};
@@ -173,7 +187,8 @@ class Message {
   [[nodiscard]] std::string allowed() const { return "one for each of the arm's joints"; }
   [[noreturn]] void fail_kind(bool map) const { fail(map ? "is no map" : "is no list", kKeys); }
   void push(bool as_it_should_be, Level level) {
-    if (!as_it_should_be) fail_kind(level == Level::kRoot || level == Level::kPoint || level == Level::kTime);
+    if (!as_it_should_be)
+      fail_kind(level == Level::kRoot || level == Level::kPoint || level == Level::kTime);
     levels_.push_back({level, {}, {}});
   }
   void need_key() const {
@@ -184,10 +199,11 @@ class Message {
     const auto one_of = [&](std::initializer_list<const char*> keys) {
       return std::find(keys.begin(), keys.end(), key) != keys.end();
     };
-    const bool known = here.level == Level::kRoot ? one_of({"header", "joint_names", "points"})
-                       : here.level == Level::kPoint
-                           ? one_of({"positions", "velocities", "accelerations", "effort", "time_from_start"})
-                           : one_of({"sec", "nanosec"});
+    const bool known =
+        here.level == Level::kRoot ? one_of({"header", "joint_names", "points"})
+        : here.level == Level::kPoint
+            ? one_of({"positions", "velocities", "accelerations", "effort", "time_from_start"})
+            : one_of({"sec", "nanosec"});
     if (!known) fail("key '" + key + "' is unknown", kKeys);
     if (!here.seen.insert(key).second) fail("key '" + key + "' is there twice", kKeys);
     here.key = key;
@@ -205,7 +221,8 @@ class Message {
     Sizes& sizes = sizes_.back();
     std::uint8_t& count = sizes.count[static_cast<std::size_t>(which_)];
     if (count == kDof) fail("has more than 7 numbers", allowed());
-    if (count++ == 0) *std::find(sizes.order.begin(), sizes.order.end(), -1) = static_cast<std::int8_t>(which_);
+    if (count++ == 0)
+      *std::find(sizes.order.begin(), sizes.order.end(), -1) = static_cast<std::int8_t>(which_);
     numbers_.push_back(*value);
   }
 
@@ -228,12 +245,18 @@ class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
  public:
   JsonEvents(Message& message, const std::string& file) : message_(&message), file_(file) {}
   bool null() override { return message_->null(0), true; }
-  bool boolean(bool value) override { return message_->scalar(value ? "true" : "false", 0, Scalar::kNumber), true; }
-  bool number_integer(number_integer_t value) override { return message_->scalar(std::to_string(value), 0, Scalar::kNumber), true; }
+  bool boolean(bool value) override {
+    return message_->scalar(value ? "true" : "false", 0, Scalar::kNumber), true;
+  }
+  bool number_integer(number_integer_t value) override {
+    return message_->scalar(std::to_string(value), 0, Scalar::kNumber), true;
+  }
   bool number_unsigned(number_unsigned_t value) override {
     return message_->scalar(std::to_string(value), 0, Scalar::kNumber), true;
   }
-  bool number_float(number_float_t, const string_t& text) override { return message_->scalar(text, 0, Scalar::kNumber), true; }
+  bool number_float(number_float_t, const string_t& text) override {
+    return message_->scalar(text, 0, Scalar::kNumber), true;
+  }
   bool string(string_t& text) override { return message_->scalar(text, 0, Scalar::kText), true; }
   bool binary(binary_t&) override { return false; }
   bool start_object(std::size_t) override { return message_->begin(true, 0), true; }
@@ -241,7 +264,8 @@ class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return message_->end(), true; }
   bool start_array(std::size_t) override { return message_->begin(false, 0), true; }
   bool end_array() override { return message_->end(), true; }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::detail::exception& error) override {
     bad_input(file_, error.what(), "well-formed JSON");
   }
 
@@ -258,15 +282,18 @@ class YamlEvents final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { message_->null(mark.line + 1); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { message_->alias(mark.line + 1); }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& text) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& text) override {
     const bool plain = tag == "?";  // quotes, and tags of YAML, say that it is text
     message_->scalar(text, mark.line + 1, plain ? Message::Scalar::kPlain : Message::Scalar::kText);
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
     message_->begin(false, mark.line + 1);
   }
   void OnSequenceEnd() override { message_->end(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
     message_->begin(true, mark.line + 1);
   }
   void OnMapEnd() override { message_->end(); }
@@ -277,26 +304,32 @@ class YamlEvents final : public YAML::EventHandler {
 
 }  // namespace
 
-TrajectoryFile read_joint_trajectory_json(const std::string& file, std::string_view text, const JointNames& joint_names) {
+TrajectoryFile read_joint_trajectory_json(const std::string& file, std::string_view text,
+                                          const JointNames& joint_names) {
   Message message(joint_names, file);
   JsonEvents events(message, file);
   (void)nlohmann::json::sax_parse(text, &events);
   return message.finish();
 }
 
-TrajectoryFile read_joint_trajectory_yaml(const std::string& file, const std::string& text, const JointNames& joint_names) {
+TrajectoryFile read_joint_trajectory_yaml(const std::string& file, const std::string& text,
+                                          const JointNames& joint_names) {
   if (text.size() > kMostYamlMotionBytes)
-    bad_input(file, "is too large", "YAML of at most " + std::to_string(kMostYamlMotionBytes >> 20) + " MiB; JSON may be larger");
+    bad_input(file, "is too large",
+              "YAML of at most " + std::to_string(kMostYamlMotionBytes >> 20) +
+                  " MiB; JSON may be larger");
   Message message(joint_names, file);
   YamlEvents events(message);
   std::istringstream stream(text);
   try {
     YAML::Parser parser(stream);
     // An empty document may follow, as `ros2 topic echo` ends every message with "---".
-    for (int documents = 0; documents < 2 && parser.HandleNextDocument(events); ++documents) continue;
+    for (int documents = 0; documents < 2 && parser.HandleNextDocument(events); ++documents)
+      continue;
     if (parser) bad_input(file, "holds more than one YAML document", "one message");
   } catch (const YAML::Exception& error) {
-    bad_input(at_line(file, error.mark.line + 1), "not YAML (" + error.msg + ")", "well-formed YAML");
+    bad_input(at_line(file, error.mark.line + 1), "not YAML (" + error.msg + ")",
+              "well-formed YAML");
   }
   return message.finish();
 }

@@ -19,12 +19,14 @@ class Bytes {
  public:
   template <class Number>
   Bytes& add(Number value) {
-    using Unsigned = std::conditional_t<sizeof(Number) == 1, std::uint8_t,
-                                        std::conditional_t<sizeof(Number) == 2, std::uint16_t,
-                                                           std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>>>;
+    using Unsigned = std::conditional_t<
+        sizeof(Number) == 1, std::uint8_t,
+        std::conditional_t<sizeof(Number) == 2, std::uint16_t,
+                           std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>>>;
     Unsigned bits;
     std::memcpy(&bits, &value, sizeof bits);
-    for (std::size_t k = 0; k < sizeof bits; ++k) text_ += static_cast<char>(static_cast<unsigned char>(bits >> (8 * k)));
+    for (std::size_t k = 0; k < sizeof bits; ++k)
+      text_ += static_cast<char>(static_cast<unsigned char>(bits >> (8 * k)));
     return *this;
   }
   Bytes& raw(std::string_view text) {
@@ -32,7 +34,9 @@ class Bytes {
     return *this;
   }
   /// Adds a text after its length in 32 bits, as for MCAP's strings, arrays and maps.
-  Bytes& counted(std::string_view text) { return add(static_cast<std::uint32_t>(text.size())).raw(text); }
+  Bytes& counted(std::string_view text) {
+    return add(static_cast<std::uint32_t>(text.size())).raw(text);
+  }
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] std::uint64_t size() const { return text_.size(); }
 
@@ -41,7 +45,11 @@ class Bytes {
 };
 
 std::string record(Opcode opcode, const Bytes& content) {
-  return Bytes().add(static_cast<std::uint8_t>(opcode)).add(content.size()).raw(content.text()).text();
+  return Bytes()
+      .add(static_cast<std::uint8_t>(opcode))
+      .add(content.size())
+      .raw(content.text())
+      .text();
 }
 
 /// The definition of the message, with the definitions of its parts.
@@ -81,13 +89,16 @@ class Cdr {
     return *this;
   }
   /// Returns the message, after the four bytes that name the representation.
-  [[nodiscard]] std::string message() const { return std::string(kLittleEndianCdr) + bytes_.text(); }
+  [[nodiscard]] std::string message() const {
+    return std::string(kLittleEndianCdr) + bytes_.text();
+  }
 
  private:
   Bytes bytes_;
 };
 
-std::string joint_state(const TimedPath& motion, const TimedRow& row, const JointNames& joint_names, const std::string& frame_id) {
+std::string joint_state(const TimedPath& motion, const TimedRow& row, const JointNames& joint_names,
+                        const std::string& frame_id) {
   const Stamp stamp = stamp_of(row.t);
   Cdr cdr;
   cdr.add(stamp.sec).add(stamp.nanosec).add(frame_id);
@@ -105,14 +116,20 @@ std::uint64_t nanoseconds(double t) {
 
 }  // namespace
 
-std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
+std::string to_mcap(const TimedPath& motion, const JointNames& joint_names,
+                    const std::string& frame_id) {
   constexpr std::uint16_t kSchemaId = 1, kChannelId = 0;
   const std::string magic(kMcapMagic);
-  const std::uint64_t begin = nanoseconds(motion.rows.front().t), end = nanoseconds(motion.rows.back().t);
-  const std::string schema =
-      record(kSchema, Bytes().add(kSchemaId).counted("sensor_msgs/msg/JointState").counted("ros2msg").counted(kJointState));
-  const std::string channel =
-      record(kChannel, Bytes().add(kChannelId).add(kSchemaId).counted("/joint_states").counted("cdr").counted(""));
+  const std::uint64_t begin = nanoseconds(motion.rows.front().t),
+                      end = nanoseconds(motion.rows.back().t);
+  const std::string schema = record(kSchema, Bytes()
+                                                 .add(kSchemaId)
+                                                 .counted("sensor_msgs/msg/JointState")
+                                                 .counted("ros2msg")
+                                                 .counted(kJointState));
+  const std::string channel = record(
+      kChannel,
+      Bytes().add(kChannelId).add(kSchemaId).counted("/joint_states").counted("cdr").counted(""));
 
   std::string chunk = schema + channel;
   Bytes index;
@@ -120,14 +137,25 @@ std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, cons
   for (const TimedRow& row : motion.rows) {
     const std::uint64_t time = nanoseconds(row.t);
     index.add(time).add(static_cast<std::uint64_t>(chunk.size()));
-    chunk += record(
-        kMessage, Bytes().add(kChannelId).add(sequence++).add(time).add(time).raw(joint_state(motion, row, joint_names, frame_id)));
+    chunk += record(kMessage, Bytes()
+                                  .add(kChannelId)
+                                  .add(sequence++)
+                                  .add(time)
+                                  .add(time)
+                                  .raw(joint_state(motion, row, joint_names, frame_id)));
   }
 
   std::string file = magic + record(kHeader, Bytes().counted("ros2").counted("swivel"));
   const std::uint64_t chunk_at = file.size();
   const auto chunk_size = static_cast<std::uint64_t>(chunk.size());
-  file += record(kChunk, Bytes().add(begin).add(end).add(chunk_size).add(std::uint32_t{0}).counted("").add(chunk_size).raw(chunk));
+  file += record(kChunk, Bytes()
+                             .add(begin)
+                             .add(end)
+                             .add(chunk_size)
+                             .add(std::uint32_t{0})
+                             .counted("")
+                             .add(chunk_size)
+                             .raw(chunk));
   const std::uint64_t index_at = file.size();
   file += record(kMessageIndex, Bytes().add(kChannelId).counted(index.text()));
   const std::uint64_t index_end = file.size();
@@ -138,16 +166,19 @@ std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, cons
   const std::uint64_t channels_at = file.size();
   file += channel;
   const std::uint64_t statistics_at = file.size();
-  file += record(kStatistics, Bytes()
-                                  .add(static_cast<std::uint64_t>(motion.rows.size()))
-                                  .add(std::uint16_t{1})  // schemas
-                                  .add(std::uint32_t{1})  // channels
-                                  .add(std::uint32_t{0})  // attachments
-                                  .add(std::uint32_t{0})  // metadata
-                                  .add(std::uint32_t{1})  // chunks
-                                  .add(begin)
-                                  .add(end)
-                                  .counted(Bytes().add(kChannelId).add(static_cast<std::uint64_t>(motion.rows.size())).text()));
+  file += record(
+      kStatistics,
+      Bytes()
+          .add(static_cast<std::uint64_t>(motion.rows.size()))
+          .add(std::uint16_t{1})  // schemas
+          .add(std::uint32_t{1})  // channels
+          .add(std::uint32_t{0})  // attachments
+          .add(std::uint32_t{0})  // metadata
+          .add(std::uint32_t{1})  // chunks
+          .add(begin)
+          .add(end)
+          .counted(
+              Bytes().add(kChannelId).add(static_cast<std::uint64_t>(motion.rows.size())).text()));
   const std::uint64_t chunk_indexes_at = file.size();
   file += record(kChunkIndex, Bytes()
                                   .add(begin)
@@ -161,7 +192,8 @@ std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, cons
                                   .add(chunk_size));
   const std::uint64_t offsets_at = file.size();
   const auto group = [&](Opcode opcode, std::uint64_t from, std::uint64_t to) {
-    file += record(kSummaryOffset, Bytes().add(static_cast<std::uint8_t>(opcode)).add(from).add(to - from));
+    file += record(kSummaryOffset,
+                   Bytes().add(static_cast<std::uint8_t>(opcode)).add(from).add(to - from));
   };
   group(kSchema, summary_at, channels_at);
   group(kChannel, channels_at, statistics_at);

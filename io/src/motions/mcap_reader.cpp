@@ -31,7 +31,8 @@ class Cursor {
   Number number() {
     const std::string_view bytes = raw(sizeof(Number));
     std::uint64_t bits = 0;
-    for (std::size_t k = sizeof(Number); k-- > 0;) bits = bits << 8 | static_cast<unsigned char>(bytes[k]);
+    for (std::size_t k = sizeof(Number); k-- > 0;)
+      bits = bits << 8 | static_cast<unsigned char>(bytes[k]);
     if constexpr (std::is_floating_point_v<Number>) {
       double value = 0;
       std::memcpy(&value, &bits, sizeof value);
@@ -51,7 +52,8 @@ class Cursor {
   }
   std::string_view aligned_text() {
     const std::string_view text = raw(aligned<std::uint32_t>());
-    if (text.empty() || text.back() != '\0') bad_input(*where_, "a text does not end with a zero", "messages in CDR");
+    if (text.empty() || text.back() != '\0')
+      bad_input(*where_, "a text does not end with a zero", "messages in CDR");
     return text.substr(0, text.size() - 1);
   }
   std::vector<double> aligned_numbers() {
@@ -85,7 +87,8 @@ std::uint32_t crc32(std::string_view bytes) {
 
 class Log {
  public:
-  Log(const std::string& file, const JointNames& joint_names) : file_(file), rows_(joint_names, file) {}
+  Log(const std::string& file, const JointNames& joint_names)
+      : file_(file), rows_(joint_names, file) {}
 
   TrajectoryFile read(std::string_view bytes) {
     Cursor cursor(bytes, file_);
@@ -93,7 +96,8 @@ class Log {
       bad_input(file_, "is no MCAP file of version 0", "one that begins with its mark");
     bool whole = false;
     while (!whole) whole = record(cursor, false) == kDataEnd;
-    if (!topic_) bad_input(file_, "has no joint states", "one topic of sensor_msgs/msg/JointState in CDR");
+    if (!topic_)
+      bad_input(file_, "has no joint states", "one topic of sensor_msgs/msg/JointState in CDR");
     return rows_.finish();
   }
 
@@ -111,24 +115,28 @@ class Log {
       case kSchema: {
         const auto id = content.number<std::uint16_t>();
         const std::string_view name = content.counted(), encoding = content.counted();
-        if (name == "sensor_msgs/msg/JointState" && encoding == "ros2msg") joint_state_schemas_.insert(id);
+        if (name == "sensor_msgs/msg/JointState" && encoding == "ros2msg")
+          joint_state_schemas_.insert(id);
         break;
       }
       case kChannel: {
         const auto id = content.number<std::uint16_t>();
         const bool joint_states = joint_state_schemas_.contains(content.number<std::uint16_t>());
         const std::string topic(content.counted());
-        if (joint_states && content.counted() != "cdr") bad_input(file_ + ": topic '" + topic + "'", "is not in CDR", "CDR");
+        if (joint_states && content.counted() != "cdr")
+          bad_input(file_ + ": topic '" + topic + "'", "is not in CDR", "CDR");
         channels_.insert_or_assign(id, Channel{topic, joint_states});
         break;
       }
       case kMessage: {
         const auto channel = channels_.find(content.number<std::uint16_t>());
-        if (channel == channels_.end()) bad_input(file_, "has a message of an unknown channel", "channels before their messages");
+        if (channel == channels_.end())
+          bad_input(file_, "has a message of an unknown channel", "channels before their messages");
         if (!channel->second.joint_states) break;
         const std::string& topic = channel->second.topic;
         if (topic_ && *topic_ != topic)
-          bad_input(file_, "has joint states on '" + *topic_ + "' and '" + topic + "'", "one topic with joint states");
+          bad_input(file_, "has joint states on '" + *topic_ + "' and '" + topic + "'",
+                    "one topic with joint states");
         topic_ = topic;
         // sequence, log time, publish time
         content.raw(sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t));
@@ -136,7 +144,9 @@ class Log {
         break;
       }
       case kChunk:
-        if (in_chunk) bad_input(file_, "has a chunk in a chunk", "records as the specification of MCAP has them");
+        if (in_chunk)
+          bad_input(file_, "has a chunk in a chunk",
+                    "records as the specification of MCAP has them");
         chunk(content);
         break;
       case kFooter:
@@ -155,13 +165,15 @@ class Log {
       bad_input(file_, "has chunks compressed by " + std::string(compression),
                 "chunks without compression: mcap compress --compression none");
     const std::string_view records = content.raw(content.number<std::uint64_t>());
-    if (crc != 0 && crc != crc32(records)) bad_input(file_, "is damaged: a chunk's check sum differs", "a file as it was written");
+    if (crc != 0 && crc != crc32(records))
+      bad_input(file_, "is damaged: a chunk's check sum differs", "a file as it was written");
     for (Cursor cursor(records, file_); !cursor.at_end();) record(cursor, true);
   }
 
   void message(std::string_view bytes) {
     where_ = file_ + ": message " + std::to_string(messages_++) + " of '" + *topic_ + "'";
-    if (!bytes.starts_with(kLittleEndianCdr)) bad_input(where_, "is not in little-endian CDR", "messages in it");
+    if (!bytes.starts_with(kLittleEndianCdr))
+      bad_input(where_, "is not in little-endian CDR", "messages in it");
     Cursor cursor(bytes.substr(kLittleEndianCdr.size()), where_);
     const std::int64_t sec = cursor.aligned<std::int32_t>();
     const std::int64_t nanoseconds = sec * 1'000'000'000 + cursor.aligned<std::uint32_t>();
@@ -192,7 +204,8 @@ class Log {
 
 }  // namespace
 
-TrajectoryFile read_mcap(const std::string& file, std::string_view text, const JointNames& joint_names) {
+TrajectoryFile read_mcap(const std::string& file, std::string_view text,
+                         const JointNames& joint_names) {
   return Log(file, joint_names).read(text);
 }
 

@@ -10,8 +10,8 @@ void require_motion_format(const std::filesystem::path& file) {
   bad_input(file.string(), "unknown format", "names that end in .csv, .json, .yaml or .mcap");
 }
 
-std::string motion_text(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id,
-                        const std::filesystem::path& file) {
+std::string motion_text(const TimedPath& motion, const JointNames& joint_names,
+                        const std::string& frame_id, const std::filesystem::path& file) {
   require_motion_format(file);
   const std::string format = file.extension().string();
   if (format == ".json") return to_trajectory_json(motion, joint_names, frame_id);

@@ -23,7 +23,8 @@ const Schema& motion_schema() {
 
 std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names) {
   std::string text;
-  const bool roll = std::any_of(motion.rows.begin(), motion.rows.end(), [](const TimedRow& row) { return row.row.roll != 0; });
+  const bool roll = std::any_of(motion.rows.begin(), motion.rows.end(),
+                                [](const TimedRow& row) { return row.row.roll != 0; });
   for (const std::string& name : csv_header(motion_schema(), joint_names, roll))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';

@@ -11,7 +11,9 @@ namespace swivel::io {
 
 /// Returns the columns that the schema of a row names, with "JOINT" and "JOINT_v" replaced by one
 /// column for each joint; the column "roll" only if `roll` is true.
-[[nodiscard]] std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names, bool roll);
+[[nodiscard]] std::vector<std::string> csv_header(const Schema& row,
+                                                  const std::array<std::string, kDof>& joint_names,
+                                                  bool roll);
 /// Returns the fields of a trajectory row, separated by commas; the roll only if `roll` is true.
 [[nodiscard]] std::string trajectory_fields(const TrajectoryRow& row, bool roll);
 

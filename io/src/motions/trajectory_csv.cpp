@@ -8,27 +8,33 @@
 namespace swivel::io {
 
 const Schema& trajectory_schema() {
-  static const Schema schema =
-      section("trajectory",
-              {
-                  {"s", number(), "m", required(), "along the path; equal in rows of a segment that only turns"},
-                  {"phi", number(), "rad", required(),
-                   "carried arm angle; `check` takes it modulo 2π. Of arms that are not S-R-S a generalised arm angle, for plots, "
-                   "which `check` "
-                   "does not look at; with `path.roll` the roll, which it does"},
-                  {"roll", number(), "rad", in_words("no such column: 0"),
-                   "of seven joints with `path.roll`: by how much the tool stands turned about its own z axis"},
-                  {"branch", integer(), "", required(),
-                   "0 to 7, the sum of 1 (shoulder), 2 (wrist), 4 (elbow), each where the sine of that angle, measured from its "
-                   "singular pose, "
-                   "is negative; `check` proves it. Of arms that are not S-R-S 0 to 3, [for plots](#branch), which `check` does "
-                   "not look at"},
-                  {"JOINT", number(), "rad", required(), "a column for each joint, with its name; continuous joints without jumps"},
-              });
+  static const Schema schema = section(
+      "trajectory", {
+                        {"s", number(), "m", required(),
+                         "along the path; equal in rows of a segment that only turns"},
+                        {"phi", number(), "rad", required(),
+                         "carried arm angle; `check` takes it modulo 2π. Of arms that are not "
+                         "S-R-S a generalised arm angle, for plots, "
+                         "which `check` "
+                         "does not look at; with `path.roll` the roll, which it does"},
+                        {"roll", number(), "rad", in_words("no such column: 0"),
+                         "of seven joints with `path.roll`: by how much the tool stands turned "
+                         "about its own z axis"},
+                        {"branch", integer(), "", required(),
+                         "0 to 7, the sum of 1 (shoulder), 2 (wrist), 4 (elbow), each where the "
+                         "sine of that angle, measured from its "
+                         "singular pose, "
+                         "is negative; `check` proves it. Of arms that are not S-R-S 0 to 3, [for "
+                         "plots](#branch), which `check` does "
+                         "not look at"},
+                        {"JOINT", number(), "rad", required(),
+                         "a column for each joint, with its name; continuous joints without jumps"},
+                    });
   return schema;
 }
 
-std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names, bool roll) {
+std::vector<std::string> csv_header(const Schema& row,
+                                    const std::array<std::string, kDof>& joint_names, bool roll) {
   constexpr std::string_view kJoint = "JOINT";
   std::vector<std::string> header;
   for (const std::string& name : row.key_names()) {
@@ -37,7 +43,8 @@ std::vector<std::string> csv_header(const Schema& row, const std::array<std::str
       header.push_back(name);
       continue;
     }
-    for (const std::string& joint : joint_names) header.push_back(joint + name.substr(kJoint.size()));
+    for (const std::string& joint : joint_names)
+      header.push_back(joint + name.substr(kJoint.size()));
   }
   return header;
 }

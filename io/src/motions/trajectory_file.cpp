@@ -24,16 +24,20 @@ struct Columns {
 
 /// Finds the columns. Names are tried in the order in which Swivel writes them, so that a joint may
 /// have the name of another column. Throws InputError.
-Columns columns_of(const std::vector<std::string>& header, const JointNames& names, const std::string& where) {
+Columns columns_of(const std::vector<std::string>& header, const JointNames& names,
+                   const std::string& where) {
   Columns columns;
-  std::vector<std::pair<std::string, Columns::Place*>> known{{"t", &columns.t}, {"s", &columns.s}, {"phi", &columns.phi}};
+  std::vector<std::pair<std::string, Columns::Place*>> known{
+      {"t", &columns.t}, {"s", &columns.s}, {"phi", &columns.phi}};
   if (!may_lack_last(names)) known.emplace_back("roll", &columns.roll);
   known.emplace_back("branch", &columns.branch);
-  for (const auto& [ending, places] : {std::pair("", &columns.q), std::pair("_v", &columns.v), std::pair("_a", &columns.a)})
+  for (const auto& [ending, places] :
+       {std::pair("", &columns.q), std::pair("_v", &columns.v), std::pair("_a", &columns.a)})
     for (std::size_t j = 0; j < kDof; ++j) known.emplace_back(names[j] + ending, &(*places)[j]);
   std::string joints;
   for (const std::string& name : names) joints += ", " + csv_field(name);
-  const std::string allowed = "t, s, phi, roll, branch" + joints + ", and joints with _v and _a, each once";
+  const std::string allowed =
+      "t, s, phi, roll, branch" + joints + ", and joints with _v and _a, each once";
   for (std::size_t k = 0; k < header.size(); ++k) {
     bool there = false, placed = false;
     for (auto& [name, place] : known) {
@@ -45,18 +49,29 @@ Columns columns_of(const std::vector<std::string>& header, const JointNames& nam
       break;
     }
     if (!placed)
-      bad_input(where, "column '" + header[k] + "' " + (there ? "is there twice" : "is unknown, or no joint of the arm"), allowed);
+      bad_input(where,
+                "column '" + header[k] + "' " +
+                    (there ? "is there twice" : "is unknown, or no joint of the arm"),
+                allowed);
   }
-  const auto all = [&](const std::array<Columns::Place, kDof>& places, const std::string& ending, std::size_t count) {
+  const auto all = [&](const std::array<Columns::Place, kDof>& places, const std::string& ending,
+                       std::size_t count) {
     for (std::size_t j = 0; j < kDof; ++j)
       if (places[j].has_value() != (j < count))
-        bad_input(where, "column '" + names[j] + ending + "' is " + (places[j] ? "there, but not its joint" : "missing"), allowed);
+        bad_input(where,
+                  "column '" + names[j] + ending + "' is " +
+                      (places[j] ? "there, but not its joint" : "missing"),
+                  allowed);
   };
   const std::size_t count = may_lack_last(names) && !columns.q.back() ? kDof - 1 : kDof;
   all(columns.q, "", count);
   for (const auto& [ending, places] : {std::pair("_v", &columns.v), std::pair("_a", &columns.a)}) {
-    if (std::none_of(places->begin(), places->end(), [](const Columns::Place& place) { return place.has_value(); })) continue;
-    if (!columns.t) bad_input(where, std::string("joints have ") + ending + ", but column 't' is missing", allowed);
+    if (std::none_of(places->begin(), places->end(),
+                     [](const Columns::Place& place) { return place.has_value(); }))
+      continue;
+    if (!columns.t)
+      bad_input(where, std::string("joints have ") + ending + ", but column 't' is missing",
+                allowed);
     all(*places, ending, count);
   }
   return columns;
@@ -64,10 +79,11 @@ Columns columns_of(const std::vector<std::string>& header, const JointNames& nam
 
 TrajectoryFile read_csv(const std::string& file, std::string_view text, const JointNames& names) {
   Columns columns;
-  const CsvTable table(
-      file, text,
-      {"a header with the names of the arm's joints",
-       [&](const std::vector<std::string>& header, const std::string& where) { columns = columns_of(header, names, where); }});
+  const CsvTable table(file, text,
+                       {"a header with the names of the arm's joints",
+                        [&](const std::vector<std::string>& header, const std::string& where) {
+                          columns = columns_of(header, names, where);
+                        }});
   TrajectoryFile read;
   Stated& stated = read.stated;
   stated.s = columns.s.has_value();
@@ -88,7 +104,8 @@ TrajectoryFile read_csv(const std::string& file, std::string_view text, const Jo
     row.roll = take(columns.roll);
     const double branch = take(columns.branch);
     if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
-      bad_input(table.where(k) + ": branch", "is " + format_double(branch), "a whole number from 0 to 7");
+      bad_input(table.where(k) + ": branch", "is " + format_double(branch),
+                "a whole number from 0 to 7");
     row.branch = static_cast<int>(branch);
     for (std::size_t j = 0; j < kDof; ++j) {
       const auto joint = static_cast<Eigen::Index>(j);
@@ -100,7 +117,8 @@ TrajectoryFile read_csv(const std::string& file, std::string_view text, const Jo
     if (!columns.t) continue;
     timed.t = take(columns.t);
     if (k > 0 && !(timed.t > read.timed.back().t))
-      bad_input(table.where(k) + ": t", "is " + format_double(timed.t), "times that ascend from row to row");
+      bad_input(table.where(k) + ": t", "is " + format_double(timed.t),
+                "times that ascend from row to row");
     read.timed.push_back(timed);
   }
   return read;
@@ -128,8 +146,10 @@ Format format_of(std::string_view text) {
 
 }  // namespace
 
-TrajectoryFile load_trajectory_file(const std::filesystem::path& path, const JointNames& joint_names) {
-  const std::string text = read_file(path, "trajectory file", kMostTableBytes), file = path.string();
+TrajectoryFile load_trajectory_file(const std::filesystem::path& path,
+                                    const JointNames& joint_names) {
+  const std::string text = read_file(path, "trajectory file", kMostTableBytes),
+                    file = path.string();
   switch (format_of(text)) {
     case Format::kJson:
       return read_joint_trajectory_json(file, text, joint_names);

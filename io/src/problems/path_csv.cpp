@@ -21,7 +21,8 @@ std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
     Waypoint waypoint;
     waypoint.position = {v[0], v[1], v[2]};
     if (!(waypoint.position.array().abs() <= kMostMetres).all())
-      bad_input(table.where(k) + ": x,y,z", "a coordinate is too large", "numbers from -1000 to 1000");
+      bad_input(table.where(k) + ": x,y,z", "a coordinate is too large",
+                "numbers from -1000 to 1000");
     waypoint.orientation = Quaterniond(v[3], v[4], v[5], v[6]);
     const double norm = waypoint.orientation.norm();
     if (!(std::abs(norm - 1) <= 1e-3))
@@ -29,7 +30,8 @@ std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
                 "a quaternion of length 1 within 1e-3");
     if (table.header() == 1) {
       waypoint.roll = Roll{v[7], v[8]};
-      if (!(v[7] <= v[8])) bad_input(table.where(k) + ": roll_min,roll_max", "is empty", "roll_min <= roll_max");
+      if (!(v[7] <= v[8]))
+        bad_input(table.where(k) + ": roll_min,roll_max", "is empty", "roll_min <= roll_max");
     }
     waypoints.push_back(waypoint);
   }

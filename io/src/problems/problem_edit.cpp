@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 const char* const kAllowed =
-    "a pose written with xyz: [x, y, z] and rpy: [roll, pitch, yaw], of plain numbers without anchors or aliases";
+    "a pose written with xyz: [x, y, z] and rpy: [roll, pitch, yaw], of plain numbers without "
+    "anchors or aliases";
 
 std::string list(const Vector3d& v) {
   return "[" + csv_number(v.x()) + ", " + csv_number(v.y()) + ", " + csv_number(v.z()) + "]";
@@ -25,20 +26,23 @@ std::string list(const Vector3d& v) {
 /// Collects replacements in a YAML text, by their places.
 class TextEdits {
  public:
-  TextEdits(std::string text, std::string source) : text_(std::move(text)), source_(std::move(source)) {}
+  TextEdits(std::string text, std::string source)
+      : text_(std::move(text)), source_(std::move(source)) {}
 
   void vector(const YAML::Node& object, const char* key, const Vector3d& value) {
     const YAML::Node node = object[key];
     if (!node) return insert(object, std::string(key) + ": " + list(value));
     if (!node.IsSequence() || node.size() != 3) fail(object, key);
-    for (std::size_t k = 0; k < 3; ++k) word(node[k], csv_number(value[static_cast<Eigen::Index>(k)]), key);
+    for (std::size_t k = 0; k < 3; ++k)
+      word(node[k], csv_number(value[static_cast<Eigen::Index>(k)]), key);
   }
   /// Replaces quat: [...] by rpy: [...].
   void quaternion(const YAML::Node& object, const Vector3d& rpy) {
     const YAML::Node node = object["quat"];
     const std::size_t begin = place(node), end = text_.find(']', begin) + 1;
-    const bool plain = node.Style() == YAML::EmitterStyle::Flow && text_[begin] == '[' && end != 0 &&
-                       text_.substr(begin, end - begin).find_first_of("#&*\"'") == std::string::npos;
+    const bool plain =
+        node.Style() == YAML::EmitterStyle::Flow && text_[begin] == '[' && end != 0 &&
+        text_.substr(begin, end - begin).find_first_of("#&*\"'") == std::string::npos;
     if (!plain) fail(node, "quat");
     for (const auto& entry : object)
       if (entry.first.Scalar() == "quat") word(entry.first, "rpy", "quat");
@@ -46,14 +50,16 @@ class TextEdits {
   }
   [[nodiscard]] std::string text() {
     // From the end on; of two edits at one place, the insertion comes last.
-    std::sort(edits_.begin(), edits_.end(),
-              [](const Edit& a, const Edit& b) { return std::pair(a.at, a.size) > std::pair(b.at, b.size); });
+    std::sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) {
+      return std::pair(a.at, a.size) > std::pair(b.at, b.size);
+    });
     std::string result = text_;
     for (const Edit& edit : edits_) result.replace(edit.at, edit.size, edit.text);
     return result;
   }
   [[noreturn]] void fail(const YAML::Node& node, const std::string& key) const {
-    bad_input(at_line(source_, node.Mark().line + 1), key + ": cannot be changed in place", kAllowed);
+    bad_input(at_line(source_, node.Mark().line + 1), key + ": cannot be changed in place",
+              kAllowed);
   }
 
  private:
@@ -78,7 +84,8 @@ class TextEdits {
     if (text_[at] == '{')
       edits_.push_back({at + 1, 0, entry + ", "});
     else
-      edits_.push_back({at, 0, entry + '\n' + std::string(static_cast<std::size_t>(map.Mark().column), ' ')});
+      edits_.push_back(
+          {at, 0, entry + '\n' + std::string(static_cast<std::size_t>(map.Mark().column), ' ')});
   }
 
   std::string text_, source_;
@@ -101,19 +108,22 @@ bool same(const YAML::Node& a, const YAML::Node& b, bool skip_poses = false) {
     const auto entries = [&](const YAML::Node& node) {
       std::vector<std::pair<YAML::Node, YAML::Node>> kept;
       for (const auto& entry : node)
-        if (!skip_poses || !kPoseKeys.contains(entry.first.Scalar())) kept.emplace_back(entry.first, entry.second);
+        if (!skip_poses || !kPoseKeys.contains(entry.first.Scalar()))
+          kept.emplace_back(entry.first, entry.second);
       return kept;
     };
     const auto x = entries(a), y = entries(b);
-    return std::equal(x.begin(), x.end(), y.begin(), y.end(),
-                      [](const auto& p, const auto& q) { return same(p.first, q.first) && same(p.second, q.second); });
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const auto& p, const auto& q) {
+      return same(p.first, q.first) && same(p.second, q.second);
+    });
   }
   return true;
 }
 
 /// Returns true if two documents are equal, except that the scene objects `moved` may have other
 /// poses.
-bool same_but_for_poses(const YAML::Node& a, const YAML::Node& b, const std::set<std::size_t>& moved) {
+bool same_but_for_poses(const YAML::Node& a, const YAML::Node& b,
+                        const std::set<std::size_t>& moved) {
   if (a.size() != b.size()) return false;
   auto other = b.begin();
   for (const auto& entry : a) {
@@ -142,14 +152,18 @@ bool kept(const YAML::Node& was, const YAML::Node& is, const char* key) {
 
 /// Returns true if a text states what `root` does, with the poses of `placed` for the objects that
 /// have moved.
-bool says(const std::string& text, const YAML::Node& root, const Problem& placed, const std::set<std::size_t>& moved) {
+bool says(const std::string& text, const YAML::Node& root, const Problem& placed,
+          const std::set<std::size_t>& moved) {
   try {
     const YAML::Node written = YAML::Load(text);
-    return same_but_for_poses(root, written, moved) && std::all_of(moved.begin(), moved.end(), [&](std::size_t k) {
+    return same_but_for_poses(root, written, moved) &&
+           std::all_of(moved.begin(), moved.end(), [&](std::size_t k) {
              const YAML::Node was = root["scene"][k], is = written["scene"][k];
              const Pose& pose = placed.scene[k].pose;
-             const bool turned = is["rpy"] && rotation_from_rpy(vector_of(is["rpy"])) == pose.linear();
-             return vector_of(is["xyz"]) == pose.translation() && (turned || (kept(was, is, "rpy") && kept(was, is, "quat")));
+             const bool turned =
+                 is["rpy"] && rotation_from_rpy(vector_of(is["rpy"])) == pose.linear();
+             return vector_of(is["xyz"]) == pose.translation() &&
+                    (turned || (kept(was, is, "rpy") && kept(was, is, "quat")));
            });
   } catch (const YAML::Exception&) {
     return false;
@@ -160,15 +174,17 @@ bool says(const std::string& text, const YAML::Node& root, const Problem& placed
 
 std::string with_poses(const std::string& text, const Problem& problem, const Problem& placed) {
   if (placed.waypoints != problem.waypoints)
-    bad_input(problem.source, "the path has moved, and the file has no pose of it but its waypoints'",
-              "an object of the scene, or the robot's base before a path in the frame of an object");
+    bad_input(
+        problem.source, "the path has moved, and the file has no pose of it but its waypoints'",
+        "an object of the scene, or the robot's base before a path in the frame of an object");
   const YAML::Node root = YAML::Load(text);
   TextEdits edits(text, problem.source);
   std::set<std::size_t> moved;
   for (std::size_t k = 0; k < problem.scene.size(); ++k) {
     const Pose &before = problem.scene[k].pose, &after = placed.scene[k].pose;
     const YAML::Node object = root["scene"][k];
-    if (before.translation() != after.translation()) edits.vector(object, "xyz", after.translation());
+    if (before.translation() != after.translation())
+      edits.vector(object, "xyz", after.translation());
     if (before.linear() != after.linear()) {
       if (object["quat"])
         edits.quaternion(object, written_rpy(after.linear()));
@@ -178,7 +194,8 @@ std::string with_poses(const std::string& text, const Problem& problem, const Pr
     if (before.matrix() != after.matrix()) moved.insert(k);
   }
   std::string result = edits.text();
-  if (!moved.empty() && !says(result, root, placed, moved)) edits.fail(root["scene"][*moved.begin()], "its pose");
+  if (!moved.empty() && !says(result, root, placed, moved))
+    edits.fail(root["scene"][*moved.begin()], "its pose");
   return result;
 }
 

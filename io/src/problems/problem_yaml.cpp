@@ -62,7 +62,8 @@ Waypoint waypoint(const YamlValue& value) {
   result.orientation = orientation(section);
   const double norm = result.orientation.norm();
   if (!(std::abs(norm - 1) <= 1e-3))
-    section.find("quat")->fail("quaternion has length " + format_double(norm), "a quaternion of length 1 within 1e-3");
+    section.find("quat")->fail("quaternion has length " + format_double(norm),
+                               "a quaternion of length 1 within 1e-3");
   if (const auto roll = section.find("roll")) {
     const std::vector<double> ends = roll->numbers();
     result.roll = Roll{ends[0], ends[1]};
@@ -83,7 +84,8 @@ Sphere sphere(const YamlValue& value) {
   return {value.section().require("radius").number()};
 }
 
-/// Calls `read` with another file; what it finds wrong there is reported with the key that named the file.
+/// Calls `read` with another file; what it finds wrong there is reported with the key that named
+/// the file.
 template <class Read>
 auto with_key(const YamlValue& key, const fs::path& file, const Read& read) {
   try {
@@ -97,7 +99,8 @@ auto with_key(const YamlValue& key, const fs::path& file, const Read& read) {
 
 class ProblemReader {
  public:
-  explicit ProblemReader(const fs::path& file) : file_(file), root_(load_yaml(file, problem_schema()).section()) {}
+  explicit ProblemReader(const fs::path& file)
+      : file_(file), root_(load_yaml(file, problem_schema()).section()) {}
 
   Problem read() {
     problem_.source = file_.string();
@@ -116,7 +119,9 @@ class ProblemReader {
   }
 
  private:
-  [[nodiscard]] fs::path resolve(const YamlValue& name) const { return (file_.parent_path() / name.text()).lexically_normal(); }
+  [[nodiscard]] fs::path resolve(const YamlValue& name) const {
+    return (file_.parent_path() / name.text()).lexically_normal();
+  }
 
   std::string link_name(const YamlValue& value) const {
     const std::string name = value.text();
@@ -128,10 +133,12 @@ class ProblemReader {
   }
 
   [[nodiscard]] bool is_attached(const std::string& name) const {
-    return std::any_of(problem_.attached.begin(), problem_.attached.end(), [&](const auto& body) { return body.name == name; });
+    return std::any_of(problem_.attached.begin(), problem_.attached.end(),
+                       [&](const auto& body) { return body.name == name; });
   }
   [[nodiscard]] bool is_object(const std::string& name) const {
-    return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const auto& object) { return object.name == name; });
+    return std::any_of(problem_.scene.begin(), problem_.scene.end(),
+                       [&](const auto& object) { return object.name == name; });
   }
 
   /// Calls `work`; what a key of `robot` says wrong is reported where the key stands.
@@ -162,10 +169,15 @@ class ProblemReader {
     if (const auto without = section.find_filled("without"))
       for (const YamlValue& link : without->items()) options.without.push_back(link.text());
     if (const auto limits = root_.find_filled("limits"))
-      if (const auto soft = limits->section().find("soft_limits")) options.soft_limits = word(*soft, {true, false});
-    const UrdfRobot robot = at_their_keys(
-        [&] { return with_key(urdf, resolve(urdf), [&](const fs::path& file) { return load_urdf(file, packages, options); }); });
-    if (srdf) with_key(*srdf, resolve(*srdf), [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
+      if (const auto soft = limits->section().find("soft_limits"))
+        options.soft_limits = word(*soft, {true, false});
+    const UrdfRobot robot = at_their_keys([&] {
+      return with_key(urdf, resolve(urdf),
+                      [&](const fs::path& file) { return load_urdf(file, packages, options); });
+    });
+    if (srdf)
+      with_key(*srdf, resolve(*srdf),
+               [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
     problem_.model = robot.model;
     problem_.base_link = link_name(base);
     problem_.tip_link = link_name(tip);
@@ -174,7 +186,8 @@ class ProblemReader {
     if (const auto attached = section.find_filled("attached"))
       for (const YamlValue& item : attached->items()) read_attached(item);
     if (problem_.attached.size() > kMostBodies)
-      value.fail(std::to_string(problem_.attached.size()) + " attached bodies", "at most " + std::to_string(kMostBodies));
+      value.fail(std::to_string(problem_.attached.size()) + " attached bodies",
+                 "at most " + std::to_string(kMostBodies));
   }
 
   [[nodiscard]] Packages read_packages(const YamlSection& section) const {
@@ -184,7 +197,8 @@ class ProblemReader {
     for (const auto& [name, folder] : value->entries()) {
       std::error_code error;
       const fs::path path = resolve(folder);
-      if (!fs::is_directory(path, error)) folder.fail("no such folder: " + path.string(), "an existing folder");
+      if (!fs::is_directory(path, error))
+        folder.fail("no such folder: " + path.string(), "an existing folder");
       packages[name] = path;
     }
     return packages;
@@ -199,7 +213,8 @@ class ProblemReader {
   void read_hold(const YamlValue& value) {
     for (const auto& [joint, position] : value.entries()) {
       if (problem_.model->find_joint(joint) < 0)
-        position.fail("unknown joint '" + joint + "', nearest is '" + nearest_name(joint, joint_names()) + "'",
+        position.fail("unknown joint '" + joint + "', nearest is '" +
+                          nearest_name(joint, joint_names()) + "'",
                       "a joint of " + problem_.model->source);
       problem_.hold[joint] = position.number();
     }
@@ -210,8 +225,10 @@ class ProblemReader {
     AttachedBody body;
     const YamlValue name = section.require("name");
     body.name = name.name();
-    if (problem_.model->find_link(body.name) >= 0) name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
-    if (is_attached(body.name)) name.fail("'" + body.name + "' is attached twice", "a name of its own");
+    if (problem_.model->find_link(body.name) >= 0)
+      name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
+    if (is_attached(body.name))
+      name.fail("'" + body.name + "' is attached twice", "a name of its own");
     body.shape = shape(section);
     body.pose = pose(section);
     const auto link = section.find_filled("link");
@@ -229,12 +246,15 @@ class ProblemReader {
     if (kind == "sphere") return sphere(value);
     const fs::path mesh = resolve(value);
     const Vector3d factors = scale ? mesh_scale(*scale) : Vector3d::Ones();
-    return with_key(value, mesh, [&](const fs::path& file) { return load_mesh(file, factors, meshes_); });
+    return with_key(value, mesh,
+                    [&](const fs::path& file) { return load_mesh(file, factors, meshes_); });
   }
 
   static Vector3d mesh_scale(const YamlValue& value) {
-    const Vector3d factors = value.is_sequence() ? value.vector3() : Vector3d::Constant(value.number());
-    if ((factors.array() == 0).any()) value.fail("is zero", "a number or [x, y, z], none of them 0");
+    const Vector3d factors =
+        value.is_sequence() ? value.vector3() : Vector3d::Constant(value.number());
+    if ((factors.array() == 0).any())
+      value.fail("is zero", "a number or [x, y, z], none of them 0");
     return factors;
   }
 
@@ -243,15 +263,19 @@ class ProblemReader {
     if (!value) return;
     const std::vector<YamlValue> items = value->items();
     if (items.size() > kMostBodies)
-      value->fail(std::to_string(items.size()) + " objects", "at most " + std::to_string(kMostBodies));
+      value->fail(std::to_string(items.size()) + " objects",
+                  "at most " + std::to_string(kMostBodies));
     for (const YamlValue& item : items) {
       const YamlSection section = item.section();
       const YamlValue name = section.require("name");
       SceneObject object;
       object.name = name.name();
-      if (object.name == problem_.base_link) name.fail("'" + object.name + "' is the base link", "a name of its own");
-      if (is_attached(object.name)) name.fail("'" + object.name + "' is an attached body", "a name of its own");
-      if (is_object(object.name)) name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
+      if (object.name == problem_.base_link)
+        name.fail("'" + object.name + "' is the base link", "a name of its own");
+      if (is_attached(object.name))
+        name.fail("'" + object.name + "' is an attached body", "a name of its own");
+      if (is_object(object.name))
+        name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
       object.shape = shape(section);
       object.pose = pose(section);
       if (const auto allow = section.find_filled("allow")) read_allowed(*allow, object);
@@ -262,8 +286,10 @@ class ProblemReader {
   void read_allowed(const YamlValue& value, SceneObject& object) const {
     const auto add = [&](const YamlValue& where, const Allowed& allowed) {
       if (problem_.model->find_link(allowed.body) < 0 && !is_attached(allowed.body))
-        where.fail("unknown body '" + allowed.body + "'", "a link of the robot or the name of an attached body");
-      if (const auto fault = depth_fault(problem_, object, allowed)) where.fail(fault->what, fault->allowed);
+        where.fail("unknown body '" + allowed.body + "'",
+                   "a link of the robot or the name of an attached body");
+      if (const auto fault = depth_fault(problem_, object, allowed))
+        where.fail(fault->what, fault->allowed);
       object.allow.push_back(allowed);
     };
     if (value.is_map())
@@ -280,40 +306,51 @@ class ProblemReader {
     if (const auto frame = section.find_filled("frame")) {
       problem_.path_frame = frame->text();
       if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame))
-        frame->fail("unknown frame '" + problem_.path_frame + "'", "'" + problem_.base_link + "' or the name of a scene object");
+        frame->fail("unknown frame '" + problem_.path_frame + "'",
+                    "'" + problem_.base_link + "' or the name of a scene object");
     }
     const auto [key, poses] = *section.chosen("waypoints");
     if (key == "file") {
-      problem_.waypoints = with_key(poses, resolve(poses), [](const fs::path& file) { return load_path(file); });
+      problem_.waypoints =
+          with_key(poses, resolve(poses), [](const fs::path& file) { return load_path(file); });
     } else {
       for (const YamlValue& item : poses.items()) {
         problem_.waypoints.push_back(waypoint(item));
-        if (problem_.waypoints.back().roll.has_value() != problem_.waypoints.front().roll.has_value())
+        if (problem_.waypoints.back().roll.has_value() !=
+            problem_.waypoints.front().roll.has_value())
           item.fail("roll is given at some waypoints alone", "a roll at each waypoint, or at none");
       }
       if (problem_.waypoints.size() < 2)
-        poses.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
+        poses.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)",
+                   "at least two waypoints");
     }
     if (problem_.waypoints.front().roll) narrow_roll(poses);
   }
 
-  /// What waypoints allow lies within the range of path.roll, and the range is what they allow in all.
+  /// What waypoints allow lies within the range of path.roll, and the range is what they allow in
+  /// all.
   void narrow_roll(const YamlValue& poses) {
-    if (!problem_.roll) poses.fail("says how far the tool may stand turned, but the roll is not free", "path.roll beside it");
+    if (!problem_.roll)
+      poses.fail("says how far the tool may stand turned, but the roll is not free",
+                 "path.roll beside it");
     constexpr double kHalf = kPi - 1e-6;  // so that what allows a whole turn is no circle
     Roll all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (std::size_t k = 0; k < problem_.waypoints.size(); ++k) {
       Roll& window = *problem_.waypoints[k].roll;
       if (window.circle()) window = {-kHalf, kHalf};
       if (!problem_.roll->circle()) {
-        window = {std::max(window.lower, problem_.roll->lower), std::min(window.upper, problem_.roll->upper)};
+        window = {std::max(window.lower, problem_.roll->lower),
+                  std::min(window.upper, problem_.roll->upper)};
         if (!(window.lower <= window.upper))
-          poses.fail("waypoint " + std::to_string(k) + " (from 0) allows no roll that path.roll does", "rolls in common");
+          poses.fail(
+              "waypoint " + std::to_string(k) + " (from 0) allows no roll that path.roll does",
+              "rolls in common");
       }
       all = {std::min(all.lower, window.lower), std::max(all.upper, window.upper)};
     }
     if (all.circle() || !(all.lower < all.upper))
-      poses.fail("allows rolls from " + format_double(all.lower) + " to " + format_double(all.upper) + " in all",
+      poses.fail("allows rolls from " + format_double(all.lower) + " to " +
+                     format_double(all.upper) + " in all",
                  "more than one, less than a turn");
     problem_.roll = all;
   }
@@ -380,27 +417,34 @@ class ProblemReader {
     set(section, "joint_speed", limits.joint_speed);
     set(section, "joint_acceleration", limits.joint_acceleration);
     set(section, "joint_jerk", limits.joint_jerk);
-    if (const auto edges = section.find("edges")) limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
+    if (const auto edges = section.find("edges"))
+      limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
   }
 
-  /// One number for each joint of the arm, base to tip. An arm of six joints has a seventh number, for the roll of the tool.
+  /// One number for each joint of the arm, base to tip. An arm of six joints has a seventh number,
+  /// for the roll of the tool.
   [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const {
-    if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 && arm().chain.roll)
+    if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 &&
+        arm().chain.roll)
       value.fail("has 6 entries",
-                 "a list of 7 numbers: one for each of the six joints, base to tip, and a seventh for the roll of the tool");
+                 "a list of 7 numbers: one for each of the six joints, base to tip, and a seventh "
+                 "for the roll of the tool");
     return value.numbers();
   }
 
   [[nodiscard]] ArmModel arm() const {
-    return build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold, problem_.tool, problem_.roll);
+    return build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold,
+                     problem_.tool, problem_.roll);
   }
 
-  /// Refuses what does not suit the robot's file, or an arm of this kind and size, where it stands in the problem's.
+  /// Refuses what does not suit the robot's file, or an arm of this kind and size, where it stands
+  /// in the problem's.
   void require_suitable_arm() const {
     const ArmModel model = at_their_keys([&] { return arm(); });
     for (const LargeLength& found : large_lengths(model.chain, problem_)) {
       const bool smooth = found.section == "path.smooth";
-      const auto section = smooth ? root_.require("path").section().find("smooth") : root_.find_filled("limits");
+      const auto section =
+          smooth ? root_.require("path").section().find("smooth") : root_.find_filled("limits");
       const auto value = section ? section->section().find(found.key) : std::nullopt;
       if (value) value->fail(found.fault, formatted("at most %.3g", found.most));
     }
@@ -413,7 +457,8 @@ class ProblemReader {
     const auto slope = limits ? limits->section().find("arm_slope") : std::nullopt;
     if (!slope) return;
     if (!classify(model.chain, problem_.model->source).srs)
-      slope->fail("is given, but the arm has no arm angle, since it is not S-R-S", "no such key for this arm");
+      slope->fail("is given, but the arm has no arm angle, since it is not S-R-S",
+                  "no such key for this arm");
   }
 
   void read_start(const YamlValue& value) {
@@ -428,7 +473,8 @@ class ProblemReader {
     if (at) problem_.start_at = at->number();
     if (!tolerance) return;
     problem_.start_tolerance = tolerance->number();
-    if (problem_.start_tolerance > kMostStartTolerance) tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
+    if (problem_.start_tolerance > kMostStartTolerance)
+      tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
   }
 
   void read_cost(const YamlValue& value) {
@@ -438,14 +484,17 @@ class ProblemReader {
     if (const auto weights = section.find_filled("weights")) {
       const std::vector<double> values = joint_numbers(*weights);
       for (std::size_t k = 0; k < values.size(); ++k)
-        if (!weight_allowed(values[k])) weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
+        if (!weight_allowed(values[k]))
+          weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
       std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
     }
     if (const auto roll = section.find("roll")) {
       problem_.cost.roll = roll->number();
-      if (!weight_allowed(problem_.cost.roll)) roll->fail("is " + format_double(problem_.cost.roll), kAllowedWeights);
+      if (!weight_allowed(problem_.cost.roll))
+        roll->fail("is " + format_double(problem_.cost.roll), kAllowedWeights);
       if (problem_.cost.roll > 0 && !problem_.roll)
-        roll->fail("is given, but no roll is free", "this key beside path.roll, of arms of six joints");
+        roll->fail("is given, but no roll is free",
+                   "this key beside path.roll, of arms of six joints");
     }
   }
 
@@ -453,8 +502,10 @@ class ProblemReader {
     for (const YamlValue& item : value.items()) {
       const YamlSection section = item.section();
       const YamlValue object = section.require("object");
-      if (!is_object(object.text())) object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
-      problem_.vary.push_back({object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
+      if (!is_object(object.text()))
+        object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
+      problem_.vary.push_back(
+          {object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
     }
   }
 
@@ -464,11 +515,13 @@ class ProblemReader {
   }
   /// The same; an explicit null means "no such limit".
   static void set(const YamlSection& section, const char* key, std::optional<double>& target) {
-    if (const auto value = section.find(key)) target = value->is_null() ? std::nullopt : std::optional(value->number());
+    if (const auto value = section.find(key))
+      target = value->is_null() ? std::nullopt : std::optional(value->number());
   }
 
   /// A number for all joints, or one each.
-  void set(const YamlSection& section, const char* key, std::optional<std::array<double, kDof>>& target) const {
+  void set(const YamlSection& section, const char* key,
+           std::optional<std::array<double, kDof>>& target) const {
     const auto value = section.find(key);
     if (!value) return;
     target.reset();

@@ -28,13 +28,18 @@ Json witness_json(const Cause& cause) {
 
 Json layer_json(int number, const InfeasibilityCertificate::Layer& layer) {
   Json reached = Json::array(), nodes = Json::array(), edges = Json::array();
-  for (const InfeasibilityCertificate::Range& range : layer.reached) reached.push_back({range.first, range.last});
+  for (const InfeasibilityCertificate::Range& range : layer.reached)
+    reached.push_back({range.first, range.last});
   for (const InfeasibilityCertificate::Nodes& removed : layer.removed)
     nodes.push_back({removed.slots.first, removed.slots.last, removed.witness});
   for (const InfeasibilityCertificate::Edges& removed : layer.edges)
-    edges.push_back(
-        {removed.tails.first, removed.tails.last, removed.heads.first, removed.heads.last, removed.witness, removed.count});
-  return {{"layer", number}, {"slots", layer.slots}, {"reached", reached}, {"nodes", nodes}, {"edges", edges}};
+    edges.push_back({removed.tails.first, removed.tails.last, removed.heads.first,
+                     removed.heads.last, removed.witness, removed.count});
+  return {{"layer", number},
+          {"slots", layer.slots},
+          {"reached", reached},
+          {"nodes", nodes},
+          {"edges", edges}};
 }
 
 /// Reads values of a certificate; error messages name the key.
@@ -42,7 +47,8 @@ class Reader {
  public:
   explicit Reader(std::string file) : file_(std::move(file)) {}
 
-  [[noreturn]] void fail(const std::string& key, const std::string& what, const std::string& allowed) const {
+  [[noreturn]] void fail(const std::string& key, const std::string& what,
+                         const std::string& allowed) const {
     bad_input(file_, key + ": " + what, allowed);
   }
   const Parsed& at(const Parsed& object, const char* key, const std::string& where) const {
@@ -51,12 +57,16 @@ class Reader {
     if (found == object.end()) fail(where + key, "is missing", "what plan --certificate writes");
     return *found;
   }
-  std::int64_t whole(const Parsed& value, const std::string& key, std::int64_t most = std::numeric_limits<int>::max()) const {
-    if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() > static_cast<double>(most))
+  std::int64_t whole(const Parsed& value, const std::string& key,
+                     std::int64_t most = std::numeric_limits<int>::max()) const {
+    if (!value.is_number_integer() || value.get<double>() < 0 ||
+        value.get<double>() > static_cast<double>(most))
       fail(key, "is no number of this kind", "whole numbers from 0 to " + std::to_string(most));
     return value.get<std::int64_t>();
   }
-  int small(const Parsed& value, const std::string& key) const { return static_cast<int>(whole(value, key)); }
+  int small(const Parsed& value, const std::string& key) const {
+    return static_cast<int>(whole(value, key));
+  }
   double real(const Parsed& value, const std::string& key) const {
     if (!value.is_number()) fail(key, "is no number", "a number");
     return value.get<double>();
@@ -69,9 +79,11 @@ class Reader {
     if (!value.is_string()) fail(key, "is no text", "a text");
     return value.get<std::string>();
   }
-  const Parsed& list(const Parsed& value, const std::string& key, std::optional<std::size_t> size = {}) const {
+  const Parsed& list(const Parsed& value, const std::string& key,
+                     std::optional<std::size_t> size = {}) const {
     if (!value.is_array() || (size && value.size() != *size))
-      fail(key, "is no list" + (size ? " of " + std::to_string(*size) : ""), "what plan --certificate writes");
+      fail(key, "is no list" + (size ? " of " + std::to_string(*size) : ""),
+           "what plan --certificate writes");
     return value;
   }
 
@@ -101,13 +113,16 @@ Cause witness_of(const Reader& read, const Parsed& json, const std::string& key)
   Cause cause;
   const std::string name = read.text(read.at(json, "cause", key), key + "cause");
   for (int kind = 0; kind <= static_cast<int>(Cause::Kind::kCheck); ++kind)
-    if (name == to_string(static_cast<Cause::Kind>(kind))) cause.kind = static_cast<Cause::Kind>(kind);
-  if (cause.kind == Cause::Kind::kNone) read.fail(key + "cause", "'" + name + "' is unknown", "the causes of docs/formats.md");
+    if (name == to_string(static_cast<Cause::Kind>(kind)))
+      cause.kind = static_cast<Cause::Kind>(kind);
+  if (cause.kind == Cause::Kind::kNone)
+    read.fail(key + "cause", "'" + name + "' is unknown", "the causes of docs/formats.md");
   if (json.contains("joint")) cause.joint = read.text(json["joint"], key + "joint");
   if (json.contains("check")) cause.check = read.text(json["check"], key + "check");
   if (json.contains("side")) {
     const std::string side = read.text(json["side"], key + "side");
-    if (side != "lower" && side != "upper") read.fail(key + "side", "'" + side + "' is unknown", "lower or upper");
+    if (side != "lower" && side != "upper")
+      read.fail(key + "side", "'" + side + "' is unknown", "lower or upper");
     cause.side = side == "lower" ? Cause::Side::kLower : Cause::Side::kUpper;
   }
   if (json.contains("bodies")) {
@@ -117,7 +132,8 @@ Cause witness_of(const Reader& read, const Parsed& json, const std::string& key)
   return cause;
 }
 
-InfeasibilityCertificate::Layer layer_of(const Reader& read, const Parsed& json, const std::string& key) {
+InfeasibilityCertificate::Layer layer_of(const Reader& read, const Parsed& json,
+                                         const std::string& key) {
   InfeasibilityCertificate::Layer layer;
   layer.slots = read.small(read.at(json, "slots", key), key + "slots");
   const auto each = [&](const char* name, std::size_t size, const auto& take) {
@@ -129,7 +145,9 @@ InfeasibilityCertificate::Layer layer_of(const Reader& read, const Parsed& json,
   };
   each("reached", 2, [&](const auto& at) { layer.reached.push_back({at(0), at(1)}); });
   each("nodes", 3, [&](const auto& at) { layer.removed.push_back({{at(0), at(1)}, at(2)}); });
-  each("edges", 6, [&](const auto& at) { layer.edges.push_back({{at(0), at(1)}, {at(2), at(3)}, at(4), at(5)}); });
+  each("edges", 6, [&](const auto& at) {
+    layer.edges.push_back({{at(0), at(1)}, {at(2), at(3)}, at(4), at(5)});
+  });
   return layer;
 }
 
@@ -156,12 +174,15 @@ std::string to_json(const InfeasibilityCertificate& certificate) {
                      {"windings", std::move(windings)},
                      {"path_layers", certificate.layers},
                      {"witnesses", std::move(witnesses)}};
-  const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  const auto line = [](const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
   std::string text = line(head);
   text.back() = ',';
   text += "\n\"layers\":[";
   for (std::size_t k = 0; k < certificate.band.size(); ++k)
-    text += (k == 0 ? "\n" : ",\n") + line(layer_json(certificate.first_layer + static_cast<int>(k), certificate.band[k]));
+    text += (k == 0 ? "\n" : ",\n") +
+            line(layer_json(certificate.first_layer + static_cast<int>(k), certificate.band[k]));
   return text + "\n]}\n";
 }
 
@@ -170,7 +191,8 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   const Reader read(file.string());
   constexpr int kMostDepth = 8;
   if (depth_of(text) > kMostDepth)
-    bad_input(file.string(), "is nested too deep", "at most " + std::to_string(kMostDepth) + " levels");
+    bad_input(file.string(), "is nested too deep",
+              "at most " + std::to_string(kMostDepth) + " levels");
   Parsed json;
   try {
     json = Parsed::parse(text);
@@ -182,22 +204,29 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   InfeasibilityCertificate certificate;
   const Parsed& resolution = read.at(json, "resolution", "");
   certificate.resolution.ds = read.real(read.at(resolution, "ds", "resolution."), "resolution.ds");
-  certificate.resolution.dphi = read.real(read.at(resolution, "dphi", "resolution."), "resolution.dphi");
-  certificate.resolution.dalpha = read.real(read.at(resolution, "dalpha", "resolution."), "resolution.dalpha");
-  certificate.resolution.arc = read.real(read.at(resolution, "arc", "resolution."), "resolution.arc");
-  certificate.resolution.arcs = read.truth(read.at(resolution, "arcs", "resolution."), "resolution.arcs");
+  certificate.resolution.dphi =
+      read.real(read.at(resolution, "dphi", "resolution."), "resolution.dphi");
+  certificate.resolution.dalpha =
+      read.real(read.at(resolution, "dalpha", "resolution."), "resolution.dalpha");
+  certificate.resolution.arc =
+      read.real(read.at(resolution, "arc", "resolution."), "resolution.arc");
+  certificate.resolution.arcs =
+      read.truth(read.at(resolution, "arcs", "resolution."), "resolution.arcs");
   const std::string edges = read.text(read.at(json, "edges", ""), "edges");
-  if (edges != "continuous" && edges != "nodes") read.fail("edges", "'" + edges + "' is unknown", "continuous or nodes");
+  if (edges != "continuous" && edges != "nodes")
+    read.fail("edges", "'" + edges + "' is unknown", "continuous or nodes");
   certificate.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
   for (const Parsed& told : read.list(read.at(json, "windings", ""), "windings")) {
     auto& joints = certificate.windings.emplace_back();
     for (const Parsed& joint : read.list(told, "windings"))
       joints[static_cast<std::size_t>(read.whole(joint, "windings", kDof - 1))] = true;
-    if (certificate.windings.size() > kDof) read.fail("windings", "has too many lists", "at most 7");
+    if (certificate.windings.size() > kDof)
+      read.fail("windings", "has too many lists", "at most 7");
   }
   certificate.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
   for (const Parsed& witness : read.list(read.at(json, "witnesses", ""), "witnesses"))
-    certificate.witnesses.push_back(witness_of(read, witness, "witnesses[" + std::to_string(certificate.witnesses.size()) + "]."));
+    certificate.witnesses.push_back(witness_of(
+        read, witness, "witnesses[" + std::to_string(certificate.witnesses.size()) + "]."));
   for (const Parsed& layer : read.list(read.at(json, "layers", ""), "layers")) {
     const std::string key = "layers[" + std::to_string(certificate.band.size()) + "].";
     const int number = read.small(read.at(layer, "layer", key), key + "layer");

@@ -11,7 +11,8 @@ namespace swivel::io {
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // keys in the order of the contract, for people who read the file
+using Json =
+    nlohmann::ordered_json;  // keys in the order of the contract, for people who read the file
 
 template <class T>
 Json or_null(const std::optional<T>& value) {
@@ -87,31 +88,35 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   Json together = Json::array(), empty = Json::array(), removed = Json::object();
   for (const Cause& cause : diagnosis.together) together.push_back(cause_json(cause));
   for (const EmptyLayers& run : diagnosis.empty_layers)
-    empty.push_back({{"layers", {run.first, run.last}},
-                     {"s", {run.first_s, run.last_s}},
-                     {"waypoints", run.first_waypoint < 0 ? Json(nullptr) : Json({run.first_waypoint, run.last_waypoint})},
-                     {"reason", words(run.cause)},
-                     {"cause", cause_json(run.cause)},
-                     {"most", or_null(run.most)}});
+    empty.push_back(
+        {{"layers", {run.first, run.last}},
+         {"s", {run.first_s, run.last_s}},
+         {"waypoints",
+          run.first_waypoint < 0 ? Json(nullptr) : Json({run.first_waypoint, run.last_waypoint})},
+         {"reason", words(run.cause)},
+         {"cause", cause_json(run.cause)},
+         {"most", or_null(run.most)}});
   for (const Diagnosis::Removed& one : diagnosis.removed) removed[words(one.cause)] = one.count;
-  return {{"reached_layer", or_null(diagnosis.reached_layer)},
-          {"reached_s", or_null(diagnosis.reached_s)},
-          {"reason", words(diagnosis.cause)},
-          {"cause", cause_json(diagnosis.cause)},
-          {"at_s", or_null(diagnosis.at_s)},
-          {"waypoints", {waypoint_json(diagnosis.waypoints[0]), waypoint_json(diagnosis.waypoints[1])}},
-          {"without_it", or_null(diagnosis.without_it)},
-          {"without_it_s", or_null(diagnosis.without_it_s)},
-          {"together", std::move(together)},
-          {"empty_layers", std::move(empty)},
-          {"removed", std::move(removed)},
-          {"holds", to_string(diagnosis.holds())},
-          {"unreachable", diagnosis.unreachable ? Json{{"layer", diagnosis.unreachable->layer},
-                                                       {"s", diagnosis.unreachable->s},
-                                                       {"waypoint", waypoint_json(diagnosis.unreachable->waypoint)}}
-                                                : Json(nullptr)},
-          {"complete", diagnosis.complete},
-          {"layers_known", diagnosis.layers_known}};
+  return {
+      {"reached_layer", or_null(diagnosis.reached_layer)},
+      {"reached_s", or_null(diagnosis.reached_s)},
+      {"reason", words(diagnosis.cause)},
+      {"cause", cause_json(diagnosis.cause)},
+      {"at_s", or_null(diagnosis.at_s)},
+      {"waypoints", {waypoint_json(diagnosis.waypoints[0]), waypoint_json(diagnosis.waypoints[1])}},
+      {"without_it", or_null(diagnosis.without_it)},
+      {"without_it_s", or_null(diagnosis.without_it_s)},
+      {"together", std::move(together)},
+      {"empty_layers", std::move(empty)},
+      {"removed", std::move(removed)},
+      {"holds", to_string(diagnosis.holds())},
+      {"unreachable", diagnosis.unreachable
+                          ? Json{{"layer", diagnosis.unreachable->layer},
+                                 {"s", diagnosis.unreachable->s},
+                                 {"waypoint", waypoint_json(diagnosis.unreachable->waypoint)}}
+                          : Json(nullptr)},
+      {"complete", diagnosis.complete},
+      {"layers_known", diagnosis.layers_known}};
 }
 
 /// The answer at a glance: what is null was not asked for, or does not apply.
@@ -125,8 +130,10 @@ Json summary_json(const PlanResult& result) {
                {"top_tool_speed", nullptr}};
   if (!solved) return json;
   if (const auto& least = result.min_margin)
-    json["clearance"] = {
-        {"value", least->clearance}, {"asked", least->required}, {"bodies", least->bodies}, {"s", s_of(least->row)}};
+    json["clearance"] = {{"value", least->clearance},
+                         {"asked", least->required},
+                         {"bodies", least->bodies},
+                         {"s", s_of(least->row)}};
   if (const auto& limit = result.nearest_limit)
     json["joint_limit"] = {{"joint", limit->joint},
                            {"side", to_string(limit->side)},
@@ -134,7 +141,9 @@ Json summary_json(const PlanResult& result) {
                            {"s", s_of(limit->row)}};
   if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
     json["tool_path_error"] = {
-        {"max_mm", error.max}, {"allowed_mm", error.allowed ? Json(1e3 * *error.allowed) : Json(nullptr)}, {"s", s_of(error.row)}};
+        {"max_mm", error.max},
+        {"allowed_mm", error.allowed ? Json(1e3 * *error.allowed) : Json(nullptr)},
+        {"s", s_of(error.row)}};
   if (const auto& top = result.top_tool_speed)
     json["top_tool_speed"] = {{"speed", top->speed}, {"joint", top->joint}, {"s", s_of(top->row)}};
   return json;
@@ -144,8 +153,10 @@ Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
   Json rows = Json::array();
   const bool roll = any_rolls(trajectory);
   for (const TrajectoryRow& row : trajectory) {
-    rows.push_back(
-        {{"s", row.s}, {"phi", row.phi}, {"branch", row.branch}, {"joints", std::vector<double>(row.q.begin(), row.q.end())}});
+    rows.push_back({{"s", row.s},
+                    {"phi", row.phi},
+                    {"branch", row.branch},
+                    {"joints", std::vector<double>(row.q.begin(), row.q.end())}});
     if (roll) rows.back()["roll"] = row.roll;
   }
   return rows;
@@ -170,8 +181,10 @@ Json margin_json(const LeastMargin& least) {
 Json reduced_json(const std::vector<SpecialPair>& pairs) {
   Json list = Json::array();
   for (const SpecialPair& pair : pairs)
-    list.push_back(
-        {{"bodies", pair.bodies}, {"median", pair.median}, {"clearance", pair.clearance}, {"edge_clearance", pair.edge_clearance}});
+    list.push_back({{"bodies", pair.bodies},
+                    {"median", pair.median},
+                    {"clearance", pair.clearance},
+                    {"edge_clearance", pair.edge_clearance}});
   return list;
 }
 
@@ -193,8 +206,9 @@ Json advice_json(const std::vector<Advice>& advice) {
                     {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
                     {"from", or_null(one.from)},
                     {"to", or_null(one.to)},
-                    {"offset", one.change == Advice::Change::kMoveObject ? Json({one.offset.x(), one.offset.y(), one.offset.z()})
-                                                                         : Json(nullptr)},
+                    {"offset", one.change == Advice::Change::kMoveObject
+                                   ? Json({one.offset.x(), one.offset.y(), one.offset.z()})
+                                   : Json(nullptr)},
                     {"outcome", to_string(one.outcome)},
                     {"cost", or_null(one.cost)},
                     {"reached_s", or_null(one.reached_s)}});
@@ -210,7 +224,9 @@ Json certificate_json(const InfeasibilityCertificate& certificate, std::size_t b
                        {"cause", cause_json(certificate.witnesses[k])},
                        {"nodes", counts.by_witness[k].nodes},
                        {"edges", counts.by_witness[k].edges}});
-  return {{"layers", {certificate.first_layer, certificate.first_layer + static_cast<int>(certificate.band.size()) - 1}},
+  return {{"layers",
+           {certificate.first_layer,
+            certificate.first_layer + static_cast<int>(certificate.band.size()) - 1}},
           {"reached", counts.reached},
           {"removed", std::move(removed)},
           {"bytes", bytes}};
@@ -229,8 +245,10 @@ Json peaks_json(const TimedPath& motion, const JointNames& names) {
   for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
     Json joints = Json::array();
     for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(rate)])
-      joints.push_back(
-          {{"joint", names[static_cast<std::size_t>(peak.joint)]}, {"ratio", peak.ratio}, {"t", peak.t}, {"s", peak.s}});
+      joints.push_back({{"joint", names[static_cast<std::size_t>(peak.joint)]},
+                        {"ratio", peak.ratio},
+                        {"t", peak.t},
+                        {"s", peak.s}});
     json[to_string(rate)] = std::move(joints);
   }
   return json;
@@ -248,13 +266,15 @@ Json motion_json(const TimingResult& timed, const TimingOptions& asked, const Jo
   const TimedPath& motion = *timed.motion;
   Json slow = Json::array(), stops = Json::array();
   for (const TimedPath::Slow& stretch : motion.slow)
-    slow.push_back({{"s", {stretch.from_s, stretch.to_s}},
-                    {"t", {stretch.from_t, stretch.to_t}},
-                    {"share", stretch.share},
-                    {"joint", names[static_cast<std::size_t>(stretch.joint)]},
-                    {"reason", to_string(stretch.reason)},
-                    {"singular", text_or_null(stretch.singular)},
-                    {"singular_angle_deg", stretch.singular.empty() ? Json(nullptr) : Json(stretch.singular_angle * 180 / kPi)}});
+    slow.push_back(
+        {{"s", {stretch.from_s, stretch.to_s}},
+         {"t", {stretch.from_t, stretch.to_t}},
+         {"share", stretch.share},
+         {"joint", names[static_cast<std::size_t>(stretch.joint)]},
+         {"reason", to_string(stretch.reason)},
+         {"singular", text_or_null(stretch.singular)},
+         {"singular_angle_deg",
+          stretch.singular.empty() ? Json(nullptr) : Json(stretch.singular_angle * 180 / kPi)}});
   for (const TimedPath::Stop& stop : motion.stops)
     stops.push_back({{"waypoint", waypoint_json(stop.waypoint)}, {"s", stop.s}, {"t", stop.t}});
   json["samples"] = motion.rows.size();
@@ -266,7 +286,8 @@ Json motion_json(const TimingResult& timed, const TimingOptions& asked, const Jo
                      {"position", motion.rounded_position},
                      {"angle", motion.rounded_angle},
                      {"stops", std::move(stops)}};
-  json["between_samples"] = {{"position", motion.between_position}, {"angle", motion.between_angle}};
+  json["between_samples"] = {{"position", motion.between_position},
+                             {"angle", motion.between_angle}};
   json["warnings"] = motion.warnings;
   return json;
 }
@@ -288,8 +309,8 @@ std::string to_json(const CampaignSummary& summary, const std::vector<HeldJoint>
 }
 
 std::string error_json(const std::string& message) {
-  return Json{{"schema_version", kResultVersion}, {"status", "error"}, {"message", message}}.dump(2, ' ', false,
-                                                                                                  Json::error_handler_t::replace) +
+  return Json{{"schema_version", kResultVersion}, {"status", "error"}, {"message", message}}.dump(
+             2, ' ', false, Json::error_handler_t::replace) +
          '\n';
 }
 
@@ -300,7 +321,9 @@ std::string to_json(const PlanResult& result) {
 std::string to_json(const PlanResult& result, const PlanExtras& extras) {
   const bool solved = result.status == PlanStatus::kSolved;
   // Numbers about a trajectory are null where there is none: a zero would read as a perfect one.
-  const auto if_known = [&](bool known, double value) { return solved && known ? Json(value) : Json(nullptr); };
+  const auto if_known = [&](bool known, double value) {
+    return solved && known ? Json(value) : Json(nullptr);
+  };
   const Evidence& evidence = result.evidence;
   Json json;
   json["schema_version"] = kResultVersion;
@@ -313,21 +336,28 @@ std::string to_json(const PlanResult& result, const PlanExtras& extras) {
   json["lattice"] = lattice_json(result.lattice, solved);
   json["counters"] = counters_json(result.counters);
   json["time_ms"] = time_json(result.time_ms);
-  json["tool_path_error_mm"] = {{"mean", if_known(evidence.tool_path_error, result.tool_path_error_mm.mean)},
-                                {"max", if_known(evidence.tool_path_error, result.tool_path_error_mm.max)}};
+  json["tool_path_error_mm"] = {
+      {"mean", if_known(evidence.tool_path_error, result.tool_path_error_mm.mean)},
+      {"max", if_known(evidence.tool_path_error, result.tool_path_error_mm.max)}};
   json["min_clearance"] = or_null(result.min_clearance);
   json["min_margin"] = result.min_margin ? margin_json(*result.min_margin) : Json(nullptr);
-  json["deepest_contact"] = result.deepest_contact ? contact_json(*result.deepest_contact) : Json(nullptr);
+  json["deepest_contact"] =
+      result.deepest_contact ? contact_json(*result.deepest_contact) : Json(nullptr);
   json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
   json["refinement"] = extras.refinement ? refinement_json(*extras.refinement) : Json(nullptr);
-  json["motion"] = extras.motion ? motion_json(*extras.motion, extras.timing, result.joint_names) : Json(nullptr);
-  json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
+  json["motion"] = extras.motion ? motion_json(*extras.motion, extras.timing, result.joint_names)
+                                 : Json(nullptr);
+  json["diagnosis"] =
+      result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["advice"] = extras.advice ? advice_json(*extras.advice) : Json(nullptr);
-  json["certificate"] = extras.certificate ? certificate_json(*extras.certificate, extras.certificate_bytes) : Json(nullptr);
+  json["certificate"] = extras.certificate
+                            ? certificate_json(*extras.certificate, extras.certificate_bytes)
+                            : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);
-  json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};
+  json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)},
+                         {"reduced", reduced_json(result.reduced_pairs)}};
   json["held"] = held_json(result.held);
   json["warnings"] = result.warnings;
   json["joint_names"] = result.joint_names;

@@ -18,12 +18,14 @@ using Pair = std::pair<std::string, std::string>;
 
 constexpr std::size_t kMostPairs = 1'000'000;
 
-/// https://wiki.ros.org/srdf, with what MoveIt 2 (enable_collisions, disable_default_collisions, joint_property) and Tesseract
-/// (group_tcps, the configurations of plugins) have besides. What says which pairs are tested refuses what it does not know.
+/// https://wiki.ros.org/srdf, with what MoveIt 2 (enable_collisions, disable_default_collisions,
+/// joint_property) and Tesseract (group_tcps, the configurations of plugins) have besides. What
+/// says which pairs are tested refuses what it does not know.
 const XmlElement& srdf_format() {
   constexpr auto kWarned = XmlElement::Unknown::kWarnedOf;
   constexpr auto kRefused = XmlElement::Unknown::kRefused;
-  const auto many = [](const char* name, std::vector<const char*> attributes, std::vector<XmlElement> children = {}) {
+  const auto many = [](const char* name, std::vector<const char*> attributes,
+                       std::vector<XmlElement> children = {}) {
     return XmlElement{name, std::move(attributes), std::move(children), {}, kWarned, true};
   };
   static const XmlElement format{
@@ -34,7 +36,8 @@ const XmlElement& srdf_format() {
        {"disable_default_collisions", {"link", "reason"}, {}, {}, kRefused, true},
        {"passive_joint", {"name"}, {}, {}, kRefused, true},
        many("group", {"name"},
-            {many("link", {"name"}), many("joint", {"name"}), many("chain", {"base_link", "tip_link"}), many("group", {"name"})}),
+            {many("link", {"name"}), many("joint", {"name"}),
+             many("chain", {"base_link", "tip_link"}), many("group", {"name"})}),
        many("group_state", {"name", "group"}, {many("joint", {"name", "value"})}),
        many("end_effector", {"name", "group", "parent_link", "parent_group"}),
        many("virtual_joint", {"name", "type", "parent_frame", "child_link"}),
@@ -45,44 +48,55 @@ const XmlElement& srdf_format() {
   return format;
 }
 
-/// Warns of a file that is another robot's, by its name: MoveIt refuses it, but users give robots names of their own.
-void check_robot_name(const tinyxml2::XMLElement& root, const RobotModel& robot, const std::string& file, XmlWarnings& warnings) {
+/// Warns of a file that is another robot's, by its name: MoveIt refuses it, but users give robots
+/// names of their own.
+void check_robot_name(const tinyxml2::XMLElement& root, const RobotModel& robot,
+                      const std::string& file, XmlWarnings& warnings) {
   constexpr std::size_t kMost = 200;
   const char* const name = root.Attribute("name");
   if (name == nullptr || robot.name == name) return;
-  const auto shown = [](std::string_view text) { return "'" + printable(text.substr(0, kMost)) + "'"; };
-  warnings.add(at_line(file, root.GetLineNum()),
-               "is of robot " + shown(name) + ", and the URDF of " + shown(robot.name) + ": are they of one robot?");
+  const auto shown = [](std::string_view text) {
+    return "'" + printable(text.substr(0, kMost)) + "'";
+  };
+  warnings.add(at_line(file, root.GetLineNum()), "is of robot " + shown(name) +
+                                                     ", and the URDF of " + shown(robot.name) +
+                                                     ": are they of one robot?");
 }
 
 /// Warns of links and joints that neither the robot nor `others` (left out of it, or virtual) have.
 class Names {
  public:
-  Names(const RobotModel& robot, std::set<std::string> others, const std::string& file, XmlWarnings& warnings)
+  Names(const RobotModel& robot, std::set<std::string> others, const std::string& file,
+        XmlWarnings& warnings)
       : others_(std::move(others)), file_(file), warnings_(warnings) {
     for (const Link& link : robot.links) links_.insert(link.name);
     for (const Joint& joint : robot.joints) joints_.insert(joint.name);
   }
   void check(const tinyxml2::XMLElement& element) const {
     const std::string_view kind = element.Name();
-    for (const char* attribute : {"link1", "link2", "link", "base_link", "tip_link", "parent_link", "child_link"})
+    for (const char* attribute :
+         {"link1", "link2", "link", "base_link", "tip_link", "parent_link", "child_link"})
       require(element, attribute, links_, "link");
     require(element, "joint_name", joints_, "joint");
     if (kind == "link") require(element, "name", links_, "link");
     if (kind == "joint" || kind == "passive_joint") require(element, "name", joints_, "joint");
-    if (kind != "robot" && kind != "group" && kind != "group_state") return;  // what the others hold names nothing
-    for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) check(*child);
+    if (kind != "robot" && kind != "group" && kind != "group_state")
+      return;  // what the others hold names nothing
+    for (const auto* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement())
+      check(*child);
   }
 
  private:
-  void require(const tinyxml2::XMLElement& element, const char* attribute, const std::set<std::string>& known,
-               const char* kind) const {
+  void require(const tinyxml2::XMLElement& element, const char* attribute,
+               const std::set<std::string>& known, const char* kind) const {
     const char* const name = element.Attribute(attribute);
     if (name == nullptr || known.contains(name) || others_.contains(name)) return;
     constexpr std::size_t kMost = 200;
-    warnings_.add(at_line(file_, element.GetLineNum()), std::string("names ") + kind + " '" +
-                                                            printable(std::string_view(name).substr(0, kMost)) +
-                                                            "', which the robot does not have");
+    warnings_.add(at_line(file_, element.GetLineNum()),
+                  std::string("names ") + kind + " '" +
+                      printable(std::string_view(name).substr(0, kMost)) +
+                      "', which the robot does not have");
   }
 
   std::set<std::string> links_, joints_, others_;
@@ -90,7 +104,8 @@ class Names {
   XmlWarnings& warnings_;
 };
 
-std::string attribute(const tinyxml2::XMLElement& element, const char* name, const std::string& file) {
+std::string attribute(const tinyxml2::XMLElement& element, const char* name,
+                      const std::string& file) {
   const char* const value = element.Attribute(name);
   if (value == nullptr || !is_valid_name(value))
     bad_input(at_line(file, element.GetLineNum()),
@@ -113,7 +128,8 @@ void load_srdf(const XmlSource& srdf, RobotModel& robot, const std::set<std::str
   check_robot_name(root, robot, file, warnings);
   check_words(root, srdf_format(), file, warnings);
   const auto for_each = [&](const char* name, const auto& visit) {
-    for (auto* e = root.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) visit(*e);
+    for (auto* e = root.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name))
+      visit(*e);
   };
   const auto pair_of = [&](const tinyxml2::XMLElement& e) {
     return ordered(attribute(e, "link1", file), attribute(e, "link2", file));
@@ -123,7 +139,8 @@ void load_srdf(const XmlSource& srdf, RobotModel& robot, const std::set<std::str
   const auto disable = [&](const Pair& pair, const tinyxml2::XMLElement& e) {
     disabled.insert(pair);
     if (disabled.size() > kMostPairs)
-      bad_input(at_line(file, e.GetLineNum()), "disables too many pairs", "at most " + std::to_string(kMostPairs));
+      bad_input(at_line(file, e.GetLineNum()), "disables too many pairs",
+                "at most " + std::to_string(kMostPairs));
   };
   for_each("disable_default_collisions", [&](const auto& e) {
     const std::string link = attribute(e, "link", file);

@@ -26,11 +26,13 @@ namespace {
 constexpr std::size_t kMostLinks = 10'000;  // the largest real ones have hundreds
 constexpr std::size_t kMostShapes = 10'000;
 
-/// URDF 1.0 to 1.2, https://wiki.ros.org/urdf/XML and https://github.com/ros/urdfdom/tree/master/xsd: what states geometry, limits
-/// and moving joints. `unread` elements are those of the same pages, of Gazebo
-/// (https://classic.gazebosim.org/tutorials?tut=ros_urdf), ros2_control (https://control.ros.org), Bullet (<contact>), MuJoCo
-/// (<mujoco>), and of the PR2's time (<verbose>, <contact_coefficients>, <map>), which describe looks, dynamics, drives and
-/// simulators.
+/// URDF 1.0 to 1.2, https://wiki.ros.org/urdf/XML and
+/// https://github.com/ros/urdfdom/tree/master/xsd: what states geometry, limits and moving joints.
+/// `unread` elements are those of the same pages, of Gazebo
+/// (https://classic.gazebosim.org/tutorials?tut=ros_urdf), ros2_control (https://control.ros.org),
+/// Bullet (<contact>), MuJoCo
+/// (<mujoco>), and of the PR2's time (<verbose>, <contact_coefficients>, <map>), which describe
+/// looks, dynamics, drives and simulators.
 const XmlElement& urdf_format() {
   static const XmlElement origin{"origin", {"xyz", "rpy", "quat_xyzw"}};
   static const XmlElement geometry{"geometry",
@@ -40,29 +42,37 @@ const XmlElement& urdf_format() {
                                     {"cylinder", {"radius", "length"}},
                                     {"capsule", {"radius", "length"}},
                                     {"mesh", {"filename", "scale"}}}};
-  static const XmlElement collision{
-      "collision", {"name"}, {origin, geometry}, {"material", "verbose", "contact_coefficients"}, XmlElement::Unknown::kRefused,
+  static const XmlElement collision{"collision",
+                                    {"name"},
+                                    {origin, geometry},
+                                    {"material", "verbose", "contact_coefficients"},
+                                    XmlElement::Unknown::kRefused,
+                                    true};
+  static const XmlElement link{"link",
+                               {"name", "type"},
+                               {collision},
+                               {"visual", "inertial", "contact", "sensor", "gazebo"},
+                               XmlElement::Unknown::kWarnedOf,
+                               true};
+  static const XmlElement joint{
+      "joint",
+      {"name", "type"},
+      {{"parent", {"link"}},
+       {"child", {"link"}},
+       origin,
+       {"axis", {"xyz"}},
+       {"limit", {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"}},
+       {"mimic", {"joint", "multiplier", "offset"}},
+       {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}},
+      {"dynamics", "calibration"},
+      XmlElement::Unknown::kRefused,
       true};
-  static const XmlElement link{
-      "link", {"name", "type"}, {collision}, {"visual", "inertial", "contact", "sensor", "gazebo"}, XmlElement::Unknown::kWarnedOf,
-      true};
-  static const XmlElement joint{"joint",
-                                {"name", "type"},
-                                {{"parent", {"link"}},
-                                 {"child", {"link"}},
-                                 origin,
-                                 {"axis", {"xyz"}},
-                                 {"limit", {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"}},
-                                 {"mimic", {"joint", "multiplier", "offset"}},
-                                 {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}},
-                                {"dynamics", "calibration"},
-                                XmlElement::Unknown::kRefused,
-                                true};
-  static const XmlElement robot{"robot",
-                                {"name", "version"},
-                                {link, joint},
-                                {"material", "transmission", "gazebo", "ros2_control", "sensor", "mujoco"},
-                                XmlElement::Unknown::kWarnedOf};
+  static const XmlElement robot{
+      "robot",
+      {"name", "version"},
+      {link, joint},
+      {"material", "transmission", "gazebo", "ros2_control", "sensor", "mujoco"},
+      XmlElement::Unknown::kWarnedOf};
   return robot;
 }
 
@@ -77,35 +87,51 @@ XmlElement visual_format() {
 /// Calls `visit` for every child element of that name.
 template <class Visit>
 void for_each_child(const tinyxml2::XMLElement& element, const char* name, const Visit& visit) {
-  for (const auto* child = element.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name))
+  for (const auto* child = element.FirstChildElement(name); child != nullptr;
+       child = child->NextSiblingElement(name))
     visit(*child);
 }
 
 /// Rz(yaw) Ry(pitch) Rx(roll) by half angles, as urdfdom has it to the last bit.
 Quaterniond from_urdf_rpy(const Vector3d& rpy) {
   const double phi = rpy.x() / 2, the = rpy.y() / 2, psi = rpy.z() / 2;
-  const double x = std::sin(phi) * std::cos(the) * std::cos(psi) - std::cos(phi) * std::sin(the) * std::sin(psi);
-  const double y = std::cos(phi) * std::sin(the) * std::cos(psi) + std::sin(phi) * std::cos(the) * std::sin(psi);
-  const double z = std::cos(phi) * std::cos(the) * std::sin(psi) - std::sin(phi) * std::sin(the) * std::cos(psi);
-  const double w = std::cos(phi) * std::cos(the) * std::cos(psi) + std::sin(phi) * std::sin(the) * std::sin(psi);
+  const double x =
+      std::sin(phi) * std::cos(the) * std::cos(psi) - std::cos(phi) * std::sin(the) * std::sin(psi);
+  const double y =
+      std::cos(phi) * std::sin(the) * std::cos(psi) + std::sin(phi) * std::cos(the) * std::sin(psi);
+  const double z =
+      std::cos(phi) * std::cos(the) * std::sin(psi) - std::sin(phi) * std::sin(the) * std::cos(psi);
+  const double w =
+      std::cos(phi) * std::cos(the) * std::cos(psi) + std::sin(phi) * std::sin(the) * std::sin(psi);
   const double length = std::sqrt(x * x + y * y + z * z + w * w);
   return {w / length, x / length, y / length, z / length};
 }
 
-/// An element of a link or joint: its attributes as what they mean. Messages name file, line, and the link or joint.
+/// An element of a link or joint: its attributes as what they mean. Messages name file, line, and
+/// the link or joint.
 class Element {
  public:
   Element(const tinyxml2::XMLElement& xml, const std::string& file, const std::string& owner)
       : xml_(xml), file_(file), owner_(owner) {}
 
-  [[nodiscard]] std::string where() const { return at_line(file_, xml_.GetLineNum()) + ": " + owner_; }
-  [[noreturn]] void fail(const std::string& what, const std::string& allowed) const { bad_input(where(), what, allowed); }
-  [[nodiscard]] bool has(const char* attribute) const { return xml_.Attribute(attribute) != nullptr; }
-  [[nodiscard]] Element with(const tinyxml2::XMLElement& child) const { return {child, file_, owner_}; }
+  [[nodiscard]] std::string where() const {
+    return at_line(file_, xml_.GetLineNum()) + ": " + owner_;
+  }
+  [[noreturn]] void fail(const std::string& what, const std::string& allowed) const {
+    bad_input(where(), what, allowed);
+  }
+  [[nodiscard]] bool has(const char* attribute) const {
+    return xml_.Attribute(attribute) != nullptr;
+  }
+  [[nodiscard]] Element with(const tinyxml2::XMLElement& child) const {
+    return {child, file_, owner_};
+  }
 
-  [[nodiscard]] std::string text(const char* attribute, const std::string& allowed = "a name") const {
+  [[nodiscard]] std::string text(const char* attribute,
+                                 const std::string& allowed = "a name") const {
     const char* const value = xml_.Attribute(attribute);
-    if (value == nullptr || *value == 0) fail(label(attribute) + (value == nullptr ? " is missing" : " is empty"), allowed);
+    if (value == nullptr || *value == 0)
+      fail(label(attribute) + (value == nullptr ? " is missing" : " is empty"), allowed);
     return value;
   }
   /// Finite, save where `infinite` is said to be allowed.
@@ -122,7 +148,8 @@ class Element {
   }
   template <int kCount>
   [[nodiscard]] Eigen::Matrix<double, kCount, 1> numbers(const char* attribute) const {
-    const std::string allowed = std::to_string(kCount) + " numbers with spaces between", all = text(attribute, allowed);
+    const std::string allowed = std::to_string(kCount) + " numbers with spaces between",
+                      all = text(attribute, allowed);
     Words words(all);
     Eigen::Matrix<double, kCount, 1> result;
     bool right = true;
@@ -131,10 +158,13 @@ class Element {
       right = right && value && std::isfinite(*value);
       if (right) number = *value;
     }
-    if (!right || !words.next().empty()) fail(label(attribute) + " is '" + all + "'", expanded(attribute, allowed));
+    if (!right || !words.next().empty())
+      fail(label(attribute) + " is '" + all + "'", expanded(attribute, allowed));
     return result;
   }
-  [[nodiscard]] double length(const char* attribute) const { return positive(attribute, number(attribute)); }
+  [[nodiscard]] double length(const char* attribute) const {
+    return positive(attribute, number(attribute));
+  }
   [[nodiscard]] Vector3d lengths(const char* attribute) const {
     const Vector3d result = numbers<3>(attribute);
     for (const double one : result) positive(attribute, one);
@@ -148,13 +178,16 @@ class Element {
   }
 
  private:
-  [[nodiscard]] std::string label(const char* attribute) const { return std::string(xml_.Name()) + " " + attribute; }
+  [[nodiscard]] std::string label(const char* attribute) const {
+    return std::string(xml_.Name()) + " " + attribute;
+  }
   /// "${...}" is what xacro leaves where it did not run.
   [[nodiscard]] std::string expanded(const char* attribute, const std::string& allowed) const {
     return text(attribute).find("${") == std::string::npos ? allowed : allowed + ", xacro expanded";
   }
   double positive(const char* attribute, double value) const {
-    if (!(value > 0 && value <= kMostMetres)) fail(label(attribute) + " is " + format_double(value), kLengthAllowed);
+    if (!(value > 0 && value <= kMostMetres))
+      fail(label(attribute) + " is " + format_double(value), kLengthAllowed);
     return value;
   }
   [[nodiscard]] Pose pose() const {
@@ -163,10 +196,12 @@ class Element {
     if (!(result.translation().array().abs() <= kMostMetres).all())
       fail("origin is too far away", "numbers from -1000 to 1000 for xyz");
     if (has("rpy") && has("quat_xyzw")) fail("origin has rpy and quat_xyzw", "one of them");
-    if (has("rpy")) result.linear() = from_urdf_rpy(numbers<3>("rpy")).normalized().toRotationMatrix();
+    if (has("rpy"))
+      result.linear() = from_urdf_rpy(numbers<3>("rpy")).normalized().toRotationMatrix();
     if (has("quat_xyzw")) {
       const Eigen::Vector4d q = numbers<4>("quat_xyzw");
-      if (!(q.norm() > 1e-9) || !std::isfinite(q.norm())) fail("origin quat_xyzw has no direction", "a quaternion of length 1");
+      if (!(q.norm() > 1e-9) || !std::isfinite(q.norm()))
+        fail("origin quat_xyzw has no direction", "a quaternion of length 1");
       result.linear() = Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
     }
     if (!result.linear().allFinite()) fail("origin is not finite", "angles in rad");
@@ -184,8 +219,13 @@ enum class Shapes { kCollision, kVisualWhereNoCollision, kNone };
 /// Makes a model of a URDF, in the order of the file.
 class ModelBuilder {
  public:
-  ModelBuilder(const XmlSource& source, const Packages& packages, const RobotOptions& options, Shapes shapes = Shapes::kCollision)
-      : source_(source), file_(source.file.string()), packages_(packages), options_(options), shapes_(shapes) {}
+  ModelBuilder(const XmlSource& source, const Packages& packages, const RobotOptions& options,
+               Shapes shapes = Shapes::kCollision)
+      : source_(source),
+        file_(source.file.string()),
+        packages_(packages),
+        options_(options),
+        shapes_(shapes) {}
 
   UrdfRobot build() {
     tinyxml2::XMLDocument document;
@@ -198,9 +238,14 @@ class ModelBuilder {
     leave_out(robot);
     model_->name = robot.Attribute("name");
     model_->source = file_;
-    for_each_kept(robot, "link", links_, [&](const auto& element, const std::string& owner) { add_link(element, owner); });
-    for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) { add_joint(element, owner); });
-    for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) { add_mimic(element, owner); });
+    for_each_kept(robot, "link", links_,
+                  [&](const auto& element, const std::string& owner) { add_link(element, owner); });
+    for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) {
+      add_joint(element, owner);
+    });
+    for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) {
+      add_mimic(element, owner);
+    });
     model_->root_link = links_.at(root_);
     model_->warnings = warnings_.list();
     return {model_, std::move(left_out_)};
@@ -211,8 +256,12 @@ class ModelBuilder {
  private:
   using Index = std::map<std::string, int, std::less<>>;
 
-  [[nodiscard]] std::string at(const tinyxml2::XMLElement& element) const { return at_line(file_, element.GetLineNum()); }
-  [[nodiscard]] std::string where(const tinyxml2::XMLElement& element) const { return at(element) + ": " + owner(element); }
+  [[nodiscard]] std::string at(const tinyxml2::XMLElement& element) const {
+    return at_line(file_, element.GetLineNum());
+  }
+  [[nodiscard]] std::string where(const tinyxml2::XMLElement& element) const {
+    return at(element) + ": " + owner(element);
+  }
   [[nodiscard]] static std::string owner(const tinyxml2::XMLElement& element) {
     return std::string(element.Name()) + " '" + element.Attribute("name") + "'";
   }
@@ -229,16 +278,17 @@ class ModelBuilder {
     if (version == nullptr) return;
     for (const std::string_view known : {"1", "1.0", "1.1", "1.2"})
       if (version == known) return;
-    warnings_.add(at(robot), "version '" + printable(std::string_view(version).substr(0, 20)) + "' of URDF is read as 1.2 is");
+    warnings_.add(at(robot), "version '" + printable(std::string_view(version).substr(0, 20)) +
+                                 "' of URDF is read as 1.2 is");
   }
 
   void check_name(const tinyxml2::XMLElement& element) const {
     const char* const name = element.Attribute("name");
     if (name == nullptr || !is_valid_name(name))
-      bad_input(
-          at(element),
-          std::string("<") + element.Name() + "> " + (name == nullptr ? "has no name" : "has the name '" + std::string(name) + "'"),
-          kValidName);
+      bad_input(at(element),
+                std::string("<") + element.Name() + "> " +
+                    (name == nullptr ? "has no name" : "has the name '" + std::string(name) + "'"),
+                kValidName);
   }
 
   void check_names(const tinyxml2::XMLElement& robot, const char* kind, Index& index) const {
@@ -247,18 +297,24 @@ class ModelBuilder {
       if (!index.emplace(element.Attribute("name"), static_cast<int>(index.size())).second)
         bad_input(where(element), "name is taken", "a name of its own");
       if (index.size() > kMostLinks)
-        bad_input(where(element), "too many of its kind", "at most " + std::to_string(kMostLinks) + " links and joints");
+        bad_input(where(element), "too many of its kind",
+                  "at most " + std::to_string(kMostLinks) + " links and joints");
     });
-    if (links_.empty()) bad_input(at(robot), "has no link", "a robot of at least one; of a .xacro what `xacro FILE` prints");
+    if (links_.empty())
+      bad_input(at(robot), "has no link",
+                "a robot of at least one; of a .xacro what `xacro FILE` prints");
   }
 
   /// The link that a joint's <parent> or <child> names.
   [[nodiscard]] std::string end_of(const tinyxml2::XMLElement& joint, const char* kind) const {
     const auto* const end = joint.FirstChildElement(kind);
     const char* const name = end == nullptr ? nullptr : end->Attribute("link");
-    if (name == nullptr) bad_input(where(joint), std::string("no <") + kind + " link=...>", "the names of two links");
+    if (name == nullptr)
+      bad_input(where(joint), std::string("no <") + kind + " link=...>", "the names of two links");
     if (links_.contains(name)) return name;
-    bad_input(where(joint), std::string(kind) + " names an unknown link '" + name + "', nearest is '" + nearest(name, links_) + "'",
+    bad_input(where(joint),
+              std::string(kind) + " names an unknown link '" + name + "', nearest is '" +
+                  nearest(name, links_) + "'",
               "a link of this file");
   }
 
@@ -273,14 +329,16 @@ class ModelBuilder {
     for_each_child(robot, "joint", [&](const tinyxml2::XMLElement& element) {
       const std::string parent = end_of(element, "parent"), child = end_of(element, "child");
       if (!up_of_.emplace(child, Up{parent, &element}).second)
-        bad_input(where(element), "link '" + child + "' has another parent joint already", "a tree: one parent joint a link");
+        bad_input(where(element), "link '" + child + "' has another parent joint already",
+                  "a tree: one parent joint a link");
     });
     int walk = 0;
     for (auto& [child, start] : up_of_) {
       std::string_view link = child;
       for (auto up = up_of_.find(link); up != up_of_.end(); up = up_of_.find(link)) {
         if (up->second.walk == walk)
-          bad_input(where(*up->second.joint), "closes a loop at link '" + up->first + "'", "a tree: no link above itself");
+          bad_input(where(*up->second.joint), "closes a loop at link '" + up->first + "'",
+                    "a tree: no link above itself");
         if (up->second.walk >= 0) break;
         up->second.walk = walk;
         link = up->second.parent;
@@ -291,12 +349,14 @@ class ModelBuilder {
       const std::string name = element.Attribute("name");
       if (up_of_.contains(name)) return;
       if (!root_.empty())
-        bad_input(where(element), "is a second root beside '" + root_ + "'", "a tree: one link alone without a parent joint");
+        bad_input(where(element), "is a second root beside '" + root_ + "'",
+                  "a tree: one link alone without a parent joint");
       root_ = name;
     });
   }
 
-  /// Takes the links of RobotOptions::without and what hangs from them, with the joints above each, out of `links_` and `joints_`.
+  /// Takes the links of RobotOptions::without and what hangs from them, with the joints above each,
+  /// out of `links_` and `joints_`.
   void leave_out(const tinyxml2::XMLElement& robot) {
     if (options_.without.empty()) return;
     std::map<std::string, std::vector<std::string>, std::less<>> below;
@@ -304,11 +364,14 @@ class ModelBuilder {
     std::vector<std::string> open;
     for (const std::string& name : options_.without) {
       if (!links_.contains(name))
-        throw RobotKeyError(
-            file_, "without",
-            "unknown link '" + name + "', nearest is '" + nearest(name, links_) + "': allowed is a link of the robot", name);
+        throw RobotKeyError(file_, "without",
+                            "unknown link '" + name + "', nearest is '" + nearest(name, links_) +
+                                "': allowed is a link of the robot",
+                            name);
       if (name == root_)
-        throw RobotKeyError(file_, "without", "'" + name + "' carries all others: allowed is a link below the root", name);
+        throw RobotKeyError(file_, "without",
+                            "'" + name + "' carries all others: allowed is a link below the root",
+                            name);
       open.push_back(name);
     }
     while (!open.empty()) {
@@ -322,16 +385,19 @@ class ModelBuilder {
     }
     for (const auto& [kind, index] : {std::pair("link", &links_), std::pair("joint", &joints_)}) {
       int place = 0;
-      for_each_kept(robot, kind, *index, [&, &index = index](const auto& element, const std::string&) {
-        index->find(element.Attribute("name"))->second = place++;
-      });
+      for_each_kept(robot, kind, *index,
+                    [&, &index = index](const auto& element, const std::string&) {
+                      index->find(element.Attribute("name"))->second = place++;
+                    });
     }
   }
 
   template <class Visit>
-  void for_each_kept(const tinyxml2::XMLElement& robot, const char* kind, const Index& index, const Visit& visit) const {
+  void for_each_kept(const tinyxml2::XMLElement& robot, const char* kind, const Index& index,
+                     const Visit& visit) const {
     for_each_child(robot, kind, [&](const tinyxml2::XMLElement& element) {
-      if (index.contains(std::string_view(element.Attribute("name")))) visit(element, owner(element));
+      if (index.contains(std::string_view(element.Attribute("name"))))
+        visit(element, owner(element));
     });
   }
 
@@ -347,8 +413,10 @@ class ModelBuilder {
     });
     for_each_child(element, "visual", [&](const tinyxml2::XMLElement& xml) {
       const auto* const geometry = xml.FirstChildElement("geometry");
-      survey_.visual_meshes += geometry != nullptr && geometry->FirstChildElement("mesh") != nullptr;
-      if (shapes_ == Shapes::kVisualWhereNoCollision && !has_collision) add_shape(Element(xml, file_, owner), xml, true, link);
+      survey_.visual_meshes +=
+          geometry != nullptr && geometry->FirstChildElement("mesh") != nullptr;
+      if (shapes_ == Shapes::kVisualWhereNoCollision && !has_collision)
+        add_shape(Element(xml, file_, owner), xml, true, link);
     });
     model_->links.push_back(std::move(link));
   }
@@ -356,14 +424,17 @@ class ModelBuilder {
   /// All but meshes is read, whether it is `wanted` or not; the names of meshes are looked up.
   void add_shape(const Element& element, const tinyxml2::XMLElement& xml, bool wanted, Link& link) {
     if (++shape_count_ > kMostShapes)
-      element.fail("too many collision shapes", "at most " + std::to_string(kMostShapes) + " of a robot");
+      element.fail("too many collision shapes",
+                   "at most " + std::to_string(kMostShapes) + " of a robot");
     PlacedShape placed;
     placed.pose = element.origin();
     const auto* const geometry = xml.FirstChildElement("geometry");
     const auto* const kind = geometry == nullptr ? nullptr : geometry->FirstChildElement();
-    if (kind == nullptr) element.fail("no geometry", "a <geometry> with a box, sphere, cylinder, capsule or mesh");
+    if (kind == nullptr)
+      element.fail("no geometry", "a <geometry> with a box, sphere, cylinder, capsule or mesh");
     if (const auto* const other = kind->NextSiblingElement())
-      element.with(*other).fail(std::string("a second shape <") + other->Name() + "> in one <geometry>", "one");
+      element.with(*other).fail(
+          std::string("a second shape <") + other->Name() + "> in one <geometry>", "one");
     const Element shape = element.with(*kind);
     const std::string_view name = kind->Name();
     if (name == "sphere")
@@ -381,10 +452,12 @@ class ModelBuilder {
 
   /// Whether there is a mesh to place.
   bool read_mesh(const Element& element, bool wanted, Shape& shape) {
-    const Vector3d scale = element.has("scale") ? Vector3d(element.numbers<3>("scale")) : Vector3d::Ones();
+    const Vector3d scale =
+        element.has("scale") ? Vector3d(element.numbers<3>("scale")) : Vector3d::Ones();
     const std::string name = element.text("filename");
     try {
-      const std::filesystem::path file = resolve_mesh_name(name, source_.file, packages_, element.where());
+      const std::filesystem::path file =
+          resolve_mesh_name(name, source_.file, packages_, element.where());
       if (!wanted) return false;
       try {
         shape = load_mesh(file, scale, meshes_);
@@ -413,7 +486,8 @@ class ModelBuilder {
         const Element at = element.with(*axis);
         const Vector3d direction = at.numbers<3>("xyz");
         const double length = direction.norm();
-        if (!(length > 1e-9) || !std::isfinite(length)) at.fail("axis has no direction", "an axis of positive length");
+        if (!(length > 1e-9) || !std::isfinite(length))
+          at.fail("axis has no direction", "an axis of positive length");
         joint.axis = direction / length;
       }
       const auto* const limit = xml.FirstChildElement("limit");
@@ -421,7 +495,8 @@ class ModelBuilder {
         read_limits(element.with(*limit), joint);
       else if (joint.type != Joint::Type::kContinuous)
         element.fail("no <limit>", "a <limit> with lower and upper");
-      if (const auto* const safety = xml.FirstChildElement("safety_controller")) read_soft_limits(element.with(*safety), joint);
+      if (const auto* const safety = xml.FirstChildElement("safety_controller"))
+        read_soft_limits(element.with(*safety), joint);
     }
     model_->joints.push_back(std::move(joint));
   }
@@ -440,14 +515,16 @@ class ModelBuilder {
                  "fixed, revolute, continuous, prismatic, floating or planar");
   }
 
-  /// Rates of URDF 1.2 as well, whatever version the file says it is. What slows down a joint is not told from what speeds it up:
-  /// the smaller of acceleration and deceleration holds for both. 0 and infinite are none.
+  /// Rates of URDF 1.2 as well, whatever version the file says it is. What slows down a joint is
+  /// not told from what speeds it up: the smaller of acceleration and deceleration holds for both.
+  /// 0 and infinite are none.
   void read_limits(const Element& limit, Joint& joint) {
     const auto rate = [&](const char* name, bool zero) {
       if (!limit.has(name)) return 0.0;
       const double value = limit.number(name, true);
       if (!(value > 0 || (zero && value == 0)))
-        limit.fail(std::string("limit ") + name + " is " + format_double(value), zero ? "a number >= 0" : "a number > 0");
+        limit.fail(std::string("limit ") + name + " is " + format_double(value),
+                   zero ? "a number >= 0" : "a number > 0");
       return std::isinf(value) ? 0.0 : value;
     };
     joint.velocity = rate("velocity", true);
@@ -461,17 +538,20 @@ class ModelBuilder {
       joint.lower = lower;
       joint.upper = upper;
     } else if (lower < upper) {
-      warnings_.add(limit.where(), "is continuous: its limits from " + format_double(lower) + " to " + format_double(upper) +
+      warnings_.add(limit.where(), "is continuous: its limits from " + format_double(lower) +
+                                       " to " + format_double(upper) +
                                        " are not kept, a revolute joint's would be");
     }
   }
 
-  /// Those of a <safety_controller> that states none, as where it bounds the velocity alone, do not bound the joint; one that
-  /// states one of them has 0 for the other.
+  /// Those of a <safety_controller> that states none, as where it bounds the velocity alone, do not
+  /// bound the joint; one that states one of them has 0 for the other.
   void read_soft_limits(const Element& safety, Joint& joint) {
     if (!safety.has("soft_lower_limit") && !safety.has("soft_upper_limit")) return;
-    const double lower = safety.number_or("soft_lower_limit", 0), upper = safety.number_or("soft_upper_limit", 0);
-    if (!(lower <= upper)) safety.fail("soft_lower_limit is above soft_upper_limit", "lower <= upper");
+    const double lower = safety.number_or("soft_lower_limit", 0),
+                 upper = safety.number_or("soft_upper_limit", 0);
+    if (!(lower <= upper))
+      safety.fail("soft_lower_limit is above soft_upper_limit", "lower <= upper");
     if (!options_.soft_limits) return;
     if (joint.type == Joint::Type::kContinuous) {
       warnings_.add(safety.where(), "is continuous: its soft limits are not kept");
@@ -481,7 +561,8 @@ class ModelBuilder {
     joint.lower = std::max(joint.lower, lower);
     joint.upper = std::min(joint.upper, upper);
     if (!(joint.lower <= joint.upper))
-      safety.fail("soft limits lie outside of the <limit>", "limits that overlap, or `limits.soft_limits: false`");
+      safety.fail("soft limits lie outside of the <limit>",
+                  "limits that overlap, or `limits.soft_limits: false`");
     if (joint.lower != hard.lower || joint.upper != hard.upper) joint.hard = hard;
   }
 
@@ -491,11 +572,13 @@ class ModelBuilder {
     if (child == nullptr || !joint.movable()) return;
     const Element mimic(*child, file_, owner);
     const std::string name = mimic.text("joint");
-    const double multiplier = mimic.number_or("multiplier", 1), offset = mimic.number_or("offset", 0);
+    const double multiplier = mimic.number_or("multiplier", 1),
+                 offset = mimic.number_or("offset", 0);
     const auto found = joints_.find(name);
     if (found == joints_.end())
-      mimic.fail(left_out_.contains(name) ? "mimics joint '" + name + "', which robot.without leaves out"
-                                          : "mimics unknown joint '" + name + "'",
+      mimic.fail(left_out_.contains(name)
+                     ? "mimics joint '" + name + "', which robot.without leaves out"
+                     : "mimics unknown joint '" + name + "'",
                  "the name of another joint");
     const int leader = found->second;
     // Leaders come before or after in the file, so follow the chain as far as it is known.
@@ -536,13 +619,17 @@ std::shared_ptr<const RobotModel> with_srdf(UrdfRobot robot, const std::optional
 
 }  // namespace
 
-UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages, const RobotOptions& options) {
+UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages,
+                    const RobotOptions& options) {
   const XmlSource source{urdf};
   return ModelBuilder(source, packages, options).build();
 }
 
-std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf, const std::filesystem::path& srdf,
-                                                  const Packages& packages, const RobotOptions& options, ShapeSurvey& shapes) {
+std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
+                                                  const std::filesystem::path& srdf,
+                                                  const Packages& packages,
+                                                  const RobotOptions& options,
+                                                  ShapeSurvey& shapes) {
   const XmlSource source{urdf};
   ModelBuilder builder(source, packages, options, Shapes::kNone);
   UrdfRobot robot = builder.build();
@@ -550,18 +637,23 @@ std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& u
   return with_srdf(std::move(robot), srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
 }
 
-std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf, const Packages& packages) {
+std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf,
+                                                     const Packages& packages) {
   const XmlSource source{urdf};
   const RobotOptions options;
   return ModelBuilder(source, packages, options, Shapes::kVisualWhereNoCollision).build().model;
 }
 
-std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf,
-                                             const Packages& packages, const RobotOptions& options) {
-  return with_srdf(load_urdf(urdf, packages, options), srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
+std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,
+                                             const std::filesystem::path& srdf,
+                                             const Packages& packages,
+                                             const RobotOptions& options) {
+  return with_srdf(load_urdf(urdf, packages, options),
+                   srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
 }
 
-std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf, const Packages& packages,
+std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf,
+                                              const Packages& packages,
                                               const RobotOptions& options) {
   const XmlSource source{"URDF text", urdf};
   return with_srdf(ModelBuilder(source, packages, options).build(),

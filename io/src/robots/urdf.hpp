@@ -17,6 +17,7 @@ struct UrdfRobot {
 };
 
 /// Loads a robot from its URDF. Throws InputError.
-[[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages, const RobotOptions& options);
+[[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages,
+                                  const RobotOptions& options);
 
 }  // namespace swivel::io

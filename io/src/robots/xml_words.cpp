@@ -34,27 +34,32 @@ class Checker {
   void check(const tinyxml2::XMLElement& element, const XmlElement& format) {
     check_attributes(element, format);
     std::vector<const tinyxml2::XMLElement*> first(format.children.size());
-    for (const tinyxml2::XMLNode* node = element.FirstChild(); node != nullptr; node = node->NextSibling()) {
+    for (const tinyxml2::XMLNode* node = element.FirstChild(); node != nullptr;
+         node = node->NextSibling()) {
       if (const tinyxml2::XMLText* const text = node->ToText()) {
         const std::string_view words = text->Value();
         if (words.find_first_not_of(" \t\r\n") != std::string_view::npos)
-          unknown(format, node->GetLineNum(), std::string("text in <") + format.name + ">", "attributes and elements");
+          unknown(format, node->GetLineNum(), std::string("text in <") + format.name + ">",
+                  "attributes and elements");
       }
       const tinyxml2::XMLElement* const child = node->ToElement();
       if (child == nullptr || has(format.unread, child->Name())) continue;
-      const auto known = std::find_if(format.children.begin(), format.children.end(),
-                                      [&](const XmlElement& one) { return std::string_view(one.name) == child->Name(); });
+      const auto known = std::find_if(
+          format.children.begin(), format.children.end(),
+          [&](const XmlElement& one) { return std::string_view(one.name) == child->Name(); });
       if (known == format.children.end()) {
         std::vector<std::string> names;
         for (const XmlElement& one : format.children) names.emplace_back(one.name);
-        unknown_name(format, child->GetLineNum(), "element", in_brackets(child->Name()), child->Name(), names);
+        unknown_name(format, child->GetLineNum(), "element", in_brackets(child->Name()),
+                     child->Name(), names);
         continue;
       }
-      const tinyxml2::XMLElement*& earlier = first[static_cast<std::size_t>(known - format.children.begin())];
+      const tinyxml2::XMLElement*& earlier =
+          first[static_cast<std::size_t>(known - format.children.begin())];
       if (earlier != nullptr && !known->many)
         bad_input(at(child->GetLineNum()),
-                  std::string("<") + format.name + "> has a second <" + known->name + ">, the first is in line " +
-                      std::to_string(earlier->GetLineNum()),
+                  std::string("<") + format.name + "> has a second <" + known->name +
+                      ">, the first is in line " + std::to_string(earlier->GetLineNum()),
                   "one");
       if (earlier == nullptr) earlier = child;
       check(*child, *known);
@@ -65,33 +70,39 @@ class Checker {
   [[nodiscard]] std::string at(int line) const { return at_line(file_, line); }
 
   void check_attributes(const tinyxml2::XMLElement& element, const XmlElement& format) {
-    for (const auto* attribute = element.FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
+    for (const auto* attribute = element.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next()) {
       const std::string_view name = attribute->Name();
       if (has(format.attributes, name) || name == "xmlns" || name.starts_with("xmlns:")) continue;
-      unknown_name(format, element.GetLineNum(), "attribute", std::string("'") + shortened(name) + "'", name,
+      unknown_name(format, element.GetLineNum(), "attribute",
+                   std::string("'") + shortened(name) + "'", name,
                    {format.attributes.begin(), format.attributes.end()});
     }
   }
 
-  void unknown_name(const XmlElement& format, int line, const char* kind, const std::string& shown, std::string_view name,
-                    const std::vector<std::string>& known) {
+  void unknown_name(const XmlElement& format, int line, const char* kind, const std::string& shown,
+                    std::string_view name, const std::vector<std::string>& known) {
     const std::size_t colon = name.find(':');
     const std::string_view prefix = name.substr(0, colon == std::string_view::npos ? 0 : colon);
     if (prefix == "xacro")
-      return unknown(format, line, std::string(kind) + " " + shown + " in <" + format.name + "> stands where xacro did not run",
+      return unknown(format, line,
+                     std::string(kind) + " " + shown + " in <" + format.name +
+                         "> stands where xacro did not run",
                      "a file as `xacro FILE` prints it");
     std::string what = std::string("unknown ") + kind + " " + shown + " in <" + format.name + ">";
     if (!prefix.empty()) return warnings_.add(at(line), what + ": it is not read");
     std::string allowed = "nothing of the kind";
     if (!known.empty()) {
-      what += ", nearest known is '" + nearest_name(std::string(name.substr(0, kLongestName)), known) + "'";
+      what += ", nearest known is '" +
+              nearest_name(std::string(name.substr(0, kLongestName)), known) + "'";
       allowed.clear();
       for (const std::string& one : known) allowed += (allowed.empty() ? "" : ", ") + one;
     }
     unknown(format, line, what, allowed);
   }
 
-  void unknown(const XmlElement& format, int line, const std::string& what, const std::string& allowed) {
+  void unknown(const XmlElement& format, int line, const std::string& what,
+               const std::string& allowed) {
     if (format.unknown == XmlElement::Unknown::kRefused) bad_input(at(line), what, allowed);
     warnings_.add(at(line), what + ": it is not read");
   }
@@ -103,7 +114,8 @@ class Checker {
 }  // namespace
 
 void XmlWarnings::add(const std::string& where, const std::string& what) {
-  const auto known = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& kind) { return kind.what == what; });
+  const auto known = std::find_if(kinds_.begin(), kinds_.end(),
+                                  [&](const Kind& kind) { return kind.what == what; });
   if (known != kinds_.end())
     ++known->count;
   else if (kinds_.size() < kMostKinds)
@@ -115,12 +127,14 @@ void XmlWarnings::add(const std::string& where, const std::string& what) {
 std::vector<std::string> XmlWarnings::list() const {
   std::vector<std::string> lines;
   for (const auto& [where, what, count] : kinds_)
-    lines.push_back(printable(where) + ": " + what + (count > 1 ? " (and " + std::to_string(count - 1) + " more of these)" : ""));
+    lines.push_back(printable(where) + ": " + what +
+                    (count > 1 ? " (and " + std::to_string(count - 1) + " more of these)" : ""));
   if (others_ > 0) lines.push_back("and " + std::to_string(others_) + " more that are not known");
   return lines;
 }
 
-void check_words(const tinyxml2::XMLElement& element, const XmlElement& format, const std::string& file, XmlWarnings& warnings) {
+void check_words(const tinyxml2::XMLElement& element, const XmlElement& format,
+                 const std::string& file, XmlWarnings& warnings) {
   Checker(file, warnings).check(element, format);
 }
 

@@ -51,6 +51,7 @@ struct XmlElement {
 /// twice but may not. (TinyXML-2 refuses an attribute that occurs twice.) Names with the prefix of
 /// another program (drake:, tesseract:) give a warning everywhere; declarations of name spaces are
 /// allowed. `file` is for messages.
-void check_words(const tinyxml2::XMLElement& element, const XmlElement& format, const std::string& file, XmlWarnings& warnings);
+void check_words(const tinyxml2::XMLElement& element, const XmlElement& format,
+                 const std::string& file, XmlWarnings& warnings);
 
 }  // namespace swivel::io

@@ -33,27 +33,33 @@ Keys in_group(const char* group, Keys keys) {
 }
 
 Keys pose_keys(Presence position = otherwise("[0, 0, 0]")) {
-  return in_group(
-      "pose",
-      {
-          {"xyz", numbers(3, kCoordinate), "m", std::move(position), "position; a waypoint must have it"},
-          {"rpy", numbers(3, kFinite), "rad", optional(),
-           "roll, pitch, yaw about the fixed axes x, y, z, as in a URDF: R = Rz(yaw) Ry(pitch) Rx(roll)"},
-          {"quat", numbers(4, kFinite), "", optional(),
-           "instead of `rpy`: `[w, x, y, z]`, w first; in a waypoint of length 1 within 1e-3, elsewhere of any length but 0"},
-      });
+  return in_group("pose", {
+                              {"xyz", numbers(3, kCoordinate), "m", std::move(position),
+                               "position; a waypoint must have it"},
+                              {"rpy", numbers(3, kFinite), "rad", optional(),
+                               "roll, pitch, yaw about the fixed axes x, y, z, as in a URDF: R = "
+                               "Rz(yaw) Ry(pitch) Rx(roll)"},
+                              {"quat", numbers(4, kFinite), "", optional(),
+                               "instead of `rpy`: `[w, x, y, z]`, w first; in a waypoint of length "
+                               "1 within 1e-3, elsewhere of any length but 0"},
+                          });
 }
 
 Keys shape_keys() {
-  const Keys round{{"radius", number(kLength), "m", required(), "radius"}, {"length", number(kLength), "m", required(), "length"}};
+  const Keys round{{"radius", number(kLength), "m", required(), "radius"},
+                   {"length", number(kLength), "m", required(), "length"}};
   return in_group(
       "shape",
       {
           {"box", numbers(3, kLength), "m", optional(), "full edge lengths along x, y, z"},
-          {"cylinder", section("", round), "", optional(), "`{radius: 0.05, length: 0.3}` (m): from −length/2 to +length/2"},
-          {"capsule", section("", round), "", optional(), "`{radius: 0.05, length: 0.3}` (m): length without the two caps"},
-          {"sphere", either(number(kLength), section("", {{"radius", number(kLength), "m", required(), "radius"}})), "m",
-           optional(), "radius; or `{radius: 0.05}`"},
+          {"cylinder", section("", round), "", optional(),
+           "`{radius: 0.05, length: 0.3}` (m): from −length/2 to +length/2"},
+          {"capsule", section("", round), "", optional(),
+           "`{radius: 0.05, length: 0.3}` (m): length without the two caps"},
+          {"sphere",
+           either(number(kLength),
+                  section("", {{"radius", number(kLength), "m", required(), "radius"}})),
+           "m", optional(), "radius; or `{radius: 0.05}`"},
           {"mesh", text(), "", optional(), "name of an STL, OBJ, DAE or PLY file"},
           {"scale", or_null(scale()), "", otherwise(1.0),
            "with `mesh`: factor, or one each for x, y, z, none of them 0; a negative one mirrors"},
@@ -64,56 +70,69 @@ const Schema::Choice kOneShape{{"box", "cylinder", "sphere", "capsule", "mesh"},
 const Schema::Choice kOneOrientation{{"rpy", "quat"}};
 
 Schema robot() {
-  const Keys name{{"name", text(), "", required(), "neither that of a link nor of another body", "a name"}};
-  const Keys where{{"link", text(), "", in_words("`tip_link`"), "the link that it moves with, and in whose frame its pose is"}};
+  const Keys name{
+      {"name", text(), "", required(), "neither that of a link nor of another body", "a name"}};
+  const Keys where{{"link", text(), "", in_words("`tip_link`"),
+                    "the link that it moves with, and in whose frame its pose is"}};
   return section(
       "robot",
       {
           {"urdf", text(), "", required(), "name of the URDF file", "the name of a URDF file"},
           {"srdf", text(), "", optional(), "name of the SRDF file: pairs of links that may touch"},
-          {"packages", map(text()), "", optional(), "package → folder: where `package://NAME/...` of the URDF lies"},
-          {"without", list(text()), "", optional(), "links left out of the robot, with all that they carry"},
+          {"packages", map(text()), "", optional(),
+           "package → folder: where `package://NAME/...` of the URDF lies"},
+          {"without", list(text()), "", optional(),
+           "links left out of the robot, with all that they carry"},
           {"base_link", text(), "", required(),
-           "link that the arm is reached from, or the hand where the part is in it; everything is in its frame, unless said",
+           "link that the arm is reached from, or the hand where the part is in it; everything is "
+           "in its frame, unless said",
            "the name of a link"},
           {"tip_link", text(), "", required(),
-           "link that carries the tool: the arm is the last seven movable joints between the two (six with `path.roll`)",
+           "link that carries the tool: the arm is the last seven movable joints between the two "
+           "(six with `path.roll`)",
            "the name of a link"},
           {"tool", section("", pose_keys(), {kOneOrientation}), "", in_words("that of `tip_link`"),
            "tool frame in `tip_link`: a [pose](#poses)"},
           {"hold", map(number(kCoordinate)), "m or rad", in_words("0, or the limit nearest to it"),
            "joint → where it stands; joints named here are none of the arm's"},
           {"attached",
-           list(section("attached", join(join(name, shape_keys()), join(pose_keys(), where)), {kOneShape, kOneOrientation})), "",
-           optional(), "bodies that move with a link: tools, held parts"},
+           list(section("attached", join(join(name, shape_keys()), join(pose_keys(), where)),
+                        {kOneShape, kOneOrientation})),
+           "", optional(), "bodies that move with a link: tools, held parts"},
       });
 }
 
 Schema path() {
   const PathSmoothing smooth;
-  const Keys window{
-      {"roll", numbers(2, kFinite), "rad", optional(),
-       "with `roll` of the path: `[lower, upper]`, what it may be there, at all waypoints or at none; in between the ends "
-       "are linear"}};
+  const Keys window{{"roll", numbers(2, kFinite), "rad", optional(),
+                     "with `roll` of the path: `[lower, upper]`, what it may be there, at all "
+                     "waypoints or at none; in between the ends "
+                     "are linear"}};
   return section(
       "path",
       {
-          {"frame", text(), "", in_words("`base_link`"), "`base_link` or the name of a scene object, which the path then follows"},
-          {"waypoints", list(section("waypoint", join(pose_keys(required()), window), {kOneOrientation})), "", optional(),
-           "at least two [poses](#poses) that the tool frame visits"},
-          {"file", text(), "", optional(), "instead of `waypoints`: name of a [CSV file](#tool-path-csv) with them"},
+          {"frame", text(), "", in_words("`base_link`"),
+           "`base_link` or the name of a scene object, which the path then follows"},
+          {"waypoints",
+           list(section("waypoint", join(pose_keys(required()), window), {kOneOrientation})), "",
+           optional(), "at least two [poses](#poses) that the tool frame visits"},
+          {"file", text(), "", optional(),
+           "instead of `waypoints`: name of a [CSV file](#tool-path-csv) with them"},
           {"smooth",
            or_null(section("smooth",
                            {
                                {"position", number(kExtent), "m", otherwise(smooth.position),
                                 "how far the tool may leave the polyline at a corner"},
-                               {"angle", number(kNonNegative), "rad", otherwise(smooth.angle), "the same for its orientation"},
+                               {"angle", number(kNonNegative), "rad", otherwise(smooth.angle),
+                                "the same for its orientation"},
                            })),
            "", in_words("paths are planned on the polyline, and timed with these defaults"),
-           "lets the tool round corners, on a curve that is twice continuously differentiable; `null` forbids it"},
+           "lets the tool round corners, on a curve that is twice continuously differentiable; "
+           "`null` forbids it"},
           {"roll", or_null(either(one_of({"free"}), numbers(2, kFinite))), "rad",
            in_words("the tool stands as the waypoints have it"),
-           "`free`, or `[lower, upper]`: how far the tool may stand turned about its own z axis, of arms of six joints and of "
+           "`free`, or `[lower, upper]`: how far the tool may stand turned about its own z axis, "
+           "of arms of six joints and of "
            "S-R-S arms "
            "of seven"},
       },
@@ -122,113 +141,146 @@ Schema path() {
 
 Schema scene() {
   const Keys name{{"name", text(), "", required(), "a name of its own", "a name"}};
-  const Keys allow{
-      {"allow", either(list(text()), map(number(kLength))), "m", optional(),
-       "links and attached bodies that may touch it; or, `{nozzle: 0.003}`, how [deep](model.md#contact) each may be in it"}};
-  return list(section("scene", join(join(name, shape_keys()), join(pose_keys(), allow)), {kOneShape, kOneOrientation}));
+  const Keys allow{{"allow", either(list(text()), map(number(kLength))), "m", optional(),
+                    "links and attached bodies that may touch it; or, `{nozzle: 0.003}`, how "
+                    "[deep](model.md#contact) each may be in it"}};
+  return list(section("scene", join(join(name, shape_keys()), join(pose_keys(), allow)),
+                      {kOneShape, kOneOrientation}));
 }
 
 Schema resolution() {
   const Resolution d;
-  return section("resolution",
-                 {
-                     {"ds", number(kLength), "m", otherwise(d.ds),
-                      "longest step along the path: each straight stretch is divided into equal ones, and every corner is a layer"},
-                     {"dphi", number(kTurn), "rad", otherwise(d.dphi), "widest step of the arm angle"},
-                     {"dalpha", number(kPositive), "rad", otherwise(d.dalpha), "widest step of tool rotation"},
-                     {"arcs", one_of({"false", "true"}), "", otherwise("false"),
-                      "nodes besides at the ends of arcs of arm angles within the joint limits, and in the middles of narrow ones: "
-                      "no arc is missed; S-R-S arms"},
-                     {"arc", number(kPositive), "rad", otherwise(d.arc), "self-motion between nodes, of arms without an arm angle"},
-                     {"droll", number(kTurn), "rad", otherwise(d.droll), "widest step of `path.roll`, of arms of seven joints"},
-                     {"knot", number(kLength), "m", otherwise(d.knot),
-                      "with `path.roll`, of arms of seven joints: about how far along the path roll and arm angle are chosen anew; "
-                      "between they change linearly, and every layer is tested"},
-                 });
+  return section(
+      "resolution",
+      {
+          {"ds", number(kLength), "m", otherwise(d.ds),
+           "longest step along the path: each straight stretch is divided into equal ones, and "
+           "every corner is a layer"},
+          {"dphi", number(kTurn), "rad", otherwise(d.dphi), "widest step of the arm angle"},
+          {"dalpha", number(kPositive), "rad", otherwise(d.dalpha), "widest step of tool rotation"},
+          {"arcs", one_of({"false", "true"}), "", otherwise("false"),
+           "nodes besides at the ends of arcs of arm angles within the joint limits, and in the "
+           "middles of narrow ones: "
+           "no arc is missed; S-R-S arms"},
+          {"arc", number(kPositive), "rad", otherwise(d.arc),
+           "self-motion between nodes, of arms without an arm angle"},
+          {"droll", number(kTurn), "rad", otherwise(d.droll),
+           "widest step of `path.roll`, of arms of seven joints"},
+          {"knot", number(kLength), "m", otherwise(d.knot),
+           "with `path.roll`, of arms of seven joints: about how far along the path roll and arm "
+           "angle are chosen anew; "
+           "between they change linearly, and every layer is tested"},
+      });
 }
 
 Schema limits() {
   const Limits d;
   const auto rate = [](const char* what) {
     return std::string("largest ") + what +
-           " of [motions](#motion): one number, or one for each joint (that of a roll is not looked at)";
+           " of [motions](#motion): one number, or one for each joint (that of a roll is not "
+           "looked at)";
   };
   return section(
       "limits",
       {
-          {"clearance", number(kExtent), "m", otherwise(d.clearance), "distance kept between bodies at the layers of the path"},
+          {"clearance", number(kExtent), "m", otherwise(d.clearance),
+           "distance kept between bodies at the layers of the path"},
           {"self_clearance", or_null(number(kExtent)), "m", in_words("`clearance`"),
-           "the same between bodies of the robot; without an SRDF a pair keeps at most half of its median clearance over sampled "
+           "the same between bodies of the robot; without an SRDF a pair keeps at most half of its "
+           "median clearance over sampled "
            "postures"},
           {"edges", one_of({"continuous", "nodes"}), "", otherwise("continuous"),
-           "`continuous`: motions between layers are proved to keep `edge_clearance`, not sampled; `nodes`: only the layers are "
+           "`continuous`: motions between layers are proved to keep `edge_clearance`, not sampled; "
+           "`nodes`: only the layers are "
            "tested"},
-          {"edge_clearance", or_null(number(kExtent)), "m", in_words("half of what is kept at the layers"),
-           "distance kept between layers; without an SRDF a pair of the robot keeps at most a quarter of its median. For paths "
+          {"edge_clearance", or_null(number(kExtent)), "m",
+           in_words("half of what is kept at the layers"),
+           "distance kept between layers; without an SRDF a pair of the robot keeps at most a "
+           "quarter of its median. For paths "
            "that are "
            "refined or timed the default is `clearance`, where `self_clearance` is not set"},
           {"edge_tolerance", number(kPositive), "m", otherwise(d.edge_tolerance),
-           "how finely that is proved; smaller refuses fewer motions that are just free, and takes longer"},
-          {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin), "distance kept from both limits of each joint"},
+           "how finely that is proved; smaller refuses fewer motions that are just free, and takes "
+           "longer"},
+          {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin),
+           "distance kept from both limits of each joint"},
           {"soft_limits", one_of({"true", "false"}), "", otherwise("true"),
-           "joints keep the soft limits of their `<safety_controller>` in the URDF, where these are narrower"},
+           "joints keep the soft limits of their `<safety_controller>` in the URDF, where these "
+           "are narrower"},
           {"joint_step", number(kPositive), "rad", otherwise(d.joint_step),
-           "largest move of a joint between neighbouring layers, whatever their distance: a smaller `ds` allows more"},
-          {"arm_slope", number(kPositive), "rad/m", otherwise(d.arm_slope), "largest change of the arm angle along the path"},
-          {"roll_slope", number(kPositive), "rad/m", otherwise(d.roll_slope), "the same of `path.roll`"},
+           "largest move of a joint between neighbouring layers, whatever their distance: a "
+           "smaller `ds` allows more"},
+          {"arm_slope", number(kPositive), "rad/m", otherwise(d.arm_slope),
+           "largest change of the arm angle along the path"},
+          {"roll_slope", number(kPositive), "rad/m", otherwise(d.roll_slope),
+           "the same of `path.roll`"},
           {"manipulability", number(kNonNegative), "", otherwise(d.manipulability),
            "least sqrt(det(J Jᵀ)), with J in m and rad at the tool"},
           {"tool_path_error", or_null(number(kPositive)), "m", otherwise(d.tool_path_error),
            "how far the tool may leave its path between layers"},
-          {"tool_angle_error", or_null(number(kPositive)), "rad", otherwise(d.tool_angle_error), "the same for its orientation"},
+          {"tool_angle_error", or_null(number(kPositive)), "rad", otherwise(d.tool_angle_error),
+           "the same for its orientation"},
           {"step_error", or_null(number(kPositive)), "rad", otherwise(d.step_error),
            "largest second-order estimate of the joint-space step, the paper's Eq. 15"},
           {"tool_speed", or_null(number(kPositive)), "m/s", otherwise(d.tool_speed),
            "the joints must follow at this speed within the velocities of the URDF"},
-          {"tool_turn_speed", or_null(number(kPositive)), "rad/s", otherwise(d.tool_turn_speed), "the same where the tool turns"},
-          {"joint_speed", of_joints(kPositive), "rad/s", in_words("`velocity` of the URDF"), rate("speed")},
+          {"tool_turn_speed", or_null(number(kPositive)), "rad/s", otherwise(d.tool_turn_speed),
+           "the same where the tool turns"},
+          {"joint_speed", of_joints(kPositive), "rad/s", in_words("`velocity` of the URDF"),
+           rate("speed")},
           {"joint_acceleration", of_joints(kPositive), "rad/s²",
-           in_words("the smaller of `acceleration` and `deceleration` of the URDF; else 10, with a warning"), rate("acceleration")},
-          {"joint_jerk", of_joints(kPositive), "rad/s³", in_words("`jerk` of the URDF; else 100, with a warning"), rate("jerk")},
+           in_words("the smaller of `acceleration` and `deceleration` of the URDF; else 10, with a "
+                    "warning"),
+           rate("acceleration")},
+          {"joint_jerk", of_joints(kPositive), "rad/s³",
+           in_words("`jerk` of the URDF; else 100, with a warning"), rate("jerk")},
       });
 }
 
 Schema cost() {
   return section(
-      "cost",
-      {
-          {"metric", one_of({"l2", "max", "time"}), "", otherwise("l2"),
-           "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v with the velocities of the URDF"},
-          {"weights", numbers(kDof, kNonNegative), "", in_words("1 each, that of a roll 0"),
-           "w, base to tip: each 0 or from 1e-6 to 1e6"},
-          {"roll", number(kNonNegative), "", otherwise(Cost().roll),
-           "per m of path and rad that the tool stands turned from where the waypoints have it: 0 or from 1e-6 to 1e6; with "
-           "`path.roll`"},
-      });
+      "cost", {
+                  {"metric", one_of({"l2", "max", "time"}), "", otherwise("l2"),
+                   "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v "
+                   "with the velocities of the URDF"},
+                  {"weights", numbers(kDof, kNonNegative), "", in_words("1 each, that of a roll 0"),
+                   "w, base to tip: each 0 or from 1e-6 to 1e6"},
+                  {"roll", number(kNonNegative), "", otherwise(Cost().roll),
+                   "per m of path and rad that the tool stands turned from where the waypoints "
+                   "have it: 0 or from 1e-6 to 1e6; with "
+                   "`path.roll`"},
+              });
 }
 
 Schema refine() {
   const Refinement d;
-  return section("refine", {
-                               {"smoothing", number(kNonNegative), "m", otherwise(d.smoothing),
-                                "how much the joints' bends weigh against the cost: the length over which a bend costs as much as "
-                                "a way of its size; 0: cost alone"},
-                               {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin),
-                                "kept from joint limits besides `limits.joint_margin`, as far as the path does before"},
-                               {"singular_margin", number(kNonNegative), "rad", otherwise(d.singular_margin),
-                                "kept from singular angles, as far as the path does before; of arms that are not S-R-S from where "
-                                "the outer axes of three that meet in a point line up"},
-                           });
+  return section(
+      "refine",
+      {
+          {"smoothing", number(kNonNegative), "m", otherwise(d.smoothing),
+           "how much the joints' bends weigh against the cost: the length over which a bend costs "
+           "as much as "
+           "a way of its size; 0: cost alone"},
+          {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin),
+           "kept from joint limits besides `limits.joint_margin`, as far as the path does before"},
+          {"singular_margin", number(kNonNegative), "rad", otherwise(d.singular_margin),
+           "kept from singular angles, as far as the path does before; of arms that are not S-R-S "
+           "from where "
+           "the outer axes of three that meet in a point line up"},
+      });
 }
 
 Schema vary() {
-  return list(
-      section("vary", {
-                          {"object", text(), "", required(), "the scene object that moves", "the name of a scene object"},
-                          {"xyz", numbers(3, kExtent), "m", otherwise("[0, 0, 0]"), "half-widths along the axes of `base_link`"},
-                          {"rpy", numbers(3, kNonNegative), "rad", otherwise("[0, 0, 0]"),
-                           "half-widths of turns about the object's own origin, about the axes of `base_link`"},
-                      }));
+  return list(section(
+      "vary",
+      {
+          {"object", text(), "", required(), "the scene object that moves",
+           "the name of a scene object"},
+          {"xyz", numbers(3, kExtent), "m", otherwise("[0, 0, 0]"),
+           "half-widths along the axes of `base_link`"},
+          {"rpy", numbers(3, kNonNegative), "rad", otherwise("[0, 0, 0]"),
+           "half-widths of turns about the object's own origin, about the axes of `base_link`"},
+      }));
 }
 
 }  // namespace
@@ -238,22 +290,26 @@ const Schema& problem_schema() {
   static const Schema schema = section(
       "problem",
       {
-          {"robot", robot(), "", required(), "the [robot](#robot)", "a section with urdf, base_link, tip_link"},
-          {"path", path(), "", required(), "the [path](#path) of the tool", "a section with waypoints or file"},
+          {"robot", robot(), "", required(), "the [robot](#robot)",
+           "a section with urdf, base_link, tip_link"},
+          {"path", path(), "", required(), "the [path](#path) of the tool",
+           "a section with waypoints or file"},
           {"scene", scene(), "", optional(), "the [bodies](#scene) that stand around"},
           {"resolution", resolution(), "", optional(), "how fine the [lattice](#resolution) is"},
           {"limits", limits(), "", optional(), "what is to be [kept](#limits)"},
           {"start",
            section("", {{"joints", numbers(kDof, kFinite), "rad", required(),
                          "base to tip; of six joints the roll of the tool is the seventh"}}),
-           "", in_words("Swivel chooses"), "`{joints: [...]}`, seven numbers (rad): the configuration at the first waypoint"},
+           "", in_words("Swivel chooses"),
+           "`{joints: [...]}`, seven numbers (rad): the configuration at the first waypoint"},
           {"start_at", or_null(number(kExtent)), "m", in_words("the beginning"),
            "where on the path the `start` stands, along the whole of it"},
-          {"start_tolerance", or_null(number(kStartTolerance)), "m, rad", otherwise(d.start_tolerance),
-           "how far from the path the tool may stand at the `start`"},
+          {"start_tolerance", or_null(number(kStartTolerance)), "m, rad",
+           otherwise(d.start_tolerance), "how far from the path the tool may stand at the `start`"},
           {"cost", cost(), "", optional(), "what is [summed](#cost) over the steps of the path"},
           {"refine", refine(), "", optional(), "what [refining](#refine) weighs and keeps"},
-          {"vary", vary(), "", optional(), "uniform random offsets of objects, for [campaigns](#vary)"},
+          {"vary", vary(), "", optional(),
+           "uniform random offsets of objects, for [campaigns](#vary)"},
       });
   return schema;
 }

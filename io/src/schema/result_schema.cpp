@@ -16,7 +16,8 @@ Schema::Key key(const char* name, Schema value, const char* meaning, const char*
 }
 
 /// One that some results do not have.
-Schema::Key key_of_some(const char* name, Schema value, const char* meaning, const char* unit = "") {
+Schema::Key key_of_some(const char* name, Schema value, const char* meaning,
+                        const char* unit = "") {
   return {name, std::move(value), unit, optional(), meaning};
 }
 
@@ -33,25 +34,35 @@ Schema cause() {
       "cause",
       {
           key("cause",
-              one_of({"reach", "singular", "limit", "manipulability", "pair", "contact", "arm_slope", "roll_slope", "joint_step",
-                      "speed", "path_error", "angle_error", "step_error", "check"}),
-              "`pair`: two bodies nearer than they must keep; `contact`: they touch; `check`: of the program that plans"),
+              one_of({"reach", "singular", "limit", "manipulability", "pair", "contact",
+                      "arm_slope", "roll_slope", "joint_step", "speed", "path_error", "angle_error",
+                      "step_error", "check"}),
+              "`pair`: two bodies nearer than they must keep; `contact`: they touch; `check`: of "
+              "the program that plans"),
           key("joint", or_null(text()), "of limits, steps and speeds; of `roll_slope` the roll"),
-          key("other_joints", boolean(), "every node has several joints beyond their limits, of which this is the furthest"),
+          key("other_joints", boolean(),
+              "every node has several joints beyond their limits, of which this is the furthest"),
           key("unwinds", boolean(),
-              "of `limit`: the joint can follow only beyond the end of its range, where it would have to unwind by a turn"),
+              "of `limit`: the joint can follow only beyond the end of its range, where it would "
+              "have to unwind by a turn"),
           key("side", or_null(side()), "of limits; of `reach`: too near or too far"),
           key("bodies", or_null(bodies()), "of pairs: their names"),
           key("between_layers", boolean(), "whether they meet on motions only"),
-          key("object", or_null(text()), "a scene object that several bodies come too near to; `bodies` is then one pair of them"),
+          key("object", or_null(text()),
+              "a scene object that several bodies come too near to; `bodies` is then one pair of "
+              "them"),
           key("check", or_null(text()), "its name"),
           key("by", or_null(number()),
-              "how much is missed at the node or motion that misses least; `null` where it was not measured", "`unit`"),
-          key("value", or_null(number()), "what was found there; of two bodies less than zero: how deep they are in each other",
+              "how much is missed at the node or motion that misses least; `null` where it was not "
+              "measured",
+              "`unit`"),
+          key("value", or_null(number()),
+              "what was found there; of two bodies less than zero: how deep they are in each other",
               "`unit`"),
           key("limit", or_null(number()), "what is asked for", "`unit`"),
           key("over", or_null(number()),
-              "of `roll_slope`: the length of path for which `limit` is allowed; of a pair that may be so deep in each other: the "
+              "of `roll_slope`: the length of path for which `limit` is allowed; of a pair that "
+              "may be so deep in each other: the "
               "depth "
               "that `allow` gives, of which `limit` leaves a part to motions between layers",
               "m"),
@@ -60,36 +71,45 @@ Schema cause() {
 }
 
 Schema held() {
-  return list(
-      section("", {key("joint", text(), "its name"), key("position", number(), "where it stands", "`unit`"),
-                   key("unit", one_of({"m", "rad"}), "of `position`"), key("given", boolean(), "whether `robot.hold` says so"),
-                   key("mimics", or_null(text()), "the joint that it follows, which stands still as well")}));
+  return list(section(
+      "",
+      {key("joint", text(), "its name"), key("position", number(), "where it stands", "`unit`"),
+       key("unit", one_of({"m", "rad"}), "of `position`"),
+       key("given", boolean(), "whether `robot.hold` says so"),
+       key("mimics", or_null(text()), "the joint that it follows, which stands still as well")}));
 }
 
 Schema summary() {
   const auto place = [] { return key("s", number(), "where on the path", "m"); };
-  return section("summary", {
-                                key("solved", boolean(), "whether there is a path"),
-                                key("clearance",
-                                    or_null(section("", {key("value", number(), "what is left", "m"),
-                                                         key("asked", number(), "what the pair must keep", "m"),
-                                                         key("bodies", bodies(), "the pair"), place()})),
-                                    "the pair that comes nearest to what it must keep: `value`, `asked`, `bodies`, `s`", "m"),
-                                key("joint_limit",
-                                    or_null(section("", {key("joint", text(), "its name"), key("side", side(), "which limit"),
-                                                         key("margin_deg", number(), "how far from it", "degrees"), place()})),
-                                    "the joint that comes nearest to a limit: `joint`, `side`, `margin_deg`, `s`", "degrees"),
-                                key("tool_path_error",
-                                    or_null(section("", {key("max_mm", number(), "the most", "mm"),
-                                                         key("allowed_mm", or_null(number()), "by the limits", "mm"), place()})),
-                                    "how far the tool leaves its path between layers: `max_mm`, `allowed_mm`, `s`", "mm"),
-                                key("top_tool_speed",
-                                    or_null(section("", {key("speed", number(), "of the tool", "m/s"),
-                                                         key("joint", text(), "which bounds it"), place()})),
-                                    "the highest constant speed of the tool at which no joint need exceed its own: `speed`, the "
-                                    "`joint` that bounds it, `s`",
-                                    "m/s"),
-                            });
+  return section(
+      "summary",
+      {
+          key("solved", boolean(), "whether there is a path"),
+          key("clearance",
+              or_null(section("", {key("value", number(), "what is left", "m"),
+                                   key("asked", number(), "what the pair must keep", "m"),
+                                   key("bodies", bodies(), "the pair"), place()})),
+              "the pair that comes nearest to what it must keep: `value`, `asked`, `bodies`, `s`",
+              "m"),
+          key("joint_limit",
+              or_null(section(
+                  "", {key("joint", text(), "its name"), key("side", side(), "which limit"),
+                       key("margin_deg", number(), "how far from it", "degrees"), place()})),
+              "the joint that comes nearest to a limit: `joint`, `side`, `margin_deg`, `s`",
+              "degrees"),
+          key("tool_path_error",
+              or_null(section(
+                  "", {key("max_mm", number(), "the most", "mm"),
+                       key("allowed_mm", or_null(number()), "by the limits", "mm"), place()})),
+              "how far the tool leaves its path between layers: `max_mm`, `allowed_mm`, `s`", "mm"),
+          key("top_tool_speed",
+              or_null(section("", {key("speed", number(), "of the tool", "m/s"),
+                                   key("joint", text(), "which bounds it"), place()})),
+              "the highest constant speed of the tool at which no joint need exceed its own: "
+              "`speed`, the "
+              "`joint` that bounds it, `s`",
+              "m/s"),
+      });
 }
 
 Schema lattice() {
@@ -99,31 +119,36 @@ Schema lattice() {
           key("layers", integer(), "along the path"),
           key_of_some("phi", integer(), "arm angles, of S-R-S arms"),
           key_of_some("branches", integer(), "of solutions at one arm angle, of S-R-S arms"),
-          key_of_some("windings", integer(), "images of joints with more than a turn, of S-R-S arms"),
+          key_of_some("windings", integer(),
+                      "images of joints with more than a turn, of S-R-S arms"),
           key_of_some("window", integer(), "steps of arm angle between neighbours, of S-R-S arms"),
-          key_of_some("rolls", integer(), "of S-R-S arms with `path.roll`: turns of the tool that are told apart"),
+          key_of_some("rolls", integer(),
+                      "of S-R-S arms with `path.roll`: turns of the tool that are told apart"),
           key_of_some("arcs", integer(), "of self-motion, in all layers, of other arms"),
           key("nodes", integer(), "in all layers"),
           key("merged_waypoints", integer(), "equal neighbours"),
           key("cost", or_null(number()),
-              "what the search minimised: before `--refine`, and of the fitted arm's nodes where the arm is not exactly S-R-S"),
+              "what the search minimised: before `--refine`, and of the fitted arm's nodes where "
+              "the arm is not exactly S-R-S"),
           key_of_some("method", text(), "how solutions are found"),
-          key("complete", boolean(), "whether all solutions are known; else \"no path\" means \"none found\""),
+          key("complete", boolean(),
+              "whether all solutions are known; else \"no path\" means \"none found\""),
       });
 }
 
 Schema counters() {
-  return section("counters", {
-                                 key("ik_nodes", integer(), "nodes solved"),
-                                 key("edges", integer(), "candidates compared"),
-                                 key("nodes_checked", integer(), "nodes tested for collision"),
-                                 key("edges_checked", integer(), "edges tested for collision or path error"),
-                                 key("fcl_calls", integer(), "asked of FCL"),
-                                 key("certified_free", integer(), "proved free without FCL"),
-                                 key("certified_colliding", integer(), "proved colliding without FCL"),
-                                 key("expansions", integer(), "of the search"),
-                                 key("iterations", integer(), "best paths validated"),
-                             });
+  return section("counters",
+                 {
+                     key("ik_nodes", integer(), "nodes solved"),
+                     key("edges", integer(), "candidates compared"),
+                     key("nodes_checked", integer(), "nodes tested for collision"),
+                     key("edges_checked", integer(), "edges tested for collision or path error"),
+                     key("fcl_calls", integer(), "asked of FCL"),
+                     key("certified_free", integer(), "proved free without FCL"),
+                     key("certified_colliding", integer(), "proved colliding without FCL"),
+                     key("expansions", integer(), "of the search"),
+                     key("iterations", integer(), "best paths validated"),
+                 });
 }
 
 Schema time_ms() {
@@ -142,171 +167,218 @@ Schema diagnosis() {
   return section(
       "diagnosis",
       {
-          key("reached_layer", or_null(integer()), "the furthest that a valid path comes; `null` where the first layer is empty"),
+          key("reached_layer", or_null(integer()),
+              "the furthest that a valid path comes; `null` where the first layer is empty"),
           key("reached_s", or_null(number()), "the same along the path", "m"),
           key("reason", text(),
-              "what ends every path, in words, as in a campaign's CSV; `not known: time was up` where time ran out before it was "
+              "what ends every path, in words, as in a campaign's CSV; `not known: time was up` "
+              "where time ran out before it was "
               "found"),
-          key("cause", cause(), "the same as values, [below](#cause); `null` where it is not known"),
+          key("cause", cause(),
+              "the same as values, [below](#cause); `null` where it is not known"),
           key("at_s", or_null(number()), "s of the layer past the furthest one", "m"),
-          key("waypoints", list(or_null(integer()), 2), "rows of the path, from 0, before and after it"),
+          key("waypoints", list(or_null(integer()), 2),
+              "rows of the path, from 0, before and after it"),
           key("without_it", or_null(integer()),
-              "a layer that paths reach if this one thing is removed: at least a twentieth of the path further, or its end; `null` "
+              "a layer that paths reach if this one thing is removed: at least a twentieth of the "
+              "path further, or its end; `null` "
               "where "
               "no single thing was found that does"),
           key("without_it_s", or_null(number()), "the same along the path", "m"),
-          key("together", list(cause()), "causes that must go besides, where no single thing helps"),
+          key("together", list(cause()),
+              "causes that must go besides, where no single thing helps"),
           key("empty_layers",
-              list(section("", {key("layers", two_layers(), "first and last"), key("s", numbers(2), "of these", "m"),
-                                key("waypoints", or_null(two_layers()), "of these; `null` where there is no waypoint"),
+              list(section("", {key("layers", two_layers(), "first and last"),
+                                key("s", numbers(2), "of these", "m"),
+                                key("waypoints", or_null(two_layers()),
+                                    "of these; `null` where there is no waypoint"),
                                 key("reason", text(), "why they are empty, in words"),
                                 key("cause", cause(), "at the layer that misses least"),
-                                key("most", or_null(number()), "the most that one misses by", "of the cause")})),
-              "runs of layers without a valid node: `layers`, `s` and `waypoints` (first and last; `null` where there is no "
+                                key("most", or_null(number()), "the most that one misses by",
+                                    "of the cause")})),
+              "runs of layers without a valid node: `layers`, `s` and `waypoints` (first and last; "
+              "`null` where there is no "
               "waypoint), "
-              "`reason`, `cause` (at the layer that misses least), `most` (the most that one misses by)"),
-          key("removed", map(integer()), "reason → nodes and edges removed just past the furthest layer"),
+              "`reason`, `cause` (at the layer that misses least), `most` (the most that one "
+              "misses by)"),
+          key("removed", map(integer()),
+              "reason → nodes and edges removed just past the furthest layer"),
           key("holds", one_of({"this_resolution", "exact_tool", "every_resolution"}),
-              "how far \"no path\" goes: at this resolution; `exact_tool`: at any resolution with which a layer lies there; at "
+              "how far \"no path\" goes: at this resolution; `exact_tool`: at any resolution with "
+              "which a layer lies there; at "
               "every resolution"),
           key("unreachable",
-              or_null(section("", {key("layer", integer(), "its number"), key("s", number(), "along the path", "m"),
-                                   key("waypoint", or_null(integer()), "`null` between waypoints")})),
-              "why more than this resolution: a layer whose pose no joints within their limits reach, at any arm angle (`layer`, "
+              or_null(section(
+                  "",
+                  {key("layer", integer(), "its number"), key("s", number(), "along the path", "m"),
+                   key("waypoint", or_null(integer()), "`null` between waypoints")})),
+              "why more than this resolution: a layer whose pose no joints within their limits "
+              "reach, at any arm angle (`layer`, "
               "`s`, "
-              "`waypoint`, `null` between waypoints); `null` where none is proved, as of all arms that are not exactly S-R-S"),
+              "`waypoint`, `null` between waypoints); `null` where none is proved, as of all arms "
+              "that are not exactly S-R-S"),
           key("complete", boolean(),
-              "false where time ran out, or where the layers past the furthest would have taken more than about a second to look "
+              "false where time ran out, or where the layers past the furthest would have taken "
+              "more than about a second to look "
               "at"),
-          key("layers_known", integer(), "of so many layers, from the first on, it is known whether they are empty"),
+          key("layers_known", integer(),
+              "of so many layers, from the first on, it is known whether they are empty"),
       });
 }
 
 Schema refinement() {
-  return section("refinement",
-                 {
-                     key("refined", boolean(), "whether the path is another than the lattice's"),
-                     key("reason", or_null(text()), "why not; `stopped` where the time was up"),
-                     key("cost_before", number(), "of the lattice's path"),
-                     key("cost", number(), "of the refined one; never more"),
-                     key("bend_before", number(), "`bend` of the lattice's path", "rad/m²"),
-                     key("bend", number(),
-                         "the largest second divided difference of the joints over the tool's travel; times the square of "
-                         "the tool's speed it is acceleration",
-                         "rad/m²"),
-                     key("rounds", integer(), "of optimising and asking"),
-                     key("nodes_asked", integer(), "whether they are valid"),
-                     key("edges_asked", integer(), "whether they are valid"),
-                     key("second_seed", boolean(), "it was found from a lattice coarse along the path"),
-                 });
+  return section(
+      "refinement",
+      {
+          key("refined", boolean(), "whether the path is another than the lattice's"),
+          key("reason", or_null(text()), "why not; `stopped` where the time was up"),
+          key("cost_before", number(), "of the lattice's path"),
+          key("cost", number(), "of the refined one; never more"),
+          key("bend_before", number(), "`bend` of the lattice's path", "rad/m²"),
+          key("bend", number(),
+              "the largest second divided difference of the joints over the tool's travel; times "
+              "the square of "
+              "the tool's speed it is acceleration",
+              "rad/m²"),
+          key("rounds", integer(), "of optimising and asking"),
+          key("nodes_asked", integer(), "whether they are valid"),
+          key("edges_asked", integer(), "whether they are valid"),
+          key("second_seed", boolean(), "it was found from a lattice coarse along the path"),
+      });
 }
 
 Schema motion() {
   const auto peaks = [] {
-    return list(section("", {key("joint", text(), "its name"), key("ratio", number(), "of what it can do"),
-                             key("t", number(), "when", "s"), key("s", number(), "where", "m")}));
+    return list(
+        section("", {key("joint", text(), "its name"), key("ratio", number(), "of what it can do"),
+                     key("t", number(), "when", "s"), key("s", number(), "where", "m")}));
   };
   return section(
       "motion",
       {
-          key("executable", boolean(), "whether there is one; else the keys from `samples` on are missing"),
-          key("reason", or_null(text()), "why there is none (`stopped` where the time was up, which is exit code 3, else 1)"),
+          key("executable", boolean(),
+              "whether there is one; else the keys from `samples` on are missing"),
+          key("reason", or_null(text()),
+              "why there is none (`stopped` where the time was up, which is exit code 3, else 1)"),
           key("at_s", or_null(number()), "where", "m"),
           key("speed", number(), "asked for", "m/s"),
           key("turn_speed", or_null(number()), "asked for", "rad/s"),
           key("rate", number(), "samples a second", "1/s"),
-          key("chord", or_null(number()), "asked for: how far the tool may leave its path between samples", "m"),
+          key("chord", or_null(number()),
+              "asked for: how far the tool may leave its path between samples", "m"),
           key_of_some("samples", integer(), "rows"),
           key_of_some("duration", number(), "until the tool rests at the end", "s"),
-          key_of_some("ideal", number(), "the same at the speed asked for throughout, less where `chord` asks for less", "s"),
+          key_of_some(
+              "ideal", number(),
+              "the same at the speed asked for throughout, less where `chord` asks for less", "s"),
           key_of_some("peaks",
-                      section("", {key("speed", peaks(), "of each joint"), key("acceleration", peaks(), "of each joint"),
+                      section("", {key("speed", peaks(), "of each joint"),
+                                   key("acceleration", peaks(), "of each joint"),
                                    key("jerk", peaks(), "of each joint")}),
-                      "`speed`, `acceleration`, `jerk`: for each joint the largest difference between samples over what it can do, "
+                      "`speed`, `acceleration`, `jerk`: for each joint the largest difference "
+                      "between samples over what it can do, "
                       "`ratio`, "
                       "with `t` and `s`"),
           key_of_some(
               "slow",
-              list(section("", {key("s", numbers(2), "from, to", "m"), key("t", numbers(2), "from, to", "s"),
-                                key("share", number(), "of the speed at its slowest"), key("joint", text(), "which bounds it"),
-                                key("reason", one_of({"speed", "acceleration", "jerk"}), "which of its rates"),
-                                key("singular", or_null(one_of({"shoulder", "elbow", "wrist"})), "what is nearly singular"),
-                                key("singular_angle_deg", or_null(number()), "how nearly", "degrees")})),
-              "stretches below the speed asked for, starting and stopping aside: `s` and `t` (from, to), `share` of the speed at "
-              "its slowest, the `joint` and which of its rates is the `reason`; `singular` (shoulder, elbow, wrist) with "
+              list(section(
+                  "",
+                  {key("s", numbers(2), "from, to", "m"), key("t", numbers(2), "from, to", "s"),
+                   key("share", number(), "of the speed at its slowest"),
+                   key("joint", text(), "which bounds it"),
+                   key("reason", one_of({"speed", "acceleration", "jerk"}), "which of its rates"),
+                   key("singular", or_null(one_of({"shoulder", "elbow", "wrist"})),
+                       "what is nearly singular"),
+                   key("singular_angle_deg", or_null(number()), "how nearly", "degrees")})),
+              "stretches below the speed asked for, starting and stopping aside: `s` and `t` "
+              "(from, to), `share` of the speed at "
+              "its slowest, the `joint` and which of its rates is the `reason`; `singular` "
+              "(shoulder, elbow, wrist) with "
               "`singular_angle_deg` where one is within 0.3 rad of being singular, else `null`"),
-          key_of_some(
-              "corners",
-              section("", {key("rounded", integer(), "how many"), key("position", number(), "the most", "m"),
-                           key("angle", number(), "the most", "rad"),
-                           key("stops",
-                               list(section("", {key("waypoint", or_null(integer()), "row of the path, from 0"),
-                                                 key("s", number(), "where", "m"), key("t", number(), "when", "s")})),
-                               "where the tool must rest")}),
-              "how many are `rounded` and by how much the curve leaves the polyline there (`position`, m, `angle`, rad); `stops` "
-              "(`waypoint`, `s`, `t`) where the tool must rest"),
-          key_of_some(
-              "between_samples",
-              section("", {key("position", number(), "the most", "m"), key("angle", number(), "the most", "rad")}),
-              "how far the tool leaves its path where joints move straight from sample to sample: `position`, m, `angle`, rad"),
-          key_of_some(
-              "warnings", list(text()),
-              "rates that were assumed since neither URDF nor problem states them, and whether they decide how long the motion "
-              "takes; "
-              "speeds asked for above `limits.tool_speed` or `limits.tool_turn_speed`, which are kept; a `rate` that is low "
-              "for the path"),
+          key_of_some("corners",
+                      section("", {key("rounded", integer(), "how many"),
+                                   key("position", number(), "the most", "m"),
+                                   key("angle", number(), "the most", "rad"),
+                                   key("stops",
+                                       list(section("", {key("waypoint", or_null(integer()),
+                                                             "row of the path, from 0"),
+                                                         key("s", number(), "where", "m"),
+                                                         key("t", number(), "when", "s")})),
+                                       "where the tool must rest")}),
+                      "how many are `rounded` and by how much the curve leaves the polyline there "
+                      "(`position`, m, `angle`, rad); `stops` "
+                      "(`waypoint`, `s`, `t`) where the tool must rest"),
+          key_of_some("between_samples",
+                      section("", {key("position", number(), "the most", "m"),
+                                   key("angle", number(), "the most", "rad")}),
+                      "how far the tool leaves its path where joints move straight from sample to "
+                      "sample: `position`, m, `angle`, rad"),
+          key_of_some("warnings", list(text()),
+                      "rates that were assumed since neither URDF nor problem states them, and "
+                      "whether they decide how long the motion "
+                      "takes; "
+                      "speeds asked for above `limits.tool_speed` or `limits.tool_turn_speed`, "
+                      "which are kept; a `rate` that is low "
+                      "for the path"),
       });
 }
 
 Schema advice() {
   return list(
-      section("advice", {
-                            key("change", text(),
-                                "`free_start`, `free_roll` (no bounds of `path.roll`), `finer` (half the steps of the lattice), "
-                                "the name of a limit, `allow` (all depths that the object's `allow` gives, by one factor), "
-                                "`move_object`, `without_object`"),
-                            key("words", text(), "the change in a phrase"),
-                            key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
-                            key("from", or_null(number()), "of limits and `allow`: what it is"),
-                            key("to", or_null(number()), "of limits and `allow`: what was tried"),
-                            key("offset", or_null(numbers(3)), "of `move_object`, base frame; zeros where no way helps", "m"),
-                            key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
-                                "`further`: paths come further; `unknown`: no time left"),
-                            key("cost", or_null(number()), "of `solved`"),
-                            key("reached_s", or_null(number()), "how far paths come", "m"),
-                        }));
+      section("advice",
+              {
+                  key("change", text(),
+                      "`free_start`, `free_roll` (no bounds of `path.roll`), `finer` (half the "
+                      "steps of the lattice), "
+                      "the name of a limit, `allow` (all depths that the object's `allow` gives, "
+                      "by one factor), "
+                      "`move_object`, `without_object`"),
+                  key("words", text(), "the change in a phrase"),
+                  key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
+                  key("from", or_null(number()), "of limits and `allow`: what it is"),
+                  key("to", or_null(number()), "of limits and `allow`: what was tried"),
+                  key("offset", or_null(numbers(3)),
+                      "of `move_object`, base frame; zeros where no way helps", "m"),
+                  key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
+                      "`further`: paths come further; `unknown`: no time left"),
+                  key("cost", or_null(number()), "of `solved`"),
+                  key("reached_s", or_null(number()), "how far paths come", "m"),
+              }));
 }
 
 Schema certificate() {
-  return section(
-      "certificate",
-      {
-          key("layers", list(integer(), 2), "first and last that nothing leads through"),
-          key("reached", integer(), "nodes that paths reach"),
-          key("removed",
-              list(section("", {key("reason", text(), "in words"), key("cause", cause(), "as values"),
-                                key("nodes", integer(), "that it removes"), key("edges", integer(), "that it removes")})),
-              "for each witness `reason`, `cause`, how many `nodes` and `edges`"),
-          key("bytes", integer(), "of the [file](#certificate-json)"),
-      });
+  return section("certificate",
+                 {
+                     key("layers", list(integer(), 2), "first and last that nothing leads through"),
+                     key("reached", integer(), "nodes that paths reach"),
+                     key("removed",
+                         list(section("", {key("reason", text(), "in words"),
+                                           key("cause", cause(), "as values"),
+                                           key("nodes", integer(), "that it removes"),
+                                           key("edges", integer(), "that it removes")})),
+                         "for each witness `reason`, `cause`, how many `nodes` and `edges`"),
+                     key("bytes", integer(), "of the [file](#certificate-json)"),
+                 });
 }
 
 Schema rows() {
-  return list(
-      section("", {key("s", number(), "along the path", "m"), key("phi", number(), "as in the [CSV](#trajectory-csv)", "rad"),
-                   key("branch", integer(), "as in the CSV"), key("joints", numbers(kDof), "base to tip", "rad"),
-                   key_of_some("roll", number(), "as in the CSV, where the tool stands turned", "rad")}));
+  return list(section(
+      "", {key("s", number(), "along the path", "m"),
+           key("phi", number(), "as in the [CSV](#trajectory-csv)", "rad"),
+           key("branch", integer(), "as in the CSV"),
+           key("joints", numbers(kDof), "base to tip", "rad"),
+           key_of_some("roll", number(), "as in the CSV, where the tool stands turned", "rad")}));
 }
 
 Schema robot_pairs() {
-  return section(
-      "", {key("dropped", list(section("", {key("bodies", bodies(), "their names")})),
-               "touch in every sampled posture, not kept apart"),
-           key("reduced",
-               list(section(
-                   "", {key("bodies", bodies(), "their names"), key("median", number(), "clearance over samples", "m"),
-                        key("clearance", number(), "kept at layers", "m"), key("edge_clearance", number(), "kept between", "m")})),
-               "near by design")});
+  return section("", {key("dropped", list(section("", {key("bodies", bodies(), "their names")})),
+                          "touch in every sampled posture, not kept apart"),
+                      key("reduced",
+                          list(section("", {key("bodies", bodies(), "their names"),
+                                            key("median", number(), "clearance over samples", "m"),
+                                            key("clearance", number(), "kept at layers", "m"),
+                                            key("edge_clearance", number(), "kept between", "m")})),
+                          "near by design")});
 }
 
 Schema plan_result() {
@@ -316,11 +388,14 @@ Schema plan_result() {
           key("schema_version", integer(kResultVersions),
               "1; it rises when a key goes or changes its meaning, not when one is new"),
           key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}),
-              "or `error`, where the program failed: then there is `message` besides, and nothing else"),
+              "or `error`, where the program failed: then there is `message` besides, and nothing "
+              "else"),
           key("summary", summary(), "the answer at a glance, [below](#summary)"),
-          key("cost", or_null(number()), "of the trajectory's rows; like all that describes one, `null` unless solved"),
+          key("cost", or_null(number()),
+              "of the trajectory's rows; like all that describes one, `null` unless solved"),
           key("checked", or_null(boolean()),
-              "whether the trajectory, and the motion that was made of it, passed what `check` asks; `false` with `--no-check`. "
+              "whether the trajectory, and the motion that was made of it, passed what `check` "
+              "asks; `false` with `--no-check`. "
               "One that "
               "does not pass is an internal error, exit code 5, and nothing is written"),
           key("planner", text(), "which of the planners"),
@@ -332,47 +407,63 @@ Schema plan_result() {
               section("", {key("mean", or_null(number()), "over the steps", "mm"),
                            key("max", or_null(number()), "over the steps", "mm")}),
               "`mean`, `max` between layers", "mm"),
-          key("min_clearance", or_null(number()), "least over the rows; `null` too where nothing is near", "m"),
+          key("min_clearance", or_null(number()),
+              "least over the rows; `null` too where nothing is near", "m"),
           key("min_margin",
-              or_null(
-                  section("", {key("margin", number(), "what is left of it", "m"), key("clearance", number(), "of the pair", "m"),
-                               key("required", number(), "what it must keep", "m"), key("bodies", bodies(), "their names"),
-                               key("row", integer(), "of the trajectory, from 0")})),
-              "the row and pair that come nearest to what the pair must keep: `margin`, `clearance`, `required`, `bodies`, `row`",
+              or_null(section("", {key("margin", number(), "what is left of it", "m"),
+                                   key("clearance", number(), "of the pair", "m"),
+                                   key("required", number(), "what it must keep", "m"),
+                                   key("bodies", bodies(), "their names"),
+                                   key("row", integer(), "of the trajectory, from 0")})),
+              "the row and pair that come nearest to what the pair must keep: `margin`, "
+              "`clearance`, `required`, `bodies`, `row`",
               "m"),
           key("deepest_contact",
-              or_null(
-                  section("", {key("depth", number(), "found at a row or between two: the bodies are at least so deep", "m"),
-                               key("at_most", or_null(number()),
-                                   "proved for all rows and moves between them; `null` where a pair is of two meshes, or of one "
-                                   "that is not closed",
-                                   "m"),
-                               key("allowed", or_null(number()), "the depth that `allow` gives; `null`: however deep", "m"),
-                               key("bodies", bodies(), "their names"),
-                               key("row", integer(), "of the trajectory, from 0: at it, or on the way to the next")})),
-              "the deepest [contact](model.md#contact) of bodies that a scene object's `allow` names: `depth`, `at_most`, "
+              or_null(section(
+                  "", {key("depth", number(),
+                           "found at a row or between two: the bodies are at least so deep", "m"),
+                       key("at_most", or_null(number()),
+                           "proved for all rows and moves between them; `null` where a pair is of "
+                           "two meshes, or of one "
+                           "that is not closed",
+                           "m"),
+                       key("allowed", or_null(number()),
+                           "the depth that `allow` gives; `null`: however deep", "m"),
+                       key("bodies", bodies(), "their names"),
+                       key("row", integer(),
+                           "of the trajectory, from 0: at it, or on the way to the next")})),
+              "the deepest [contact](model.md#contact) of bodies that a scene object's `allow` "
+              "names: `depth`, `at_most`, "
               "`allowed`, "
               "`bodies`, `row`; `null` where none was found to touch",
               "m"),
           key("min_manipulability", or_null(number()), "least over the rows"),
           key("arm_angle", list(or_null(number())), "conventional arm angle of each row", "rad"),
-          key("refinement", or_null(refinement()), "`null` without `--refine`; [below](#refinement)"),
-          key("motion", or_null(motion()), "`null` without `--speed`; [below](#motion-in-the-result)"),
+          key("refinement", or_null(refinement()),
+              "`null` without `--refine`; [below](#refinement)"),
+          key("motion", or_null(motion()),
+              "`null` without `--speed`; [below](#motion-in-the-result)"),
           key("diagnosis", or_null(diagnosis()), "`null` unless infeasible; [below](#diagnosis)"),
           key("advice", or_null(advice()),
-              "with `--advise`, of problems that have no path; else `null`: what was tried, what helps first, [below](#advice)"),
+              "with `--advise`, of problems that have no path; else `null`: what was tried, what "
+              "helps first, [below](#advice)"),
           key("certificate", or_null(certificate()),
-              "with `--certificate`, of problems that have no path; else `null`; [below](#certificate)"),
+              "with `--certificate`, of problems that have no path; else `null`; "
+              "[below](#certificate)"),
           key("trajectory", rows(), "rows of `s`, `phi`, `branch`, `joints`"),
           key("partial", rows(),
-              "where there is no answer: the same rows from the first on, as far as they are known to be valid; maybe none"),
+              "where there is no answer: the same rows from the first on, as far as they are known "
+              "to be valid; maybe none"),
           key("robot_pairs", robot_pairs(),
-              "`dropped`: pairs that touch in every sampled posture, not kept apart; `reduced`: pairs near by design, with "
+              "`dropped`: pairs that touch in every sampled posture, not kept apart; `reduced`: "
+              "pairs near by design, with "
               "`median`, "
               "`clearance`, `edge_clearance` (m); `info PROBLEM --pairs` lists all"),
           key("held", held(),
-              "joints between base and tip that move and are not planned: `joint`, `position` (`unit`), whether `robot.hold` has "
-              "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said with them there"),
+              "joints between base and tip that move and are not planned: `joint`, `position` "
+              "(`unit`), whether `robot.hold` has "
+              "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said "
+              "with them there"),
           key("warnings", list(text()), "e.g. open meshes, merged waypoints"),
           key("joint_names", list(text(), kDof), "base to tip"),
       });
@@ -380,27 +471,33 @@ Schema plan_result() {
 
 Schema campaign_summary() {
   const auto spread = [] {
-    return section("", {key("median", number(), "half of them are below"), key("p5", number(), "5 % are below"),
-                        key("p95", number(), "5 % are above")});
+    return section("",
+                   {key("median", number(), "half of them are below"),
+                    key("p5", number(), "5 % are below"), key("p95", number(), "5 % are above")});
   };
-  return section("campaign",
-                 {
-                     key("schema_version", integer(kResultVersions), "1, as of [results](#result-json)"),
-                     key("episodes", integer(), "of this shard"),
-                     key("answered", integer(), "of these: the others were not planned when the campaign was stopped"),
-                     key("solved", integer(), "with a path"),
-                     key("infeasible", integer(), "without a path"),
-                     key("errors", integer(), "with an internal error"),
-                     key("plan_ms", spread(), "finding the answer: `median`, `p5`, `p95` over the episodes answered", "ms"),
-                     key("nodes_checked", spread(), "the same of this counter"),
-                     key("fcl_calls", spread(), "the same of this counter"),
-                     key("held", held(), "joints between base and tip that are not planned, as of [results](#result-json)"),
-                 });
+  return section(
+      "campaign",
+      {
+          key("schema_version", integer(kResultVersions), "1, as of [results](#result-json)"),
+          key("episodes", integer(), "of this shard"),
+          key("answered", integer(),
+              "of these: the others were not planned when the campaign was stopped"),
+          key("solved", integer(), "with a path"),
+          key("infeasible", integer(), "without a path"),
+          key("errors", integer(), "with an internal error"),
+          key("plan_ms", spread(),
+              "finding the answer: `median`, `p5`, `p95` over the episodes answered", "ms"),
+          key("nodes_checked", spread(), "the same of this counter"),
+          key("fcl_calls", spread(), "the same of this counter"),
+          key("held", held(),
+              "joints between base and tip that are not planned, as of [results](#result-json)"),
+      });
 }
 
 Schema error_result() {
-  return section("", {key("schema_version", integer(kResultVersions), "as of other results"),
-                      key("status", one_of({"error"}), "it failed"), key("message", text(), "why")});
+  return section("",
+                 {key("schema_version", integer(kResultVersions), "as of other results"),
+                  key("status", one_of({"error"}), "it failed"), key("message", text(), "why")});
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ const Schema& Schema::as(Type wanted) const {
 }
 
 const Schema::Key* Schema::find(const std::string& key) const {
-  const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& one) { return one.name == key; });
+  const auto found =
+      std::find_if(keys.begin(), keys.end(), [&](const Key& one) { return one.name == key; });
   return found == keys.end() ? nullptr : &*found;
 }
 
@@ -78,7 +79,8 @@ Schema map(Schema item) {
   return schema;
 }
 
-Schema section(std::string name, std::vector<Schema::Key> keys, std::vector<Schema::Choice> choices) {
+Schema section(std::string name, std::vector<Schema::Key> keys,
+               std::vector<Schema::Choice> choices) {
   Schema schema{Schema::Type::kSection};
   schema.name = std::move(name);
   schema.keys = std::move(keys);

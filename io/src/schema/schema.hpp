@@ -18,7 +18,8 @@ namespace swivel::io {
 /// A range of allowed numbers.
 struct Range {
   const char* allowed;  ///< completes "allowed is ..."
-  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+  double least = -std::numeric_limits<double>::infinity(),
+         most = std::numeric_limits<double>::infinity();
   bool above_least = false;  ///< `least` itself is not allowed
   /// Returns true if the value is finite and within the range.
   [[nodiscard]] bool has(double value) const;
@@ -26,7 +27,8 @@ struct Range {
 
 inline constexpr Range kFinite{"a finite number"};
 inline constexpr Range kNonNegative{"a finite number >= 0", 0};
-inline constexpr Range kPositive{"a finite number > 0", 0, std::numeric_limits<double>::infinity(), true};
+inline constexpr Range kPositive{"a finite number > 0", 0, std::numeric_limits<double>::infinity(),
+                                 true};
 inline constexpr Range kCoordinate{"a number from -1000 to 1000", -kMostMetres, kMostMetres};  // m
 inline constexpr Range kExtent{"a number >= 0, at most 1000", 0, kMostMetres};                 // m
 inline constexpr Range kLength{kLengthAllowed, 0, kMostMetres, true};                          // m
@@ -103,7 +105,8 @@ struct Schema::Key {
 /// Returns the schema of a map with free keys, whose values are items.
 [[nodiscard]] Schema map(Schema item);
 /// Returns the schema of a section with these keys; `name` is that of its table, or empty.
-[[nodiscard]] Schema section(std::string name, std::vector<Schema::Key> keys, std::vector<Schema::Choice> choices = {});
+[[nodiscard]] Schema section(std::string name, std::vector<Schema::Key> keys,
+                             std::vector<Schema::Choice> choices = {});
 /// Returns the schema with null allowed as well.
 [[nodiscard]] Schema or_null(Schema schema);
 /// Returns the first schema with the second allowed instead.

@@ -24,7 +24,8 @@ Json json_of(const Schema& schema, Absent absent);
 
 Json number_json(const char* type, const Range& range) {
   Json json = {{"type", type}};
-  if (std::isfinite(range.least)) json[range.above_least ? "exclusiveMinimum" : "minimum"] = range.least;
+  if (std::isfinite(range.least))
+    json[range.above_least ? "exclusiveMinimum" : "minimum"] = range.least;
   if (std::isfinite(range.most)) json["maximum"] = range.most;
   return json;
 }
@@ -45,17 +46,19 @@ Json section_json(const Schema& schema, Absent absent) {
   Json properties = Json::object(), required = Json::array(), choices = Json::array();
   for (const Schema::Key& key : schema.keys) {
     Schema value = key.value;
-    const bool holds_more =
-        value.type == Type::kText || value.type == Type::kList || value.type == Type::kMap || value.type == Type::kSection;
+    const bool holds_more = value.type == Type::kText || value.type == Type::kList ||
+                            value.type == Type::kMap || value.type == Type::kSection;
     if (absent == Absent::kMayBeNull && !key.presence.required && holds_more) value.nullable = true;
     Json property = json_of(value, absent);
     property["description"] = key.meaning;
     if (!key.unit.empty()) property["x-unit"] = key.unit;
-    if (!key.presence.fallback.empty() && !key.presence.in_words) property["default"] = literal(value, key.presence.fallback);
+    if (!key.presence.fallback.empty() && !key.presence.in_words)
+      property["default"] = literal(value, key.presence.fallback);
     if (key.presence.required) required.push_back(key.name);
     properties[key.name] = std::move(property);
   }
-  Json json = {{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+  Json json = {
+      {"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
   if (!required.empty()) json["required"] = std::move(required);
   for (const Schema::Choice& choice : schema.choices) choices.push_back(choice_json(choice));
   if (!choices.empty()) json["allOf"] = std::move(choices);
@@ -108,7 +111,8 @@ std::string document(const char* title, const Schema& schema, Absent absent) {
 std::string range_text(const Range& range) {
   std::string text;
   if (std::isfinite(range.least) && range.least == 0) text = range.above_least ? " > 0" : " ≥ 0";
-  if (range.most < kMostMetres) text += ", at most " + (range.most == kTwoPi ? "2π" : csv_number(range.most));
+  if (range.most < kMostMetres)
+    text += ", at most " + (range.most == kTwoPi ? "2π" : csv_number(range.most));
   return text;
 }
 
@@ -128,14 +132,17 @@ std::string value_text(const Schema& schema, const std::string& unit) {
       text = "text";
       break;
     case Type::kWord:
-      for (const std::string& word : schema.words) text += (text.empty() ? "`" : ", `") + word + "`";
+      for (const std::string& word : schema.words)
+        text += (text.empty() ? "`" : ", `") + word + "`";
       break;
     case Type::kMap:
     case Type::kSection:
       text = "map";
       break;
     case Type::kList:
-      text = schema.count > 0 ? std::to_string(schema.count) + " × " + value_text(schema.item.front(), unit) : "list";
+      text = schema.count > 0
+                 ? std::to_string(schema.count) + " × " + value_text(schema.item.front(), unit)
+                 : "list";
       break;
   }
   for (const Schema& other : schema.others) text += " or " + value_text(other, unit);
@@ -151,15 +158,16 @@ std::string presence_text(const Presence& presence) {
 
 /// Escapes `|`, which would end a cell.
 std::string cell(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.replace(at, 1, "\\|");
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
+    text.replace(at, 1, "\\|");
   return text;
 }
 
 /// Returns a Markdown table of keys, with a column of defaults for files that people write.
 std::string table(const std::string& name, const std::vector<Schema::Key>& keys, Absent absent) {
   const bool defaults = absent == Absent::kMayBeNull;
-  std::string text =
-      "<!-- schema " + name + " -->\n| key | value | " + (defaults ? "default | |\n|---|---|---|---|\n" : "|\n|---|---|---|\n");
+  std::string text = "<!-- schema " + name + " -->\n| key | value | " +
+                     (defaults ? "default | |\n|---|---|---|---|\n" : "|\n|---|---|---|\n");
   for (const Schema::Key& key : keys) {
     text += "| `" + key.name + "` | " + cell(value_text(key.value, key.unit)) + " | ";
     if (defaults) text += cell(presence_text(key.presence)) + " | ";
@@ -170,7 +178,8 @@ std::string table(const std::string& name, const std::vector<Schema::Key>& keys,
 
 /// Appends the tables of a schema and of the sections in it, each once, in the order in which they
 /// are met.
-void add_tables(const Schema& schema, Absent absent, std::set<std::string>& known, std::string& text) {
+void add_tables(const Schema& schema, Absent absent, std::set<std::string>& known,
+                std::string& text) {
   std::vector<Schema::Key> own;
   std::vector<std::pair<std::string, std::vector<Schema::Key>>> groups;
   for (const Schema::Key& key : schema.keys) {
@@ -181,7 +190,8 @@ void add_tables(const Schema& schema, Absent absent, std::set<std::string>& know
     if (groups.empty() || groups.back().first != key.group) groups.push_back({key.group, {}});
     groups.back().second.push_back(key);
   }
-  if (!schema.name.empty() && known.insert(schema.name).second) text += table(schema.name, own, absent);
+  if (!schema.name.empty() && known.insert(schema.name).second)
+    text += table(schema.name, own, absent);
   for (const auto& [name, keys] : groups)
     if (known.insert(name).second) text += table(name, keys, absent);
   for (const Schema::Key& key : schema.keys) add_tables(key.value, absent, known, text);
@@ -207,7 +217,8 @@ std::string schema_tables() {
   std::set<std::string> known;
   std::string text;
   add_tables(problem_schema(), Absent::kMayBeNull, known, text);
-  for (const Schema* const schema : {&trajectory_schema(), &motion_schema(), &result_schema(), &campaign_schema()})
+  for (const Schema* const schema :
+       {&trajectory_schema(), &motion_schema(), &result_schema(), &campaign_schema()})
     add_tables(*schema, Absent::kIsAbsent, known, text);
   return text;
 }

@@ -36,15 +36,21 @@ std::string shown(const YAML::Node& node) {
 /// only reads .inf and .nan here, which have none.
 std::optional<double> number_in(const YAML::Node& node) {
   if (!node.IsScalar()) return std::nullopt;
-  if (node.Scalar().find_first_of("0123456789") != std::string::npos) return to_number<double>(node.Scalar());
+  if (node.Scalar().find_first_of("0123456789") != std::string::npos)
+    return to_number<double>(node.Scalar());
   double value = 0;
   return YAML::convert<double>::decode(node, value) ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
 
-YamlValue::YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema, std::string key, int line)
-    : file_(std::move(file)), node_(std::move(node)), schema_(&schema), key_(std::move(key)), line_(line) {}
+YamlValue::YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema,
+                     std::string key, int line)
+    : file_(std::move(file)),
+      node_(std::move(node)),
+      schema_(&schema),
+      key_(std::move(key)),
+      line_(line) {}
 
 std::string YamlValue::where() const {
   return at_line(file_->name, line_) + (key_.empty() ? "" : ": " + key_);
@@ -78,7 +84,8 @@ Vector3d YamlValue::vector3() const {
 }
 
 std::string YamlValue::text() const {
-  if (!node_.IsScalar() || node_.Scalar().empty()) fail(shown(node_) + " is not a name", "a word or file name");
+  if (!node_.IsScalar() || node_.Scalar().empty())
+    fail(shown(node_) + " is not a name", "a word or file name");
   return node_.Scalar();
 }
 
@@ -98,7 +105,8 @@ std::size_t YamlValue::word() const {
 void YamlValue::count(std::size_t more) const {
   constexpr std::size_t kMostValues = 2'000'000;
   if ((file_->values += more) > kMostValues)
-    fail("too many values", "at most " + std::to_string(kMostValues) + " in a file, aliases counted each time");
+    fail("too many values",
+         "at most " + std::to_string(kMostValues) + " in a file, aliases counted each time");
 }
 
 std::vector<YamlValue> YamlValue::items() const {
@@ -108,7 +116,8 @@ std::vector<YamlValue> YamlValue::items() const {
   std::vector<YamlValue> values;
   for (const YAML::Node& item : node_) {
     const int line = item.Mark().line;
-    values.emplace_back(file_, item, schema, key_ + "[" + std::to_string(values.size()) + "]", line < 0 ? line_ : line + 1);
+    values.emplace_back(file_, item, schema, key_ + "[" + std::to_string(values.size()) + "]",
+                        line < 0 ? line_ : line + 1);
   }
   return values;
 }
@@ -143,12 +152,14 @@ YamlSection YamlValue::section() const {
   auto found = map([&](const std::string& name, const YamlValue& value) -> const Schema& {
     if (const Schema::Key* const key = schema.find(name)) return key->value;
     const std::vector<std::string> known = schema.key_names();
-    value.fail("unknown key, nearest known key is '" + nearest_name(name, known) + "'", "one of " + joined(known));
+    value.fail("unknown key, nearest known key is '" + nearest_name(name, known) + "'",
+               "one of " + joined(known));
   });
   return {*this, schema, std::move(found)};
 }
 
-YamlSection::YamlSection(YamlValue self, const Schema& schema, std::vector<std::pair<std::string, YamlValue>> entries)
+YamlSection::YamlSection(YamlValue self, const Schema& schema,
+                         std::vector<std::pair<std::string, YamlValue>> entries)
     : self_(std::move(self)), schema_(&schema), entries_(std::move(entries)) {}
 
 std::optional<YamlValue> YamlSection::find(const std::string& key) const {
@@ -166,7 +177,8 @@ std::optional<YamlValue> YamlSection::find_filled(const std::string& key) const 
 
 YamlValue YamlSection::require(const std::string& key) const {
   if (auto value = find_filled(key)) return *value;
-  bad_input(self_.where() + (self_.key().empty() ? ": " : ".") + key, "is missing", allowed_text(*schema_->find(key)));
+  bad_input(self_.where() + (self_.key().empty() ? ": " : ".") + key, "is missing",
+            allowed_text(*schema_->find(key)));
 }
 
 std::optional<std::pair<std::string, YamlValue>> YamlSection::chosen(const std::string& key) const {
@@ -191,10 +203,13 @@ class Ignored final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
   void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
   void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
   void OnMapEnd() override {}
 };
 
@@ -214,7 +229,8 @@ int documents_in(const std::string& text) {
 YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
   const std::string name = file.string();
   const std::string text = read_file(file, "YAML file", kMostYamlBytes);
-  if (const std::size_t first = text.find_first_not_of(" \t\r\n"); first != std::string::npos && text[first] == '<')
+  if (const std::size_t first = text.find_first_not_of(" \t\r\n");
+      first != std::string::npos && text[first] == '<')
     bad_input(name, "is XML, as a URDF is, and no problem file",
               "YAML with a robot and a path; `swivel info` describes the robot of a URDF");
   YAML::Node document;
@@ -223,10 +239,12 @@ YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
     documents = documents_in(text);
     if (documents == 1) document = YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    bad_input(at_line(name, error.mark.line + 1), "not YAML (" + error.msg + ")", "well-formed YAML");
+    bad_input(at_line(name, error.mark.line + 1), "not YAML (" + error.msg + ")",
+              "well-formed YAML");
   }
   if (documents != 1)
-    bad_input(name, documents == 0 ? "holds no YAML document" : "holds more than one YAML document", "one document");
+    bad_input(name, documents == 0 ? "holds no YAML document" : "holds more than one YAML document",
+              "one document");
   return {std::make_shared<YamlFile>(YamlFile{name}), document, schema, "", 1};
 }
 

@@ -28,7 +28,8 @@ struct YamlFile {
 /// A YAML value with its place in the file and its schema.
 class YamlValue {
  public:
-  YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema, std::string key, int line);
+  YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema, std::string key,
+            int line);
 
   [[nodiscard]] bool is_null() const { return node_.IsNull(); }
   [[nodiscard]] bool is_map() const { return node_.IsMap(); }
@@ -73,7 +74,8 @@ class YamlValue {
 /// A YAML map whose keys the schema lists.
 class YamlSection {
  public:
-  YamlSection(YamlValue self, const Schema& schema, std::vector<std::pair<std::string, YamlValue>> entries);
+  YamlSection(YamlValue self, const Schema& schema,
+              std::vector<std::pair<std::string, YamlValue>> entries);
 
   [[nodiscard]] const YamlValue& self() const { return self_; }
   /// Returns the value of a key, null values included; none if the key is missing. The schema must
@@ -87,7 +89,8 @@ class YamlSection {
   [[nodiscard]] YamlValue require(const std::string& key) const;
   /// Returns the name and value of the one key that is given among `key` and those that exclude it.
   /// Throws InputError if two are given, or none and the schema requires one.
-  [[nodiscard]] std::optional<std::pair<std::string, YamlValue>> chosen(const std::string& key) const;
+  [[nodiscard]] std::optional<std::pair<std::string, YamlValue>> chosen(
+      const std::string& key) const;
 
  private:
   YamlValue self_;

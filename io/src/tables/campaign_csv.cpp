@@ -29,19 +29,23 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kHeader =
-    "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,cause,by,reason";
+    "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_"
+    "mm_max,failed_s,cause,by,reason";
 constexpr std::size_t kColumns = 12;  // and one for each of the coordinates that vary
 
 std::string milliseconds(double value) {
   std::array<char, 64> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, 3).ptr};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                       std::chars_format::fixed, 3)
+                             .ptr};
 }
 
 constexpr const char* kSettingsMark = "# swivel campaign ";
 
 /// Returns the settings as one line, for people and for comparison.
 std::string line_of(const RunSettings& settings) {
-  return kSettingsMark + to_json(settings).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return kSettingsMark + to_json(settings).dump(-1, ' ', false, Json::error_handler_t::replace) +
+         '\n';
 }
 
 /// Returns how the settings in the first line of a file differ from the wanted ones; empty if they
@@ -72,14 +76,18 @@ std::optional<std::vector<std::string>> coordinates_of(std::string_view line) {
   const std::vector<std::string> names = csv_fields(line, kColumns + kMostCoordinates);
   if (names.size() < kColumns) return std::nullopt;
   std::vector<std::string> coordinates(names.begin() + kColumns, names.end());
-  return episode_header(coordinates) == std::string(line) + '\n' ? std::optional(std::move(coordinates)) : std::nullopt;
+  return episode_header(coordinates) == std::string(line) + '\n'
+             ? std::optional(std::move(coordinates))
+             : std::nullopt;
 }
 
 std::string csv_line(const EpisodeRow& row) {
-  std::string line = std::to_string(row.episode) + ',' + to_string(row.status) + ',' + csv_number(row.cost) + ',' +
-                     milliseconds(row.plan_ms) + ',' + std::to_string(row.nodes_checked) + ',' + std::to_string(row.fcl_calls) +
-                     ',' + csv_number(row.tool_path_error_mm_mean) + ',' + csv_number(row.tool_path_error_mm_max) + ',' +
-                     csv_number(row.failed_s) + ',' + row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason);
+  std::string line = std::to_string(row.episode) + ',' + to_string(row.status) + ',' +
+                     csv_number(row.cost) + ',' + milliseconds(row.plan_ms) + ',' +
+                     std::to_string(row.nodes_checked) + ',' + std::to_string(row.fcl_calls) + ',' +
+                     csv_number(row.tool_path_error_mm_mean) + ',' +
+                     csv_number(row.tool_path_error_mm_max) + ',' + csv_number(row.failed_s) + ',' +
+                     row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason);
   for (const double offset : row.offsets) line += ',' + csv_number(offset);
   return line + '\n';
 }
@@ -88,25 +96,30 @@ std::optional<EpisodeRow> episode_row(std::string_view line, std::size_t coordin
   const std::vector<std::string> fields = csv_fields(line, kColumns + coordinates);
   if (fields.size() != kColumns + coordinates) return std::nullopt;
   EpisodeRow row;
-  bool read = read_field(fields[0], row.episode) && read_field(fields[1], row.status) && read_field(fields[2], row.cost) &&
-              read_field(fields[3], row.plan_ms) && read_field(fields[4], row.nodes_checked) &&
-              read_field(fields[5], row.fcl_calls) && read_field(fields[6], row.tool_path_error_mm_mean) &&
-              read_field(fields[7], row.tool_path_error_mm_max) && read_field(fields[8], row.failed_s);
+  bool read = read_field(fields[0], row.episode) && read_field(fields[1], row.status) &&
+              read_field(fields[2], row.cost) && read_field(fields[3], row.plan_ms) &&
+              read_field(fields[4], row.nodes_checked) && read_field(fields[5], row.fcl_calls) &&
+              read_field(fields[6], row.tool_path_error_mm_mean) &&
+              read_field(fields[7], row.tool_path_error_mm_max) &&
+              read_field(fields[8], row.failed_s);
   row.cause = fields[9];
   row.by = fields[10];
   row.reason = fields[11];
   row.offsets.resize(coordinates);
-  for (std::size_t k = 0; k < coordinates; ++k) read = read && read_field(fields[kColumns + k], row.offsets[k]);
+  for (std::size_t k = 0; k < coordinates; ++k)
+    read = read && read_field(fields[kColumns + k], row.offsets[k]);
   return read ? std::optional(row) : std::nullopt;
 }
 
-std::string to_csv(const std::vector<EpisodeRow>& rows, const std::vector<std::string>& coordinates) {
+std::string to_csv(const std::vector<EpisodeRow>& rows,
+                   const std::vector<std::string>& coordinates) {
   std::string text = episode_header(coordinates);
   for (const EpisodeRow& row : rows) text += csv_line(row);
   return text;
 }
 
-CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, const Shard& shard, std::uint64_t episodes)
+CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, const Shard& shard,
+                           std::uint64_t episodes)
     : part_(csv), coordinates_(settings.coordinates) {
   part_ += ".part";
   for (const fs::path& file : {csv, part_}) {
@@ -117,18 +130,22 @@ CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, con
   }
   descriptor_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(errno);
-  const auto refuse = [this](const std::string& where, const std::string& what, const std::string& allowed) {
+  const auto refuse = [this](const std::string& where, const std::string& what,
+                             const std::string& allowed) {
     close(descriptor_);
     bad_input(where, what, allowed);
   };
   struct stat opened {
   }, named{};
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor_, &opened) != 0 || stat(part_.c_str(), &named) != 0 ||
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor_, &opened) != 0 ||
+      stat(part_.c_str(), &named) != 0 ||
       opened.st_ino != named.st_ino)  // or has removed it in between
-    refuse(part_.string(), "another campaign is writing it", "one campaign at a time for one results file");
+    refuse(part_.string(), "another campaign is writing it",
+           "one campaign at a time for one results file");
 
   const std::string text = read_file(part_, "CSV file", kMostTableBytes);
-  const std::string mine = "the first rows of this campaign and shard; remove the file to start anew";
+  const std::string mine =
+      "the first rows of this campaign and shard; remove the file to start anew";
   const std::string header = episode_header(coordinates_), preamble = line_of(settings) + header;
   const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
   const std::string first = text.substr(0, std::min(complete, text.find('\n') + 1));
@@ -136,7 +153,8 @@ CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, con
   if (!std::string_view(text).substr(0, mark.size()).starts_with(mark.substr(0, text.size())))
     refuse(part_.string() + ":1", "does not say which campaign it is of", mine);
   if (const std::string other = first.empty() ? "" : unlike(first, settings); !other.empty())
-    refuse(part_.string() + ":1", other, "a file of the same problem and settings; remove it to start anew");
+    refuse(part_.string() + ":1", other,
+           "a file of the same problem and settings; remove it to start anew");
   if (complete > first.size() && !std::string_view(text).substr(first.size()).starts_with(header))
     refuse(part_.string() + ":2", "another header", mine);
 
@@ -148,10 +166,12 @@ CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, con
           [&](std::string_view line) { return episode_row(line, coordinates_.size()); },
           [&](const EpisodeRow& row, const std::string& where, std::size_t end) {
             const std::size_t k = rows_.size();
-            if (k >= shard.size(episodes)) bad_input(where, "more rows than the shard has episodes", mine);
+            if (k >= shard.size(episodes))
+              bad_input(where, "more rows than the shard has episodes", mine);
             if (row.episode != shard.episode(k))
               bad_input(where,
-                        "episode " + std::to_string(row.episode) + " where the shard has " + std::to_string(shard.episode(k)),
+                        "episode " + std::to_string(row.episode) + " where the shard has " +
+                            std::to_string(shard.episode(k)),
                         mine);
             rows_.push_back(row);
             ends_.push_back(end);
@@ -177,7 +197,8 @@ EpisodeTable load_rows(const fs::path& csv) {
   if (!coordinates || text.back() != '\n') bad_input(csv.string(), "not a results file", allowed);
   EpisodeTable table{*coordinates, {}};
   read_lines(
-      text, end + 1, csv.string(), 2, allowed, [&](std::string_view line) { return episode_row(line, coordinates->size()); },
+      text, end + 1, csv.string(), 2, allowed,
+      [&](std::string_view line) { return episode_row(line, coordinates->size()); },
       [&](const EpisodeRow& row, const std::string&, std::size_t) { table.rows.push_back(row); });
   return table;
 }

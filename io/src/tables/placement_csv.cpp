@@ -9,9 +9,11 @@ std::string csv_line(const PlacementRow& row) {
   std::string text = std::to_string(row.cell);
   for (const double value : row.offset) text += ',' + csv_number(value);
   text += std::string(",") + to_string(row.status);
-  for (const auto& value : {row.cost, row.clearance, row.clearance_margin, row.joint_margin, row.tool_speed, row.failed_s})
+  for (const auto& value : {row.cost, row.clearance, row.clearance_margin, row.joint_margin,
+                            row.tool_speed, row.failed_s})
     text += ',' + csv_number(value);
-  return text + ',' + row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason) + '\n';
+  return text + ',' + row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason) +
+         '\n';
 }
 
 std::optional<PlacementRow> placement_row(std::string_view line) {
@@ -23,8 +25,8 @@ std::optional<PlacementRow> placement_row(std::string_view line) {
   bool read = read_field(*field++, row.cell);
   for (double& value : row.offset) read = read_field(*field++, value) && read;
   read = read_field(*field++, row.status) && read;
-  for (std::optional<double>* const value :
-       {&row.cost, &row.clearance, &row.clearance_margin, &row.joint_margin, &row.tool_speed, &row.failed_s})
+  for (std::optional<double>* const value : {&row.cost, &row.clearance, &row.clearance_margin,
+                                             &row.joint_margin, &row.tool_speed, &row.failed_s})
     read = read_field(*field++, *value) && read;
   row.cause = *field++;
   row.by = *field++;

@@ -11,7 +11,8 @@ using Json = nlohmann::ordered_json;
 
 template <class Value>
 const Value* find(const std::vector<std::pair<std::string, Value>>& all, const std::string& name) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == name; });
   return found == all.end() ? nullptr : &found->second;
 }
 
@@ -25,7 +26,9 @@ Json to_json(const RunSettings& settings) {
 }
 
 std::optional<RunSettings> settings_from(const Json& json) {
-  const auto object = [&](const char* key) { return json.is_object() && json.contains(key) && json[key].is_object(); };
+  const auto object = [&](const char* key) {
+    return json.is_object() && json.contains(key) && json[key].is_object();
+  };
   if (!object("settings") || !object("files")) return std::nullopt;
   RunSettings settings;
   for (const auto& [name, value] : json["settings"].items()) {
@@ -54,12 +57,16 @@ std::optional<std::vector<HeldJoint>> held_from(const Json& json) {
   if (!json.is_array()) return std::nullopt;
   std::vector<HeldJoint> held;
   for (const Json& one : json) {
-    const auto is = [&](const char* key, auto type) { return one.contains(key) && (one[key].*type)(); };
-    if (!one.is_object() || !is("joint", &Json::is_string) || !is("position", &Json::is_number) || !is("unit", &Json::is_string) ||
-        !is("given", &Json::is_boolean) || !one.contains("mimics") || !(one["mimics"].is_null() || one["mimics"].is_string()))
+    const auto is = [&](const char* key, auto type) {
+      return one.contains(key) && (one[key].*type)();
+    };
+    if (!one.is_object() || !is("joint", &Json::is_string) || !is("position", &Json::is_number) ||
+        !is("unit", &Json::is_string) || !is("given", &Json::is_boolean) ||
+        !one.contains("mimics") || !(one["mimics"].is_null() || one["mimics"].is_string()))
       return std::nullopt;
-    held.push_back({one["joint"].get<std::string>(), one["position"].get<double>(), one["unit"].get<std::string>() == "m",
-                    one["given"].get<bool>(), one["mimics"].is_null() ? "" : one["mimics"].get<std::string>()});
+    held.push_back({one["joint"].get<std::string>(), one["position"].get<double>(),
+                    one["unit"].get<std::string>() == "m", one["given"].get<bool>(),
+                    one["mimics"].is_null() ? "" : one["mimics"].get<std::string>()});
   }
   return held;
 }

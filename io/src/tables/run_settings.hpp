@@ -21,13 +21,14 @@ inline constexpr const char* kRunMark = "# swivel ";
 /// None where the list is not as held_json() writes it.
 [[nodiscard]] std::optional<std::vector<HeldJoint>> held_from(const nlohmann::ordered_json& json);
 
-/// The first thing that two settings do not share. `first` and `second`: what each says, none where it does not say it. Both are
-/// none of a file whose contents differ.
+/// The first thing that two settings do not share. `first` and `second`: what each says, none where
+/// it does not say it. Both are none of a file whose contents differ.
 struct Difference {
   std::string name;
   bool file = false;
   std::optional<std::string> first, second;
 };
-[[nodiscard]] std::optional<Difference> difference(const RunSettings& first, const RunSettings& second);
+[[nodiscard]] std::optional<Difference> difference(const RunSettings& first,
+                                                   const RunSettings& second);
 
 }  // namespace swivel::io

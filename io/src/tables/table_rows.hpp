@@ -28,7 +28,8 @@ namespace swivel::io {
 [[nodiscard]] std::optional<EpisodeRow> episode_row(std::string_view line, std::size_t coordinates);
 
 inline constexpr const char* kPlacementHeader =
-    "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_speed,failed_s,cause,by,reason\n";
+    "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_speed,"
+    "failed_s,cause,by,reason\n";
 /// Returns the line of a placement, with its end.
 [[nodiscard]] std::string csv_line(const PlacementRow& row);
 /// Returns the placement of a line, given without its end; none if it is not such a row.
@@ -56,8 +57,8 @@ inline bool read_field(const std::string& field, PlanStatus& status) {
 /// the byte after it. The text must end with a line end. Throws InputError for a line that is no
 /// row.
 template <class RowOf, class Visit>
-void read_lines(std::string_view text, std::size_t begin, const std::string& file, int line, const std::string& allowed,
-                const RowOf& row_of, const Visit& visit) {
+void read_lines(std::string_view text, std::size_t begin, const std::string& file, int line,
+                const std::string& allowed, const RowOf& row_of, const Visit& visit) {
   for (; begin < text.size(); ++line) {
     const std::size_t end = text.find('\n', begin) + 1;
     const std::string where = at_line(file, line);

@@ -32,12 +32,14 @@ void add(std::vector<InfeasibilityCertificate::Range>& ranges, int slot) {
 
 class Finder {
  public:
-  Finder(const PlanView& view, const Verdicts& verdicts, const std::shared_ptr<StateCheck>& check, const Budget& budget)
+  Finder(const PlanView& view, const Verdicts& verdicts, const std::shared_ptr<StateCheck>& check,
+         const Budget& budget)
       : lattice_(view.lattice),
         verdicts_(verdicts),
         budget_(budget),
         started_(view.problem.start.has_value()),
-        witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()), DistanceProofs::kOn, check, budget) {}
+        witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()),
+                   DistanceProofs::kOn, check, budget) {}
 
   InfeasibilityCertificate find() {
     InfeasibilityCertificate certificate;
@@ -63,7 +65,9 @@ class Finder {
     std::vector<Lattice::Node> list;
     std::vector<const Lattice::Node*> at;  // by slot
     std::vector<char> removed, asked;      // by slot; asked: whether row() was called
-    [[nodiscard]] bool open(std::size_t slot) const { return at[slot] != nullptr && !removed[slot]; }
+    [[nodiscard]] bool open(std::size_t slot) const {
+      return at[slot] != nullptr && !removed[slot];
+    }
   };
   [[nodiscard]] Nodes nodes_of(int layer) const {
     budget_.poll();
@@ -99,7 +103,8 @@ class Finder {
   }
   static bool lists(const std::vector<Verdicts::HalfEdge>* edges, int slot) {
     return edges != nullptr &&
-           std::any_of(edges->begin(), edges->end(), [&](const Verdicts::HalfEdge& edge) { return edge.other == slot; });
+           std::any_of(edges->begin(), edges->end(),
+                       [&](const Verdicts::HalfEdge& edge) { return edge.other == slot; });
   }
 
   /// Returns the last layer from which no node leads to the end of the path. Throws InvalidArgument
@@ -118,7 +123,8 @@ class Finder {
         if (here.removed[index(a.slot)]) continue;
         const auto* removed = removed_from(layer, a.slot);
         const auto leads_to = [&](int b) {
-          return leads_on[index(b)] && lattice_.step_allowed(layer, lattice_.delta(a.q, ahead.at[index(b)]->q)) &&
+          return leads_on[index(b)] &&
+                 lattice_.step_allowed(layer, lattice_.delta(a.q, ahead.at[index(b)]->q)) &&
                  !lists(removed, b);
         };
         if (const int b = lattice_.neighbour_along_path(layer, a.slot, 1);
@@ -128,7 +134,8 @@ class Finder {
         }
         lattice_.successors(layer, a.slot, runs);
         for (const Lattice::SlotRun& run : runs)
-          for (int b = run.first; b < run.last && !leads[index(a.slot)]; ++b) leads[index(a.slot)] = leads_to(b);
+          for (int b = run.first; b < run.last && !leads[index(a.slot)]; ++b)
+            leads[index(a.slot)] = leads_to(b);
       }
       ahead = std::move(here);
       leads_on.swap(leads);
@@ -138,7 +145,8 @@ class Finder {
 
   /// Returns a layer of the certificate: its reached slots, and a witness for each slot that is
   /// asked for and not reached.
-  [[nodiscard]] InfeasibilityCertificate::Layer layer_of(int layer, const Nodes& nodes, const std::vector<char>& reached,
+  [[nodiscard]] InfeasibilityCertificate::Layer layer_of(int layer, const Nodes& nodes,
+                                                         const std::vector<char>& reached,
                                                          const std::vector<char>& asked) {
     InfeasibilityCertificate::Layer found;
     found.slots = static_cast<int>(nodes.at.size());
@@ -149,7 +157,8 @@ class Finder {
       } else if (asked[index(slot)]) {
         witness = witnesses_.of_node(layer, slot, witness);
         require(witness >= 0, layer, "a node");
-        if (!found.removed.empty() && found.removed.back().witness == witness && found.removed.back().slots.last + 1 == slot)
+        if (!found.removed.empty() && found.removed.back().witness == witness &&
+            found.removed.back().slots.last + 1 == slot)
           found.removed.back().slots.last = slot;
         else
           found.removed.push_back({{slot, slot}, witness});
@@ -160,7 +169,8 @@ class Finder {
 
   /// Returns the certificate's layer after `layer`. On entry `nodes` and `reached` are those of
   /// `layer`, on return those of the next layer.
-  [[nodiscard]] InfeasibilityCertificate::Layer next(int layer, Nodes& nodes, std::vector<char>& reached) {
+  [[nodiscard]] InfeasibilityCertificate::Layer next(int layer, Nodes& nodes,
+                                                     std::vector<char>& reached) {
     Nodes ahead = nodes_of(layer + 1);
     std::vector<char> reached_ahead(ahead.at.size(), 0), met(ahead.at.size(), 0);
     std::map<int, std::vector<int>> removed;  // removed edges: tails by head
@@ -174,7 +184,8 @@ class Finder {
         for (int b = run.first; b < run.last; ++b) {
           const Lattice::Node* const head = ahead.at[index(b)];
           if (met[index(b)] || reached_ahead[index(b)]) continue;
-          if (head != nullptr && !lattice_.step_allowed(layer, lattice_.delta(a.q, head->q))) continue;
+          if (head != nullptr && !lattice_.step_allowed(layer, lattice_.delta(a.q, head->q)))
+            continue;
           if (!has_row(layer + 1, b, ahead))
             met[index(b)] = 1;
           else if (lists(removed_here, b))
@@ -192,14 +203,16 @@ class Finder {
       for (const int a : tails) {
         witness = witnesses_.of_edge(layer, a, b, witness);
         require(witness >= 0, layer, "an edge");
-        if (here.empty() || here.back().witness != witness) here.push_back({{a, a}, {b, b}, witness, 0});
+        if (here.empty() || here.back().witness != witness)
+          here.push_back({{a, a}, {b, b}, witness, 0});
         here.back().tails.last = a;
         ++here.back().count;
       }
       for (InfeasibilityCertificate::Edges& edges : here) {
-        const auto same = std::find_if(last.begin(), last.end(), [&](const InfeasibilityCertificate::Edges& other) {
-          return other.tails == edges.tails && other.witness == edges.witness;
-        });
+        const auto same = std::find_if(
+            last.begin(), last.end(), [&](const InfeasibilityCertificate::Edges& other) {
+              return other.tails == edges.tails && other.witness == edges.witness;
+            });
         if (same == last.end()) continue;
         edges.heads.first = same->heads.first;
         edges.count += same->count;
@@ -208,17 +221,21 @@ class Finder {
       found.edges.insert(found.edges.end(), here.begin(), here.end());
       last.swap(here);
     }
-    std::sort(found.edges.begin(), found.edges.end(),
-              [](const InfeasibilityCertificate::Edges& x, const InfeasibilityCertificate::Edges& y) {
-                return std::tuple(x.heads.first, x.tails.first) < std::tuple(y.heads.first, y.tails.first);
-              });
+    std::sort(
+        found.edges.begin(), found.edges.end(),
+        [](const InfeasibilityCertificate::Edges& x, const InfeasibilityCertificate::Edges& y) {
+          return std::tuple(x.heads.first, x.tails.first) <
+                 std::tuple(y.heads.first, y.tails.first);
+        });
     nodes = std::move(ahead);
     reached.swap(reached_ahead);
     return found;
   }
 
   static void require(bool holds, int layer, const char* what) {
-    if (!holds) throw std::logic_error("layer " + std::to_string(layer) + ": nothing removes " + what + " that the search removed");
+    if (!holds)
+      throw std::logic_error("layer " + std::to_string(layer) + ": nothing removes " + what +
+                             " that the search removed");
   }
 
   const Lattice& lattice_;
@@ -230,20 +247,22 @@ class Finder {
 
 }  // namespace
 
-InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget, const std::shared_ptr<StateCheck>& check) {
+InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget,
+                                          const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("cut");
   std::unique_ptr<CostToGo> own;  // for the eager planners, which keep no verdicts
   if (view.verdicts == nullptr) {
     own = make_cost_to_go(view.lattice, Pruning::kNone, budget);
     own->sweep(view.lattice.layers() - 1);
     Executor executor(1);
-    CollisionValidity validity(view.lattice, view.world, view.world.edge_rule(view.robot.radii()), view.problem.limits.edges,
-                               DistanceProofs::kOn, executor, 1, budget);
+    CollisionValidity validity(view.lattice, view.world, view.world.edge_rule(view.robot.radii()),
+                               view.problem.limits.edges, DistanceProofs::kOn, executor, 1, budget);
     HookedValidity hooked(view.lattice, validity, {check, nullptr}, budget);
     SearchCounters counters;
     static_cast<void>(path_first(*own, hooked, {}, counters));
   }
-  InfeasibilityCertificate certificate = Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
+  InfeasibilityCertificate certificate =
+      Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
   certificate.resolution = view.problem.resolution;
   certificate.edges = view.problem.limits.edges;
   certificate.windings = view.lattice.joints_with_windings();

@@ -31,8 +31,8 @@ std::string number(int k) {
 class Verifier {
  public:
   Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule, bool started,
-           const InfeasibilityCertificate& certificate, CertificateCheck& result, const std::shared_ptr<StateCheck>& check,
-           const Budget& budget)
+           const InfeasibilityCertificate& certificate, CertificateCheck& result,
+           const std::shared_ptr<StateCheck>& check, const Budget& budget)
       : lattice_(lattice),
         certificate_(certificate),
         started_(started),
@@ -46,9 +46,11 @@ class Verifier {
         throw Refused{"witness " + std::to_string(k) + ": " + words(certificate_.witnesses[k]) +
                       ": is nothing that this problem has"};
     const int count = static_cast<int>(certificate_.band.size());
-    if (count == 0 || certificate_.first_layer < 0 || certificate_.first_layer > lattice_.layers() - count)
-      throw Refused{"it has layers " + number(certificate_.first_layer) + " to " + number(certificate_.first_layer + count - 1) +
-                    ": the problem has 0 to " + number(lattice_.layers() - 1)};
+    if (count == 0 || certificate_.first_layer < 0 ||
+        certificate_.first_layer > lattice_.layers() - count)
+      throw Refused{"it has layers " + number(certificate_.first_layer) + " to " +
+                    number(certificate_.first_layer + count - 1) + ": the problem has 0 to " +
+                    number(lattice_.layers() - 1)};
     for (int k = 0; k < count; ++k) {
       here_ = read(certificate_.first_layer + k, certificate_.band[index(k)]);
       if (k == 0)
@@ -58,8 +60,8 @@ class Verifier {
       std::swap(before_, here_);
     }
     if (!certificate_.band.back().reached.empty())
-      throw Refused{"layer " + number(before_.layer) + ", the last: slot " + number(certificate_.band.back().reached[0].first) +
-                    " is reached"};
+      throw Refused{"layer " + number(before_.layer) + ", the last: slot " +
+                    number(certificate_.band.back().reached[0].first) + " is reached"};
   }
 
  private:
@@ -84,13 +86,16 @@ class Verifier {
     lattice_.layer_nodes(number_of, layer.nodes);
     const int slots = lattice_.slots(number_of);
     if (said.slots != slots)
-      throw Refused{"layer " + number(number_of) + ": it has " + number(said.slots) + " slots: the problem has " + number(slots)};
+      throw Refused{"layer " + number(number_of) + ": it has " + number(said.slots) +
+                    " slots: the problem has " + number(slots)};
     layer.at.assign(index(slots), nullptr);
     for (const Lattice::Node& node : layer.nodes) layer.at[index(node.slot)] = &node;
     layer.state.assign(index(slots), State::kUntold);
     const auto tell = [&](const InfeasibilityCertificate::Range& range, State state) {
       if (range.first < 0 || range.last < range.first || range.last >= slots)
-        refuse(number_of, range.first, "a range to " + number(range.last) + ": allowed are slots up to " + number(slots - 1));
+        refuse(
+            number_of, range.first,
+            "a range to " + number(range.last) + ": allowed are slots up to " + number(slots - 1));
       for (int slot = range.first; slot <= range.last; ++slot) {
         if (layer.state[index(slot)] != State::kUntold) refuse(number_of, slot, "is listed twice");
         layer.state[index(slot)] = state;
@@ -99,7 +104,8 @@ class Verifier {
     for (const InfeasibilityCertificate::Range& range : said.reached) {
       tell(range, State::kReached);
       for (int slot = range.first; slot <= range.last; ++slot)
-        if (layer.at[index(slot)] == nullptr) refuse(number_of, slot, "is said to be reached, and has no node");
+        if (layer.at[index(slot)] == nullptr)
+          refuse(number_of, slot, "is said to be reached, and has no node");
     }
     for (const InfeasibilityCertificate::Nodes& removed : said.removed) {
       tell(removed.slots, State::kRemoved);
@@ -119,21 +125,27 @@ class Verifier {
 
   void every_node_is_told(const Layer& layer) const {
     for (std::size_t slot = 0; slot < layer.state.size(); ++slot)
-      if (layer.state[slot] == State::kUntold && !(started_ && layer.layer == 0 && layer.at[slot] == nullptr))
-        refuse(layer.layer, static_cast<int>(slot), "of the first layer is neither reached nor removed");
+      if (layer.state[slot] == State::kUntold &&
+          !(started_ && layer.layer == 0 && layer.at[slot] == nullptr))
+        refuse(layer.layer, static_cast<int>(slot),
+               "of the first layer is neither reached nor removed");
   }
 
   /// Refuses unless every edge from a reached node of `from` leads to a reached node of `to` or is
   /// removed, or its head is removed.
-  void nothing_leads_on(const Layer& from, const Layer& to, const std::vector<InfeasibilityCertificate::Edges>& removed) {
+  void nothing_leads_on(const Layer& from, const Layer& to,
+                        const std::vector<InfeasibilityCertificate::Edges>& removed) {
     for (const InfeasibilityCertificate::Edges& edges : removed) {
       witness(edges.witness, to.layer);
       for (const int slot : {edges.tails.first, edges.tails.last})
-        if (slot < 0 || slot >= static_cast<int>(from.state.size()) || from.state[index(slot)] != State::kReached)
+        if (slot < 0 || slot >= static_cast<int>(from.state.size()) ||
+            from.state[index(slot)] != State::kReached)
           refuse(from.layer, slot, "ends a range of tails of removed edges, and is not reached");
       for (const int slot : {edges.heads.first, edges.heads.last})
-        if (slot < 0 || slot >= static_cast<int>(to.state.size()) || to.state[index(slot)] != State::kUntold)
-          refuse(to.layer, slot, "ends a range of heads of removed edges, and is reached, removed, or no slot");
+        if (slot < 0 || slot >= static_cast<int>(to.state.size()) ||
+            to.state[index(slot)] != State::kUntold)
+          refuse(to.layer, slot,
+                 "ends a range of heads of removed edges, and is reached, removed, or no slot");
       if (edges.tails.first > edges.tails.last || edges.heads.first > edges.heads.last)
         refuse(to.layer, edges.heads.first, "a range of removed edges ends before it begins");
     }
@@ -154,16 +166,19 @@ class Verifier {
     for (std::size_t k = 0; k < removed.size(); ++k)
       if (asked[k] != removed[k].count)
         refuse(to.layer, removed[k].heads.first,
-               "a range of removed edges holds " + std::to_string(asked[k]) + ", and is said to hold " +
-                   std::to_string(removed[k].count));
+               "a range of removed edges holds " + std::to_string(asked[k]) +
+                   ", and is said to hold " + std::to_string(removed[k].count));
   }
 
-  void edge_is_removed(int layer, int a, int b, const std::vector<InfeasibilityCertificate::Edges>& removed,
+  void edge_is_removed(int layer, int a, int b,
+                       const std::vector<InfeasibilityCertificate::Edges>& removed,
                        std::vector<std::int64_t>& asked) {
     bool told = false;
     for (std::size_t k = 0; k < removed.size(); ++k) {
       const InfeasibilityCertificate::Edges& edges = removed[k];
-      if (b < edges.heads.first || b > edges.heads.last || a < edges.tails.first || a > edges.tails.last) continue;
+      if (b < edges.heads.first || b > edges.heads.last || a < edges.tails.first ||
+          a > edges.tails.last)
+        continue;
       told = true;
       ++asked[k];
       ++result_.edges;
@@ -172,7 +187,9 @@ class Verifier {
                "its edge to slot " + number(b) + " is not removed by its witness, " +
                    words(certificate_.witnesses[index(edges.witness)]));
     }
-    if (!told) refuse(layer, a, "its edge to slot " + number(b) + " is neither removed nor leads to a reached node");
+    if (!told)
+      refuse(layer, a,
+             "its edge to slot " + number(b) + " is neither removed nor leads to a reached node");
   }
 
   const Lattice& lattice_;
@@ -185,11 +202,14 @@ class Verifier {
 };
 
 /// Throws InputError if the certificate is for another lattice than the problem's.
-void require_same_layout(const Problem& problem, const InfeasibilityCertificate& certificate, int layers) {
+void require_same_layout(const Problem& problem, const InfeasibilityCertificate& certificate,
+                         int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
-      throw InputError(problem.source,
-                       std::string(what) + " is another than the certificate's: allowed is what it was planned with");
+      throw InputError(
+          problem.source,
+          std::string(what) +
+              " is another than the certificate's: allowed is what it was planned with");
   };
   const Resolution &own = problem.resolution, &other = certificate.resolution;
   require(own.ds == other.ds, "resolution.ds (--ds)");
@@ -203,8 +223,10 @@ void require_same_layout(const Problem& problem, const InfeasibilityCertificate&
 
 }  // namespace
 
-CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem, const InfeasibilityCertificate& certificate,
-                                    const Budget& budget, const std::shared_ptr<StateCheck>& check) {
+CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem,
+                                    const InfeasibilityCertificate& certificate,
+                                    const Budget& budget,
+                                    const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("check of a cut");
   validate(problem);
   robot.require_prepared_for(problem);
@@ -220,9 +242,13 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& p
       if (!lattice) throw Refused{"windings: are of arms that are planned on arcs"};
     }
     const World world(robot.world(), problem, budget);
-    Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(), certificate, result, check, budget).run();
+    Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(),
+             certificate, result, check, budget)
+        .run();
     result.s = {lattice->path().layer(certificate.first_layer).s,
-                lattice->path().layer(certificate.first_layer + static_cast<int>(certificate.band.size()) - 1).s};
+                lattice->path()
+                    .layer(certificate.first_layer + static_cast<int>(certificate.band.size()) - 1)
+                    .s};
     result.passed = true;
   } catch (const Refused& refused) {
     result.failure = refused.why;

@@ -16,9 +16,15 @@ bool beyond(const std::array<double, 3>& deviation, double most) {
 
 }  // namespace
 
-Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, DistanceProofs distance_proofs,
-                     const std::shared_ptr<StateCheck>& check, const Budget& budget)
-    : lattice_(lattice), world_(world), rule_(rule), check_(check, budget), query_(world, distance_proofs), budget_(budget) {}
+Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                     DistanceProofs distance_proofs, const std::shared_ptr<StateCheck>& check,
+                     const Budget& budget)
+    : lattice_(lattice),
+      world_(world),
+      rule_(rule),
+      check_(check, budget),
+      query_(world, distance_proofs),
+      budget_(budget) {}
 
 std::optional<Witnesses::About> Witnesses::about(const Cause& cause) const {
   About about;
@@ -78,7 +84,8 @@ Cause Witnesses::limit_of(int joint, Cause::Side side) const {
   return cause;
 }
 
-/// Returns true if the cause explains why a slot has no exact configuration (Lattice::exact_config).
+/// Returns true if the cause explains why a slot has no exact configuration
+/// (Lattice::exact_config).
 bool Witnesses::removes_missing(const Cause& cause, const About& about, int layer, int slot) const {
   const Lattice::NodeFault fault = lattice_.fault(layer, slot);
   switch (fault.status) {
@@ -98,7 +105,8 @@ bool Witnesses::removes_missing(const Cause& cause, const About& about, int laye
 /// Returns the side on which a joint is beyond its limits.
 Cause::Side Witnesses::side_of(const Config& q, int joint) const {
   const JointLimit& limit = lattice_.chain().limit[static_cast<std::size_t>(joint)];
-  return q[joint] > limit.upper - lattice_.limits().joint_margin ? Cause::Side::kUpper : Cause::Side::kLower;
+  return q[joint] > limit.upper - lattice_.limits().joint_margin ? Cause::Side::kUpper
+                                                                 : Cause::Side::kLower;
 }
 
 std::optional<Cause> Witnesses::of_missing(int layer, int slot) const {
@@ -118,14 +126,17 @@ bool Witnesses::removes_node(int witness, int layer, int slot) {
   if (!q) return removes_missing(cause, about, layer, slot);
   if (cause.kind == Cause::Kind::kManipulability) return !lattice_.manipulable(*q);
   if (cause.kind == Cause::Kind::kCheck) return !check_.states({&*q, 1})[0];
-  return cause.kind == Cause::Kind::kPair && std::any_of(about.pairs.begin(), about.pairs.end(), [&](const BodyPair& pair) {
+  return cause.kind == Cause::Kind::kPair &&
+         std::any_of(about.pairs.begin(), about.pairs.end(), [&](const BodyPair& pair) {
            return query_.pair_violates(*q, pair, ClearanceRule::kNode);
          });
 }
 
 int Witnesses::of_node(int layer, int slot, int suspected) {
   budget_.poll();
-  const auto is = [&](Cause::Kind kind) { return suspected >= 0 && causes_[static_cast<std::size_t>(suspected)].kind == kind; };
+  const auto is = [&](Cause::Kind kind) {
+    return suspected >= 0 && causes_[static_cast<std::size_t>(suspected)].kind == kind;
+  };
   const auto q = lattice_.exact_config(layer, slot);
   if (!q) {
     if (is(Cause::Kind::kLimit) && removes_node(suspected, layer, slot)) return suspected;
@@ -135,7 +146,8 @@ int Witnesses::of_node(int layer, int slot, int suspected) {
   if (!lattice_.manipulable(*q)) return number(of_kind(Cause::Kind::kManipulability));
   const auto pair = query_.find_violating_pair(
       *q, ClearanceRule::kNode,
-      is(Cause::Kind::kPair) ? std::optional(about_[static_cast<std::size_t>(suspected)].pairs[0]) : std::nullopt);
+      is(Cause::Kind::kPair) ? std::optional(about_[static_cast<std::size_t>(suspected)].pairs[0])
+                             : std::nullopt);
   if (pair) return number(*pair);
   if (check_ && !check_.states({&*q, 1})[0]) {
     Cause cause = of_kind(Cause::Kind::kCheck);
@@ -151,12 +163,14 @@ std::optional<Witnesses::Move> Witnesses::move(int layer, int a, int b) const {
   return Move{*qa, *qa + lattice_.delta(*qa, *qb)};
 }
 
-bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, int a, int b, const Move& move) {
+bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, int a, int b,
+                             const Move& move) {
   const Limits& limits = lattice_.limits();
   const Config moved = move.to - move.from;
   switch (cause.kind) {
     case Cause::Kind::kJointStep:
-      return !(moved.head(lattice_.chain().roll ? kDof - 1 : kDof).cwiseAbs().maxCoeff() <= limits.joint_step);
+      return !(moved.head(lattice_.chain().roll ? kDof - 1 : kDof).cwiseAbs().maxCoeff() <=
+               limits.joint_step);
     case Cause::Kind::kRollSlope: {
       const auto roll = lattice_.roll_step(layer, a, move.from, b, move.to);
       return roll && !roll->allowed;
@@ -165,16 +179,19 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
       return !lattice_.row_step_allowed(layer, moved);
     case Cause::Kind::kPathError:
       return limits.tool_path_error &&
-             beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, move.from, moved), *limits.tool_path_error);
+             beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, move.from, moved),
+                    *limits.tool_path_error);
     case Cause::Kind::kAngleError:
       return limits.tool_angle_error &&
-             beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, move.from, moved), *limits.tool_angle_error);
+             beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, move.from, moved),
+                    *limits.tool_angle_error);
     case Cause::Kind::kStepError:
       return !lattice_.keeps_step_error(layer, a, b);
     case Cause::Kind::kPair:
       return limits.edges == EdgeMode::kContinuous &&
-             std::any_of(about.pairs.begin(), about.pairs.end(),
-                         [&](const BodyPair& pair) { return edge_blocked_by(pair, query_, rule_, move.from, move.to, budget_); });
+             std::any_of(about.pairs.begin(), about.pairs.end(), [&](const BodyPair& pair) {
+               return edge_blocked_by(pair, query_, rule_, move.from, move.to, budget_);
+             });
     case Cause::Kind::kCheck: {
       const StateCheck::Motion asked{move.from, move.to};
       return check_.checks_motions() && !check_.motions({&asked, 1})[0];
@@ -212,35 +229,45 @@ std::optional<Cause> Witnesses::of_fault(const Lattice::InterpolatedEdge& interp
   return limit_of(joint, side_of(interpolated.q, joint));
 }
 
-bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move) {
-  const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, move.from, b, move.to);
+bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer, int a, int b,
+                               const Move& move) {
+  const Lattice::InterpolatedEdge interpolated =
+      lattice_.interpolate_edge(layer, a, move.from, b, move.to);
   if (const auto fault = of_fault(interpolated)) {
-    if (cause.kind != Cause::Kind::kLimit || fault->kind != cause.kind) return fault->kind == cause.kind;
-    return ((interpolated.joints >> about.joint) & 1) != 0 && side_of(interpolated.q, about.joint) == cause.side;
+    if (cause.kind != Cause::Kind::kLimit || fault->kind != cause.kind)
+      return fault->kind == cause.kind;
+    return ((interpolated.joints >> about.joint) & 1) != 0 &&
+           side_of(interpolated.q, about.joint) == cause.side;
   }
   if (cause.kind != Cause::Kind::kPair) return false;
   for (std::size_t k = 0; k <= interpolated.rows.size(); ++k) {
     const Config& from = k == 0 ? move.from : interpolated.rows[k - 1];
-    const Config to = from + lattice_.delta(from, k < interpolated.rows.size() ? interpolated.rows[k] : move.to);
+    const Config to =
+        from + lattice_.delta(from, k < interpolated.rows.size() ? interpolated.rows[k] : move.to);
     for (const BodyPair& pair : about.pairs)
       if ((k < interpolated.rows.size() && query_.pair_violates(to, pair, ClearanceRule::kNode)) ||
-          (lattice_.limits().edges == EdgeMode::kContinuous && edge_blocked_by(pair, query_, rule_, from, to, budget_)))
+          (lattice_.limits().edges == EdgeMode::kContinuous &&
+           edge_blocked_by(pair, query_, rule_, from, to, budget_)))
         return true;
   }
   return false;
 }
 
 int Witnesses::of_layers(int layer, int a, int b, const Move& move, int suspected) {
-  const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, move.from, b, move.to);
+  const Lattice::InterpolatedEdge interpolated =
+      lattice_.interpolate_edge(layer, a, move.from, b, move.to);
   if (const auto fault = of_fault(interpolated)) return number(*fault);
   if (suspected >= 0 &&
-      removes_layers(causes_[static_cast<std::size_t>(suspected)], about_[static_cast<std::size_t>(suspected)], layer, a, b, move))
+      removes_layers(causes_[static_cast<std::size_t>(suspected)],
+                     about_[static_cast<std::size_t>(suspected)], layer, a, b, move))
     return suspected;
   for (std::size_t k = 0; k <= interpolated.rows.size(); ++k) {
     const Config& from = k == 0 ? move.from : interpolated.rows[k - 1];
-    const Config to = from + lattice_.delta(from, k < interpolated.rows.size() ? interpolated.rows[k] : move.to);
+    const Config to =
+        from + lattice_.delta(from, k < interpolated.rows.size() ? interpolated.rows[k] : move.to);
     if (k < interpolated.rows.size())
-      if (const auto pair = query_.find_violating_pair(to, ClearanceRule::kNode)) return number(*pair);
+      if (const auto pair = query_.find_violating_pair(to, ClearanceRule::kNode))
+        return number(*pair);
     if (lattice_.limits().edges == EdgeMode::kContinuous)
       if (const auto pair = edge_blocked(query_, rule_, from, to, budget_)) return number(*pair);
   }
@@ -251,10 +278,10 @@ bool Witnesses::removes_edge(int witness, int layer, int a, int b) {
   budget_.poll();
   const auto asked = move(layer, a, b);
   if (asked && lattice_.has_layers_between())
-    return removes_layers(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b,
-                          *asked);
-  return asked &&
-         removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
+    return removes_layers(causes_[static_cast<std::size_t>(witness)],
+                          about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
+  return asked && removes_move(causes_[static_cast<std::size_t>(witness)],
+                               about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
 }
 
 int Witnesses::of_edge(int layer, int a, int b, int suspected) {
@@ -264,14 +291,18 @@ int Witnesses::of_edge(int layer, int a, int b, int suspected) {
   if (lattice_.has_layers_between()) return of_layers(layer, a, b, *asked, suspected);
   const auto removes = [&](int witness) {
     return witness >= 0 &&
-           removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
+           removes_move(causes_[static_cast<std::size_t>(witness)],
+                        about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
   };
-  for (const Cause::Kind kind : {Cause::Kind::kRollSlope, Cause::Kind::kJointStep, Cause::Kind::kSpeed, Cause::Kind::kPathError,
-                                 Cause::Kind::kAngleError, Cause::Kind::kStepError})
-    if (const Cause cause = of_kind(kind); removes_move(cause, {}, layer, a, b, *asked)) return number(cause);
+  for (const Cause::Kind kind :
+       {Cause::Kind::kRollSlope, Cause::Kind::kJointStep, Cause::Kind::kSpeed,
+        Cause::Kind::kPathError, Cause::Kind::kAngleError, Cause::Kind::kStepError})
+    if (const Cause cause = of_kind(kind); removes_move(cause, {}, layer, a, b, *asked))
+      return number(cause);
   if (removes(suspected)) return suspected;
   if (lattice_.limits().edges == EdgeMode::kContinuous)
-    if (const auto pair = edge_blocked(query_, rule_, asked->from, asked->to, budget_)) return number(*pair);
+    if (const auto pair = edge_blocked(query_, rule_, asked->from, asked->to, budget_))
+      return number(*pair);
   if (!check_) return -1;
   Cause cause = of_kind(Cause::Kind::kCheck);
   cause.check = check_.name();

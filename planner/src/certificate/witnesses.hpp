@@ -20,8 +20,9 @@ class Witnesses {
  public:
   /// Creates an empty list of witnesses for a lattice in a world, whose collision queries use
   /// `certificates`. `lattice`, `world` and `budget` must outlive it; `check` may be null.
-  Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, DistanceProofs distance_proofs,
-            const std::shared_ptr<StateCheck>& check, const Budget& budget);
+  Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule,
+            DistanceProofs distance_proofs, const std::shared_ptr<StateCheck>& check,
+            const Budget& budget);
 
   /// Returns the witnesses in the order of their numbers, without values.
   [[nodiscard]] const std::vector<Cause>& all() const { return causes_; }
@@ -38,7 +39,8 @@ class Witnesses {
   /// witness to try early, or -1. Throws Stopped.
   [[nodiscard]] int of_node(int layer, int slot, int suspected);
   /// Returns the number of a witness that removes the edge from slot a of `layer` to slot b of the
-  /// next layer; -1 if none was found. `suspected` is a witness to try early, or -1. Throws Stopped.
+  /// next layer; -1 if none was found. `suspected` is a witness to try early, or -1. Throws
+  /// Stopped.
   [[nodiscard]] int of_edge(int layer, int a, int b, int suspected);
 
  private:
@@ -50,16 +52,19 @@ class Witnesses {
   [[nodiscard]] int number(const BodyPair& pair);
   [[nodiscard]] std::optional<About> about(const Cause& cause) const;
   [[nodiscard]] Cause::Side side_of(const Config& q, int joint) const;
-  [[nodiscard]] bool removes_missing(const Cause& cause, const About& about, int layer, int slot) const;
+  [[nodiscard]] bool removes_missing(const Cause& cause, const About& about, int layer,
+                                     int slot) const;
   [[nodiscard]] std::optional<Cause> of_missing(int layer, int slot) const;
   struct Move {
     Config from, to;
   };
   [[nodiscard]] std::optional<Move> move(int layer, int a, int b) const;
-  [[nodiscard]] bool removes_move(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
+  [[nodiscard]] bool removes_move(const Cause& cause, const About& about, int layer, int a, int b,
+                                  const Move& move);
   // For lattices that have path layers between their own (Lattice::has_layers_between).
   [[nodiscard]] std::optional<Cause> of_fault(const Lattice::InterpolatedEdge& interpolated) const;
-  [[nodiscard]] bool removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
+  [[nodiscard]] bool removes_layers(const Cause& cause, const About& about, int layer, int a, int b,
+                                    const Move& move);
   [[nodiscard]] int of_layers(int layer, int a, int b, const Move& move, int suspected);
   [[nodiscard]] Cause limit_of(int joint, Cause::Side side) const;
 

@@ -29,9 +29,15 @@ constexpr std::size_t index(int k) {
 
 }  // namespace
 
-ConstraintRemoval::ConstraintRemoval(const Lattice& lattice, Constraints& constraints, const SlotPath& path, const Budget& budget)
-    : lattice_(lattice), constraints_(constraints), path_(path), budget_(budget), deepest_(static_cast<int>(path.size()) - 1) {
-  const int steps = lattice.layers() - 1, further = std::max(1, static_cast<int>(std::ceil(0.05 * steps)));
+ConstraintRemoval::ConstraintRemoval(const Lattice& lattice, Constraints& constraints,
+                                     const SlotPath& path, const Budget& budget)
+    : lattice_(lattice),
+      constraints_(constraints),
+      path_(path),
+      budget_(budget),
+      deepest_(static_cast<int>(path.size()) - 1) {
+  const int steps = lattice.layers() - 1,
+            further = std::max(1, static_cast<int>(std::ceil(0.05 * steps)));
   wanted_ = std::min(steps, std::max(0, deepest_) + further);
 }
 
@@ -58,7 +64,8 @@ const Constraints::Node& ConstraintRemoval::at(int layer, int slot) {
 void ConstraintRemoval::blame(Pass& pass, ConstraintSet violated) const {
   ConstraintSet blamed = constraints_.left(violated, waived_);
   for_each_bit(blamed, [&](int c) {
-    if (const int object = constraints_.object_of(c); object >= 0) blamed |= Constraints::of(object);
+    if (const int object = constraints_.object_of(c); object >= 0)
+      blamed |= Constraints::of(object);
   });
   for_each_bit(blamed, [&](int c) { ++pass.blamed[index(c)]; });
 }
@@ -67,8 +74,11 @@ void ConstraintRemoval::see(Pass& pass, int removal, int layer, const Constraint
   ++pass.votes[index(removal)];
   Witness& witness = pass.witness[index(removal)];
   const auto away = [&](int from) { return std::abs(from - deepest_ - 1); };
-  if (witness.found && (away(layer) > away(witness.layer) || (witness.layer == layer && witness.measured >= kMostMeasured))) return;
-  Cause cause = constraints_.measured(std::countr_zero(constraints_.left(node.violated, waived_)), layer, node.q);
+  if (witness.found && (away(layer) > away(witness.layer) ||
+                        (witness.layer == layer && witness.measured >= kMostMeasured)))
+    return;
+  Cause cause = constraints_.measured(std::countr_zero(constraints_.left(node.violated, waived_)),
+                                      layer, node.q);
   if (constraints_.is_object(removal)) cause.object = constraints_.cause(removal).object;
   if (witness.layer != layer) witness = {};
   if (!witness.found || misses_less(cause, witness.cause)) witness.cause = cause;
@@ -77,7 +87,8 @@ void ConstraintRemoval::see(Pass& pass, int removal, int layer, const Constraint
   witness.measured += cause.kind == Cause::Kind::kPair || cause.kind == Cause::Kind::kContact;
 }
 
-ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waived, bool any_slope) {
+ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waived,
+                                                    bool any_slope) {
   Pass pass;
   pass.furthest.fill(-1);
   waived_ = waived;
@@ -122,7 +133,8 @@ ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waiv
       if (open & kWithAll) blame(pass, head.violated);
       const ConstraintSet own = exists(head.violated), wanted = open & own;
       if (wanted == 0) return;
-      const ConstraintSet violated = constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval);
+      const ConstraintSet violated =
+          constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval);
       if (open & kWithAll) blame(pass, violated);
       const ConstraintSet on_edge = exists(violated), fresh = reach(layer + 1, b, wanted & on_edge);
       if (own != kAlways) for_each_bit(fresh & own, [&](int c) { see(pass, c, layer + 1, head); });
@@ -130,10 +142,12 @@ ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waiv
       for_each_bit(fresh & on_edge, [&](int c) {
         ++pass.votes[index(c)];
         Witness& witness = pass.witness[index(c)];
-        if (witness.found && std::abs(layer - deepest_) > std::abs(witness.layer - 1 - deepest_)) return;
+        if (witness.found && std::abs(layer - deepest_) > std::abs(witness.layer - 1 - deepest_))
+          return;
         if (witness.layer != layer + 1) witness.measured = 0;
         if (witness.found && witness.measured >= kMostMeasured) return;
-        Cause cause = constraints_.measured(std::countr_zero(constraints_.left(violated, waived_)), layer, a, tail.q, b, head.q);
+        Cause cause = constraints_.measured(std::countr_zero(constraints_.left(violated, waived_)),
+                                            layer, a, tail.q, b, head.q);
         if (constraints_.is_object(c)) cause.object = constraints_.cause(c).object;
         if (!witness.found || witness.layer != layer + 1 || misses_less(cause, witness.cause))
           witness = {true, layer + 1, cause, witness.measured};
@@ -169,7 +183,8 @@ ConstraintRemoval::What ConstraintRemoval::what(int constraint) const {
 std::optional<int> ConstraintRemoval::best(const Pass& pass, What kind, int least) const {
   std::optional<int> best;
   for (int c = 0; c < Constraints::kCount; ++c) {
-    if (what(c) != kind || pass.furthest[index(c)] < least || !pass.witness[index(c)].found) continue;
+    if (what(c) != kind || pass.furthest[index(c)] < least || !pass.witness[index(c)].found)
+      continue;
     // proved, whereas the others assume that the check passes
     if (c == Constraints::kCheck) return c;
     if (!best || pass.votes[index(c)] > pass.votes[index(*best)]) best = c;
@@ -179,7 +194,8 @@ std::optional<int> ConstraintRemoval::best(const Pass& pass, What kind, int leas
 
 /// Returns the constraint to give up if no single one suffices: the one without which paths come
 /// furthest, or else the one met most often where paths end; none if there is none.
-std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes, ConstraintSet waived) const {
+std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes,
+                                                 ConstraintSet waived) const {
   std::optional<int> best;
   for (const Pass& pass : passes) {
     int furthest = pass.furthest[Constraints::kCount];
@@ -191,7 +207,9 @@ std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes
   if (best) return best;
   for (const bool on_nodes : {true, false})
     for (int c = 0; c < Constraints::kCount && (on_nodes || !best); ++c) {
-      if ((what(c) != What::kOnMoves) != on_nodes || passes.back().blamed[index(c)] == 0 || (waived & Constraints::of(c))) continue;
+      if ((what(c) != What::kOnMoves) != on_nodes || passes.back().blamed[index(c)] == 0 ||
+          (waived & Constraints::of(c)))
+        continue;
       if (!best || passes.back().blamed[index(c)] > passes.back().blamed[index(*best)]) best = c;
     }
   return best;

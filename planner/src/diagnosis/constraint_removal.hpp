@@ -29,7 +29,8 @@ class ConstraintRemoval {
  public:
   /// Prepares the search. `path` is a valid path from layer 0 to the furthest layer that any
   /// reaches; empty if layer 0 has no valid node. The arguments must outlive this object.
-  ConstraintRemoval(const Lattice& lattice, Constraints& constraints, const SlotPath& path, const Budget& budget);
+  ConstraintRemoval(const Lattice& lattice, Constraints& constraints, const SlotPath& path,
+                    const Budget& budget);
 
   /// What blocks every path.
   struct Answer {
@@ -45,7 +46,8 @@ class ConstraintRemoval {
   [[nodiscard]] std::optional<Answer> find(double most_us);
 
  private:
-  static constexpr ConstraintSet kAlways = ~ConstraintSet{0}, kWithAll = Constraints::of(Constraints::kCount);
+  static constexpr ConstraintSet kAlways = ~ConstraintSet{0},
+                                 kWithAll = Constraints::of(Constraints::kCount);
 
   /// A node or edge that one constraint alone removes: of those seen, the one that violates it by
   /// the least.
@@ -74,7 +76,8 @@ class ConstraintRemoval {
   enum class What { kOnNodes, kObject, kOnMoves };
   [[nodiscard]] What what(int constraint) const;
   [[nodiscard]] std::optional<int> best(const Pass& pass, What what, int least) const;
-  [[nodiscard]] std::optional<int> to_give_up(const std::vector<Pass>& passes, ConstraintSet waived) const;
+  [[nodiscard]] std::optional<int> to_give_up(const std::vector<Pass>& passes,
+                                              ConstraintSet waived) const;
   [[nodiscard]] bool affordable() const { return constraints_.spent_us() < most_us_; }
   [[nodiscard]] ConstraintSet exists(ConstraintSet violated) const;
 

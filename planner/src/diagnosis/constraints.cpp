@@ -28,11 +28,13 @@ struct Constraints::Violations {
     const ConstraintSet left = constraints.left(set, waived);
     return uncounted || (left != 0 && (until == Until::kFirst || constraints.removals(left) == 0));
   }
-  [[nodiscard]] bool has(int constraint) const { return constraint >= 0 && (set & of(constraint)) != 0; }
+  [[nodiscard]] bool has(int constraint) const {
+    return constraint >= 0 && (set & of(constraint)) != 0;
+  }
 };
 
-Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget,
-                         const std::shared_ptr<StateCheck>& check)
+Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                         const Budget& budget, const std::shared_ptr<StateCheck>& check)
     : lattice_(lattice),
       world_(world),
       rule_(rule),
@@ -47,9 +49,10 @@ Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeR
 
 double Constraints::spent_us() const {
   const CollisionCounters c = query_.counters();
-  return question_us_ *
-             (static_cast<double>(c.proved_free + c.proved_colliding + c.fcl_calls) + 0.1 * static_cast<double>(pairs_)) +
-         node_us_ * static_cast<double>(nodes_) + 0.1 * static_cast<double>(moves_) + 10 * static_cast<double>(checked_);
+  return question_us_ * (static_cast<double>(c.proved_free + c.proved_colliding + c.fcl_calls) +
+                         0.1 * static_cast<double>(pairs_)) +
+         node_us_ * static_cast<double>(nodes_) + 0.1 * static_cast<double>(moves_) +
+         10 * static_cast<double>(checked_);
 }
 
 int Constraints::met(const BodyPair& pair) {
@@ -60,7 +63,9 @@ int Constraints::met(const BodyPair& pair) {
   if (pair.b >= static_cast<int>(world_.bodies().size())) {
     const auto known = object_number_.find(names[1]);
     if (known == object_number_.end() && count_ + 1 >= kCount) return -1;
-    object = known != object_number_.end() ? known->second : object_number_.try_emplace(names[1], count_++).first->second;
+    object = known != object_number_.end()
+                 ? known->second
+                 : object_number_.try_emplace(names[1], count_++).first->second;
     object_name_[static_cast<std::size_t>(object)] = names[1];
   }
   if (count_ >= kCount) return -1;
@@ -109,7 +114,8 @@ Cause Constraints::cause(int constraint) const {
     cause.object = object_name_[static_cast<std::size_t>(constraint)];
     // the first that was met
     const auto pair = std::find(object_of_.begin(), object_of_.end(), constraint);
-    if (pair != object_of_.end()) cause.bodies = names_[static_cast<std::size_t>(pair - object_of_.begin())];
+    if (pair != object_of_.end())
+      cause.bodies = names_[static_cast<std::size_t>(pair - object_of_.begin())];
   } else if (constraint >= kFirstPair) {
     cause.kind = Cause::Kind::kPair;
     cause.bodies = names_[static_cast<std::size_t>(constraint)];
@@ -179,12 +185,14 @@ Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, U
   return node;
 }
 
-ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const Node& to, ConstraintSet waived, Until until) {
+ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const Node& to,
+                                ConstraintSet waived, Until until) {
   ++moves_;
   const Config &qa = from.q, &qb = to.q;
   Violations found{*this, waived, until};
   if (!lattice_.in_arm_window(layer, a, b)) found.add(kArmSlope);
-  if (const auto roll = lattice_.roll_step(layer, a, qa, b, qb); roll && !roll->allowed) found.add(kRollSlope);
+  if (const auto roll = lattice_.roll_step(layer, a, qa, b, qb); roll && !roll->allowed)
+    found.add(kRollSlope);
   const Config delta = lattice_.delta(qa, qb);
   const Limits& limits = lattice_.limits();
   if (lattice_.has_layers_between()) {
@@ -196,7 +204,8 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     add_steps(qa, delta, bound, Config::Zero(), found);
   } else if (lattice_.is_approximate()) {  // nodes have a bound of their own
     const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
-    if (a_node && b_node) add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.fit_error(), found);
+    if (a_node && b_node)
+      add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.fit_error(), found);
   }
   if (found.done()) return found.set;
   moves_ += 10;
@@ -204,10 +213,12 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     return !std::all_of(deviation.begin(), deviation.end(), [most](double x) { return x <= most; });
   };
   if (limits.tool_path_error &&
-      beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta), *limits.tool_path_error))
+      beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta),
+             *limits.tool_path_error))
     found.add(kPathError);
   if (!found.done() && limits.tool_angle_error &&
-      beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta), *limits.tool_angle_error))
+      beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta),
+             *limits.tool_angle_error))
     found.add(kAngleError);
   if (!found.done() && !lattice_.keeps_step_error(layer, a, b)) found.add(kStepError);
   if (!found.done() && limits.edges == EdgeMode::kContinuous)
@@ -215,7 +226,8 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
       if (!found.add(pair(*first)))
         for (const double t : {0.25, 0.5, 0.75})
           if (!found.done()) add_other_pairs(qa + t * delta, ClearanceRule::kMotion, found);
-  if (check_.checks_motions() && found.set == 0 && !found.uncounted && from.violated == 0 && to.violated == 0) {
+  if (check_.checks_motions() && found.set == 0 && !found.uncounted && from.violated == 0 &&
+      to.violated == 0) {
     ++checked_;
     const StateCheck::Motion motion{qa, qa + delta};
     if (!check_.motions({&motion, 1})[0]) found.add(kCheck);
@@ -225,15 +237,17 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
 }
 
 std::optional<int> Constraints::run_out(int k, const Config& from, const Config& moved) const {
-  if (lattice_.continuous()[static_cast<std::size_t>(k)] || std::abs(moved[k]) <= kPi) return std::nullopt;
+  if (lattice_.continuous()[static_cast<std::size_t>(k)] || std::abs(moved[k]) <= kPi)
+    return std::nullopt;
   const double near = wrap_angle(moved[k]), there = from[k] + near;
   const auto [lower, upper] = limits_of(k);
-  if (std::abs(near) > lattice_.limits().joint_step || (there >= lower && there <= upper)) return std::nullopt;
+  if (std::abs(near) > lattice_.limits().joint_step || (there >= lower && there <= upper))
+    return std::nullopt;
   return limit(k, there > upper);
 }
 
-void Constraints::add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more,
-                            Violations& found) const {
+void Constraints::add_steps(const Config& from, const Config& moved, const Config& bound,
+                            const Config& more, Violations& found) const {
   const double joint_step = lattice_.limits().joint_step;
   for (int k = 0; k < (lattice_.chain().roll ? kDof - 1 : kDof); ++k) {
     if (const auto limit = run_out(k, from, moved)) {
@@ -247,7 +261,8 @@ void Constraints::add_steps(const Config& from, const Config& moved, const Confi
 
 /// Adds what is violated by the configurations between the layers and the moves from one to the
 /// next: the first fault decides.
-void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found) {
+void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb,
+                                 Violations& found) {
   using Fault = Lattice::InterpolatedEdge::Fault;
   const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, qa, b, qb);
   moves_ += 10 * static_cast<std::int64_t>(interpolated.rows.size() + 1);
@@ -267,7 +282,8 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       return;
     case Fault::kStep: {
       const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
-      add_steps(from, interpolated.q - from, Config::Constant(lattice_.limits().joint_step), Config::Zero(), found);
+      add_steps(from, interpolated.q - from, Config::Constant(lattice_.limits().joint_step),
+                Config::Zero(), found);
       if (found.set == 0) found.add(kSpeed);
       return;
     }
@@ -289,8 +305,11 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
   if (lattice_.limits().edges != EdgeMode::kContinuous) return;
   for (std::size_t k = 0; k <= interpolated.rows.size(); ++k) {
     const Config& from = k == 0 ? qa : interpolated.rows[k - 1];
-    const Config to = k < interpolated.rows.size() ? interpolated.rows[k] : Config(from + lattice_.delta(from, qb));
-    if (const auto first = edge_blocked(query_, rule_, from, to, budget_); first && found.add(pair(*first))) return;
+    const Config to = k < interpolated.rows.size() ? interpolated.rows[k]
+                                                   : Config(from + lattice_.delta(from, qb));
+    if (const auto first = edge_blocked(query_, rule_, from, to, budget_);
+        first && found.add(pair(*first)))
+      return;
   }
 }
 
@@ -314,13 +333,16 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
   } else if (cause.kind == Cause::Kind::kPair) {
     // A link may have several bodies: the nearest counts.
     for (const BodyPair& p : world_.pairs()) {
-      if (world_.names(p) != cause.bodies || !query_.pair_violates(q, p, ClearanceRule::kNode)) continue;
+      if (world_.names(p) != cause.bodies || !query_.pair_violates(q, p, ClearanceRule::kNode))
+        continue;
       const double required = world_.required_clearance(p).node;
       const auto value = required < 0 ? -query_.depth(q, p).at_least : clearance(p, q, required);
       if (!cause.value || (value && *value < *cause.value)) {
         cause.value = value;
         cause.limit = required;
-        if (const double allowed = world_.required_clearance(p).motion; required < 0 && allowed < required) cause.over = -allowed;
+        if (const double allowed = world_.required_clearance(p).motion;
+            required < 0 && allowed < required)
+          cause.over = -allowed;
       }
     }
     if (cause.value == 0.0) cause.kind = Cause::Kind::kContact;
@@ -330,7 +352,8 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
 
 /// Measures the deepest contact of the cause's bodies, if they may touch to a depth, at a few
 /// postures of the motion from node a to node b.
-void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb) {
+void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& qa, int b,
+                                  const Config& qb) {
   constexpr int kParts = 16;  // of a motion
   const bool by_rows = lattice_.has_layers_between();
   std::vector<Config> rows{qa};
@@ -344,7 +367,9 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
     double deepest = allowed;  // at least: else nothing would be violated
     for (std::size_t k = 1; k < rows.size(); ++k)
       for (int part = k == 1 ? 0 : 1; part <= kParts; ++part)
-        deepest = std::max(deepest, query_.depth(rows[k - 1] + (rows[k] - rows[k - 1]) * part / kParts, p, deepest).at_least);
+        deepest = std::max(
+            deepest, query_.depth(rows[k - 1] + (rows[k] - rows[k - 1]) * part / kParts, p, deepest)
+                         .at_least);
     if (cause.value && -deepest >= *cause.value) continue;
     cause.value = -deepest;
     cause.limit = -allowed;
@@ -352,7 +377,8 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
   }
 }
 
-Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) {
+Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b,
+                            const Config& qb) {
   Cause cause = this->cause(constraint);
   if (cause.kind == Cause::Kind::kPair) {
     cause.between_layers = true;
@@ -361,7 +387,8 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
   }
   if (cause.kind == Cause::Kind::kRollSlope) {
     auto roll = *lattice_.roll_step(layer, a, qa, b, qb);
-    if (roll.allowed && lattice_.has_layers_between()) roll = lattice_.interpolate_edge(layer, a, qa, b, qb).roll;  // on the way
+    if (roll.allowed && lattice_.has_layers_between())
+      roll = lattice_.interpolate_edge(layer, a, qa, b, qb).roll;  // on the way
     cause.value = roll.change, cause.limit = roll.most, cause.over = roll.over;
     return cause;
   }
@@ -371,13 +398,16 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
       const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
       const int k = constraint / 2;
       cause.unwinds = interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep;
-      cause.value = cause.unwinds ? from[k] + wrap_angle(interpolated.q[k] - from[k]) : interpolated.q[k];
+      cause.value =
+          cause.unwinds ? from[k] + wrap_angle(interpolated.q[k] - from[k]) : interpolated.q[k];
     }
     cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
     return cause;
   }
   const Config delta = lattice_.delta(qa, qb);
-  const auto most_of = [](const std::array<double, 3>& x) { return *std::max_element(x.begin(), x.end()); };
+  const auto most_of = [](const std::array<double, 3>& x) {
+    return *std::max_element(x.begin(), x.end());
+  };
   switch (cause.kind) {
     case Cause::Kind::kJointStep:
     case Cause::Kind::kSpeed: {

@@ -30,20 +30,22 @@ using ConstraintSet = std::uint64_t;
 /// user's check, and pairs of bodies in the order in which they are met. Each scene object has a
 /// number too, which stands for all pairs with it, since an object can be removed as a whole. Tells
 /// which constraints a node or an edge violates, for any lattice, by exact configurations
-/// (Lattice::exact_config). The user's check is only called about what violates nothing else; otherwise it
-/// counts as passed. Clearance queries go to a query of this object and are counted.
+/// (Lattice::exact_config). The user's check is only called about what violates nothing else;
+/// otherwise it counts as passed. Clearance queries go to a query of this object and are counted.
 class Constraints {
  public:
   /// Numbers the constraints of a lattice in a world. `lattice`, `world` and `budget` must outlive
   /// it; `check` may be null.
-  Constraints(const Lattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget,
-              const std::shared_ptr<StateCheck>& check);
+  Constraints(const Lattice& lattice, const World& world, const EdgeRule& rule,
+              const Budget& budget, const std::shared_ptr<StateCheck>& check);
 
   /// Returns the number of the lower or upper limit of joint k = 0 ... 6.
   static constexpr int limit(int k, bool upper) { return 2 * k + (upper ? 1 : 0); }
-  static constexpr int kManipulability = 2 * kDof, kArmSlope = kManipulability + 1, kRollSlope = kArmSlope + 1,
-                       kJointStep = kRollSlope + 1, kSpeed = kJointStep + 1, kPathError = kSpeed + 1, kAngleError = kPathError + 1,
-                       kStepError = kAngleError + 1, kCheck = kStepError + 1, kFirstPair = kCheck + 1,
+  static constexpr int kManipulability = 2 * kDof, kArmSlope = kManipulability + 1,
+                       kRollSlope = kArmSlope + 1, kJointStep = kRollSlope + 1,
+                       kSpeed = kJointStep + 1, kPathError = kSpeed + 1,
+                       kAngleError = kPathError + 1, kStepError = kAngleError + 1,
+                       kCheck = kStepError + 1, kFirstPair = kCheck + 1,
                        kCount = 63;  // one bit is left to those who use the sets
   /// Returns the set of one constraint.
   static constexpr ConstraintSet of(int constraint) { return ConstraintSet{1} << constraint; }
@@ -54,17 +56,24 @@ class Constraints {
   }
   /// Returns true for the constraints that remove nodes, and so the continuation of a node on the
   /// same IK solution, rather than moves between IK solutions.
-  static constexpr bool bars_nodes(int constraint) { return constraint <= kManipulability || constraint >= kCheck; }
+  static constexpr bool bars_nodes(int constraint) {
+    return constraint <= kManipulability || constraint >= kCheck;
+  }
   /// Returns the number of a pair of bodies; -1 if too many pairs have been met to be told apart.
   [[nodiscard]] int pair(const BodyPair& pair) {
-    int& number = number_of_[static_cast<std::size_t>(pair.a) * world_.body_names().size() + static_cast<std::size_t>(pair.b)];
+    int& number = number_of_[static_cast<std::size_t>(pair.a) * world_.body_names().size() +
+                             static_cast<std::size_t>(pair.b)];
     return number != kUnmet ? number : number = met(pair);
   }
   /// Returns, for a pair with a scene object, the number that stands for all pairs with that
   /// object; else -1.
-  [[nodiscard]] int object_of(int constraint) const { return object_of_[static_cast<std::size_t>(constraint)]; }
+  [[nodiscard]] int object_of(int constraint) const {
+    return object_of_[static_cast<std::size_t>(constraint)];
+  }
   /// Returns true if the number stands for all pairs with a scene object.
-  [[nodiscard]] bool is_object(int constraint) const { return !object_name_[static_cast<std::size_t>(constraint)].empty(); }
+  [[nodiscard]] bool is_object(int constraint) const {
+    return !object_name_[static_cast<std::size_t>(constraint)].empty();
+  }
   /// Returns what is left of a set of violated constraints once the constraints `waived`, or all
   /// pairs with an object, are waived.
   [[nodiscard]] ConstraintSet left(ConstraintSet violated, ConstraintSet waived) const;
@@ -72,7 +81,9 @@ class Constraints {
   /// not be empty.
   [[nodiscard]] ConstraintSet removals(ConstraintSet violated) const;
   /// Returns the number of the limit of joint k that q[k] is beyond.
-  [[nodiscard]] int limit_beyond(int k, const Config& q) const { return limit(k, q[k] > limits_of(k).second); }
+  [[nodiscard]] int limit_beyond(int k, const Config& q) const {
+    return limit(k, q[k] > limits_of(k).second);
+  }
   /// Returns the cause that names the constraint, with its limit but without a value.
   [[nodiscard]] Cause cause(int constraint) const;
 
@@ -92,14 +103,16 @@ class Constraints {
   /// Returns the constraints that the move from node `from` at slot a of `layer` to node `to` at
   /// slot b of the next layer violates, until enough is known. Bodies that block a motion besides
   /// the first pair are looked for only at its quarters.
-  [[nodiscard]] ConstraintSet edge(int layer, int a, const Node& from, int b, const Node& to, ConstraintSet waived, Until until);
+  [[nodiscard]] ConstraintSet edge(int layer, int a, const Node& from, int b, const Node& to,
+                                   ConstraintSet waived, Until until);
 
   /// Returns the cause of a violation of a constraint at configuration q, with the value that
   /// violates it.
   [[nodiscard]] Cause measured(int constraint, int layer, const Config& q);
   /// Returns the cause of a violation of a constraint on the move from qa at slot a of `layer` to
   /// qb at slot b of the next layer, with the value that violates it.
-  [[nodiscard]] Cause measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb);
+  [[nodiscard]] Cause measured(int constraint, int layer, int a, const Config& qa, int b,
+                               const Config& qb);
 
   /// Returns the query that clearances are tested with.
   [[nodiscard]] World::Query& query() { return query_; }
@@ -121,11 +134,13 @@ class Constraints {
   void add_other_pairs(const Config& q, const Threshold& threshold, Violations& found);
   /// Adds what the move `moved` from `from` violates by its size. `bound` is what each joint may
   /// move by its speed; `more` is added to all bounds.
-  void add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more, Violations& found) const;
+  void add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more,
+                 Violations& found) const;
   /// If the step of joint k is large only because the end of the joint's range lies between, so
   /// that it has to turn back, returns the limit at that end; else none.
   [[nodiscard]] std::optional<int> run_out(int k, const Config& from, const Config& moved) const;
-  void edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found);
+  void edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb,
+                      Violations& found);
   [[nodiscard]] std::optional<double> clearance(const BodyPair& pair, const Config& q, double most);
   void measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb);
 

@@ -32,8 +32,9 @@ class Counts {
   }
   [[nodiscard]] bool empty() const { return counts_.empty(); }
   [[nodiscard]] Cause most_frequent() const {
-    const auto most = std::max_element(counts_.begin(), counts_.end(),
-                                       [](const auto& a, const auto& b) { return a.second.count < b.second.count; });
+    const auto most = std::max_element(
+        counts_.begin(), counts_.end(),
+        [](const auto& a, const auto& b) { return a.second.count < b.second.count; });
     return most == counts_.end() ? Cause{} : most->second.cause;
   }
   [[nodiscard]] std::vector<Diagnosis::Removed> list() const {
@@ -49,8 +50,8 @@ class Counts {
 constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of the index of a pair
 
 /// Finds what blocks the nodes of one layer: manipulability, or a pair of bodies. A failure applies
-/// to every node at which the failing bodies have the same poses (Lattice::slots_with_same_body_poses), so that most
-/// nodes need no query, or a short one.
+/// to every node at which the failing bodies have the same poses
+/// (Lattice::slots_with_same_body_poses), so that most nodes need no query, or a short one.
 class LayerBlockers {
  public:
   LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
@@ -67,7 +68,9 @@ class LayerBlockers {
     const auto k = static_cast<std::size_t>(slot);
     if (known_[k] == kUnknown) return ask(layer, slot, q);
     for (int pair = 0; !asked_[k] && pair < known_[k]; ++pair)
-      if (query_.pair_violates(q, world_.pairs()[static_cast<std::size_t>(pair)], ClearanceRule::kNode)) known_[k] = pair;
+      if (query_.pair_violates(q, world_.pairs()[static_cast<std::size_t>(pair)],
+                               ClearanceRule::kNode))
+        known_[k] = pair;
     asked_[k] = 1;
     if (!lattice_.manipulable(q)) return kManipulability;
     return known_[k];
@@ -98,7 +101,8 @@ class LayerBlockers {
     all_ = static_cast<int>(same_poses_.size()) == lattice_.slots(layer);
     for (const int other : same_poses_) {
       int& known = known_[static_cast<std::size_t>(other)];
-      if (!asked_[static_cast<std::size_t>(other)]) known = known < 0 ? known_[k] : std::min(known, known_[k]);
+      if (!asked_[static_cast<std::size_t>(other)])
+        known = known < 0 ? known_[k] : std::min(known, known_[k]);
     }
     return known_[k];
   }
@@ -160,9 +164,11 @@ class Inspector {
     blockers_.start(layer);
     std::vector<Lattice::Node> free;  // except for the user's check
     Counts causes;
-    if (const int slot = hint < 0 ? -1 : lattice_.neighbour_along_path(layer - 1, hint, 1); slot >= 0) {
+    if (const int slot = hint < 0 ? -1 : lattice_.neighbour_along_path(layer - 1, hint, 1);
+        slot >= 0) {
       constraints_.count_nodes(1);
-      if (const auto q = lattice_.exact_config(layer, slot); q && blockers_.any(layer, slot, *q) == kFree) {
+      if (const auto q = lattice_.exact_config(layer, slot);
+          q && blockers_.any(layer, slot, *q) == kFree) {
         free.push_back({slot, *q});
         keep_allowed(free, causes);
         hint = slot;
@@ -236,8 +242,9 @@ class Inspector {
         several->other_joints = true;
       }
     }
-    const auto most = std::max_element(released.begin(), released.end(),
-                                       [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
+    const auto most = std::max_element(
+        released.begin(), released.end(),
+        [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
     if (most != released.end()) return most->second.second;
     if (several) return *several;
     return of_kind(singular ? Cause::Kind::kSingular : Cause::Kind::kReach);
@@ -264,7 +271,8 @@ class Inspector {
     for (int k = 0; residual <= 1e-9 && k < kDof; ++k) {
       if (lattice_.continuous()[static_cast<std::size_t>(k)]) continue;
       const Cause cause = constraints_.measured(constraints_.limit_beyond(k, q), layer + 1, q);
-      const double beyond = cause.side == Cause::Side::kUpper ? *cause.value - *cause.limit : *cause.limit - *cause.value;
+      const double beyond = cause.side == Cause::Side::kUpper ? *cause.value - *cause.limit
+                                                              : *cause.limit - *cause.value;
       if (beyond > 0 && (!worst || beyond > *worst->by())) worst = cause;
     }
     return worst;
@@ -284,7 +292,8 @@ class Inspector {
       if (fault.status == NodeStatus::kNoIk) causes.add(of_kind(Cause::Kind::kReach));
       if (fault.status == NodeStatus::kSingular) causes.add(of_kind(Cause::Kind::kSingular));
       for (int k = 0; k < kDof; ++k)
-        if ((fault.joints >> k) & 1) causes.add(constraints_.cause(constraints_.limit_beyond(k, fault.q)));
+        if ((fault.joints >> k) & 1)
+          causes.add(constraints_.cause(constraints_.limit_beyond(k, fault.q)));
     }
   }
 
@@ -293,7 +302,8 @@ class Inspector {
   Counts removed_edges(int layer, const std::vector<Lattice::Node>& left) {
     Counts causes;
     if (left.empty()) return causes;
-    std::vector<const Lattice::Node*> heads(static_cast<std::size_t>(lattice_.slots(layer + 1)), nullptr);
+    std::vector<const Lattice::Node*> heads(static_cast<std::size_t>(lattice_.slots(layer + 1)),
+                                            nullptr);
     for (const Lattice::Node& b : left) heads[static_cast<std::size_t>(b.slot)] = &b;
     std::vector<Lattice::Node> before;
     rows_of(layer, before);
@@ -305,14 +315,16 @@ class Inspector {
     for (const Lattice::Node& a : before) {
       if (edges >= kMostEdges || !affordable()) break;
       budget_.poll();
-      if (blockers_before_.any(layer, a.slot, a.q) != kFree || !constraints_.check().states({&a.q, 1})[0]) continue;
+      if (blockers_before_.any(layer, a.slot, a.q) != kFree ||
+          !constraints_.check().states({&a.q, 1})[0])
+        continue;
       lattice_.successors(layer, a.slot, runs);
       for (const Lattice::SlotRun& run : runs)
         for (int slot = run.first; slot < run.last; ++slot) {
           const Lattice::Node* const b = heads[static_cast<std::size_t>(slot)];
           if (b == nullptr) continue;
-          const ConstraintSet violated =
-              constraints_.edge(layer, a.slot, {a.q, true, 0}, slot, {b->q, true, 0}, 0, Constraints::Until::kFirst);
+          const ConstraintSet violated = constraints_.edge(
+              layer, a.slot, {a.q, true, 0}, slot, {b->q, true, 0}, 0, Constraints::Until::kFirst);
           const int first = std::countr_zero(violated);
           edges += !Constraints::told_by_steps(first);
           if (violated == 0) continue;
@@ -346,12 +358,15 @@ class Inspector {
     constraints_.count_checked(static_cast<std::int64_t>(states_.size()));
     auto allowed = constraints_.check().states(states_).begin();
     const auto refused = std::erase_if(nodes, [&](const Lattice::Node&) { return !*allowed++; });
-    if (refused > 0) causes.add(constraints_.cause(Constraints::kCheck), static_cast<std::int64_t>(refused));
+    if (refused > 0)
+      causes.add(constraints_.cause(Constraints::kCheck), static_cast<std::int64_t>(refused));
   }
 
   [[nodiscard]] Cause cause_of(int blocker) {
-    Cause cause = of_kind(blocker == kManipulability ? Cause::Kind::kManipulability : Cause::Kind::kPair);
-    if (blocker != kManipulability) cause.bodies = world_.names(world_.pairs()[static_cast<std::size_t>(blocker)]);
+    Cause cause =
+        of_kind(blocker == kManipulability ? Cause::Kind::kManipulability : Cause::Kind::kPair);
+    if (blocker != kManipulability)
+      cause.bodies = world_.names(world_.pairs()[static_cast<std::size_t>(blocker)]);
     return cause;
   }
 
@@ -366,14 +381,17 @@ class Inspector {
 };
 
 /// Adds an empty layer to the last run of layers with the same cause, or begins a new run.
-void add_empty(const Lattice& lattice, int layer, const Cause& cause, std::vector<EmptyLayers>& runs) {
+void add_empty(const Lattice& lattice, int layer, const Cause& cause,
+               std::vector<EmptyLayers>& runs) {
   const PathLayer& at = lattice.path().layer(layer);
   if (runs.empty() || runs.back().last + 1 != layer || !runs.back().cause.same_thing(cause))
-    runs.emplace_back(), runs.back().first = layer, runs.back().first_s = at.s, runs.back().cause = cause;
+    runs.emplace_back(), runs.back().first = layer, runs.back().first_s = at.s,
+                         runs.back().cause = cause;
   EmptyLayers& run = runs.back();
   run.last = layer;
   run.last_s = at.s;
-  const auto waypoints = lattice.path().waypoints_along(lattice.path().layer(run.first).travel, at.travel);
+  const auto waypoints =
+      lattice.path().waypoints_along(lattice.path().layer(run.first).travel, at.travel);
   run.first_waypoint = waypoints[0], run.last_waypoint = waypoints[1];
   const auto by = cause.by();
   if (!by) return;
@@ -383,8 +401,9 @@ void add_empty(const Lattice& lattice, int layer, const Cause& cause, std::vecto
 
 }  // namespace
 
-void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, const SlotPath& path, bool layers,
-              const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check) {
+void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule,
+              const SlotPath& path, bool layers, const Budget& budget, Diagnosis& diagnosis,
+              const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("diagnosis");
   const int deepest = static_cast<int>(path.size()) - 1, next = deepest + 1;
   diagnosis.complete = false;
@@ -398,7 +417,9 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
   const double travel = tool_path.layer(next).travel;
   diagnosis.waypoints = {tool_path.waypoints_along(-kInfinity, travel - kBefore)[1],
                          tool_path.waypoints_along(travel, kInfinity)[0]};
-  for (int layer = 0; layer < lattice.layers() && diagnosis.holds() != Diagnosis::Holds::kEveryResolution; ++layer) {
+  for (int layer = 0;
+       layer < lattice.layers() && diagnosis.holds() != Diagnosis::Holds::kEveryResolution;
+       ++layer) {
     if (layer % 64 == 0) budget.poll();
     const PathLayer& at = tool_path.layer(layer);
     if ((!diagnosis.unreachable || at.waypoint >= 0) && lattice.proved_unreachable(layer))
@@ -409,12 +430,14 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
 
   std::vector<Lattice::Node> left;
   Counts removed = inspector.blocked(next, left);
-  const std::optional<Cause> empty = !left.empty()     ? std::nullopt
-                                     : removed.empty() ? std::optional(inspector.kinematic_cause(next))
-                                                       : std::optional(removed.most_frequent());
+  const std::optional<Cause> empty = !left.empty() ? std::nullopt
+                                     : removed.empty()
+                                         ? std::optional(inspector.kinematic_cause(next))
+                                         : std::optional(removed.most_frequent());
   constexpr double kMost = 0.5e6;  // us
   std::optional<ConstraintRemoval::Answer> answer;
-  if (!lattice.out_of_reach(next)) answer = ConstraintRemoval(lattice, inspector.constraints(), path, budget).find(kMost);
+  if (!lattice.out_of_reach(next))
+    answer = ConstraintRemoval(lattice, inspector.constraints(), path, budget).find(kMost);
   if (answer) {
     diagnosis.cause = answer->cause;
     diagnosis.without_it = answer->without_it;
@@ -424,8 +447,10 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
     diagnosis.cause = *empty;
   }
   // No node is listed that continues the path.
-  if (!diagnosis.without_it && deepest >= 0 && lattice.neighbour_along_path(deepest, path.back(), 1) < 0)
-    if (const auto limit = inspector.limit_ahead(deepest, *lattice.exact_config(deepest, path.back())))
+  if (!diagnosis.without_it && deepest >= 0 &&
+      lattice.neighbour_along_path(deepest, path.back(), 1) < 0)
+    if (const auto limit =
+            inspector.limit_ahead(deepest, *lattice.exact_config(deepest, path.back())))
       diagnosis.cause = *limit, answer.emplace();
   inspector.begin_layers();
   Counts edges;
@@ -435,7 +460,8 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
     diagnosis.without_it.reset();
     diagnosis.without_it_s.reset();
   }
-  if (!empty && !answer) diagnosis.cause = edges.empty() ? of_kind(Cause::Kind::kArmSlope) : edges.most_frequent();
+  if (!empty && !answer)
+    diagnosis.cause = edges.empty() ? of_kind(Cause::Kind::kArmSlope) : edges.most_frequent();
   diagnosis.layers_known = next + 1;
   if (layers) {
     if (empty) add_empty(lattice, next, *empty, diagnosis.empty_layers);
@@ -457,11 +483,12 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
   diagnosis.complete = true;
 }
 
-SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer, const Budget& budget,
-                      const Hooks& hooks) {
+SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer,
+                      const Budget& budget, const Hooks& hooks) {
   const TraceSpan span("furthest path");
   Executor executor(1);
-  CollisionValidity validity(lattice, world, rule, lattice.limits().edges, DistanceProofs::kOn, executor, 1, budget);
+  CollisionValidity validity(lattice, world, rule, lattice.limits().edges, DistanceProofs::kOn,
+                             executor, 1, budget);
   HookedValidity hooked(lattice, validity, hooks, budget);
   const auto cost_to_go = make_cost_to_go(lattice, Pruning::kNone, budget);
   cost_to_go->sweep(layer);

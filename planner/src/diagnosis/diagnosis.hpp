@@ -17,12 +17,14 @@ namespace swivel {
 /// that path alone, so it is the same for all planners. The search ends when it would take more
 /// than about a second by a fixed estimate. Throws Stopped; `diagnosis` then holds what was found,
 /// and `complete` is false.
-void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, const SlotPath& path, bool layers,
-              const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check = nullptr);
+void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule,
+              const SlotPath& path, bool layers, const Budget& budget, Diagnosis& diagnosis,
+              const std::shared_ptr<StateCheck>& check = nullptr);
 
 /// Returns the best valid path from layer 0 to `layer`, which a valid path must reach. Throws
 /// Stopped.
-[[nodiscard]] SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer,
-                                    const Budget& budget, const Hooks& hooks = {});
+[[nodiscard]] SlotPath best_path_to(const Lattice& lattice, const World& world,
+                                    const EdgeRule& rule, int layer, const Budget& budget,
+                                    const Hooks& hooks = {});
 
 }  // namespace swivel

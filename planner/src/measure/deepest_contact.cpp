@@ -16,8 +16,13 @@ constexpr double kShortest = 1. / 1024;  // of a move
 
 class Search {
  public:
-  Search(const World& world, const EdgeRule& rule, const std::vector<Config>& rows, const Budget& budget)
-      : world_(world), rule_(rule), rows_(rows), budget_(budget), query_(world, DistanceProofs::kOn) {}
+  Search(const World& world, const EdgeRule& rule, const std::vector<Config>& rows,
+         const Budget& budget)
+      : world_(world),
+        rule_(rule),
+        rows_(rows),
+        budget_(budget),
+        query_(world, DistanceProofs::kOn) {}
 
   std::optional<DeepestContact> run() {
     double at_most = 0;
@@ -37,7 +42,8 @@ class Search {
     is_bounded_ = true;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       budget_.poll();
-      if (!std::isfinite(look(allowed, k, rows_[k], deepest_).at_most)) is_bounded_ = is_complete_ = false;
+      if (!std::isfinite(look(allowed, k, rows_[k], deepest_).at_most))
+        is_bounded_ = is_complete_ = false;
     }
   }
 
@@ -52,7 +58,8 @@ class Search {
     const Depth depth = query_.depth(q, allowed.pair, from);
     if (depth.at_least > deepest_) {
       deepest_ = depth.at_least;
-      found_ = {deepest_, std::nullopt, world_.names(allowed.pair), allowed.depth, static_cast<int>(row)};
+      found_ = {deepest_, std::nullopt, world_.names(allowed.pair), allowed.depth,
+                static_cast<int>(row)};
     }
     return depth;
   }
@@ -63,7 +70,8 @@ class Search {
     budget_.poll();
     const Config &first = rows_[row], &next = rows_[row + 1];
     const double reach = (to - from) / 2 * rule_.motion(first, next), middle = (from + to) / 2;
-    const Depth depth = look(allowed, row, first + middle * (next - first), to_prove(allowed) - reach);
+    const Depth depth =
+        look(allowed, row, first + middle * (next - first), to_prove(allowed) - reach);
     if (depth.at_most + reach <= to_prove(allowed)) return;
     if (!std::isfinite(depth.at_most)) {
       is_complete_ = false;
@@ -90,7 +98,8 @@ class Search {
 
 }  // namespace
 
-std::optional<DeepestContact> deepest_contact(const World& world, const EdgeRule& rule, const std::vector<Config>& rows,
+std::optional<DeepestContact> deepest_contact(const World& world, const EdgeRule& rule,
+                                              const std::vector<Config>& rows,
                                               const Budget& budget) {
   if (world.allowed().empty()) return std::nullopt;
   return Search(world, rule, rows, budget).run();

@@ -14,7 +14,9 @@ namespace swivel {
 /// until no contact on them can be deeper than the one found by more than 0.5 mm, nor deeper than
 /// its pair may be, unless the one found is within 0.05 mm of that. For two meshes only the
 /// postures are searched. Throws Stopped.
-[[nodiscard]] std::optional<DeepestContact> deepest_contact(const World& world, const EdgeRule& rule,
-                                                            const std::vector<Config>& rows, const Budget& budget);
+[[nodiscard]] std::optional<DeepestContact> deepest_contact(const World& world,
+                                                            const EdgeRule& rule,
+                                                            const std::vector<Config>& rows,
+                                                            const Budget& budget);
 
 }  // namespace swivel

@@ -19,8 +19,8 @@ class OpenParts {
  public:
   std::vector<bool> rows, moves;  ///< a row; the move from it to the next
 
-  OpenParts(const World& world, World::Query& query, const EdgeRule& rule, const Limits& limits, const std::vector<Config>& joints,
-            const Budget& budget)
+  OpenParts(const World& world, World::Query& query, const EdgeRule& rule, const Limits& limits,
+            const std::vector<Config>& joints, const Budget& budget)
       : rows(joints.size(), false),
         moves(joints.size() - 1, false),
         joints_(&joints),
@@ -31,7 +31,8 @@ class OpenParts {
     add_pairs(world, rule);
     const std::size_t last = joints.size() - 1;
     std::vector<OpenRun> runs;
-    for (std::size_t pair = 0; pair < pairs_.size(); ++pair) runs.push_back({pair, 0, last, at_end(pair, 0, last), kNever});
+    for (std::size_t pair = 0; pair < pairs_.size(); ++pair)
+      runs.push_back({pair, 0, last, at_end(pair, 0, last), kNever});
     for (OpenRun& run : runs) {
       run.first = forward(run.pair, 0, last, run.clear_first);
       run.clear_first -= travel(run.pair, 0, run.first);
@@ -71,7 +72,8 @@ class OpenParts {
     for (std::size_t k = 0; k < joints_->size(); ++k) {
       if (k % 64 == 0) budget_->poll();
       const std::span<const double> moved = query_->accumulated_displacement((*joints_)[k]);
-      moved_.insert(moved_.end(), moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(bodies_));
+      moved_.insert(moved_.end(), moved.begin(),
+                    moved.begin() + static_cast<std::ptrdiff_t>(bodies_));
       if (k == 0) {
         turned_.push_back({});
         off_chords_.push_back(0);
@@ -87,21 +89,29 @@ class OpenParts {
       }
       turned_.push_back(turned);
       double followers = 0;
-      for (int j = 0; j < kDof; ++j) followers += move[j] * rule.followers.turns[static_cast<std::size_t>(j)];
+      for (int j = 0; j < kDof; ++j)
+        followers += move[j] * rule.followers.turns[static_cast<std::size_t>(j)];
       off_chords_.push_back(off_chords_.back() + (move.sum() + followers) * bound / 4);
     }
   }
 
   void add_pairs(const World& world, const EdgeRule& rule) {
     const auto group = [&](int body) {
-      return static_cast<std::size_t>(body) < bodies_ ? world.bodies()[static_cast<std::size_t>(body)].group : 0;
+      return static_cast<std::size_t>(body) < bodies_
+                 ? world.bodies()[static_cast<std::size_t>(body)].group
+                 : 0;
     };
     for (std::size_t k = 0; k < world.pairs().size(); ++k) {
       const BodyPair& bodies = world.pairs()[k];
       const int of_a = group(bodies.a), of_b = group(bodies.b);
       const Chain::Joints joints = world.joints_between(bodies);
-      Pair pair{bodies.a,     bodies.b,   world.required(k, ClearanceRule::kNode), kNever, (of_a > 0) + (of_b > 0),
-                joints.first, joints.last};
+      Pair pair{bodies.a,
+                bodies.b,
+                world.required(k, ClearanceRule::kNode),
+                kNever,
+                (of_a > 0) + (of_b > 0),
+                joints.first,
+                joints.last};
       if (asks_moves_) pair.move = world.required(k, ClearanceRule::kMidpoint);
       for (const EdgeRule::Near& near : rule.near)
         if (asks_moves_ && near.pair == bodies) pair.move = near.d_edge + near.h;
@@ -115,7 +125,8 @@ class OpenParts {
   }
   [[nodiscard]] double turned(const Pair& pair, std::size_t from, std::size_t to) const {
     double way = 0;
-    for (auto j = static_cast<std::size_t>(pair.first_joint); j < static_cast<std::size_t>(pair.last); ++j)
+    for (auto j = static_cast<std::size_t>(pair.first_joint);
+         j < static_cast<std::size_t>(pair.last); ++j)
       way += turned_[to][j] - turned_[from][j];
     return way;
   }
@@ -123,12 +134,14 @@ class OpenParts {
   /// rows.
   [[nodiscard]] double travel(std::size_t pair, std::size_t from, std::size_t to) const {
     const Pair& p = pairs_[pair];
-    const double chords = moved(p.a, from, to) + moved(p.b, from, to) + p.moving * (off_chords_[to] - off_chords_[from]);
+    const double chords = moved(p.a, from, to) + moved(p.b, from, to) +
+                          p.moving * (off_chords_[to] - off_chords_[from]);
     return std::min(chords, turned(p, from, to));
   }
   /// Returns the last row up to which the pair stays clear if its clearance at `first` is `clear`,
   /// m.
-  [[nodiscard]] std::size_t forward(std::size_t pair, std::size_t first, std::size_t last, double clear) const {
+  [[nodiscard]] std::size_t forward(std::size_t pair, std::size_t first, std::size_t last,
+                                    double clear) const {
     std::size_t far = first, open = last + 1;
     while (open - far > 1) {
       const std::size_t middle = (far + open) / 2;
@@ -136,7 +149,8 @@ class OpenParts {
     }
     return far;
   }
-  [[nodiscard]] std::size_t backward(std::size_t pair, std::size_t first, std::size_t last, double clear) const {
+  [[nodiscard]] std::size_t backward(std::size_t pair, std::size_t first, std::size_t last,
+                                     double clear) const {
     std::size_t far = last, open = first;  // row `first` is known
     if (clear - travel(pair, first, last) >= pairs_[pair].both()) return first;
     while (far - open > 1) {
@@ -179,10 +193,16 @@ class OpenParts {
       } else if (s.first >= middle) {
         after.push_back(s);
       } else {
-        const double clear = at_row(s.pair, middle, std::max(travel(s.pair, s.first, middle), travel(s.pair, middle, s.last)));
-        const std::size_t from = backward(s.pair, s.first, middle, clear), to = forward(s.pair, middle, s.last, clear);
-        if (from > s.first) before.push_back({s.pair, s.first, from, s.clear_first, clear - travel(s.pair, from, middle)});
-        if (to < s.last) after.push_back({s.pair, to, s.last, clear - travel(s.pair, middle, to), s.clear_last});
+        const double clear =
+            at_row(s.pair, middle,
+                   std::max(travel(s.pair, s.first, middle), travel(s.pair, middle, s.last)));
+        const std::size_t from = backward(s.pair, s.first, middle, clear),
+                          to = forward(s.pair, middle, s.last, clear);
+        if (from > s.first)
+          before.push_back(
+              {s.pair, s.first, from, s.clear_first, clear - travel(s.pair, from, middle)});
+        if (to < s.last)
+          after.push_back({s.pair, to, s.last, clear - travel(s.pair, middle, to), s.clear_last});
       }
     }
     settle(first, middle, before);
@@ -199,7 +219,8 @@ class OpenParts {
     const double at_last = std::max(s.clear_last, clear_at(s.pair, (*joints_)[k + 1], need));
     return closes(s.pair, k, 0, 1, at_first, at_last);
   }
-  bool closes(std::size_t pair, std::size_t k, double from, double to, double clear_from, double clear_to) {
+  bool closes(std::size_t pair, std::size_t k, double from, double to, double clear_from,
+              double clear_to) {
     constexpr double kShortest = 1. / 8;  // of the move; FCL decides what is left
     if (reaches(pair, k, to - from, clear_from, clear_to)) return true;
     if (to - from <= kShortest) return false;
@@ -211,12 +232,14 @@ class OpenParts {
   }
   /// Returns true if the clearances at both ends of a share of a move prove that the pair keeps
   /// what it must on all of it.
-  [[nodiscard]] bool reaches(std::size_t pair, std::size_t k, double share, double clear_from, double clear_to) const {
+  [[nodiscard]] bool reaches(std::size_t pair, std::size_t k, double share, double clear_from,
+                             double clear_to) const {
     const Pair& p = pairs_[pair];
     const double slack = clear_from + clear_to - 2 * p.move;
     // both ends may lie off the chord
     const double off_chord = 2 * p.moving * (off_chords_[k + 1] - off_chords_[k]);
-    return slack >= share * turned(p, k, k + 1) || slack >= share * (moved(p.a, k, k + 1) + moved(p.b, k, k + 1)) + 2 * off_chord;
+    return slack >= share * turned(p, k, k + 1) ||
+           slack >= share * (moved(p.a, k, k + 1) + moved(p.b, k, k + 1)) + 2 * off_chord;
   }
 
   const std::vector<Config>* joints_;
@@ -232,8 +255,11 @@ class OpenParts {
 
 }  // namespace
 
-std::optional<ClearanceViolation> first_clearance_violation(const World& world, const EdgeRule& rule, const Limits& limits,
-                                                            const std::vector<Config>& rows, const Budget& budget) {
+std::optional<ClearanceViolation> first_clearance_violation(const World& world,
+                                                            const EdgeRule& rule,
+                                                            const Limits& limits,
+                                                            const std::vector<Config>& rows,
+                                                            const Budget& budget) {
   if (rows.empty()) return std::nullopt;
   World::Query query(world, DistanceProofs::kOn);
   const OpenParts open(world, query, rule, limits, rows, budget);
@@ -243,7 +269,8 @@ std::optional<ClearanceViolation> first_clearance_violation(const World& world, 
       if (const auto pair = query.find_violating_pair_incremental(rows[k], ClearanceRule::kNode))
         return ClearanceViolation{k, *pair};
     if (k > 0 && open.moves[k - 1])
-      if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget)) return ClearanceViolation{k, *pair, true};
+      if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget))
+        return ClearanceViolation{k, *pair, true};
   }
   return std::nullopt;
 }

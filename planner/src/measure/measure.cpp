@@ -20,15 +20,17 @@ namespace swivel {
 
 namespace {
 
-void measure_tool_path_error(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& trajectory,
-                             const Budget& budget, Measures& result) {
+void measure_tool_path_error(const Chain& chain, const ToolPath& path,
+                             const std::vector<TrajectoryRow>& trajectory, const Budget& budget,
+                             Measures& result) {
   double sum = 0;
   std::int64_t samples = 0;
   const int rows = static_cast<int>(trajectory.size());
   for (int i = 0; i + 1 < rows; ++i) {
     if (i % 64 == 0) budget.poll(Stage::kMeasuring, i, rows);
     const Config& q = trajectory[static_cast<std::size_t>(i)].q;
-    for (const double error : path_deviation(chain, path, i, q, trajectory[static_cast<std::size_t>(i) + 1].q - q)) {
+    for (const double error :
+         path_deviation(chain, path, i, q, trajectory[static_cast<std::size_t>(i) + 1].q - q)) {
       sum += error;
       ++samples;
       if (1e3 * error <= result.tool_path_error_mm.max) continue;
@@ -41,7 +43,8 @@ void measure_tool_path_error(const Chain& chain, const ToolPath& path, const std
 }
 
 void measure_postures(const PreparedRobot& robot, const ToolPath& path, const World& world,
-                      const std::vector<TrajectoryRow>& trajectory, const Budget& budget, Measures& result) {
+                      const std::vector<TrajectoryRow>& trajectory, const Budget& budget,
+                      Measures& result) {
   double manipulability = std::numeric_limits<double>::infinity();
   std::vector<double> arm_angle;
   const int rows = static_cast<int>(trajectory.size());
@@ -50,8 +53,8 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
     const Config& q = trajectory[static_cast<std::size_t>(i)].q;
     manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
     if (const auto& srs = robot.arm_class().srs)
-      arm_angle.push_back(
-          conventional_arm_angle(*srs, rolled(path.layer(i).tool, trajectory[static_cast<std::size_t>(i)].roll), q));
+      arm_angle.push_back(conventional_arm_angle(
+          *srs, rolled(path.layer(i).tool, trajectory[static_cast<std::size_t>(i)].roll), q));
   }
   std::vector<Config> joints;
   for (const TrajectoryRow& row : trajectory) joints.push_back(row.q);
@@ -66,24 +69,28 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
   result.evidence.postures = true;
 }
 
-std::optional<NearestLimit> nearest_limit(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
+std::optional<NearestLimit> nearest_limit(const Chain& chain,
+                                          const std::vector<TrajectoryRow>& rows) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t row = 0, joint = 0;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
     if (limit.continuous || limit.wide()) continue;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double q = rows[i].q[static_cast<Eigen::Index>(k)], margin = std::min(q - limit.lower, limit.upper - q);
+      const double q = rows[i].q[static_cast<Eigen::Index>(k)],
+                   margin = std::min(q - limit.lower, limit.upper - q);
       if (std::tie(margin, i, k) < std::tie(least, row, joint)) least = margin, row = i, joint = k;
     }
   }
   if (std::isinf(least)) return std::nullopt;
   const double q = rows[row].q[static_cast<Eigen::Index>(joint)];
   const bool is_lower = q - chain.limit[joint].lower <= chain.limit[joint].upper - q;
-  return NearestLimit{least, chain.joint_names[joint], is_lower ? Cause::Side::kLower : Cause::Side::kUpper, static_cast<int>(row)};
+  return NearestLimit{least, chain.joint_names[joint],
+                      is_lower ? Cause::Side::kLower : Cause::Side::kUpper, static_cast<int>(row)};
 }
 
-std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& path,
+                                           const std::vector<TrajectoryRow>& rows) {
   const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed limit
   double speed = std::numeric_limits<double>::infinity();
   std::size_t row = 0, joint = 0;
@@ -95,7 +102,8 @@ std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& p
       if (velocity <= 0) return std::nullopt;
       const auto j = static_cast<Eigen::Index>(k);
       const double moved = std::abs(rows[i + 1].q[j] - rows[i].q[j]);
-      if (moved > 0 && length * velocity < speed * moved) speed = length * velocity / moved, row = i, joint = k;
+      if (moved > 0 && length * velocity < speed * moved)
+        speed = length * velocity / moved, row = i, joint = k;
     }
   }
   if (std::isinf(speed)) return std::nullopt;
@@ -104,25 +112,30 @@ std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& p
 
 }  // namespace
 
-void measure_margins(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, Measures& measures) {
+void measure_margins(const Chain& chain, const ToolPath& path,
+                     const std::vector<TrajectoryRow>& rows, Measures& measures) {
   measures.nearest_limit = nearest_limit(chain, rows);
   measures.top_tool_speed = top_tool_speed(chain, path, rows);
 }
 
-void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world, const std::vector<TrajectoryRow>& rows,
-                  const Evidence& wanted, const Budget& budget, Measures& measures) {
-  if (wanted.tool_path_error) measure_tool_path_error(robot.arm().chain, path, rows, budget, measures);
+void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world,
+                  const std::vector<TrajectoryRow>& rows, const Evidence& wanted,
+                  const Budget& budget, Measures& measures) {
+  if (wanted.tool_path_error)
+    measure_tool_path_error(robot.arm().chain, path, rows, budget, measures);
   if (wanted.postures) measure_postures(robot, path, world, rows, budget, measures);
 }
 
-Measures measure(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows, const Evidence& wanted,
+Measures measure(const PreparedRobot& robot, const Problem& problem,
+                 const std::vector<TrajectoryRow>& rows, const Evidence& wanted,
                  const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain, budget);
   if (rows.size() != static_cast<std::size_t>(path.size()))
-    throw InvalidArgument("measure: " + std::to_string(rows.size()) + " rows: allowed are as many as the path has layers, " +
+    throw InvalidArgument("measure: " + std::to_string(rows.size()) +
+                          " rows: allowed are as many as the path has layers, " +
                           std::to_string(path.size()));
   Measures measures;
   measures.tool_path_error_mm.allowed = problem.limits.tool_path_error;

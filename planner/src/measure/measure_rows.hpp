@@ -10,10 +10,12 @@ namespace swivel {
 
 /// Computes what `wanted` selects for rows at the layers of the path, and records in
 /// measures.evidence what is known. Throws Stopped.
-void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world, const std::vector<TrajectoryRow>& rows,
-                  const Evidence& wanted, const Budget& budget, Measures& measures);
+void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world,
+                  const std::vector<TrajectoryRow>& rows, const Evidence& wanted,
+                  const Budget& budget, Measures& measures);
 
 /// Fills in measures.nearest_limit and measures.top_tool_speed, which takes hardly any time.
-void measure_margins(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, Measures& measures);
+void measure_margins(const Chain& chain, const ToolPath& path,
+                     const std::vector<TrajectoryRow>& rows, Measures& measures);
 
 }  // namespace swivel

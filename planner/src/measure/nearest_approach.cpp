@@ -6,8 +6,10 @@
 
 namespace swivel {
 
-std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
-                                                const Budget& budget, const std::optional<NearestApproach>& so_far,
+std::optional<NearestApproach> nearest_approach(const World& world,
+                                                const std::vector<TrajectoryRow>& rows, Seek seek,
+                                                const Budget& budget,
+                                                const std::optional<NearestApproach>& so_far,
                                                 std::vector<double>* proved) {
   // Rows far apart come first, so that one of them is near the nearest.
   constexpr int kStride = 8;
@@ -21,7 +23,8 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     if (known && *known >= threshold.more) return true;
     if (query.find_violating_pair_incremental(q, threshold)) return false;
     if (known) *known = std::max(*known, threshold.more + std::max(0.0, query.slack(threshold)));
-    return seek == Seek::kMargin || !query.find_violating_pair_incremental(q, Threshold(nearest->least + 2 * kVerdictBand));
+    return seek == Seek::kMargin ||
+           !query.find_violating_pair_incremental(q, Threshold(nearest->least + 2 * kVerdictBand));
   };
   int looked_at = 0;
   const auto look_at = [&](int row) {
@@ -38,7 +41,8 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     }
     if (!here) return;
     const double least = nearest ? std::min(nearest->least, here->least) : here->least;
-    if (!nearest || std::tuple(here->margin(), row) <= std::tuple(nearest->clearance.margin(), nearest->row))
+    if (!nearest ||
+        std::tuple(here->margin(), row) <= std::tuple(nearest->clearance.margin(), nearest->row))
       nearest = {*here, row, least};
     else
       nearest->least = least;

@@ -22,9 +22,9 @@ enum class Seek { kMargin, kMarginAndLeast };
 /// nearest so far, which are most after the first few, are not measured. `proved`, for
 /// Seek::kMargin only, holds by row a lower bound of its margin, m, which saves the proof; it is
 /// raised by what is proved. Throws Stopped.
-[[nodiscard]] std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
-                                                              const Budget& budget,
-                                                              const std::optional<NearestApproach>& so_far = std::nullopt,
-                                                              std::vector<double>* proved = nullptr);
+[[nodiscard]] std::optional<NearestApproach> nearest_approach(
+    const World& world, const std::vector<TrajectoryRow>& rows, Seek seek, const Budget& budget,
+    const std::optional<NearestApproach>& so_far = std::nullopt,
+    std::vector<double>* proved = nullptr);
 
 }  // namespace swivel

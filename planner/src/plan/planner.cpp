@@ -40,13 +40,14 @@ bool is_eager(const PlanOptions& options) {
   return options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp;
 }
 
-/// The eager planners are the baseline: FCL used well, without distance proofs. The verdicts are the same.
+/// The eager planners are the baseline: FCL used well, without distance proofs. The verdicts are
+/// the same.
 DistanceProofs distance_proofs_of(const PlanOptions& options) {
   return is_eager(options) || options.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
 }
 
-/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each chunk finds its own bounds of
-/// distances, which takes a few per cent of a short plan.
+/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
+/// Each chunk finds its own bounds of distances, which takes a few per cent of a short plan.
 int chunks_of(const PlanOptions& options, const Lattice& lattice) {
   constexpr std::int64_t kNodesPerChunk = 50'000, kFewest = 2, kMost = 8;
   if (options.planner == PlannerKind::kLazy) return 1;
@@ -55,7 +56,8 @@ int chunks_of(const PlanOptions& options, const Lattice& lattice) {
 }
 
 ParallelFor shared_with(Executor& threads) {
-  return {threads.threads(), [&threads](int parts, const auto& body) { threads.for_each_short(parts, body); }};
+  return {threads.threads(),
+          [&threads](int parts, const auto& body) { threads.for_each_short(parts, body); }};
 }
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
@@ -65,12 +67,16 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   for (int layer = 0; layer + 1 < lattice.layers(); ++layer) {
     if (lattice.slots(layer) == 0) continue;
     lattice.successors(layer, 0, runs);  // as many as of any other slot
-    for (const Lattice::SlotRun& run : runs) edges += static_cast<double>(lattice.slots(layer)) * (run.last - run.first);
+    for (const Lattice::SlotRun& run : runs)
+      edges += static_cast<double>(lattice.slots(layer)) * (run.last - run.first);
   }
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
   if (!fits_in_memory(needed))
-    throw InputError(source, "planner eager: its graph would need about " + std::to_string(static_cast<long long>(needed / 1e9)) +
-                                 " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
+    throw InputError(
+        source,
+        "planner eager: its graph would need about " +
+            std::to_string(static_cast<long long>(needed / 1e9)) +
+            " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 
 /// Of a path that may end anywhere: as far as its joints stay within their limits.
@@ -100,17 +106,22 @@ void add_counters(const Counters& more, Counters& sum) {
 }
 
 /// The cost of a path's rows, where its nodes cost `cost`.
-double cost_of_rows(const Lattice& lattice, const SlotPath& path, const std::vector<TrajectoryRow>& rows, double cost) {
+double cost_of_rows(const Lattice& lattice, const SlotPath& path,
+                    const std::vector<TrajectoryRow>& rows, double cost) {
   for (std::size_t i = 1; i < path.size(); ++i) {
     const int layer = static_cast<int>(i);
-    cost -= lattice.edge_cost(lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i])));
+    cost -= lattice.edge_cost(
+        lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i])));
   }
-  for (std::size_t i = 1; i < rows.size(); ++i) cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
   if (!lattice.has_node_costs()) return cost;
-  for (std::size_t i = 0; i < path.size(); ++i) cost -= lattice.node_cost(static_cast<int>(i), path[i]);
+  for (std::size_t i = 0; i < path.size(); ++i)
+    cost -= lattice.node_cost(static_cast<int>(i), path[i]);
   const std::vector<double> shares = lattice.path_of_rows().shares();
   for (std::size_t i = 0; i < rows.size(); ++i)
-    cost += lattice.rounded_cost(lattice.cost().roll * shares[i] * std::abs(wrap_angle(roll_of(lattice.chain(), rows[i]))));
+    cost += lattice.rounded_cost(lattice.cost().roll * shares[i] *
+                                 std::abs(wrap_angle(roll_of(lattice.chain(), rows[i]))));
   return cost;
 }
 
@@ -163,25 +174,28 @@ struct Planner::Impl {
   struct Layout {
     Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
         : path(path_within_scale(problem, robot.arm().chain, budget)),
-          first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget), nullptr},
+          first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget),
+                nullptr},
           coaxial(first.lattice != nullptr) {
-      if (!coaxial) first.lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
+      if (!coaxial)
+        first.lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
     }
     ToolPath path;
     Searched first;  // by every plan
     bool coaxial;    // first, whose having no path is not the last word
-    /// After it by the last plan: where its path left the limits of joints taken as circles in their nearest turns, or a coaxial
-    /// one had none.
+    /// After it by the last plan: where its path left the limits of joints taken as circles in
+    /// their nearest turns, or a coaxial one had none.
     std::optional<Searched> second;
     [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
   std::unique_ptr<Layout> layout;
   std::optional<std::vector<std::string>> scale_of_robot;  // warnings: a robot does not change
   std::unique_ptr<CostToGo> recycled;                      // of another lattice
-  ClearanceMemory memory;                                  // of this lattice, the robot and the limits
-  std::vector<FailureHint> failure_hints;                  // what failed on the lattice before this one; of these bodies
-  std::uint64_t plans = 0;                                 // that the memory knows of
-  std::vector<std::uint64_t> met;                          // by object: the first of them that meets it as it is
+  ClearanceMemory memory;  // of this lattice, the robot and the limits
+  std::vector<FailureHint>
+      failure_hints;               // what failed on the lattice before this one; of these bodies
+  std::uint64_t plans = 0;         // that the memory knows of
+  std::vector<std::uint64_t> met;  // by object: the first of them that meets it as it is
   std::optional<Executor> executor;
   int executor_threads = 0;  // that it was asked for
 
@@ -227,12 +241,15 @@ struct Planner::Impl {
     problem = std::move(next);
   }
   [[nodiscard]] std::size_t object(const std::string& name) const {
-    const auto found = std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == name; });
-    if (found == problem.scene.end()) throw InvalidArgument("'" + name + "': no such object: allowed are names of the scene");
+    const auto found = std::find_if(problem.scene.begin(), problem.scene.end(),
+                                    [&](const auto& o) { return o.name == name; });
+    if (found == problem.scene.end())
+      throw InvalidArgument("'" + name + "': no such object: allowed are names of the scene");
     return static_cast<std::size_t>(found - problem.scene.begin());
   }
   void set_scene(std::vector<SceneObject> scene) {
-    if (!std::equal(scene.begin(), scene.end(), problem.scene.begin(), problem.scene.end(), same_body)) {
+    if (!std::equal(scene.begin(), scene.end(), problem.scene.begin(), problem.scene.end(),
+                    same_body)) {
       problem.scene = std::move(scene);
       met.assign(problem.scene.size(), 1);
       all_changed();
@@ -282,7 +299,8 @@ struct Planner::Impl {
   void lay_out(const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
-    if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain); !rest.empty()) throw InputError(rest);
+    if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain); !rest.empty())
+      throw InputError(rest);
     if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
     layout->second.reset();
     result.time_ms["lattice"] = watch.lap();
@@ -293,23 +311,29 @@ struct Planner::Impl {
     result.warnings = limit_warnings(robot->arm().chain);
     if (!scale_of_robot) scale_of_robot = scale_warnings(robot->arm().chain, problem);
     for (const auto& lines :
-         {held_warnings(result.held), file_warnings(*problem.model, robot->arm().chain), *scale_of_robot,
-          limit_scale_warnings(robot->arm().chain, problem), scale_warnings(robot->arm().chain, layout->path, problem.scene)})
+         {held_warnings(result.held), file_warnings(*problem.model, robot->arm().chain),
+          *scale_of_robot, limit_scale_warnings(robot->arm().chain, problem),
+          scale_warnings(robot->arm().chain, layout->path, problem.scene)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
-    result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
+    result.warnings.insert(result.warnings.end(), world->warnings().begin(),
+                           world->warnings().end());
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());
   }
-  /// A path on which a joint taken as a circle cannot begin in the turn nearest to the middle of its range is no answer yet: the
-  /// values of such joints are told apart then.
-  Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
+  /// A path on which a joint taken as a circle cannot begin in the turn nearest to the middle of
+  /// its range is no answer yet: the values of such joints are told apart then.
+  Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
+               PlanResult& result) {
     was_eager = is_eager(options);
     // What a caller's states cost may hang on joint 7.
     const bool rests = layout->coaxial && !options.hooks.cost;
     Found found;
-    if (rests || !layout->coaxial) found = search(layout->first, !single_use, rule, options, budget, result);
+    if (rests || !layout->coaxial)
+      found = search(layout->first, !single_use, rule, options, budget, result);
     if (layout->coaxial && (!rests || (found.decided && found.outcome.path.empty()))) {
-      layout->second = Searched{make_lattice(robot->arm().chain, robot->arm_class(), layout->path, problem, budget), nullptr};
+      layout->second = Searched{
+          make_lattice(robot->arm().chain, robot->arm_class(), layout->path, problem, budget),
+          nullptr};
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
       return search(*layout->second, false, rule, options, budget, result);
     }
@@ -324,10 +348,12 @@ struct Planner::Impl {
     }
   }
   /// `remembered`: what the plans before came to know serves, and what this one does is kept.
-  Found search(Searched& searched, bool remembered, const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
-               PlanResult& result) {
+  Found search(Searched& searched, bool remembered, const EdgeRule& rule,
+               const PlanOptions& options, const Budget& budget, PlanResult& result) {
     const Lattice& lattice = *searched.lattice;
-    remembered = remembered && !lattice.has_layers_between();  // of edges one clearance is kept, not one of each row
+    remembered =
+        remembered &&
+        !lattice.has_layers_between();  // of edges one clearance is kept, not one of each row
     Executor& threads = threads_of(options);
     Counters counters;
     Found found;
@@ -342,7 +368,8 @@ struct Planner::Impl {
     };
     if (was_eager) {
       if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
-      CollisionValidity validity(lattice, *world, rule, problem.limits.edges, distance_proofs_of(options), threads, 0, budget);
+      CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
+                                 distance_proofs_of(options), threads, 0, budget);
       HookedValidity hooked(lattice, validity, options.hooks, budget);
       found = search_eagerly(lattice, hooked, options, budget, counters);
       count(validity);
@@ -351,8 +378,9 @@ struct Planner::Impl {
     constexpr int kFewLayers = 64;  // where chords are too long to bound much
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
-      cost_to_go =
-          make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget, std::move(recycled));
+      cost_to_go = make_cost_to_go(
+          lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget,
+          std::move(recycled));
     if (single_use) cost_to_go->set_single_use();
     const bool shares = shares_work(lattice);
     if (shares) threads.start_helpers();
@@ -363,16 +391,21 @@ struct Planner::Impl {
       memory.begin(++plans, met, *world, problem.scene);
       if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
     }
-    CollisionValidity validity(lattice, *world, rule, problem.limits.edges, distance_proofs_of(options), threads,
-                               chunks_of(options, lattice), budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
+    CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
+                               distance_proofs_of(options), threads, chunks_of(options, lattice),
+                               budget, remembered ? &memory : nullptr,
+                               changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
-    const std::vector<FailureHint> asked_before = remembered ? std::exchange(failure_hints, {}) : std::vector<FailureHint>();
-    found = search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : PriorFailures{}, asked_before, options,
-                          counters, result.time_ms);
+    const std::vector<FailureHint> asked_before =
+        remembered ? std::exchange(failure_hints, {}) : std::vector<FailureHint>();
+    found =
+        search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : PriorFailures{},
+                      asked_before, options, counters, result.time_ms);
     count(validity);
     return found;
   }
-  /// Where a second thread may run, it makes heavy meshes ready while the first one finds paths without obstacles.
+  /// Where a second thread may run, it makes heavy meshes ready while the first one finds paths
+  /// without obstacles.
   std::jthread meshes_ahead(const PlanOptions& options) {
     constexpr std::size_t kHeavy = 5000;  // triangles: some milliseconds
     if (threads_of(options).threads() == 1 || world->triangles_to_make_ready() < kHeavy) return {};
@@ -432,13 +465,15 @@ struct Planner::Impl {
     }
   }
   /// What the options ask for, as far as the budget goes.
-  void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options, const Budget& budget, PlanResult& result) {
+  void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options,
+               const Budget& budget, PlanResult& result) {
     const TraceSpan span("report");
     const Lattice& lattice = *layout->last().lattice;
     try {
       if (result.status == PlanStatus::kSolved) {
         result.tool_path_error_mm.allowed = problem.limits.tool_path_error;
-        measure_rows(*robot, layout->path, *world, result.trajectory, options.evidence, budget, result);
+        measure_rows(*robot, layout->path, *world, result.trajectory, options.evidence, budget,
+                     result);
         return;
       }
       result.diagnosis.complete = false;  // until diagnose() has done
@@ -447,7 +482,8 @@ struct Planner::Impl {
         path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
       result.partial = partial_rows(lattice, path);
       if (!found.deepest) return;
-      diagnose(lattice, *world, rule, path, options.evidence.layers, budget, result.diagnosis, options.hooks.check);
+      diagnose(lattice, *world, rule, path, options.evidence.layers, budget, result.diagnosis,
+               options.hooks.check);
       result.evidence.layers = options.evidence.layers;
     } catch (const Stopped&) {
     }
@@ -487,7 +523,8 @@ Planner::Planner(Problem problem) : impl_(std::make_unique<Impl>(std::move(probl
   validate(*p.model);
   impl_->arm = planning_arm(p);
 }
-Planner::Planner(std::shared_ptr<const PreparedRobot> robot, Problem problem) : impl_(std::make_unique<Impl>(std::move(problem))) {
+Planner::Planner(std::shared_ptr<const PreparedRobot> robot, Problem problem)
+    : impl_(std::make_unique<Impl>(std::move(problem))) {
   validate(impl_->problem);
   robot->require_prepared_for(impl_->problem);
   impl_->robot = std::move(robot);
@@ -528,7 +565,8 @@ void Planner::set_problem(Problem problem) {
   impl_->problem.vary = problem.vary;
   impl_->set_scene(std::move(problem.scene));
   impl_->set_task(problem);
-  impl_->failure_hints.clear();  // problems have little in common; and what one takes must not hang on the one before
+  impl_->failure_hints.clear();  // problems have little in common; and what one takes must not hang
+                                 // on the one before
 }
 
 void Planner::add(SceneObject object) {
@@ -568,7 +606,8 @@ void Planner::detach(const std::string& body) {
   Problem next = impl_->problem;
   if (std::erase_if(next.attached, [&](const AttachedBody& b) { return b.name == body; }) == 0)
     throw InvalidArgument("'" + body + "': no such body: allowed are names of attached bodies");
-  for (SceneObject& object : next.scene) std::erase_if(object.allow, [&](const Allowed& allowed) { return allowed.body == body; });
+  for (SceneObject& object : next.scene)
+    std::erase_if(object.allow, [&](const Allowed& allowed) { return allowed.body == body; });
   impl_->replace(std::move(next));
   impl_->attached_changed();
 }
@@ -578,10 +617,17 @@ PlanResult Planner::plan(const PlanOptions& options) {
 }
 
 PlanView Planner::view() const {
-  if (!impl_->viewable) throw InvalidArgument("there is nothing to see: allowed after a plan() that came as far as its search");
+  if (!impl_->viewable)
+    throw InvalidArgument(
+        "there is nothing to see: allowed after a plan() that came as far as its search");
   const Impl& x = *impl_;
   const Impl::Searched& last = x.layout->last();
-  return {*x.robot, x.problem, *last.lattice, *x.world, x.was_eager ? nullptr : &last.cost_to_go->verdicts(), x.path};
+  return {*x.robot,
+          x.problem,
+          *last.lattice,
+          *x.world,
+          x.was_eager ? nullptr : &last.cost_to_go->verdicts(),
+          x.path};
 }
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {

@@ -6,8 +6,8 @@
 
 namespace swivel {
 
-Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
-                     Counters& counters) {
+Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options,
+                     const Budget& budget, Counters& counters) {
   Found found;
   EagerOutcome eager;
   try {
@@ -32,7 +32,9 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
   for (const int slot : path) {
     const int layer = static_cast<int>(proved.size());
     if (verdicts.node(layer, slot) != Verdict::kValid) break;
-    if (layer > 0 && validity.asks_edges() && verdicts.edge(layer - 1, proved.back(), slot) != Verdict::kValid) break;
+    if (layer > 0 && validity.asks_edges() &&
+        verdicts.edge(layer - 1, proved.back(), slot) != Verdict::kValid)
+      break;
     proved.push_back(slot);
   }
   return proved;
@@ -40,8 +42,9 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 
 }  // namespace
 
-Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const PriorFailures& first,
-                    std::span<const FailureHint> failure_hints, const PlanOptions& options, Counters& counters,
+Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
+                    const PriorFailures& first, std::span<const FailureHint> failure_hints,
+                    const PlanOptions& options, Counters& counters,
                     std::map<std::string, double>& time_ms) {
   Stopwatch watch;
   Found found;
@@ -54,8 +57,9 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   if (options.hooks.check)
     path_first_options.batch = 32;
   else if (options.planner == PlannerKind::kParallel)
-    path_first_options = {
-        .batch = 16, .min_questions_per_iteration = 128, .overlap_region_questions = shares_work(cost_to_go.lattice())};
+    path_first_options = {.batch = 16,
+                          .min_questions_per_iteration = 128,
+                          .overlap_region_questions = shares_work(cost_to_go.lattice())};
   try {
     if (!swept) {
       check_failure_hints(cost_to_go, validity, failure_hints);

@@ -33,14 +33,17 @@ struct Found {
 
 /// Searches with the eager planner or eager_dp (options.planner), which validate the whole lattice
 /// first. Fills `counters`.
-[[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
+[[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity,
+                                   const PlanOptions& options, const Budget& budget,
                                    Counters& counters);
 /// Searches with the lazy planner or the parallel one (options.planner). `swept`: cost_to_go holds
 /// the values of the lattice without removals; otherwise `failure_hints` are validated before it is
 /// swept. `first` are failures of earlier searches, which are tested first. Fills `counters` and
 /// the times of the stages, ms.
-[[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const PriorFailures& first,
-                                  std::span<const FailureHint> failure_hints, const PlanOptions& options, Counters& counters,
+[[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
+                                  const PriorFailures& first,
+                                  std::span<const FailureHint> failure_hints,
+                                  const PlanOptions& options, Counters& counters,
                                   std::map<std::string, double>& time_ms);
 
 }  // namespace swivel

@@ -28,17 +28,21 @@ namespace swivel {
 namespace {
 
 double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 
 /// A joint's limits and the manipulability at a sample. Limits are narrower by `inside`, rad.
-std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits, const TrajectoryRow& row, double inside = 0) {
+std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits,
+                                        const TrajectoryRow& row, double inside = 0) {
   constexpr double kLimit = 1e-9;  // rad
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
     const double q = row.q[static_cast<Eigen::Index>(j)], margin = limits.joint_margin + inside;
-    if (!limit.continuous && !(q >= limit.lower + margin - kLimit && q <= limit.upper - margin + kLimit))
-      return NoMotion{row.s, "joint '" + chain.joint_names[j] + "' leaves its limits between layers"};
+    if (!limit.continuous &&
+        !(q >= limit.lower + margin - kLimit && q <= limit.upper - margin + kLimit))
+      return NoMotion{row.s,
+                      "joint '" + chain.joint_names[j] + "' leaves its limits between layers"};
   }
   if (limits.manipulability > 0 && chain.manipulability(row.q) < limits.manipulability - 1e-9)
     return NoMotion{row.s, "manipulability is too low between layers"};
@@ -51,19 +55,21 @@ struct Fault {
 };
 
 /// What is wrong with a motion first.
-std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
-                                 const Budget& budget) {
+std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& problem,
+                                 const std::vector<TimedRow>& rows, const Budget& budget) {
   std::vector<Config> samples;
   for (const TimedRow& row : rows) {
-    if (auto fault = fault_of_joints(robot.arm().chain, problem.limits, row.row)) return Fault{*fault, samples.size()};
+    if (auto fault = fault_of_joints(robot.arm().chain, problem.limits, row.row))
+      return Fault{*fault, samples.size()};
     samples.push_back(row.row.q);
   }
   const World world(robot.world(), problem, budget, kVerdictBand);
-  const auto found = first_clearance_violation(world, world.edge_rule(robot.radii()), problem.limits, samples, budget);
+  const auto found = first_clearance_violation(world, world.edge_rule(robot.radii()),
+                                               problem.limits, samples, budget);
   if (!found) return std::nullopt;
   const auto names = world.names(found->pair);
-  NoMotion fault{rows[found->row].row.s,
-                 "'" + names[0] + "' and '" + names[1] + "' come too near" + (found->between ? " between samples" : "")};
+  NoMotion fault{rows[found->row].row.s, "'" + names[0] + "' and '" + names[1] + "' come too near" +
+                                             (found->between ? " between samples" : "")};
   fault.too_near = true;
   return Fault{std::move(fault), found->row};
 }
@@ -73,7 +79,8 @@ std::optional<double> travel_at(const ToolPath& path, double s) {
   for (int i = 0; i + 1 < path.size(); ++i) {
     const PathLayer &from = path.layer(i), &to = path.layer(i + 1);
     if (s < to.s && from.step_length > 0)
-      return from.travel + std::max(0.0, (s - from.s) / (to.s - from.s)) * (to.travel - from.travel);
+      return from.travel +
+             std::max(0.0, (s - from.s) / (to.s - from.s)) * (to.travel - from.travel);
   }
   return std::nullopt;
 }
@@ -81,15 +88,17 @@ std::optional<double> travel_at(const ToolPath& path, double s) {
 /// Finds postures for the stretches between layers on which a motion is at fault.
 class Bisection {
  public:
-  Bisection(const PreparedRobot& robot, const Problem& of_samples, const ToolPath& path, const Budget& budget)
+  Bisection(const PreparedRobot& robot, const Problem& of_samples, const ToolPath& path,
+            const Budget& budget)
       : chain_(&robot.arm().chain),
         problem_(&of_samples),
         path_(&path),
         world_(robot.world(), of_samples, budget),
         query_(world_) {}
 
-  /// In the middle of the samples at fault, one after the other, from this one on: the posture nearest to the sample there that
-  /// keeps what is asked, and a little more. None where there is none, or one is there already.
+  /// In the middle of the samples at fault, one after the other, from this one on: the posture
+  /// nearest to the sample there that keeps what is asked, and a little more. None where there is
+  /// none, or one is there already.
   std::optional<BetweenRow> posture(const std::vector<TimedRow>& rows, std::size_t first) {
     constexpr double kFarthest = 0.5, kSame = 1e-6;  // rad, m
     std::size_t last = first;
@@ -99,7 +108,8 @@ class Bisection {
     if (!travel) return std::nullopt;
     for (const double other : found_)
       if (std::abs(*travel - other) < kSame) return std::nullopt;
-    const auto q = nearest_allowed_posture(*chain_, middle.q, kFarthest, [this](const Config& one) { return allowed(one); });
+    const auto q = nearest_allowed_posture(*chain_, middle.q, kFarthest,
+                                           [this](const Config& one) { return allowed(one); });
     if (!q) return std::nullopt;
     found_.push_back(*travel);
     return BetweenRow{*travel, *q};
@@ -107,7 +117,8 @@ class Bisection {
 
  private:
   bool allowed(const Config& q) {
-    constexpr double kInside = 1e-4, kClear = 1e-4;  // rad, m: so that samples beside are allowed as well
+    constexpr double kInside = 1e-4,
+                     kClear = 1e-4;  // rad, m: so that samples beside are allowed as well
     TrajectoryRow row;
     row.q = q;
     return !fault_of_joints(*chain_, problem_->limits, row, kInside) &&
@@ -122,16 +133,18 @@ class Bisection {
   std::vector<double> found_;  // m of travel
 };
 
-/// What rows say, moved off the ends of the range and of the waypoints' windows where the spline through it would leave them: as
-/// far as it does, again and again. Where a window is no wider than its own bends that does not end, and they stay outside a
-/// little.
-std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+/// What rows say, moved off the ends of the range and of the waypoints' windows where the spline
+/// through it would leave them: as far as it does, again and again. Where a window is no wider than
+/// its own bends that does not end, and they stay outside a little.
+std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
+                                     const std::vector<TrajectoryRow>& rows) {
   constexpr int kMost = 40;
   constexpr double kFurther = 1.2;  // so that it ends
   std::vector<double> rolls = rolls_of(rows);
   if (range.circle() || rolls.size() != static_cast<std::size_t>(path.size())) return rolls;
   const auto into = [&range](const Roll& window, double roll) {
-    const double lower = std::max(range.lower, window.lower), upper = std::min(range.upper, window.upper);
+    const double lower = std::max(range.lower, window.lower),
+                 upper = std::min(range.upper, window.upper);
     return std::clamp(roll, lower, std::max(lower, upper));
   };
   for (int round = 0; round < kMost; ++round) {
@@ -141,14 +154,19 @@ std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, co
       const PathLayer &from = path.layer(i), &to = path.layer(i + 1);
       double outside = 0;
       for (const double t : {0.2, 0.4, 0.6, 0.8}) {
-        const double travel = from.travel + t * (to.travel - from.travel), roll = turned.roll_at(travel);
-        if (const double by = into(path.window_at(travel), roll) - roll; std::abs(by) > std::abs(outside)) outside = by;
+        const double travel = from.travel + t * (to.travel - from.travel),
+                     roll = turned.roll_at(travel);
+        if (const double by = into(path.window_at(travel), roll) - roll;
+            std::abs(by) > std::abs(outside))
+          outside = by;
       }
       if (outside == 0) continue;
       inside = false;
       for (const int layer : {i, i + 1}) {
         double& roll = rolls[static_cast<std::size_t>(layer)];
-        if (layer > 0) roll = into(path.layer(layer).window, roll + kFurther * outside);  // the first may be a start's
+        if (layer > 0)
+          roll = into(path.layer(layer).window,
+                      roll + kFurther * outside);  // the first may be a start's
       }
     }
     if (inside) break;
@@ -156,21 +174,26 @@ std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, co
   return rolls;
 }
 
-/// Whether the check finds that the tool leaves the tolerances of its path between the samples of a motion.
-bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion, const Budget& budget) {
-  constexpr double kShare = 0.5;  // of the true distance: what is measured half way between samples beside a corner, at least
+/// Whether the check finds that the tool leaves the tolerances of its path between the samples of a
+/// motion.
+bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion,
+                    const Budget& budget) {
+  constexpr double kShare = 0.5;  // of the true distance: what is measured half way between samples
+                                  // beside a corner, at least
   const Limits& limits = problem.limits;
   if (!(limits.tool_path_error && motion.between_position > kShare * *limits.tool_path_error) &&
       !(limits.tool_angle_error && motion.between_angle > kShare * *limits.tool_angle_error))
     return false;
-  const CheckResult check = check_motion_in(robot.world(), robot, problem, motion.rows, {.margins = false, .budget = budget});
+  const CheckResult check = check_motion_in(robot.world(), robot, problem, motion.rows,
+                                            {.margins = false, .budget = budget});
   return check.worst_path_error > 0 || check.worst_path_angle > 0;  // of moves that fail
 }
 
-/// time_path(), slower where the tool would leave the path's tolerances between samples, as at few samples a second; no motion
-/// where it would do so all the same.
-TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& problem, const PathMotion& motion,
-                                    const JointRates& rates, const TimingOptions& options, const Budget& budget) {
+/// time_path(), slower where the tool would leave the path's tolerances between samples, as at few
+/// samples a second; no motion where it would do so all the same.
+TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& problem,
+                                    const PathMotion& motion, const JointRates& rates,
+                                    const TimingOptions& options, const Budget& budget) {
   TimingResult timed = time_path(motion, rates, options, budget);
   if (!timed.motion || !strays_between(robot, problem, *timed.motion, budget)) return timed;
   if (const auto& tolerance = problem.limits.tool_path_error; tolerance && *tolerance > 0) {
@@ -179,14 +202,21 @@ TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& p
     timed = time_path(motion, rates, slower, budget);
     if (!timed.motion) return timed;
     timed.motion->warnings.emplace_back(
-        "the motion is slowed down: at this rate the tool would leave limits.tool_path_error between samples");
+        "the motion is slowed down: at this rate the tool would leave limits.tool_path_error "
+        "between samples");
     if (!strays_between(robot, problem, *timed.motion, budget)) return timed;
   }
-  return {std::nullopt, NoMotion{0, "the tool would leave its path's tolerances between samples: a higher rate brings less"}};
+  return {
+      std::nullopt,
+      NoMotion{
+          0,
+          "the tool would leave its path's tolerances between samples: a higher rate brings less"}};
 }
 
-/// The timing asked for, the tool no faster than limits.tool_speed and limits.tool_turn_speed allow; what was lowered is told.
-TimingOptions within_limits(TimingOptions options, const Limits& limits, std::vector<std::string>& warnings) {
+/// The timing asked for, the tool no faster than limits.tool_speed and limits.tool_turn_speed
+/// allow; what was lowered is told.
+TimingOptions within_limits(TimingOptions options, const Limits& limits,
+                            std::vector<std::string>& warnings) {
   const auto lower = [&](double& asked, const std::optional<double>& limit, const char* format) {
     if (!limit || asked <= *limit) return;
     warnings.push_back(formatted(format, asked, *limit));
@@ -197,24 +227,28 @@ TimingOptions within_limits(TimingOptions options, const Limits& limits, std::ve
   if (!options.turn_speed) options.turn_speed = limits.tool_turn_speed;
   if (options.turn_speed)
     lower(*options.turn_speed, limits.tool_turn_speed,
-          "a turn speed of %.6g rad/s is asked for: limits.tool_turn_speed allows %.6g rad/s, which is kept");
+          "a turn speed of %.6g rad/s is asked for: limits.tool_turn_speed allows %.6g rad/s, "
+          "which is kept");
   return options;
 }
 
-/// `between_layers`: where the motion through the rows is at fault between them, it may be led through postures of its own there.
-MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                       const TimingOptions& asked, bool between_layers, const Budget& budget) {
+/// `between_layers`: where the motion through the rows is at fault between them, it may be led
+/// through postures of its own there.
+MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
+                       const std::vector<TrajectoryRow>& rows, const TimingOptions& asked,
+                       bool between_layers, const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
     Problem turned = problem;
-    turned.rolls = rolls_for_motion(*robot.arm().chain.free_roll, problem_path(problem, robot.arm().chain, budget), rows);
+    turned.rolls = rolls_for_motion(*robot.arm().chain.free_roll,
+                                    problem_path(problem, robot.arm().chain, budget), rows);
     return time_rows(robot, turned, rows, asked, between_layers, budget);
   }
   const auto positive = [&](double value, const char* name) {
     if (!(value > 0) || !std::isfinite(value))
-      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + formatted("%.9g", value) +
-                            ": allowed is a finite number > 0");
+      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " +
+                            formatted("%.9g", value) + ": allowed is a finite number > 0");
   };
   positive(asked.speed, "speed");
   positive(asked.turn_speed.value_or(1), "turn_speed");
@@ -233,13 +267,18 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
     std::vector<TimedRow> samples;  // the one at fault with what comes before it and after
     std::optional<std::size_t> at_fault;
   };
-  const auto try_it = [&](double apart, double off_limits, const std::vector<BetweenRow>& between = {}) {
+  const auto try_it = [&](double apart, double off_limits,
+                          const std::vector<BetweenRow>& between = {}) {
     auto start = std::chrono::steady_clock::now();
-    const auto motion =
-        make_path_motion(chain, robot.arm_class(), path, rows, apart, problem.limits.joint_margin + off_limits, between);
+    const auto motion = make_path_motion(chain, robot.arm_class(), path, rows, apart,
+                                         problem.limits.joint_margin + off_limits, between);
     TimingResult timed = time_within_tolerances(robot, problem, *motion, rates, options, budget);
     result.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-    Tried tried{std::move(timed.failure), motion->knots().size() == rows.size(), !motion->jumps().empty(), {}, {}};
+    Tried tried{std::move(timed.failure),
+                motion->knots().size() == rows.size(),
+                !motion->jumps().empty(),
+                {},
+                {}};
     if (timed.motion) {
       if (const auto fault = first_fault(robot, of_samples, timed.motion->rows, budget)) {
         tried.failure = fault->what;
@@ -271,21 +310,25 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
       bisected = try_it(kApart, kOffLimits, between);
     }
     if (!bisected.failure) {
-      const std::string text = formatted("at s = %.4f m the motion would be at fault between layers (", tried.failure->s);
-      result.motion->warnings.push_back(text + tried.failure->reason + "): it is led through " + std::to_string(between.size()) +
-                                        " other posture" + (between.size() == 1 ? "" : "s") + " there");
+      const std::string text = formatted(
+          "at s = %.4f m the motion would be at fault between layers (", tried.failure->s);
+      result.motion->warnings.push_back(text + tried.failure->reason + "): it is led through " +
+                                        std::to_string(between.size()) + " other posture" +
+                                        (between.size() == 1 ? "" : "s") + " there");
     }
     tried = std::move(bisected);
   }
   result.failure = std::move(tried.failure);
-  if (result.motion) result.motion->warnings.insert(result.motion->warnings.begin(), lowered.begin(), lowered.end());
+  if (result.motion)
+    result.motion->warnings.insert(result.motion->warnings.begin(), lowered.begin(), lowered.end());
   return result;
 }
 
 }  // namespace
 
-MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                             const TimingOptions& options, const Budget& budget) {
+MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
+                             const std::vector<TrajectoryRow>& rows, const TimingOptions& options,
+                             const Budget& budget) {
   return time_rows(robot, problem, rows, options, true, budget);
 }
 
@@ -302,7 +345,8 @@ class KeepsBranch final : public StateCheck {
   }
   [[nodiscard]] bool checks_motions() const override { return true; }
   void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
-    for (std::size_t k = 0; k < motions.size(); ++k) allowed[k] = arm_->branch(motions[k].from) == arm_->branch(motions[k].to);
+    for (std::size_t k = 0; k < motions.size(); ++k)
+      allowed[k] = arm_->branch(motions[k].from) == arm_->branch(motions[k].to);
   }
 
  private:
@@ -310,13 +354,16 @@ class KeepsBranch final : public StateCheck {
 };
 
 bool changes_branch(const std::vector<TrajectoryRow>& rows) {
-  return std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.branch != rows[0].branch; });
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const TrajectoryRow& row) { return row.branch != rows[0].branch; });
 }
 
 /// A path that never changes branch, where there is one: else the one there is.
 PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool one_branch) {
   PlanResult found = planner.plan(options);
-  if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) || options.hooks.check) return found;
+  if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) ||
+      options.hooks.check)
+    return found;
   const ArmClass& arm = planner.view().robot.arm_class();
   if (!arm.srs) return found;  // signs of other arms change along a motion
   PlanOptions keeping = options;
@@ -324,7 +371,8 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
   PlanResult other = planner.plan(keeping);
   if (other.status != PlanStatus::kSolved) return planner.plan(options);  // for its view
   const std::string text = formatted(
-      "the cheapest path, of cost %.6g, jumps to another branch, which no controller can follow: this is the cheapest "
+      "the cheapest path, of cost %.6g, jumps to another branch, which no controller can follow: "
+      "this is the cheapest "
       "that does not",
       found.cost);
   other.warnings.emplace_back(text);
@@ -335,17 +383,22 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
 void stop(MotionPlan& plan, bool refined, bool timed) {
   plan.stopped = true;
   const double cost = plan.result.cost;
-  if (refined) plan.refinement = Refined{.rows = plan.lattice_path, .reason = "stopped", .cost_before = cost, .cost = cost};
+  if (refined)
+    plan.refinement =
+        Refined{.rows = plan.lattice_path, .reason = "stopped", .cost_before = cost, .cost = cost};
   if (timed) plan.motion.emplace().failure = NoMotion{0, "stopped"};
 }
 
-/// Proves what was made of the lattice's path, which was proved itself. What is not proved in time is not made.
+/// Proves what was made of the lattice's path, which was proved itself. What is not proved in time
+/// is not made.
 void check(const PlanView& view, const Budget& budget, MotionPlan& plan) {
-  const bool refined = plan.refinement && plan.refinement->refined, timed = plan.motion && plan.motion->motion;
+  const bool refined = plan.refinement && plan.refinement->refined,
+             timed = plan.motion && plan.motion->motion;
   const auto start = std::chrono::steady_clock::now();
   try {
     if (refined) check_answer(view.world, view.robot, view.problem, plan.refinement->rows, budget);
-    if (timed) check_answer(view.world, view.robot, view.problem, plan.motion->motion->rows, budget);
+    if (timed)
+      check_answer(view.world, view.robot, view.problem, plan.motion->motion->rows, budget);
   } catch (const Stopped&) {
     stop(plan, refined, plan.motion.has_value());
   }
@@ -362,7 +415,8 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
 
 }  // namespace
 
-MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined, const std::optional<TimingOptions>& timing) {
+MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
+                       const std::optional<TimingOptions>& timing) {
   const Budget budget = options.budget();
   const bool own_cost = refined && options.hooks.cost;  // off the lattice it is not known
   refined = refined && !own_cost;
@@ -388,11 +442,13 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
     for (;; margins.extra_clearance *= 4) {
       if (refined) {
         plan.refinement = refine(view.robot, view.problem, plan.lattice_path, margins, budget);
-        result.time_ms["refine"] += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
+        result.time_ms["refine"] +=
+            ms_since(std::exchange(start, std::chrono::steady_clock::now()));
       }
       if (!timing) break;
       const std::vector<TrajectoryRow>& rows = refined ? plan.refinement->rows : plan.lattice_path;
-      // More clearance at the layers makes smoother motions than postures between them: these come last.
+      // More clearance at the layers makes smoother motions than postures between them: these come
+      // last.
       const bool last = !refined || margins.extra_clearance > kMostExtra;
       plan.motion = time_rows(view.robot, view.problem, rows, *timing, last, budget);
       if (!last && plan.motion->failure && !plan.motion->failure->too_near)
@@ -407,7 +463,8 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   if (!refined) return plan;
   take(*plan.refinement, view, result);
   try {
-    measure_rows(view.robot, view.lattice.path_of_rows(), view.world, result.trajectory, options.evidence, budget, result);
+    measure_rows(view.robot, view.lattice.path_of_rows(), view.world, result.trajectory,
+                 options.evidence, budget, result);
   } catch (const Stopped&) {
   }
   return plan;
@@ -429,7 +486,8 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
     const double travel = path.layer(i).travel;
     const auto q = motion->joints(travel);
     if (!q)
-      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " + formatted("%.9g", path.layer(i).s) +
+      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " +
+                                           formatted("%.9g", path.layer(i).s) +
                                            ": allowed are smaller tolerances");
     laid.push_back(motion->row(travel, *q));
     laid.back().s = path.layer(i).s;

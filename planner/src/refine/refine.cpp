@@ -38,10 +38,14 @@ class StridedSolver final : public LayerSolver {
   [[nodiscard]] int layer(int k) const { return layer_[static_cast<std::size_t>(k)]; }
   /// Returns the index of the last chosen layer at or before a layer of the other solver.
   [[nodiscard]] int no_later(int layer) const {
-    return static_cast<int>(std::upper_bound(layer_.begin(), layer_.end(), layer) - layer_.begin()) - 1;
+    return static_cast<int>(std::upper_bound(layer_.begin(), layer_.end(), layer) -
+                            layer_.begin()) -
+           1;
   }
   [[nodiscard]] double travel(int k) const override { return all_->travel(layer(k)); }
-  [[nodiscard]] std::optional<Config> joints(int k, double angle) const override { return all_->joints(layer(k), angle); }
+  [[nodiscard]] std::optional<Config> joints(int k, double angle) const override {
+    return all_->joints(layer(k), angle);
+  }
 
  private:
   const LayerSolver* all_;
@@ -52,9 +56,12 @@ class StridedSolver final : public LayerSolver {
 /// between. Paths of fine lattices are jagged, and Newton's method would have to smooth one tooth
 /// after the other.
 std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObjective& objective,
-                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x, const Budget& budget) {
+                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x,
+                                   const Budget& budget) {
   constexpr double kStep = 0.005;  // m
-  const int n = solver.layers(), stride = static_cast<int>(kStep * (n - 1) / (solver.travel(n - 1) - solver.travel(0)) + 0.5);
+  const int n = solver.layers(),
+            stride =
+                static_cast<int>(kStep * (n - 1) / (solver.travel(n - 1) - solver.travel(0)) + 0.5);
   if (stride < 2) return x;
   const StridedSolver few(solver, stride);
   SmoothObjective coarse = objective;
@@ -62,7 +69,8 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   for (int& jump : coarse.jumps) jump = few.no_later(jump);
   coarse.roll.clear();
   if (!objective.roll.empty())
-    for (int k = 0; k < few.layers(); ++k) coarse.roll.push_back(stride * objective.roll[static_cast<std::size_t>(few.layer(k))]);
+    for (int k = 0; k < few.layers(); ++k)
+      coarse.roll.push_back(stride * objective.roll[static_cast<std::size_t>(few.layer(k))]);
   std::vector<double> start;
   std::vector<CoordinateBox> inside;
   for (int k = 0; k < few.layers(); ++k) {
@@ -71,10 +79,12 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   }
   start = smooth_minimum(few, coarse, inside, std::move(start), budget);
   for (int k = 0; k + 1 < few.layers(); ++k) {
-    const double from = start[static_cast<std::size_t>(k)], to = start[static_cast<std::size_t>(k) + 1];
+    const double from = start[static_cast<std::size_t>(k)],
+                 to = start[static_cast<std::size_t>(k) + 1];
     for (int i = few.layer(k); i <= few.layer(k + 1); ++i) {
       const CoordinateBox& box = boxes[static_cast<std::size_t>(i)];
-      const double between = i == few.layer(k) ? from : solver.between(i, few.layer(k), from, few.layer(k + 1), to);
+      const double between =
+          i == few.layer(k) ? from : solver.between(i, few.layer(k), from, few.layer(k + 1), to);
       x[static_cast<std::size_t>(i)] = std::clamp(between, box.low, box.high);
     }
   }
@@ -85,7 +95,8 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
 /// of refinement.
 class RefinementChecker {
  public:
-  RefinementChecker(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy, const RefineOptions& options,
+  RefinementChecker(const PreparedRobot& robot, const Problem& problem,
+                    const Redundancy& redundancy, const RefineOptions& options,
                     const Budget& budget)
       : problem_(&problem),
         redundancy_(&redundancy),
@@ -102,17 +113,21 @@ class RefinementChecker {
   /// the given path, whose distances from limits and singularities need not be exceeded. `jumps`:
   /// the path passes through a singularity at this node, so that it should be near one.
   [[nodiscard]] bool node(int layer, const Config& q, const Config& given, bool jumps = false) {
-    if (!valid(layer, q, given, jumps) || at_.find_violating_pair_incremental(q, Threshold(ClearanceRule::kNode, extra_)))
+    if (!valid(layer, q, given, jumps) ||
+        at_.find_violating_pair_incremental(q, Threshold(ClearanceRule::kNode, extra_)))
       return false;
     // The motions from and to the node will have to keep this: failing here, the node's bisection
     // ends at the right place, whereas a failing motion only shrinks roughly.
-    if (problem_->limits.edges == EdgeMode::kContinuous && at_.find_violating_pair_incremental(q, ClearanceRule::kMidpoint))
+    if (problem_->limits.edges == EdgeMode::kContinuous &&
+        at_.find_violating_pair_incremental(q, ClearanceRule::kMidpoint))
       return false;
     return check_.states({&q, 1})[0];
   }
   /// Returns true if the node is valid without the margins of refinement.
   [[nodiscard]] bool bare_node(int layer, const Config& q) {
-    return valid(layer, q, q, false) && !at_.find_violating_pair_incremental(q, ClearanceRule::kNode) && check_.states({&q, 1})[0];
+    return valid(layer, q, q, false) &&
+           !at_.find_violating_pair_incremental(q, ClearanceRule::kNode) &&
+           check_.states({&q, 1})[0];
   }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
@@ -120,17 +135,25 @@ class RefinementChecker {
     ++edges_asked;
     const Limits& limits = lattice_->limits();
     const Config move = b.q - a.q;
-    if (!lattice_->step_allowed(layer, move) || std::abs(b.phi - a.phi) > redundancy_->most_change_on(layer)) return false;
+    if (!lattice_->step_allowed(layer, move) ||
+        std::abs(b.phi - a.phi) > redundancy_->most_change_on(layer))
+      return false;
     const auto within = [](const std::array<double, 3>& deviation, double limit) {
-      return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
+      return std::all_of(deviation.begin(), deviation.end(),
+                         [limit](double x) { return x <= limit; });
     };
     const Chain& chain = lattice_->chain();
-    if (limits.tool_path_error && !within(path_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_path_error))
+    if (limits.tool_path_error &&
+        !within(path_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_path_error))
       return false;
-    if (limits.tool_angle_error && !within(angle_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_angle_error))
+    if (limits.tool_angle_error &&
+        !within(angle_deviation(chain, lattice_->path(), layer, a.q, move),
+                *limits.tool_angle_error))
       return false;
-    if (limits.step_error && !(redundancy_->step_error(layer, a, b) <= *limits.step_error)) return false;
-    if (limits.edges == EdgeMode::kContinuous && edge_blocked(between_, rule_, a.q, b.q, budget_)) return false;
+    if (limits.step_error && !(redundancy_->step_error(layer, a, b) <= *limits.step_error))
+      return false;
+    if (limits.edges == EdgeMode::kContinuous && edge_blocked(between_, rule_, a.q, b.q, budget_))
+      return false;
     if (!check_.checks_motions()) return true;
     const StateCheck::Motion motion{a.q, b.q};
     return check_.motions({&motion, 1})[0];
@@ -143,12 +166,14 @@ class RefinementChecker {
   [[nodiscard]] bool valid(int layer, const Config& q, const Config& given, bool jumps) {
     budget_.poll();
     ++nodes_asked;
-    if (lattice_->chain().roll && !lattice_->path().layer(layer).in_window(q[kDof - 1])) return false;
+    if (lattice_->chain().roll && !lattice_->path().layer(layer).in_window(q[kDof - 1]))
+      return false;
     // rad, by which a path along a limit may exceed it between layers
     constexpr double kBetween = 1e-3;
     if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
-    if (!jumps && redundancy_->singular_sine(q) <
-                      std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
+    if (!jumps &&
+        redundancy_->singular_sine(q) < std::min(std::sin(problem_->refinement.singular_margin),
+                                                 redundancy_->singular_sine(given) - 1e-9))
       return false;
     return lattice_->manipulable(q);
   }
@@ -160,7 +185,8 @@ class RefinementChecker {
       const auto joint = static_cast<Eigen::Index>(j);
       const double keep = lattice_->limits().joint_margin;
       const double by = std::min(q[joint] - limit.lower, limit.upper - q[joint]) - keep;
-      const double given_by = std::min(given[joint] - limit.lower, limit.upper - given[joint]) - keep;
+      const double given_by =
+          std::min(given[joint] - limit.lower, limit.upper - given[joint]) - keep;
       if (by < std::min(margin, given_by) - kLimit) return false;
     }
     return true;
@@ -181,7 +207,8 @@ double cost_of(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) sum += lattice.edge_cost(rows[i].q - rows[i - 1].q);
   if (lattice.roll_costs())
-    for (std::size_t i = 0; i < rows.size(); ++i) sum += lattice.roll_cost(static_cast<int>(i), roll_of(lattice.chain(), rows[i]));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      sum += lattice.roll_cost(static_cast<int>(i), roll_of(lattice.chain(), rows[i]));
   return sum;
 }
 
@@ -191,8 +218,11 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
   double most = 0;
   for (int i = 1; i + 1 < path.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double h0 = path.layer(i).travel - path.layer(i - 1).travel, h1 = path.layer(i + 1).travel - path.layer(i).travel;
-    most = std::max(most, (2 / (h0 + h1) * ((rows[k + 1].q - rows[k].q) / h1 - (rows[k].q - rows[k - 1].q) / h0)).norm());
+    const double h0 = path.layer(i).travel - path.layer(i - 1).travel,
+                 h1 = path.layer(i + 1).travel - path.layer(i).travel;
+    most = std::max(most, (2 / (h0 + h1) *
+                           ((rows[k + 1].q - rows[k].q) / h1 - (rows[k].q - rows[k - 1].q) / h0))
+                              .norm());
   }
   return most;
 }
@@ -202,8 +232,9 @@ class PathRefiner {
  public:
   /// Whether the edges of the given path are known to be valid too.
   enum class Edges { kValid, kUnknown };
-  PathRefiner(const Redundancy& redundancy, RefinementChecker& checker, const std::vector<TrajectoryRow>& given, Edges edges,
-              bool fixed_start, const Budget& budget)
+  PathRefiner(const Redundancy& redundancy, RefinementChecker& checker,
+              const std::vector<TrajectoryRow>& given, Edges edges, bool fixed_start,
+              const Budget& budget)
       : checker_(&checker),
         given_(given),
         solver_(redundancy.solver(given_)),
@@ -226,7 +257,8 @@ class PathRefiner {
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = given_[i].phi;
       const Redundancy::Range range = redundancy_->range(static_cast<int>(i));
-      boxes[i] = {std::max(x[i] - kFarthest, std::min(x[i], range.low)), std::min(x[i] + kFarthest, std::max(x[i], range.high))};
+      boxes[i] = {std::max(x[i] - kFarthest, std::min(x[i], range.low)),
+                  std::min(x[i] + kFarthest, std::max(x[i], range.high))};
     }
     if (fixed_start_) boxes[0] = {x[0], x[0]};
     std::vector<double> node_known(n, std::nan(""));
@@ -249,7 +281,9 @@ class PathRefiner {
       if (fails) continue;
       for (std::size_t i = 0; i + 1 < n; ++i) {
         const bool verbatim = x[i] == given_[i].phi && x[i + 1] == given_[i + 1].phi;
-        if ((verbatim && edges_ == Edges::kValid) || (edge_known[i][0] == x[i] && edge_known[i][1] == x[i + 1])) continue;
+        if ((verbatim && edges_ == Edges::kValid) ||
+            (edge_known[i][0] == x[i] && edge_known[i][1] == x[i + 1]))
+          continue;
         if (checker_->edge(static_cast<int>(i), rows[i], rows[i + 1])) {
           edge_known[i] = {x[i], x[i + 1]};
           continue;
@@ -298,7 +332,9 @@ class PathRefiner {
     constexpr int kQueries = 4;
     constexpr double kLeast = 1e-5;  // rad
     std::array<TrajectoryRow, 2> rows{given_[i], given_[i + 1]};
-    const auto at = [&](std::size_t k, double share) { return given_[k].phi + share * (x[k] - given_[k].phi); };
+    const auto at = [&](std::size_t k, double share) {
+      return given_[k].phi + share * (x[k] - given_[k].phi);
+    };
     double good = 0, bad = 1;
     for (int query = 0; query < kQueries; ++query) {
       const double middle = (good + bad) / 2;
@@ -311,7 +347,8 @@ class PathRefiner {
       (valid && checker_->edge(static_cast<int>(i), rows[0], rows[1]) ? good : bad) = middle;
     }
     for (const std::size_t k : {i, i + 1}) {
-      const double given = given_[k].phi, bound = std::abs(x[k] - given) < kLeast ? given : at(k, good);
+      const double given = given_[k].phi,
+                   bound = std::abs(x[k] - given) < kLeast ? given : at(k, good);
       (x[k] > given ? boxes[k].high : boxes[k].low) = bound;
     }
   }
@@ -328,7 +365,8 @@ class PathRefiner {
 
 /// Moves rows to the nearest nodes that keep the margins of refinement, or are at least valid;
 /// returns false if a row has neither nearby. Edges are not tested.
-bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixed_start, std::vector<TrajectoryRow>& rows) {
+bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixed_start,
+                std::vector<TrajectoryRow>& rows) {
   constexpr double kNearby = 0.1;  // rad
   constexpr int kSteps = 20;
   int left = 1000;  // nodes to test: in a narrow passage no layer has a valid one
@@ -347,7 +385,8 @@ bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixe
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool fixed = i == 0 && fixed_start;
     const int layer = static_cast<int>(i);
-    if (!fixed && (checker.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i]))) continue;
+    if (!fixed && (checker.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i])))
+      continue;
     if (!checker.bare_node(layer, rows[i].q)) return false;
   }
   return true;
@@ -357,9 +396,12 @@ bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixe
 /// coordinate, with a row at each layer of the problem; its nodes are valid, its edges need not be.
 /// None if there is no such path, if even its optimum without obstacles is not cheaper than
 /// `to_beat`, or if a layer has no valid node nearby.
-std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem,
-                                                      const Redundancy& redundancy, RefinementChecker& checker,
-                                                      const SmoothObjective& objective, double to_beat, const Budget& budget) {
+std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot,
+                                                      const Problem& problem,
+                                                      const Redundancy& redundancy,
+                                                      RefinementChecker& checker,
+                                                      const SmoothObjective& objective,
+                                                      double to_beat, const Budget& budget) {
   Problem coarse = problem;
   // Steps longer than 20 mm reach so many angles that the search takes longer than it is worth.
   constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
@@ -378,7 +420,8 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
   // Each waypoint is a layer: where waypoints are dense, the nodes are those of the first path,
   // unless the grid is finer.
-  if (!redundancy.has_grid() && 4 * path.size() > 3 * redundancy.lattice().layers()) return std::nullopt;
+  if (!redundancy.has_grid() && 4 * path.size() > 3 * redundancy.lattice().layers())
+    return std::nullopt;
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
@@ -389,7 +432,8 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   const PlanResult found = plan(robot, coarse, options);
   budget.poll();
   if (found.status != PlanStatus::kSolved) return std::nullopt;
-  const auto motion = make_path_motion(robot.arm().chain, robot.arm_class(), path, found.trajectory);
+  const auto motion =
+      make_path_motion(robot.arm().chain, robot.arm_class(), path, found.trajectory);
   if (!motion->jumps().empty()) return std::nullopt;
   const Lattice& lattice = redundancy.lattice();
   std::vector<TrajectoryRow> rows;
@@ -414,15 +458,18 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   if (problem.start) boxes[0] = {x[0], x[0]};
   x = smooth_minimum(*solver, objective, boxes, std::move(x), budget);
   std::vector<TrajectoryRow> best = rows;
-  for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver->joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    best[i].q = solver->joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
   if (cost_of(lattice, best) >= to_beat) return std::nullopt;
   if (!move_clear(*solver, checker, problem.start.has_value(), rows)) return std::nullopt;
   return rows;
 }
 
 /// Refines a path along one coordinate.
-Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
-                     const std::vector<TrajectoryRow>& rows, const RefineOptions& options, bool second_seed, const Budget& budget) {
+Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot,
+                     const Problem& problem, const ToolPath& path,
+                     const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+                     bool second_seed, const Budget& budget) {
   const Lattice& lattice = redundancy.lattice();
   RefinementChecker checker(robot, problem, redundancy, options, budget);
   Refined result;
@@ -441,7 +488,8 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
     for (int i = 0; i < lattice.layers(); ++i) objective.roll.push_back(lattice.roll_weight(i));
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
-    PathRefiner refiner(redundancy, checker, from, second ? PathRefiner::Edges::kUnknown : PathRefiner::Edges::kValid,
+    PathRefiner refiner(redundancy, checker, from,
+                        second ? PathRefiner::Edges::kUnknown : PathRefiner::Edges::kValid,
                         problem.start.has_value(), budget);
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
@@ -466,7 +514,8 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
     constexpr double kWorthIt = 1 - 1e-4;
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
-    if (const auto second = second_path(robot, problem, redundancy, checker, objective, kWorthIt * result.cost, budget))
+    if (const auto second = second_path(robot, problem, redundancy, checker, objective,
+                                        kWorthIt * result.cost, budget))
       improve(*second, true);
   }
   result.bend = largest_bend(path, result.rows);
@@ -476,10 +525,12 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
 }
 
 /// Returns true if the tool turns no faster along the rows of a path than limits.roll_slope allows.
-bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& rows, const Limits& limits) {
+bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+                      const Limits& limits) {
   const std::vector<double> rolls = rolls_of(rows);
   for (std::size_t i = 0; i + 1 < rolls.size(); ++i) {
-    const double way = path.layer(static_cast<int>(i) + 1).travel - path.layer(static_cast<int>(i)).travel;
+    const double way =
+        path.layer(static_cast<int>(i) + 1).travel - path.layer(static_cast<int>(i)).travel;
     if (!(std::abs(rolls[i + 1] - rolls[i]) <= limits.roll_slope * way)) return false;
   }
   return true;
@@ -487,21 +538,28 @@ bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& ro
 
 /// Refines a path along which joint 7 rests, and keeps it at rest. None if joint 7 does not rest,
 /// or if the tool would then turn faster than it may.
-std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
-                                      const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
+std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem& problem,
+                                      const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+                                      const RefineOptions& options, const Budget& budget) {
   constexpr double kRests = 1e-3;  // rad; rows of arms that are not exact are not quite at rest
   const auto rest = last_joint_at_rest(robot.arm().chain, robot.arm_class(), problem);
-  if (!rest || std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return std::abs(row.q[kDof - 1] - *rest) > kRests; }))
+  if (!rest || std::any_of(rows.begin(), rows.end(), [&](const auto& row) {
+        return std::abs(row.q[kDof - 1] - *rest) > kRests;
+      }))
     return std::nullopt;
-  const auto angles = make_coaxial_redundancy(robot.arm().chain, robot.srs(), path, problem, *rest, budget);
-  Refined refined = refine_along(*angles, robot, problem, path, rows, options, options.second_seed, budget);
-  return keeps_roll_slope(path, refined.rows, problem.limits) ? std::optional(std::move(refined)) : std::nullopt;
+  const auto angles =
+      make_coaxial_redundancy(robot.arm().chain, robot.srs(), path, problem, *rest, budget);
+  Refined refined =
+      refine_along(*angles, robot, problem, path, rows, options, options.second_seed, budget);
+  return keeps_roll_slope(path, refined.rows, problem.limits) ? std::optional(std::move(refined))
+                                                              : std::nullopt;
 }
 
 /// Refines a path of an arm with two coordinates: along one, then the other, for as long as that is
 /// worth it.
 Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
-                        const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
+                        const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+                        const Budget& budget) {
   constexpr int kMostTurns = 4;
   constexpr double kWorthIt = 1 - 1e-3;
   const Chain& chain = robot.arm().chain;
@@ -513,7 +571,8 @@ Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, cons
       const std::vector<TrajectoryRow>& from = turn == 0 && !roll ? rows : result.rows;
       const auto turned = path.with_rolls(rolls_of(from));
       const auto angles = make_redundancy(chain, robot.arm_class(), turned, problem, budget);
-      Refined found = refine_along(roll ? *rolls : *angles, robot, problem, roll ? path : turned, from, options, false, budget);
+      Refined found = refine_along(roll ? *rolls : *angles, robot, problem, roll ? path : turned,
+                                   from, options, false, budget);
       if (turn == 0 && !roll) {
         result = std::move(found);
         continue;
@@ -535,20 +594,25 @@ Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, cons
 
 }  // namespace
 
-Refined refine(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-               const RefineOptions& options, const Budget& budget) {
+Refined refine(const PreparedRobot& robot, const Problem& problem,
+               const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+               const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   const ToolPath path = problem_path(problem, robot.arm().chain, budget);
   if (rows.size() != static_cast<std::size_t>(path.size()))
-    throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
-                          std::to_string(path.size()) + ", one for each layer");
+    throw InvalidArgument("refine: " + std::to_string(rows.size()) +
+                          " rows: allowed are those of plan(), " + std::to_string(path.size()) +
+                          ", one for each layer");
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {
     auto coaxial = refine_coaxial(robot, problem, path, rows, options, budget);
-    return coaxial ? *std::move(coaxial) : refine_by_turns(robot, problem, path, rows, options, budget);
+    return coaxial ? *std::move(coaxial)
+                   : refine_by_turns(robot, problem, path, rows, options, budget);
   }
-  const auto redundancy = make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
-  return refine_along(*redundancy, robot, problem, path, rows, options, options.second_seed && problem.rolls.empty(), budget);
+  const auto redundancy =
+      make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
+  return refine_along(*redundancy, robot, problem, path, rows, options,
+                      options.second_seed && problem.rolls.empty(), budget);
 }
 
 }  // namespace swivel

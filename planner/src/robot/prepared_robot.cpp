@@ -15,7 +15,8 @@ namespace swivel {
 namespace {
 
 bool same(const AttachedBody& a, const AttachedBody& b) {
-  return a.name == b.name && a.shape == b.shape && a.pose.matrix() == b.pose.matrix() && a.link == b.link;
+  return a.name == b.name && a.shape == b.shape && a.pose.matrix() == b.pose.matrix() &&
+         a.link == b.link;
 }
 
 /// Returns the robot of a problem. Throws for what validate() refuses.
@@ -28,7 +29,8 @@ const Robot& checked(const Problem& problem) {
 }  // namespace
 
 PlanningArm planning_arm(const Robot& robot) {
-  ArmModel model = build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll);
+  ArmModel model =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll);
   ArmClass kind = classify(model.chain, robot.model->source);
   return {std::move(model), std::move(kind)};
 }
@@ -57,7 +59,8 @@ PreparedRobot::PreparedRobot(const Problem& problem, PlanningArm arm, const Budg
 PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
     : PreparedRobot(problem, planning_arm(checked(problem)), budget) {}
 
-PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem, const Budget& budget)
+PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem,
+                             const Budget& budget)
     : impl_(std::make_unique<const Impl>(*like.impl_, problem, budget)) {}
 
 PreparedRobot::~PreparedRobot() = default;
@@ -80,7 +83,8 @@ const World& PreparedRobot::world() const {
 const SrsArm& PreparedRobot::srs(const char* what) const {
   if (!impl_->arm.kind.srs)
     throw InputError(impl_->basis.model->source,
-                     impl_->arm.kind.not_srs + ": allowed for " + what + " are arms with a spherical shoulder and wrist");
+                     impl_->arm.kind.not_srs + ": allowed for " + what +
+                         " are arms with a spherical shoulder and wrist");
   return *impl_->arm.kind.srs;
 }
 
@@ -88,7 +92,8 @@ void PreparedRobot::require_prepared_for(const Problem& problem) const {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
       throw InvalidArgument((problem.source.empty() ? "" : problem.source + ": ") + what +
-                            " differs from what the robot was prepared for: allowed is a PreparedRobot made of this problem");
+                            " differs from what the robot was prepared for: allowed is a "
+                            "PreparedRobot made of this problem");
   };
   require(problem.model == impl_->basis.model, "model");
   require(problem.base_link == impl_->basis.base_link, "base_link");
@@ -96,8 +101,8 @@ void PreparedRobot::require_prepared_for(const Problem& problem) const {
   require(problem.tool.matrix() == impl_->basis.tool.matrix(), "tool");
   require(problem.hold == impl_->basis.hold, "hold");
   require(problem.roll == impl_->basis.roll, "roll");
-  require(std::equal(problem.attached.begin(), problem.attached.end(), impl_->basis.attached.begin(), impl_->basis.attached.end(),
-                     same),
+  require(std::equal(problem.attached.begin(), problem.attached.end(),
+                     impl_->basis.attached.begin(), impl_->basis.attached.end(), same),
           "attached");
 }
 

@@ -67,8 +67,9 @@ LimitPlace place_of(Change change) {
 
 /// Returns true if a smaller value relaxes the limit.
 bool relaxed_downwards(Change change) {
-  return change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability ||
-         change == Change::kToolSpeed || change == Change::kToolTurnSpeed;
+  return change == Change::kClearance || change == Change::kJointMargin ||
+         change == Change::kManipulability || change == Change::kToolSpeed ||
+         change == Change::kToolTurnSpeed;
 }
 
 /// Returns the rank in which changes are tried, the expensive ones last: changes that leave the
@@ -94,8 +95,8 @@ class Adviser {
   Adviser(const Planner& planner, const PlanResult& result, const PlanOptions& options)
       : problem_(planner.problem()), result_(result), options_(options), trial_(planner.clone()) {
     constexpr double kSeconds = 1;
-    end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                              std::chrono::duration<double>(std::min(options.timeout_s.value_or(kSeconds), 1e6)));
+    end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
+                              std::min(options.timeout_s.value_or(kSeconds), 1e6)));
     options_.evidence = {};
     options_.progress = {};
   }
@@ -108,10 +109,12 @@ class Adviser {
     free_roll();
     finer();
     for (const SceneObject& object : problem_.scene)
-      if (object.name != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = object.name});
+      if (object.name != problem_.path_frame)
+        try_once({.change = Change::kWithoutObject, .object = object.name});
     move(problem_.path_frame);
     // Last, because it changes the process as well.
-    if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs) try_once({.change = Change::kFreeRoll});
+    if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs)
+      try_once({.change = Change::kFreeRoll});
     try_all();
     std::stable_sort(advice_.begin(), advice_.end(), [](const Advice& a, const Advice& b) {
       if (a.outcome != b.outcome) return a.outcome < b.outcome;
@@ -128,8 +131,9 @@ class Adviser {
   void try_all() {
     std::vector<std::size_t> order(advice_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return dearness(advice_[a].change) < dearness(advice_[b].change); });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return dearness(advice_[a].change) < dearness(advice_[b].change);
+    });
     for (const std::size_t k : order) {
       const Clock::time_point now = Clock::now();
       trial_end_ = now + (end_ - now) / 3;
@@ -149,7 +153,8 @@ class Adviser {
         free_roll();
         for (const std::string& body : cause.bodies) {
           move(body);
-          if (is_object(body) && body != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = body});
+          if (is_object(body) && body != problem_.path_frame)
+            try_once({.change = Change::kWithoutObject, .object = body});
         }
         break;
       case Cause::Kind::kLimit:
@@ -202,18 +207,23 @@ class Adviser {
 
   /// Proposes a free roll: what blocks the given rolls may not block others.
   void free_roll() {
-    if (problem_.roll && !problem_.roll->circle() && !problem_.start) try_once({.change = Change::kFreeRoll});
+    if (problem_.roll && !problem_.roll->circle() && !problem_.start)
+      try_once({.change = Change::kFreeRoll});
   }
   void finer() {
-    if (result_.diagnosis.holds() != Diagnosis::Holds::kEveryResolution) try_once({.change = Change::kFiner});
+    if (result_.diagnosis.holds() != Diagnosis::Holds::kEveryResolution)
+      try_once({.change = Change::kFiner});
   }
 
   [[nodiscard]] bool is_object(const std::string& name) const {
-    return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
+    return std::any_of(problem_.scene.begin(), problem_.scene.end(),
+                       [&](const SceneObject& o) { return o.name == name; });
   }
 
   /// Returns how long the present trial may still take, s.
-  [[nodiscard]] double seconds_left() const { return std::chrono::duration<double>(trial_end_ - Clock::now()).count(); }
+  [[nodiscard]] double seconds_left() const {
+    return std::chrono::duration<double>(trial_end_ - Clock::now()).count();
+  }
 
   /// Plans the problem with the change. The outcome is kUnknown if the time is up.
   void plan_changed(Advice& advice) {
@@ -247,8 +257,10 @@ class Adviser {
           if (object.name == advice.object) object.pose.translation() += advice.offset;
         break;
       case Change::kWithoutObject:
-        std::erase_if(changed.scene, [&](const SceneObject& object) { return object.name == advice.object; });
-        std::erase_if(changed.vary, [&](const Variation& vary) { return vary.object == advice.object; });
+        std::erase_if(changed.scene,
+                      [&](const SceneObject& object) { return object.name == advice.object; });
+        std::erase_if(changed.vary,
+                      [&](const Variation& vary) { return vary.object == advice.object; });
         break;
       default:
         place_of(advice.change).set(changed.limits, *advice.to);
@@ -272,7 +284,9 @@ class Adviser {
     } else if (found.status == PlanStatus::kInfeasible) {
       advice.reached_s = found.diagnosis.reached_s;
       const double before = result_.diagnosis.reached_s.value_or(-1), step = problem_.resolution.ds;
-      advice.outcome = advice.reached_s.value_or(-1) > before + step * (1 + 1e-9) ? Outcome::kFurther : Outcome::kNoHelp;
+      advice.outcome = advice.reached_s.value_or(-1) > before + step * (1 + 1e-9)
+                           ? Outcome::kFurther
+                           : Outcome::kNoHelp;
     }
   }
 
@@ -300,7 +314,9 @@ class Adviser {
   void deepen(const Cause& cause) {
     for (const std::string& name : cause.bodies)
       if (is_object(name))
-        propose({.change = Change::kDepth, .object = name, .from = cause.over.value_or(-*cause.limit)}, &Adviser::plan_relaxed);
+        propose(
+            {.change = Change::kDepth, .object = name, .from = cause.over.value_or(-*cause.limit)},
+            &Adviser::plan_relaxed);
   }
   /// Returns the object with all allowed depths multiplied by `factor`.
   [[nodiscard]] static SceneObject deeper(SceneObject object, double factor) {
@@ -310,12 +326,13 @@ class Adviser {
   }
   /// Returns the largest factor tried, up to 8, by which bodies can be deeper in the object at all.
   [[nodiscard]] double most_deeper(const std::string& name) const {
-    const auto object =
-        std::find_if(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
+    const auto object = std::find_if(problem_.scene.begin(), problem_.scene.end(),
+                                     [&](const SceneObject& o) { return o.name == name; });
     for (const double factor : {8., 4., 2., 1.5}) {
       const SceneObject changed = deeper(*object, factor);
-      if (std::none_of(changed.allow.begin(), changed.allow.end(),
-                       [&](const Allowed& allowed) { return depth_fault(problem_, changed, allowed).has_value(); }))
+      if (std::none_of(changed.allow.begin(), changed.allow.end(), [&](const Allowed& allowed) {
+            return depth_fault(problem_, changed, allowed).has_value();
+          }))
         return factor;
     }
     return 1.1;
@@ -326,11 +343,13 @@ class Adviser {
   void plan_relaxed(Advice& advice) {
     constexpr double kFactor = 8;
     const Change change = advice.change;
-    const bool to_zero = change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability;
+    const bool to_zero = change == Change::kClearance || change == Change::kJointMargin ||
+                         change == Change::kManipulability;
     double strict = *advice.from;
-    advice.to = to_zero                     ? 0
-                : relaxed_downwards(change) ? strict / kFactor
-                                            : strict * (change == Change::kDepth ? most_deeper(advice.object) : kFactor);
+    advice.to = to_zero ? 0
+                : relaxed_downwards(change)
+                    ? strict / kFactor
+                    : strict * (change == Change::kDepth ? most_deeper(advice.object) : kFactor);
     plan_changed(advice);
     if (advice.outcome != Outcome::kSolved) return;
     for (int k = 0; k < 4; ++k) {
@@ -354,16 +373,19 @@ class Adviser {
   /// Finds the shortest move of the object by 5, 10 or 20 mm along an axis of the base frame that
   /// helps.
   void plan_moved(Advice& best) {
-    for (double way = Advice::kMostMove / 4; way <= Advice::kMostMove && best.outcome != Outcome::kSolved; way *= 2)
+    for (double way = Advice::kMostMove / 4;
+         way <= Advice::kMostMove && best.outcome != Outcome::kSolved; way *= 2)
       for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
           Advice moved{.change = Change::kMoveObject, .object = best.object};
           moved.offset[axis] = sign * way;
           plan_changed(moved);
           if (moved.outcome == Outcome::kUnknown) break;
-          const bool better = moved.outcome < best.outcome ||
-                              (moved.outcome == best.outcome &&
-                               (moved.outcome == Outcome::kSolved ? moved.cost < best.cost : moved.reached_s > best.reached_s));
+          const bool better =
+              moved.outcome < best.outcome ||
+              (moved.outcome == best.outcome &&
+               (moved.outcome == Outcome::kSolved ? moved.cost < best.cost
+                                                  : moved.reached_s > best.reached_s));
           if (better) best = std::move(moved);
         }
     // no single move is to be named

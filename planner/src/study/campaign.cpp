@@ -19,13 +19,15 @@ namespace {
 /// Delivers rows in order: holds a row back until all before it have been delivered.
 class InOrder {
  public:
-  InOrder(std::uint64_t first, const std::function<void(const EpisodeRow&)>& row_done) : next_(first), row_done_(row_done) {}
+  InOrder(std::uint64_t first, const std::function<void(const EpisodeRow&)>& row_done)
+      : next_(first), row_done_(row_done) {}
 
   void add(std::uint64_t k, EpisodeRow row) {
     const std::lock_guard lock(mutex_);
     waiting_.emplace(k, std::move(row));
     // A row whose delivery throws stays first, because rows delivered after it would leave a gap.
-    for (; !waiting_.empty() && waiting_.begin()->first == next_ && !failed_; ++next_, waiting_.erase(waiting_.begin())) {
+    for (; !waiting_.empty() && waiting_.begin()->first == next_ && !failed_;
+         ++next_, waiting_.erase(waiting_.begin())) {
       failed_ = true;
       row_done_(waiting_.begin()->second);
       failed_ = false;
@@ -42,14 +44,16 @@ class InOrder {
 
 }  // namespace
 
-void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
+void run_campaign(const PreparedRobot& robot, const Problem& problem,
+                  const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
   // Not owned: `robot` outlives this call.
   const std::shared_ptr<const PreparedRobot> prepared(std::shared_ptr<void>(), &robot);
   const Planner checked(prepared, problem);
   if (problem.vary.empty() && options.episodes > 1)
     throw InputError(problem.source,
-                     "vary: missing, so that all episodes would be the same: allowed are a key vary, or one episode");
+                     "vary: missing, so that all episodes would be the same: allowed are a key "
+                     "vary, or one episode");
   const std::uint64_t size = options.shard.size(options.episodes);
   if (size > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
     throw InputError("episodes: too many for one shard: allowed are 2147483647");
@@ -62,7 +66,8 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
 
   Executor executor(options.plan.threads);
   std::vector<Planner> planners;  // by worker
-  for (int worker = 0; worker < executor.threads(); ++worker) planners.emplace_back(prepared, problem);
+  for (int worker = 0; worker < executor.threads(); ++worker)
+    planners.emplace_back(prepared, problem);
   InOrder in_order(options.skip, row_done);
   const auto add = [&](std::uint64_t k, EpisodeRow row) {
     row.offsets = episode_offsets(problem.vary, options.seed, row.episode);
@@ -90,9 +95,10 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
         add(k, EpisodeRow(episode, error.what()));
         return;
       }
-      const bool answered = result.status == PlanStatus::kSolved
-                                ? result.evidence.tool_path_error
-                                : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
+      const bool answered =
+          result.status == PlanStatus::kSolved
+              ? result.evidence.tool_path_error
+              : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
       // The plan was stopped, maybe with its verdict known and its columns not.
       if (!answered) {
         stopped = true;

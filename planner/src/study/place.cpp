@@ -24,22 +24,26 @@ namespace swivel {
 
 namespace {
 
-/// The nearest approach of paths, by their margin; where one object alone moves, of pairs without it once for each path, and with
-/// it on the rows that it may have come near to since.
+/// The nearest approach of paths, by their margin; where one object alone moves, of pairs without
+/// it once for each path, and with it on the rows that it may have come near to since.
 class LeastMargins {
  public:
   /// `moved`: its number in the scene.
   explicit LeastMargins(std::optional<int> moved) : moved_(moved) {}
-  std::optional<NearestApproach> of(const PlanView& view, const std::vector<TrajectoryRow>& rows, const Budget& budget) {
+  std::optional<NearestApproach> of(const PlanView& view, const std::vector<TrajectoryRow>& rows,
+                                    const Budget& budget) {
     if (!moved_) return nearest_approach(view.world, rows, Seek::kMargin, budget);
     Path& path = path_of(view, rows, budget);
     const Pose& pose = view.problem.scene[static_cast<std::size_t>(*moved_)].pose;
     std::vector<double> proved;
     for (const Proof& proof : path.proofs)
-      proved.push_back(proof.margin == kNone ? kNone : proof.margin - view.world.displacement(*moved_, proof.pose, pose));
+      proved.push_back(proof.margin == kNone
+                           ? kNone
+                           : proof.margin - view.world.displacement(*moved_, proof.pose, pose));
     const auto before = proved;
     const World with_it(view.world, std::vector<int>{*moved_});
-    const auto nearest = nearest_approach(with_it, rows, Seek::kMargin, budget, path.without_it, &proved);
+    const auto nearest =
+        nearest_approach(with_it, rows, Seek::kMargin, budget, path.without_it, &proved);
     for (std::size_t row = 0; row < proved.size(); ++row)
       if (proved[row] != before[row]) path.proofs[row] = {proved[row], pose};
     return nearest;
@@ -47,7 +51,8 @@ class LeastMargins {
 
  private:
   static constexpr double kNone = -std::numeric_limits<double>::infinity();
-  /// What the margin of the object's pairs on a row was proved to be at least, where the object stood.
+  /// What the margin of the object's pairs on a row was proved to be at least, where the object
+  /// stood.
   struct Proof {
     double margin = kNone;
     Pose pose = Pose::Identity();
@@ -56,7 +61,8 @@ class LeastMargins {
     std::optional<NearestApproach> without_it;
     std::vector<Proof> proofs;  // by row
   };
-  Path& path_of(const PlanView& view, const std::vector<TrajectoryRow>& rows, const Budget& budget) {
+  Path& path_of(const PlanView& view, const std::vector<TrajectoryRow>& rows,
+                const Budget& budget) {
     std::vector<double> joints;
     for (const TrajectoryRow& row : rows) joints.insert(joints.end(), row.q.begin(), row.q.end());
     auto known = paths_.find(joints);
@@ -70,8 +76,8 @@ class LeastMargins {
     }
     const World without_it(view.world, std::vector<int>{*moved_}, World::Pairs::kBut);
     return paths_
-        .emplace(std::move(joints),
-                 Path{nearest_approach(without_it, rows, Seek::kMargin, budget), std::vector<Proof>(rows.size())})
+        .emplace(std::move(joints), Path{nearest_approach(without_it, rows, Seek::kMargin, budget),
+                                         std::vector<Proof>(rows.size())})
         .first->second;
   }
 
@@ -82,9 +88,10 @@ class LeastMargins {
 
 /// The number of the object that is moved, where the path stays.
 std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {
-  if (thing.kind != Movable::Kind::kObject || thing.object == problem.path_frame) return std::nullopt;
-  const auto found =
-      std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == thing.object; });
+  if (thing.kind != Movable::Kind::kObject || thing.object == problem.path_frame)
+    return std::nullopt;
+  const auto found = std::find_if(problem.scene.begin(), problem.scene.end(),
+                                  [&](const auto& o) { return o.name == thing.object; });
   return static_cast<int>(found - problem.scene.begin());
 }
 
@@ -106,7 +113,9 @@ struct PlacementPlanner::Impl {
   [[nodiscard]] PlanOptions options_now() const {
     PlanOptions options = single;
     if (deadline)
-      options.timeout_s = std::max(1e-9, std::chrono::duration<double>(*deadline - std::chrono::steady_clock::now()).count());
+      options.timeout_s = std::max(
+          1e-9,
+          std::chrono::duration<double>(*deadline - std::chrono::steady_clock::now()).count());
     return options;
   }
   /// None where it was stopped.
@@ -131,7 +140,9 @@ struct PlacementPlanner::Impl {
         }
         return row;
       }
-      if (result.status != PlanStatus::kInfeasible || (!result.diagnosis.complete && budget.spent())) return std::nullopt;
+      if (result.status != PlanStatus::kInfeasible ||
+          (!result.diagnosis.complete && budget.spent()))
+        return std::nullopt;
       const Cause& cause = result.diagnosis.cause;
       row.failed_s = result.diagnosis.reached_s;
       if (cause.kind != Cause::Kind::kNone) row.cause = to_string(cause.kind);
@@ -141,7 +152,8 @@ struct PlacementPlanner::Impl {
       return std::nullopt;
     } catch (const InputError&) {
       throw;
-    } catch (const InvalidArgument& error) {  // of the placed problem: the one before it was a valid one
+    } catch (
+        const InvalidArgument& error) {  // of the placed problem: the one before it was a valid one
       throw InputError(error.what());
     } catch (const std::bad_alloc&) {
       throw;
@@ -153,11 +165,14 @@ struct PlacementPlanner::Impl {
   }
 };
 
-PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing, PlanOptions options)
-    : impl_(new Impl{std::move(problem), std::move(thing), options, Executor(options.threads), {}, {}}) {
+PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem,
+                                   Movable thing, PlanOptions options)
+    : impl_(new Impl{
+          std::move(problem), std::move(thing), options, Executor(options.threads), {}, {}}) {
   static_cast<void>(placed_problem(impl_->problem, impl_->thing, {}));
   for (int worker = 0; worker < impl_->executor.threads(); ++worker)
-    impl_->workers.push_back({Planner(robot, impl_->problem), LeastMargins(alone_moved(impl_->problem, impl_->thing))});
+    impl_->workers.push_back(
+        {Planner(robot, impl_->problem), LeastMargins(alone_moved(impl_->problem, impl_->thing))});
   PlanOptions& single = impl_->single;
   single.threads = 1;
   single.evidence = {};
@@ -165,8 +180,9 @@ PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, P
   single.progress = nullptr;
   constexpr double kFar = 1e9;  // s; what no clock can measure never passes
   if (single.timeout_s && *single.timeout_s < kFar)
-    impl_->deadline = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                                             std::chrono::duration<double>(*single.timeout_s));
+    impl_->deadline = std::chrono::steady_clock::now() +
+                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                          std::chrono::duration<double>(*single.timeout_s));
 }
 PlacementPlanner::~PlacementPlanner() = default;
 
@@ -180,15 +196,17 @@ std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<Placeme
   for (const PlacementCell& cell : cells) {
     planner.set_problem(placed_problem(impl_->problem, impl_->thing, cell.offset));
     PlanResult result = planner.plan(impl_->options_now());
-    if (result.status == PlanStatus::kSolved) plans.push_back({cell, planner.problem().scene, std::move(result.trajectory)});
+    if (result.status == PlanStatus::kSolved)
+      plans.push_back({cell, planner.problem().scene, std::move(result.trajectory)});
   }
   return plans;
 }
 
-std::vector<PlacementRow> PlacementPlanner::plan(const std::vector<PlacementCell>& cells,
-                                                 const std::function<void(const PlacementRow&)>& done) {
+std::vector<PlacementRow> PlacementPlanner::plan(
+    const std::vector<PlacementCell>& cells, const std::function<void(const PlacementRow&)>& done) {
   std::vector<std::optional<PlacementRow>> rows(cells.size());
-  // Taken from a counter and not from the executor's index, which starts threads far apart: neighbours are alike.
+  // Taken from a counter and not from the executor's index, which starts threads far apart:
+  // neighbours are alike.
   std::atomic<std::size_t> next{0};
   std::mutex one_at_a_time;
   impl_->executor.for_each(static_cast<int>(cells.size()), [&](int, int worker) {
@@ -208,8 +226,10 @@ std::vector<PlacementRow> PlacementPlanner::plan(const std::vector<PlacementCell
       std::string place;
       for (std::size_t c = 0; c < kCoordinates.size(); ++c)
         if (cells[k].offset[c] != 0)
-          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " + formatted("%.9g", cells[k].offset[c]);
-      throw InputError(std::string(error.what()) + " (moved by " + (place.empty() ? "nothing" : place) + ")");
+          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " +
+                   formatted("%.9g", cells[k].offset[c]);
+      throw InputError(std::string(error.what()) + " (moved by " +
+                       (place.empty() ? "nothing" : place) + ")");
     } catch (...) {
       impl_->stopped = true;
       throw;

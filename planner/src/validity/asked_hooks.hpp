@@ -16,7 +16,8 @@ namespace swivel {
 /// the check throws.
 class AskedCheck {
  public:
-  AskedCheck(std::shared_ptr<StateCheck> check, const Budget& budget) : check_(std::move(check)), budget_(budget) {}
+  AskedCheck(std::shared_ptr<StateCheck> check, const Budget& budget)
+      : check_(std::move(check)), budget_(budget) {}
 
   /// Returns true if there is a check.
   [[nodiscard]] explicit operator bool() const { return check_ != nullptr; }

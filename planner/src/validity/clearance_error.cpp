@@ -24,7 +24,8 @@ std::vector<ClearanceError::Body> ClearanceError::measured() const {
 
 template <class Shift>
 double ClearanceError::sum(const BodyPair& pair, const Shift& shift) const {
-  const std::vector<Body>& bodies = bodies_.get([this] { return std::make_unique<std::vector<Body>>(measured()); });
+  const std::vector<Body>& bodies =
+      bodies_.get([this] { return std::make_unique<std::vector<Body>>(measured()); });
   double sum = 0;
   for (const int body : {pair.a, pair.b}) {
     if (body >= static_cast<int>(bodies.size())) continue;
@@ -40,7 +41,8 @@ double ClearanceError::from_node(int layer, const Config& q, const BodyPair& pai
   return sum(pair, [&](int group) { return lattice_->pose_error_of_node(layer, group, q); });
 }
 
-double ClearanceError::between_exact_configs(int layer, const Config& q, const BodyPair& pair) const {
+double ClearanceError::between_exact_configs(int layer, const Config& q,
+                                             const BodyPair& pair) const {
   return sum(pair, [&](int group) { return lattice_->pose_error_between(layer, group, q); });
 }
 

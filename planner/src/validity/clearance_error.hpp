@@ -15,14 +15,15 @@ class ClearanceError {
  public:
   ClearanceError(const Lattice& lattice, const World& world) : lattice_(&lattice), world_(&world) {}
   /// Returns an upper bound, m, of how much the clearance of a pair may differ between the joints q
-  /// of a node and the node's exact configuration (Lattice::pose_error_of_node). 0 if nodes are exact
-  /// configurations themselves, infinite if nothing is known.
+  /// of a node and the node's exact configuration (Lattice::pose_error_of_node). 0 if nodes are
+  /// exact configurations themselves, infinite if nothing is known.
   [[nodiscard]] double from_node(int layer, const Config& q, const BodyPair& pair) const;
   /// Returns an upper bound, m, of how much the clearance of a pair may differ between the exact
-  /// configurations of two nodes at which its bodies have the same poses (Lattice::pose_error_between). `q`
-  /// holds the joints of either node. 0 if nodes are exact configurations themselves, infinite if
-  /// nothing is known.
-  [[nodiscard]] double between_exact_configs(int layer, const Config& q, const BodyPair& pair) const;
+  /// configurations of two nodes at which its bodies have the same poses
+  /// (Lattice::pose_error_between). `q` holds the joints of either node. 0 if nodes are exact
+  /// configurations themselves, infinite if nothing is known.
+  [[nodiscard]] double between_exact_configs(int layer, const Config& q,
+                                             const BodyPair& pair) const;
 
  private:
   template <class Shift>

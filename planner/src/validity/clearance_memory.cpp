@@ -86,11 +86,13 @@ void ClearanceMemory::object_removed(int object) {
 ClearanceMemory::Holds ClearanceMemory::holds(const Finding& finding) {
   if (!finding.valid) {
     const int object = finding.pair.b - robot_bodies_;
-    return object < 0 || met_[static_cast<std::size_t>(object)] <= finding.plan ? Holds::kAll : Holds::kNothing;
+    return object < 0 || met_[static_cast<std::size_t>(object)] <= finding.plan ? Holds::kAll
+                                                                                : Holds::kNothing;
   }
   if (finding.plan == 0 || finding.plan < unchanged_since_) return Holds::kNothing;
   if (changed_.empty() || finding.plan == plan_) return Holds::kAll;
-  const bool kept = finding.slack > 0 && finding.plan >= run_ && moved_since(finding.plan) < finding.slack;
+  const bool kept =
+      finding.slack > 0 && finding.plan >= run_ && moved_since(finding.plan) < finding.slack;
   return kept ? Holds::kAll : Holds::kUnlessChanged;
 }
 
@@ -104,13 +106,16 @@ const ClearanceMemory::Finding* ClearanceMemory::edge(int layer, int a, int b) c
   return found == edges_.end() ? nullptr : &found->second;
 }
 
-void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double slack) {
-  noted_nodes_.push_back({key(question.layer, question.slot), {{plan_, answer.valid, pair, false, slack}, question.q, answer}});
+void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer,
+                                const BodyPair& pair, double slack) {
+  noted_nodes_.push_back({key(question.layer, question.slot),
+                          {{plan_, answer.valid, pair, false, slack}, question.q, answer}});
 }
 
-void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack) {
-  noted_edges_.push_back(
-      {{key(question.layer, question.a), question.b}, {{plan_, valid, pair, false, slack}, question.qa, question.qb}});
+void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair,
+                                double slack) {
+  noted_edges_.push_back({{key(question.layer, question.a), question.b},
+                          {{plan_, valid, pair, false, slack}, question.qa, question.qb}});
 }
 
 void ClearanceMemory::learn() {
@@ -132,8 +137,9 @@ std::vector<FailureHint> ClearanceMemory::failure_hints() {
   std::vector<FailureHint> failure_hints;
   for (const std::uint64_t node : failed_nodes_)
     if (const NodeFinding& finding = nodes_.at(node); !finding.valid && finding.pair != kNoPair)
-      failure_hints.push_back(
-          {static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), failure_of(finding.pair)});
+      failure_hints.push_back({static_cast<int>(node >> 32),
+                               static_cast<int>(static_cast<std::uint32_t>(node)),
+                               failure_of(finding.pair)});
   return failure_hints;
 }
 
@@ -141,10 +147,12 @@ PriorFailures ClearanceMemory::failures() const {
   PriorFailures failures;
   for (const std::uint64_t node : failed_nodes_)
     if (const NodeFinding& finding = nodes_.at(node); !finding.valid)
-      failures.nodes.push_back({static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), finding.q});
+      failures.nodes.push_back({static_cast<int>(node >> 32),
+                                static_cast<int>(static_cast<std::uint32_t>(node)), finding.q});
   for (const EdgeKey& edge : failed_edges_)
     if (const EdgeFinding& finding = edges_.at(edge); !finding.valid)
-      failures.edges.push_back({static_cast<int>(edge.tail >> 32), static_cast<int>(static_cast<std::uint32_t>(edge.tail)), edge.b,
+      failures.edges.push_back({static_cast<int>(edge.tail >> 32),
+                                static_cast<int>(static_cast<std::uint32_t>(edge.tail)), edge.b,
                                 finding.qa, finding.qb});
   return failures;
 }

@@ -44,7 +44,8 @@ class ClearanceMemory {
 
   /// Begins a plan of `scene` in `world`. met[k] is the first plan that met scene object k where it
   /// is now. The world must live until the next plan begins.
-  void begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world, const std::vector<SceneObject>& scene);
+  void begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world,
+             const std::vector<SceneObject>& scene);
   /// Returns the scene objects that the plan before this one did not meet where they are now.
   [[nodiscard]] const std::vector<int>& changed() const { return changed_; }
 
@@ -60,7 +61,8 @@ class ClearanceMemory {
   [[nodiscard]] Holds holds(const Finding& finding);
   /// Stores the answer about a node. `pair` is the pair that fails, or kNoPair; `slack` is
   /// Finding::slack.
-  void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double slack);
+  void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair,
+                 double slack);
   /// Stores the answer about an edge. `pair` is the pair that fails, or kNoPair; `slack` is
   /// Finding::slack.
   void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack);
@@ -79,11 +81,15 @@ class ClearanceMemory {
   struct EdgeHash {
     std::size_t operator()(const EdgeKey& key) const {
       return static_cast<std::size_t>(
-          (key.tail * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(key.b)) * 0xbf58476d1ce4e5b9ull >> 16);
+          (key.tail * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(key.b)) *
+              0xbf58476d1ce4e5b9ull >>
+          16);
     }
   };
   struct NodeHash {
-    std::size_t operator()(std::uint64_t key) const { return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15ull >> 16); }
+    std::size_t operator()(std::uint64_t key) const {
+      return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15ull >> 16);
+    }
   };
   struct EdgeFinding : Finding {
     Config qa, qb;

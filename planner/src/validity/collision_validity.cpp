@@ -18,9 +18,11 @@ constexpr FailureId kManipulability = -2;
 
 }  // namespace
 
-CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
-                                     DistanceProofs distance_proofs, Executor& executor, int chunks, const Budget& budget,
-                                     ClearanceMemory* memory, const World* changed)
+CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
+                                     const EdgeRule& rule, EdgeMode edge_mode,
+                                     DistanceProofs distance_proofs, Executor& executor, int chunks,
+                                     const Budget& budget, ClearanceMemory* memory,
+                                     const World* changed)
     : lattice_(&lattice),
       world_(&world),
       clearance_error_(lattice, world),
@@ -38,16 +40,21 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
   if (lattice.is_approximate())
     rows_.assign(static_cast<std::size_t>(executor.threads()),
-                 std::vector<Row>(std::min(kMostRows, kRowsOfLayer * static_cast<std::size_t>(lattice.layers()))));
+                 std::vector<Row>(std::min(
+                     kMostRows, kRowsOfLayer * static_cast<std::size_t>(lattice.layers()))));
 }
 
-std::optional<Config> CollisionValidity::exact_config(int layer, int slot, const Config& q, int worker) {
+std::optional<Config> CollisionValidity::exact_config(int layer, int slot, const Config& q,
+                                                      int worker) {
   if (!lattice_->is_approximate()) return q;
   auto& rows = rows_[static_cast<std::size_t>(worker)];
   // Neighbours along the path and along the coordinate must not share a place in the cache.
-  const auto place = (static_cast<std::size_t>(layer) * kSlotsApart + static_cast<std::size_t>(slot)) % rows.size();
+  const auto place =
+      (static_cast<std::size_t>(layer) * kSlotsApart + static_cast<std::size_t>(slot)) %
+      rows.size();
   Row& row = rows[place];
-  if (row.layer != layer || row.slot != slot) row = {layer, slot, lattice_->exact_config(layer, slot, q)};
+  if (row.layer != layer || row.slot != slot)
+    row = {layer, slot, lattice_->exact_config(layer, slot, q)};
   return row.q;
 }
 
@@ -59,12 +66,16 @@ CollisionValidity::Queries CollisionValidity::make_queries() const {
 
 template <class Ask>
 void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* work) {
-  const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(chunks_.size()));
-  const auto at = [&](int index, int worker, Queries& queries) { ask(open_[static_cast<std::size_t>(index)], worker, queries); };
+  const int count = static_cast<int>(open_.size()),
+            runs = std::min(count, static_cast<int>(chunks_.size()));
+  const auto at = [&](int index, int worker, Queries& queries) {
+    ask(open_[static_cast<std::size_t>(index)], worker, queries);
+  };
   if (chunks_.empty()) {
     if (work) (*work)();
-    return executor_->for_each(count,
-                               [&](int index, int worker) { at(index, worker, workers_[static_cast<std::size_t>(worker)]); });
+    return executor_->for_each(count, [&](int index, int worker) {
+      at(index, worker, workers_[static_cast<std::size_t>(worker)]);
+    });
   }
   const auto ask_run = [&](int chunk, int worker) {
     for (int index = count * chunk / runs; index < count * (chunk + 1) / runs; ++index)
@@ -76,16 +87,19 @@ void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* wo
     executor_->for_each_short(runs, ask_run);
 }
 
-void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
+void CollisionValidity::nodes(std::span<const NodeQuestion> questions,
+                              std::span<NodeAnswer> answers) {
   ask_nodes(questions, answers, nullptr);
 }
 
-void CollisionValidity::nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+void CollisionValidity::nodes_overlapped(std::span<const NodeQuestion> questions,
+                                         std::span<NodeAnswer> answers,
                                          const std::function<void()>& work) {
   ask_nodes(questions, answers, &work);
 }
 
-void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions,
+                                  std::span<NodeAnswer> answers,
                                   const std::function<void()>* work) {
   TraceSpan batch("nodes asked");
   open_.clear();
@@ -107,18 +121,23 @@ void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions, std::
   batch.count("nodes", static_cast<std::int64_t>(open_.size()));
   nodes_checked_ += static_cast<std::int64_t>(open_.size());
   ask_open(
-      [&](Open& open, int worker, Queries& queries) { answers[open.index] = node(questions[open.index], open, worker, queries); },
+      [&](Open& open, int worker, Queries& queries) {
+        answers[open.index] = node(questions[open.index], open, worker, queries);
+      },
       work);
   if (memory_)
     for (const Open& open : open_)
-      if (const NodeQuestion& x = questions[open.index]; !x.only_scene || !answers[open.index].valid)
+      if (const NodeQuestion& x = questions[open.index];
+          !x.only_scene || !answers[open.index].valid)
         memory_->note_node(x, answers[open.index], open.pair, open.slack);
 }
 
-NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker, Queries& queries) {
+NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker,
+                                   Queries& queries) {
   const TraceSpan span("node");
   budget_.poll();
-  const auto suspected = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
+  const auto suspected =
+      open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
   open.pair = ClearanceMemory::kNoPair;
   const auto failure = [&](const BodyPair& pair, bool shared) {
     open.pair = pair;
@@ -131,22 +150,27 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
     return NodeAnswer{false, shared, lattice_->manipulability_groups(), kManipulability};
   };
   const bool suspects_manipulability = question.suspected == kManipulability && !open.only_changed;
-  if (suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q)) return unmanipulable(true);
+  if (suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q))
+    return unmanipulable(true);
   const auto q = exact_config(question.layer, question.slot, question.q, worker);
   if (!q) return {};
   if (!open.only_changed && !lattice_->manipulable(*q))
-    return unmanipulable(!suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q));
+    return unmanipulable(!suspects_manipulability &&
+                         lattice_->all_below_manipulability(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto shared = [&](const BodyPair& pair) {
-    return is_shared(*lattice_, *world_, clearance_error_, query, question.layer, question.q, *q, pair);
+    return is_shared(*lattice_, *world_, clearance_error_, query, question.layer, question.q, *q,
+                     pair);
   };
   if (question.only_scene && suspected && query.violation_proof_is_cheap(*suspected)) {
     if (!query.proves_violation(*q, *suspected, ClearanceRule::kNode)) return {.valid = true};
     return failure(*suspected, shared(*suspected));
   }
-  const auto pair = question.only_scene ? query.find_violating_pair_with_scene(*q, ClearanceRule::kNode, suspected)
-                                        : query.find_violating_pair_incremental(*q, ClearanceRule::kNode,
-                                                                                open.only_changed ? std::nullopt : suspected);
+  const auto pair =
+      question.only_scene
+          ? query.find_violating_pair_with_scene(*q, ClearanceRule::kNode, suspected)
+          : query.find_violating_pair_incremental(*q, ClearanceRule::kNode,
+                                                  open.only_changed ? std::nullopt : suspected);
   if (!pair) {
     if (open.only_changed) open.slack = query.slack(ClearanceRule::kNode);
     return {.valid = true};
@@ -157,9 +181,11 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
 /// Computing the exact configuration means solving seven equations. If the bodies are too near by
 /// more than it can move them, the node fails whether it has one or not, and so do the nodes at
 /// which the bodies have the same poses.
-bool CollisionValidity::fails_before_exact_config(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
+bool CollisionValidity::fails_before_exact_config(const NodeQuestion& question,
+                                                  const BodyPair& pair, World::Query& query) const {
   const double margin = clearance_error_.from_node(question.layer, question.q, pair);
-  return std::isfinite(margin) && query.proves_violation(question.q, pair, Threshold(ClearanceRule::kNode, -margin));
+  return std::isfinite(margin) &&
+         query.proves_violation(question.q, pair, Threshold(ClearanceRule::kNode, -margin));
 }
 
 unsigned groups_of(const World& world, const BodyPair& pair) {
@@ -176,15 +202,20 @@ unsigned groups_of(const World& world, const BodyPair& pair) {
 /// configurations. The verdict is therefore shared only if the pair is too near by more than that
 /// and than FCL can err: then every planner that asks FCL about one of those nodes gets the same
 /// verdict.
-bool is_shared(const Lattice& lattice, const World& world, const ClearanceError& clearance_error, World::Query& query, int layer,
-               const Config& node, const Config& row, const BodyPair& pair) {
+bool is_shared(const Lattice& lattice, const World& world, const ClearanceError& clearance_error,
+               World::Query& query, int layer, const Config& node, const Config& row,
+               const BodyPair& pair) {
   if (!lattice.shares_body_poses(groups_of(world, pair))) return false;
   const double apart = clearance_error.between_exact_configs(layer, node, pair);
-  if (apart > 0) return std::isfinite(apart) && query.proves_violation(row, pair, Threshold(ClearanceRule::kNode, -apart));
-  return query.violation_is_proved() || query.pair_violates(row, pair, Threshold(ClearanceRule::kNode, -kVerdictBand));
+  if (apart > 0)
+    return std::isfinite(apart) &&
+           query.proves_violation(row, pair, Threshold(ClearanceRule::kNode, -apart));
+  return query.violation_is_proved() ||
+         query.pair_violates(row, pair, Threshold(ClearanceRule::kNode, -kVerdictBand));
 }
 
-void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
+void CollisionValidity::edges(std::span<const EdgeQuestion> questions,
+                              std::span<std::uint8_t> answers) {
   TraceSpan batch("edges asked");
   open_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k) {
@@ -202,32 +233,39 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
   }
   batch.count("edges", static_cast<std::int64_t>(open_.size()));
   edges_checked_ += static_cast<std::int64_t>(open_.size());
-  ask_open(
-      [&](Open& open, int worker, Queries& queries) { answers[open.index] = edge(questions[open.index], open, worker, queries); });
+  ask_open([&](Open& open, int worker, Queries& queries) {
+    answers[open.index] = edge(questions[open.index], open, worker, queries);
+  });
   if (memory_)
-    for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.slack);
+    for (const Open& open : open_)
+      memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.slack);
 }
 
 bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Queries& queries) {
   const TraceSpan span("edge");
   budget_.poll();
-  const auto qa = exact_config(x.layer, x.a, x.qa, worker), qb = exact_config(x.layer + 1, x.b, x.qb, worker);
+  const auto qa = exact_config(x.layer, x.a, x.qa, worker),
+             qb = exact_config(x.layer + 1, x.b, x.qb, worker);
   if (!qa || !qb) return false;
   if (lattice_->has_layers_between()) return edge_of_layers(x, *qa, *qb, open, queries.whole);
   const Config move = lattice_->delta(*qa, *qb);
-  if (!open.only_changed && ((lattice_->is_approximate() && !lattice_->row_step_allowed(x.layer, move)) ||
-                             !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
+  if (!open.only_changed &&
+      ((lattice_->is_approximate() && !lattice_->row_step_allowed(x.layer, move)) ||
+       !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
     return false;
   if (edge_mode_ == EdgeMode::kNodes) return true;
-  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_, &open.slack)
-                                         : edge_blocked(queries.whole, rule_, *qa, *qa + move, budget_);
+  const auto blocked =
+      open.only_changed
+          ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_, &open.slack)
+          : edge_blocked(queries.whole, rule_, *qa, *qa + move, budget_);
   if (blocked) open.pair = *blocked;
   return !blocked;
 }
 
 /// Tests every configuration between the layers as a node, and every move from one to the next as
 /// an edge.
-bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, const Config& qb, Open& open, World::Query& query) {
+bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, const Config& qb,
+                                       Open& open, World::Query& query) {
   Lattice::InterpolatedEdge interpolated = lattice_->interpolate_edge(x.layer, x.a, qa, x.b, qb);
   if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return false;
   for (const Config& q : interpolated.rows)
@@ -250,7 +288,8 @@ bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, 
 }
 
 bool CollisionValidity::asks_edges() const {
-  return lattice_->is_approximate() || lattice_->has_layers_between() || lattice_->asks_path_error() ||
+  return lattice_->is_approximate() || lattice_->has_layers_between() ||
+         lattice_->asks_path_error() ||
          (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 

@@ -20,12 +20,15 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
     if (open(k)) answers[k].valid = *allowed++;
 }
 
-void HookedValidity::nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+void HookedValidity::nodes_overlapped(std::span<const NodeQuestion> questions,
+                                      std::span<NodeAnswer> answers,
                                       const std::function<void()>& work) {
-  check_ ? Validity::nodes_overlapped(questions, answers, work) : first_->nodes_overlapped(questions, answers, work);
+  check_ ? Validity::nodes_overlapped(questions, answers, work)
+         : first_->nodes_overlapped(questions, answers, work);
 }
 
-void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
+void HookedValidity::edges(std::span<const EdgeQuestion> questions,
+                           std::span<std::uint8_t> answers) {
   if (first_->asks_edges())
     first_->edges(questions, answers);
   else
@@ -44,7 +47,8 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
     if (answer) answer = *allowed++ ? 1 : 0;
 }
 
-void HookedValidity::check_layers_between(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
+void HookedValidity::check_layers_between(std::span<const EdgeQuestion> questions,
+                                          std::span<std::uint8_t> answers) {
   const TraceSpan span("check of layers between");
   for (std::size_t k = 0; k < questions.size(); ++k) {
     if (!answers[k]) continue;
@@ -73,13 +77,15 @@ void HookedValidity::costs(std::span<const NodeQuestion> questions, std::span<do
   const TraceSpan span("cost of states");
   if (cost_) {
     states_.clear();
-    for (const NodeQuestion& question : questions) states_.push_back(state(question.layer, question.slot, question.q));
+    for (const NodeQuestion& question : questions)
+      states_.push_back(state(question.layer, question.slot, question.q));
     cost_.costs(states_, costs);
   } else {
     std::fill(costs.begin(), costs.end(), 0.0);
   }
   if (!lattice_->has_node_costs()) return;
-  for (std::size_t k = 0; k < questions.size(); ++k) costs[k] += lattice_->node_cost(questions[k].layer, questions[k].slot);
+  for (std::size_t k = 0; k < questions.size(); ++k)
+    costs[k] += lattice_->node_cost(questions[k].layer, questions[k].slot);
 }
 
 }  // namespace swivel

@@ -49,20 +49,24 @@ double apart(const Pose& a, const Pose& b) {
 
 /// Returns what each joint may move on the steps of a path, summed up: entry i is the sum over the
 /// steps before layer i, rad. Throws InputError if a speed limit that is needed is missing.
-std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, const ToolPath& path) {
+std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain,
+                                  const ToolPath& path) {
   const Limits& limits = problem.limits;
   const bool timed = limits.tool_speed || limits.tool_turn_speed;
   const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed of its own
   for (std::size_t j = 0; j < joints; ++j)
     if ((timed || problem.cost.metric == CostMetric::kTime) && chain.limit[j].velocity <= 0)
-      throw InputError(problem.source, std::string(timed ? "limits.tool_speed" : "cost.metric: time") + ": joint '" +
-                                           chain.joint_names[j] +
-                                           "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+      throw InputError(
+          problem.source,
+          std::string(timed ? "limits.tool_speed" : "cost.metric: time") + ": joint '" +
+              chain.joint_names[j] +
+              "' has no speed limit in the URDF: allowed are robots whose joints all have one");
   std::vector<Config> allowed{Config::Zero()};
   for (int i = 0; i + 1 < path.size(); ++i) {
     double dt = 0;
     if (limits.tool_speed) dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
-    if (limits.tool_turn_speed) dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
+    if (limits.tool_turn_speed)
+      dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
     Config bound = Config::Constant(limits.joint_step);
     if (chain.roll) bound[kDof - 1] = roll_step_bound(path, i, limits, problem.resolution);
     for (std::size_t j = 0; dt > 0 && j < joints; ++j) {
@@ -79,8 +83,12 @@ class Contacts {
  public:
   /// Builds the world of the problem, which forgives kVerdictBand, with the shapes of `like`, a
   /// world of the same robot.
-  Contacts(const PreparedRobot& robot, const Problem& problem, const World& like, const Budget& budget)
-      : world_(like, problem, budget, kVerdictBand), query_(world_), rule_(world_.edge_rule(robot.radii())), budget_(&budget) {}
+  Contacts(const PreparedRobot& robot, const Problem& problem, const World& like,
+           const Budget& budget)
+      : world_(like, problem, budget, kVerdictBand),
+        query_(world_),
+        rule_(world_.edge_rule(robot.radii())),
+        budget_(&budget) {}
   std::optional<World::Query::Clearance> clearance(const Config& q) { return query_.clearance(q); }
   /// Returns a pair that is allowed to touch and is deeper than allowed, with a lower bound of its
   /// depth, m; none if there is none.
@@ -88,7 +96,8 @@ class Contacts {
     for (const AllowedPair& allowed : world_.allowed()) {
       if (!allowed.depth) continue;
       const double most = *allowed.depth + kVerdictBand;
-      if (const Depth depth = query_.depth(q, allowed.pair, most); depth.at_most > most) return std::pair(allowed, depth.at_least);
+      if (const Depth depth = query_.depth(q, allowed.pair, most); depth.at_most > most)
+        return std::pair(allowed, depth.at_least);
     }
     return std::nullopt;
   }
@@ -98,14 +107,18 @@ class Contacts {
   std::optional<BodyPair> on_the_way(const Config& from, const Config& to) {
     return edge_blocked(query_, rule_, from, to, *budget_);
   }
-  [[nodiscard]] std::optional<ClearanceViolation> first_along(const Limits& limits, const std::vector<Config>& rows) const {
+  [[nodiscard]] std::optional<ClearanceViolation> first_along(
+      const Limits& limits, const std::vector<Config>& rows) const {
     return first_clearance_violation(world_, rule_, limits, rows, *budget_);
   }
   [[nodiscard]] std::string names(const BodyPair& pair) const {
     const auto& name = world_.body_names();
-    return "'" + name[static_cast<std::size_t>(pair.a)] + "' and '" + name[static_cast<std::size_t>(pair.b)] + "'";
+    return "'" + name[static_cast<std::size_t>(pair.a)] + "' and '" +
+           name[static_cast<std::size_t>(pair.b)] + "'";
   }
-  [[nodiscard]] RequiredClearance required_clearance(const BodyPair& pair) const { return world_.required_clearance(pair); }
+  [[nodiscard]] RequiredClearance required_clearance(const BodyPair& pair) const {
+    return world_.required_clearance(pair);
+  }
   [[nodiscard]] std::int64_t fcl_calls() const { return query_.counters().fcl_calls; }
 
  private:
@@ -119,8 +132,9 @@ class Check {
  public:
   /// Prepares the check of `rows`. `like` is a world of the robot; `timed` holds the same rows with
   /// times, or is null.
-  Check(const PreparedRobot& robot, const Problem& problem, const World& like, const std::vector<TrajectoryRow>& rows,
-        const CheckOptions& options, const std::vector<TimedRow>* timed = nullptr)
+  Check(const PreparedRobot& robot, const Problem& problem, const World& like,
+        const std::vector<TrajectoryRow>& rows, const CheckOptions& options,
+        const std::vector<TimedRow>* timed = nullptr)
       : problem_(problem),
         options_(options),
         limits_(problem.limits),
@@ -135,12 +149,14 @@ class Check {
         along_{limits_.tool_path_error.value_or(kNone), limits_.tool_angle_error.value_or(kNone)},
         at_waypoints_{limits_.tool_path_error.value_or(kAtWaypoints.position),
                       limits_.tool_angle_error.value_or(kAtWaypoints.angle)} {
-    if (limits_.step_error) lattice_.emplace(chain_, robot.srs("limits.step_error"), path_, problem);
+    if (limits_.step_error)
+      lattice_.emplace(chain_, robot.srs("limits.step_error"), path_, problem);
   }
 
   CheckResult run() {
     if (rows_.size() < 2) fail("%zu row(s): at least two are needed", rows_.size());
-    if (problem_.start && !rows_.empty() && !((rows_[0].q - *problem_.start).lpNorm<Eigen::Infinity>() <= kPose))
+    if (problem_.start && !rows_.empty() &&
+        !((rows_[0].q - *problem_.start).lpNorm<Eigen::Infinity>() <= kPose))
       fail("row 0: joints are not the given start");
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       options_.budget.poll();
@@ -150,7 +166,8 @@ class Check {
     }
     choose_places();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      if (k > 0 && rows_[k].q.allFinite() && rows_[k - 1].q.allFinite()) result_.cost += cost_of(rows_[k].q - rows_[k - 1].q);
+      if (k > 0 && rows_[k].q.allFinite() && rows_[k - 1].q.allFinite())
+        result_.cost += cost_of(rows_[k].q - rows_[k - 1].q);
       if (!examined(k)) continue;
       options_.budget.poll();
       examine_row(k);
@@ -159,8 +176,8 @@ class Check {
     if (chain_.tool_may_turn() && problem_.cost.roll > 0) result_.cost += cost_of_roll();
     examine_travel();
     if (timed_ && timed_->size() >= 2)
-      result_.motion =
-          examine_rates(chain_, limits_, problem_.source, *timed_, tools_, [this](const std::string& line) { fail(line); });
+      result_.motion = examine_rates(chain_, limits_, problem_.source, *timed_, tools_,
+                                     [this](const std::string& line) { fail(line); });
     if (!options_.margins && result_.failure_count == 0) examine_clearance();
     if (options_.margins) {
       std::vector<Config> joints;
@@ -205,19 +222,23 @@ class Check {
 
   [[nodiscard]] bool examined(std::size_t k) const { return !candidates_[k].empty(); }
   [[nodiscard]] double place(std::size_t k) const { return candidates_[k][chosen_[k]].place; }
-  [[nodiscard]] const char* joint_name(std::size_t j) const { return chain_.joint_names[j].c_str(); }
+  [[nodiscard]] const char* joint_name(std::size_t j) const {
+    return chain_.joint_names[j].c_str();
+  }
 
   /// Examines the values and joint limits of a row; returns false if it fails.
   bool sound(std::size_t k) {
     const TrajectoryRow& row = rows_[k];
-    const bool rates_finite =
-        !timed_ || (std::isfinite((*timed_)[k].t) && (*timed_)[k].v.allFinite() && (*timed_)[k].a.allFinite());
-    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !std::isfinite(row.roll) || !row.q.allFinite() || !rates_finite) {
+    const bool rates_finite = !timed_ || (std::isfinite((*timed_)[k].t) &&
+                                          (*timed_)[k].v.allFinite() && (*timed_)[k].a.allFinite());
+    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !std::isfinite(row.roll) ||
+        !row.q.allFinite() || !rates_finite) {
       fail("row %zu: has values that are not finite", k);
       return false;
     }
     if (const auto& range = chain_.free_roll;
-        range && !range->circle() && !(row.roll >= range->lower - roll_slack() && row.roll <= range->upper + roll_slack())) {
+        range && !range->circle() &&
+        !(row.roll >= range->lower - roll_slack() && row.roll <= range->upper + roll_slack())) {
       fail("row %zu: roll %.9g is outside its range", k, row.roll);
       return false;
     }
@@ -251,14 +272,17 @@ class Check {
     double position = kNone, angle = kNone;  // of the nearest
     const auto try_place = [&](double place) {
       const Pose there = pose_at(path_, place);
-      const double position_error = (there.translation() - tool.translation()).norm(), angle_error = angle_between(there, tool);
-      if (std::max(position_error, angle_error) < std::max(position, angle)) position = position_error, angle = angle_error;
+      const double position_error = (there.translation() - tool.translation()).norm(),
+                   angle_error = angle_between(there, tool);
+      if (std::max(position_error, angle_error) < std::max(position, angle))
+        position = position_error, angle = angle_error;
       if (!(position_error <= kPose && angle_error <= kPose)) return false;
       if (found.empty() || found.back().place < place) found.push_back({.place = place});
       return true;
     };
     const auto at_s = [&](int layer) { return std::abs(path_.layer(layer).s - s) <= kSame; };
-    for (int i = first_step_to(s - kSame); i + 1 < path_.size() && path_.layer(i).s <= s + kSame; ++i) {
+    for (int i = first_step_to(s - kSame); i + 1 < path_.size() && path_.layer(i).s <= s + kSame;
+         ++i) {
       // The tool's place on the step, within what s leaves open: all of it if the step only turns.
       // Layers are tried first and exactly.
       bool at_layer = at_s(i) && try_place(i);
@@ -267,16 +291,21 @@ class Check {
       const PathLayer& step = path_.layer(i);
       const Vector3d along = path_.layer(i + 1).tool.translation() - step.tool.translation();
       const Eigen::AngleAxisd turn(step.tool.linear().transpose() * tool.linear());
-      double t = ((tool.translation() - step.tool.translation()).dot(along) + turn.angle() * turn.axis().dot(step.step_rotation)) /
+      double t = ((tool.translation() - step.tool.translation()).dot(along) +
+                  turn.angle() * turn.axis().dot(step.step_rotation)) /
                  (along.squaredNorm() + step.step_rotation.squaredNorm());
-      if (step.step_length > 0) t = std::clamp(t, (s - kSame - step.s) / step.step_length, (s + kSame - step.s) / step.step_length);
+      if (step.step_length > 0)
+        t = std::clamp(t, (s - kSame - step.s) / step.step_length,
+                       (s + kSame - step.s) / step.step_length);
       t = std::clamp(t, 0.0, 1.0);
       if (problem_.smooth && step.step_length == 0) t = nearest_on_curve(i, t, tool);
       try_place(i + t);
     }
     result_.worst_position = std::max(result_.worst_position, position);
     result_.worst_angle = std::max(result_.worst_angle, angle);
-    if (found.empty()) fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, position, angle, s);
+    if (found.empty())
+      fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, position, angle,
+           s);
     return found;
   }
 
@@ -324,7 +353,8 @@ class Check {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!examined(k)) continue;
       if (k == 0) candidates_[0].resize(1);  // the first on the path
-      if (before && candidates_[*before].size() * candidates_[k].size() > 1) keep_reachable(*before, k);
+      if (before && candidates_[*before].size() * candidates_[k].size() > 1)
+        keep_reachable(*before, k);
       before = k;
     }
     if (!before) return;
@@ -350,19 +380,25 @@ class Check {
     std::optional<ToolMotion> motion;
     for (std::size_t f = 0; f < from.size(); ++f) {
       const double begin = from[f].place;
-      const auto later = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), begin) - ends.begin());
+      const auto later = static_cast<std::size_t>(
+          std::upper_bound(ends.begin(), ends.end(), begin) - ends.begin());
       std::vector<bool> reached(ends.size() - later, !neighbours);
       if (neighbours && !reached.empty() && excess(move, begin, ends.back()).by <= 0) {
         if (!motion) motion = motion_to(k);
-        reached = follows(*motion, path_, begin, std::span(ends).subspan(later), along_, at_waypoints_);
+        reached =
+            follows(*motion, path_, begin, std::span(ends).subspan(later), along_, at_waypoints_);
         for (std::size_t c = later; c < ends.size(); ++c) {
-          if (is_step(begin, ends[c])) reached[c - later] = within(step_deviation(k, begin), along_);
+          if (is_step(begin, ends[c]))
+            reached[c - later] = within(step_deviation(k, begin), along_);
           reached[c - later] = reached[c - later] && excess(move, begin, ends[c]).by <= 0;
         }
       }
       for (std::size_t c = 0; c < to.size(); ++c) {
-        const bool stands = neighbours && timed_ && may_rest(begin) && has_same_pose(k) && std::abs(ends[c] - begin) <= kNear;
-        const Verdict verdict = stands || (c >= later && reached[c - later]) ? kPasses : ends[c] < begin ? kGoesBack : kFails;
+        const bool stands = neighbours && timed_ && may_rest(begin) && has_same_pose(k) &&
+                            std::abs(ends[c] - begin) <= kNear;
+        const Verdict verdict = stands || (c >= later && reached[c - later]) ? kPasses
+                                : ends[c] < begin                            ? kGoesBack
+                                                                             : kFails;
         // Among equally good places to come from, the last one counts: from there the way is the
         // shortest.
         if (verdict <= best[c]) best[c] = verdict, to[c].before = f;
@@ -378,21 +414,31 @@ class Check {
   /// Returns the tool's motion from row k - 1 to row k.
   [[nodiscard]] ToolMotion motion_to(std::size_t k) const {
     const std::array<double, 2> rolls{-rows_[k - 1].roll, -rows_[k - 1].roll - roll_change(k)};
-    return tool_motion(chain_, rows_[k - 1].q, rows_[k].q, {tools_[k - 1], tools_[k]}, at_waypoints_, options_.margins ? 4 : 1,
+    return tool_motion(chain_, rows_[k - 1].q, rows_[k].q, {tools_[k - 1], tools_[k]},
+                       at_waypoints_, options_.margins ? 4 : 1,
                        chain_.free_roll ? rolls : std::array<double, 2>{});
   }
   /// Returns true if the move is a step from a layer to the next.
-  static bool is_step(double begin, double end) { return std::floor(begin) == begin && end == begin + 1; }
+  static bool is_step(double begin, double end) {
+    return std::floor(begin) == begin && end == begin + 1;
+  }
   static bool within(const PoseDistance& deviation, const PoseDistance& tolerance) {
-    return deviation.position <= tolerance.position + kPose && deviation.angle <= tolerance.angle + kPose;
+    return deviation.position <= tolerance.position + kPose &&
+           deviation.angle <= tolerance.angle + kPose;
   }
   /// Returns the deviation that the lattice's rule bounds, on the move from row k - 1, at a layer,
   /// to row k, at the next layer.
   [[nodiscard]] PoseDistance step_deviation(std::size_t k, double layer) const {
-    const auto most = [](const std::array<double, 3>& deviation) { return *std::max_element(deviation.begin(), deviation.end()); };
+    const auto most = [](const std::array<double, 3>& deviation) {
+      return *std::max_element(deviation.begin(), deviation.end());
+    };
     const Config &from = rows_[k - 1].q, move = rows_[k].q - from;
-    return {along_.position < kNone ? most(path_deviation(chain_, path_, static_cast<int>(layer), from, move)) : 0,
-            along_.angle < kNone ? most(angle_deviation(chain_, path_, static_cast<int>(layer), from, move)) : 0};
+    return {along_.position < kNone
+                ? most(path_deviation(chain_, path_, static_cast<int>(layer), from, move))
+                : 0,
+            along_.angle < kNone
+                ? most(angle_deviation(chain_, path_, static_cast<int>(layer), from, move))
+                : 0};
   }
 
   struct Excess {
@@ -420,26 +466,30 @@ class Check {
     const TrajectoryRow& row = rows_[k];
     ++result_.rows_examined;
     if (k == 0 && place(k) > 0) fail("row 0: begins at s = %.9g, not with the path", row.s);
-    if (k + 1 == rows_.size() && place(k) < path_.size() - 1) fail("row %zu: ends at s = %.9g, before the path", k, row.s);
+    if (k + 1 == rows_.size() && place(k) < path_.size() - 1)
+      fail("row %zu: ends at s = %.9g, before the path", k, row.s);
     examine_labels(k);
     if (limits_.manipulability > 0) {
       const double w = chain_.manipulability(row.q);
-      if (!(w >= limits_.manipulability - 1e-9)) fail("row %zu: manipulability %.3g is below %.3g", k, w, limits_.manipulability);
+      if (!(w >= limits_.manipulability - 1e-9))
+        fail("row %zu: manipulability %.3g is below %.3g", k, w, limits_.manipulability);
     }
     if (!options_.margins) return;  // examine_clearance() tests all rows at once
     if (const auto deep = contacts_.too_deep(row.q))
-      fail("row %zu: %s are %.3f mm deep in each other: allowed are %.3f mm", k, contacts_.names(deep->first.pair).c_str(),
-           1e3 * deep->second, 1e3 * *deep->first.depth);
+      fail("row %zu: %s are %.3f mm deep in each other: allowed are %.3f mm", k,
+           contacts_.names(deep->first.pair).c_str(), 1e3 * deep->second, 1e3 * *deep->first.depth);
     const auto clearance = contacts_.clearance(row.q);
     if (!clearance) return;
-    result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->least), clearance->least);
+    result_.min_clearance =
+        std::min(result_.min_clearance.value_or(clearance->least), clearance->least);
     const double margin = clearance->margin() - kVerdictBand;  // the world forgives the band
     result_.min_margin = std::min(result_.min_margin.value_or(margin), margin);
     if (!(clearance->distance > 0))
       fail("row %zu: %s touch", k, contacts_.names(clearance->pair).c_str());
     else if (!(clearance->margin() >= 0))
       fail("row %zu: clearance %.3f mm between %s is below %.3f mm", k, 1e3 * clearance->distance,
-           contacts_.names(clearance->pair).c_str(), 1e3 * contacts_.required_clearance(clearance->pair).node);
+           contacts_.names(clearance->pair).c_str(),
+           1e3 * contacts_.required_clearance(clearance->pair).node);
   }
 
   /// Examines the clearance of all rows and moves, whose joints have passed.
@@ -458,7 +508,9 @@ class Check {
   }
 
   /// Returns by how much rolls may exceed their bounds, rad.
-  [[nodiscard]] double roll_slack() const { return timed_ ? std::max(kPose, path_.rounding()) : kPose; }
+  [[nodiscard]] double roll_slack() const {
+    return timed_ ? std::max(kPose, path_.rounding()) : kPose;
+  }
 
   /// Examines the labels of a row: the roll, which its waypoints bound, and arm angle and branch,
   /// which must be those of its joints.
@@ -478,9 +530,11 @@ class Check {
     const int layer = static_cast<int>(std::floor(place(k)));
     ArmPlane plane = planes_[static_cast<std::size_t>(layer)];
     if (layer < place(k)) plane = carry_plane(*arm_, plane, pose_at(path_, place(k)));
-    if (chain_.free_roll) plane = carry_plane(*arm_, plane, rolled(pose_at(path_, place(k)), row.roll));
+    if (chain_.free_roll)
+      plane = carry_plane(*arm_, plane, rolled(pose_at(path_, place(k)), row.roll));
     const double phi = arm_angle(*arm_, plane, row.q);
-    if (!(std::abs(wrap_angle(row.phi - phi)) <= kArmAngle)) fail("row %zu: phi is %.6g, that of the joints %.6g", k, row.phi, phi);
+    if (!(std::abs(wrap_angle(row.phi - phi)) <= kArmAngle))
+      fail("row %zu: phi is %.6g, that of the joints %.6g", k, row.phi, phi);
 
     if (!is_of_branch(*arm_, row.q, row.branch))
       fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_->branch(row.q));
@@ -492,11 +546,14 @@ class Check {
     const Config &from = rows_[k - 1].q, &to = rows_[k].q;
     const double begin = place(k - 1), end = place(k);
     ++result_.moves_examined;
-    const bool same_pose = has_same_pose(k), same_place = begin == end || (same_pose && std::abs(end - begin) <= kNear);
+    const bool same_pose = has_same_pose(k),
+               same_place = begin == end || (same_pose && std::abs(end - begin) <= kNear);
     if (end < begin && !same_place)
-      return fail("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g", k - 1, k, rows_[k - 1].s, rows_[k].s);
+      return fail("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g", k - 1, k,
+                  rows_[k - 1].s, rows_[k].s);
     const bool at_rest = same_place || (same_pose && !timed_);
-    if (at_rest && !(timed_ && may_rest(end))) return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
+    if (at_rest && !(timed_ && may_rest(end)))
+      return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
     if (!may_move(k)) return;
     if (at_rest) {
       examine_rest(k);
@@ -519,13 +576,15 @@ class Check {
   /// Returns true if the tool has the same pose at row k - 1 and at row k; it may have turned away
   /// and come back between.
   [[nodiscard]] bool has_same_pose(std::size_t k) const {
-    return std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(tools_[k - 1], tools_[k]) <= 1e-9;
+    return std::abs(rows_[k].s - rows_[k - 1].s) <= kSame &&
+           apart(tools_[k - 1], tools_[k]) <= 1e-9;
   }
   /// Returns true for a place at one of the ends of the path or at a corner.
   [[nodiscard]] bool may_rest(double place) const {
     const auto near = [&](int layer) { return std::abs(place - layer) <= kNear; };
     return near(0) || near(path_.size() - 1) ||
-           std::any_of(path_.corners().begin(), path_.corners().end(), [&](const ToolPath::Corner& c) { return near(c.layer); });
+           std::any_of(path_.corners().begin(), path_.corners().end(),
+                       [&](const ToolPath::Corner& c) { return near(c.layer); });
   }
 
   bool may_move(std::size_t k) {
@@ -535,20 +594,23 @@ class Check {
     if (worst.by > 0) {
       jumps_[k] = true;
       const double moved = std::abs(move[static_cast<Eigen::Index>(worst.joint)]);
-      fail("rows %zu-%zu: joint '%s' moves by %.6g rad, joint_step and speeds allow %.6g", k - 1, k, joint_name(worst.joint), moved,
-           moved - worst.by);
+      fail("rows %zu-%zu: joint '%s' moves by %.6g rad, joint_step and speeds allow %.6g", k - 1, k,
+           joint_name(worst.joint), moved, moved - worst.by);
       return false;
     }
     const auto travel = [&](double at) { return path_.layer(static_cast<int>(at)).travel; };
     const double way = travel(std::ceil(place(k))) - travel(std::floor(place(k - 1)));
-    if (const double turned = std::abs(roll_change(k)); !(turned <= limits_.roll_slope * way + kArmAngle)) {
-      fail("rows %zu-%zu: the roll changes by %.6g rad, roll_slope allows %.6g", k - 1, k, turned, limits_.roll_slope * way);
+    if (const double turned = std::abs(roll_change(k));
+        !(turned <= limits_.roll_slope * way + kArmAngle)) {
+      fail("rows %zu-%zu: the roll changes by %.6g rad, roll_slope allows %.6g", k - 1, k, turned,
+           limits_.roll_slope * way);
       return false;
     }
     for (std::size_t j = 0; j < kDof; ++j) {
       const double moved = std::abs(move[static_cast<Eigen::Index>(j)]);
       if (!(chain_.limit[j].continuous || chain_.limit[j].wide()) || moved < kPi) continue;
-      fail("rows %zu-%zu: continuous joint '%s' moves by %.6g rad: allowed is less than pi", k - 1, k, joint_name(j), moved);
+      fail("rows %zu-%zu: continuous joint '%s' moves by %.6g rad: allowed is less than pi", k - 1,
+           k, joint_name(j), moved);
       return false;
     }
     return true;
@@ -578,11 +640,16 @@ class Check {
     const auto needed = [](double allowed, auto pass) {
       double low = 0, high = allowed;
       while (!pass(high) && high < 1e3) low = high, high *= 2;
-      for (int step = 0; step < 12; ++step) (pass((low + high) / 2) ? high : low) = (low + high) / 2;
+      for (int step = 0; step < 12; ++step)
+        (pass((low + high) / 2) ? high : low) = (low + high) / 2;
       return high;
     };
-    const auto position = [&](double x) { return passes({limits_.tool_path_error ? x : kNone, kNone}, {x, kNone}); };
-    const auto angle = [&](double x) { return passes({kNone, limits_.tool_angle_error ? x : kNone}, {kNone, x}); };
+    const auto position = [&](double x) {
+      return passes({limits_.tool_path_error ? x : kNone, kNone}, {x, kNone});
+    };
+    const auto angle = [&](double x) {
+      return passes({kNone, limits_.tool_angle_error ? x : kNone}, {kNone, x});
+    };
     stray(k, {needed(at_waypoints_.position, position), needed(at_waypoints_.angle, angle)});
   }
 
@@ -591,7 +658,8 @@ class Check {
     const ToolMotion motion = motion_to(k);
     PoseDistance most{0, 0};
     for (const Pose& tool : motion.poses) {
-      most.position = std::max(most.position, (tool.translation() - tools_[k - 1].translation()).norm());
+      most.position =
+          std::max(most.position, (tool.translation() - tools_[k - 1].translation()).norm());
       most.angle = std::max(most.angle, angle_between(tools_[k - 1], tool));
     }
     // errors of the motion are forgiven
@@ -612,18 +680,23 @@ class Check {
   void stray(std::size_t k, const PoseDistance& off) {
     result_.worst_path_error = std::max(result_.worst_path_error, off.position);
     result_.worst_path_angle = std::max(result_.worst_path_angle, off.angle);
-    fail("rows %zu-%zu: the tool leaves the path by %.3g mm and %.3g rad: allowed are %.3g mm and %.3g rad%s", k - 1, k,
-         1e3 * off.position, off.angle, 1e3 * at_waypoints_.position, at_waypoints_.angle,
-         within(off, at_waypoints_) ? ", both at once" : "");
+    fail(
+        "rows %zu-%zu: the tool leaves the path by %.3g mm and %.3g rad: allowed are %.3g mm and "
+        "%.3g rad%s",
+        k - 1, k, 1e3 * off.position, off.angle, 1e3 * at_waypoints_.position, at_waypoints_.angle,
+        within(off, at_waypoints_) ? ", both at once" : "");
   }
 
   void examine_step_error(std::size_t k) {
     if (!lattice_ || !is_step(place(k - 1), place(k))) return;
     const int layer = static_cast<int>(place(k - 1));
-    const auto phi = [&](std::size_t row, int at) { return arm_angle(*arm_, planes_[static_cast<std::size_t>(at)], rows_[row].q); };
+    const auto phi = [&](std::size_t row, int at) {
+      return arm_angle(*arm_, planes_[static_cast<std::size_t>(at)], rows_[row].q);
+    };
     const double phi0 = phi(k - 1, layer), phi1 = phi(k, layer + 1), dphi = wrap_angle(phi1 - phi0);
-    const double error = std::max(step_error(*lattice_, layer, 0, rows_[k - 1].branch & (kBranches - 1), phi0, dphi),
-                                  step_error(*lattice_, layer, 1, rows_[k].branch & (kBranches - 1), phi1, dphi));
+    const double error =
+        std::max(step_error(*lattice_, layer, 0, rows_[k - 1].branch & (kBranches - 1), phi0, dphi),
+                 step_error(*lattice_, layer, 1, rows_[k].branch & (kBranches - 1), phi1, dphi));
     if (!(error <= *limits_.step_error * (1 + 1e-6)))
       fail("rows %zu-%zu: step error %.6g is above %.6g", k - 1, k, error, *limits_.step_error);
   }
@@ -636,31 +709,37 @@ class Check {
       const auto joint = static_cast<Eigen::Index>(j);
       examine_travel(
           "joint '" + chain_.joint_names[j] + "'", "joint_step and speeds", kLimit,
-          [&](std::size_t k) { return rows_[k].q[joint]; }, [&](std::size_t layer) { return allowed_[layer][joint]; });
+          [&](std::size_t k) { return rows_[k].q[joint]; },
+          [&](std::size_t layer) { return allowed_[layer][joint]; });
     }
     if (!chain_.free_roll) return;
     std::vector<double> rolls;  // unwrapped
-    for (std::size_t k = 0; k < rows_.size(); ++k) rolls.push_back(k == 0 ? rows_[k].roll : rolls.back() + roll_change(k));
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      rolls.push_back(k == 0 ? rows_[k].roll : rolls.back() + roll_change(k));
     examine_travel(
         "the roll", "roll_slope", kArmAngle, [&](std::size_t k) { return rolls[k]; },
-        [&](std::size_t layer) { return limits_.roll_slope * path_.layer(static_cast<int>(layer)).travel; });
+        [&](std::size_t layer) {
+          return limits_.roll_slope * path_.layer(static_cast<int>(layer)).travel;
+        });
   }
   /// Examines value(row) by the greatest travel allowed(layer) up to a layer.
   template <class Value, class Allowed>
-  void examine_travel(const std::string& what, const char* limits, double forgiven, const Value& value, const Allowed& allowed) {
+  void examine_travel(const std::string& what, const char* limits, double forgiven,
+                      const Value& value, const Allowed& allowed) {
     for (const double sign : {1.0, -1.0}) {
       double least = kNone;  // least of sign * value minus what was allowed up to there
       std::size_t since = 0;
       for (std::size_t k = 0; k < rows_.size(); ++k) {
         if (!examined(k)) continue;
         if (jumps_[k]) least = kNone;  // reported already
-        const auto first = static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
+        const auto first =
+            static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
         const auto last = static_cast<std::size_t>(std::ceil(place(k)));
         const double at = sign * value(k), step = allowed(first + 1) - allowed(first);
         if (at - allowed(last) - step > least + forgiven) {
           const double from = sign * value(since);
-          fail("rows %zu-%zu: %s comes %.6g rad far: allowed are %.6g by %s", since, k, what.c_str(), at - from,
-               least + allowed(last) + step - from, limits);
+          fail("rows %zu-%zu: %s comes %.6g rad far: allowed are %.6g by %s", since, k,
+               what.c_str(), at - from, least + allowed(last) + step - from, limits);
           least = kNone;
         }
         if (at - allowed(first) < least) least = at - allowed(first), since = k;
@@ -672,9 +751,10 @@ class Check {
     double l2 = 0, most = 0;
     for (std::size_t j = 0; j < kDof; ++j) {
       const double dq = move[static_cast<Eigen::Index>(j)];
-      const double scaled = problem_.cost.metric != CostMetric::kTime ? problem_.cost.weights[j] * dq
-                            : chain_.roll && j + 1 == kDof            ? 0
-                                                                      : dq / chain_.limit[j].velocity;
+      const double scaled = problem_.cost.metric != CostMetric::kTime
+                                ? problem_.cost.weights[j] * dq
+                            : chain_.roll && j + 1 == kDof ? 0
+                                                           : dq / chain_.limit[j].velocity;
       l2 += scaled * scaled;
       most = std::max(most, std::abs(scaled));
     }
@@ -688,7 +768,8 @@ class Check {
     for (std::size_t k = 1; k < rows_.size(); ++k)
       for (const std::size_t row : {k - 1, k})
         if (rows_[row].q.allFinite())
-          sum += problem_.cost.roll * (rows_[k].s - rows_[k - 1].s) / 2 * std::abs(wrap_angle(roll_of(chain_, rows_[row])));
+          sum += problem_.cost.roll * (rows_[k].s - rows_[k - 1].s) / 2 *
+                 std::abs(wrap_angle(roll_of(chain_, rows_[row])));
     return sum;
   }
 
@@ -714,8 +795,8 @@ class Check {
 
 }  // namespace
 
-CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                             const CheckOptions& options) {
+CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
+                             const std::vector<TrajectoryRow>& rows, const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
   CheckResult result = Check(robot, problem, robot.world(), rows, options).run();
@@ -734,14 +815,15 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
   }
 }
 
-CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
-                         const CheckOptions& options) {
+CheckResult check_motion(const PreparedRobot& robot, const Problem& problem,
+                         const std::vector<TimedRow>& rows, const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
   return check_motion_in(robot.world(), robot, problem, rows, options);
 }
 
-CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows, const CheckOptions& options) {
+CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                             const CheckOptions& options) {
   return check_trajectory(PreparedRobot(problem, options.budget), problem, rows, options);
 }
 
@@ -760,16 +842,17 @@ void require_passed(const CheckResult& result) {
                          (more > 0 ? ", and " + std::to_string(more) + " more" : ""));
 }
 
-void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                  const Budget& budget) {
+void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem,
+                  const std::vector<TrajectoryRow>& rows, const Budget& budget) {
   const TraceSpan span("check");
   require_passed(Check(robot, problem, world, rows, {.margins = false, .budget = budget}).run());
 }
 
-void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
-                  const Budget& budget) {
+void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem,
+                  const std::vector<TimedRow>& rows, const Budget& budget) {
   const TraceSpan span("check");
-  require_passed(check_motion_in(world, robot, problem, rows, {.margins = false, .budget = budget}));
+  require_passed(
+      check_motion_in(world, robot, problem, rows, {.margins = false, .budget = budget}));
 }
 
 }  // namespace swivel

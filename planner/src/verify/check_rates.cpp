@@ -18,18 +18,20 @@ namespace {
 /// sample and after the last.
 class Samples {
  public:
-  explicit Samples(const std::vector<TimedRow>& rows) : rows_(&rows), n_(static_cast<std::ptrdiff_t>(rows.size())) {
+  explicit Samples(const std::vector<TimedRow>& rows)
+      : rows_(&rows), n_(static_cast<std::ptrdiff_t>(rows.size())) {
     constexpr double kStill = 1e-9;  // rad
     std::vector<double> steps, sorted;
     for (std::size_t k = 1; k < rows.size(); ++k) {
       steps.push_back(rows[k].t - rows[k - 1].t);
-      if (!((rows[k].row.q - rows[k - 1].row.q).lpNorm<Eigen::Infinity>() <= kStill)) sorted.push_back(steps.back());
+      if (!((rows[k].row.q - rows[k - 1].row.q).lpNorm<Eigen::Infinity>() <= kStill))
+        sorted.push_back(steps.back());
     }
     if (sorted.empty()) sorted = steps;
     // Messages state times in whole nanoseconds, and doubles of late times are coarse: steps that
     // differ by no more than that count as equal.
-    const double same =
-        2e-9 + 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(rows.front().t), std::abs(rows.back().t));
+    const double same = 2e-9 + 4 * std::numeric_limits<double>::epsilon() *
+                                   std::max(std::abs(rows.front().t), std::abs(rows.back().t));
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
     double sum = 0, count = 0;
@@ -37,7 +39,8 @@ class Samples {
       if (std::abs(step - *middle) <= same) sum += step, ++count;
     usual_ = sum / count;
     steps_.push_back(usual_);
-    for (const double step : steps) steps_.push_back(std::abs(step - usual_) <= same ? usual_ : step);
+    for (const double step : steps)
+      steps_.push_back(std::abs(step - usual_) <= same ? usual_ : step);
     for (std::ptrdiff_t k = 0; k < n_; ++k) usual_at_.push_back(usual_about(k));
   }
 
@@ -48,9 +51,13 @@ class Samples {
   /// Returns the median of the steps in which a joint moves, s.
   [[nodiscard]] double usual_step() const { return usual_; }
   /// Returns the time from sample k - 1 to sample k, s.
-  [[nodiscard]] double step(std::ptrdiff_t k) const { return k < 1 || k >= n_ ? usual_ : steps_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] double step(std::ptrdiff_t k) const {
+    return k < 1 || k >= n_ ? usual_ : steps_[static_cast<std::size_t>(k)];
+  }
   /// Returns the speed from sample k - 1 to sample k, rad/s.
-  [[nodiscard]] Config speed(std::ptrdiff_t k) const { return (at(k).row.q - at(k - 1).row.q) / step(k); }
+  [[nodiscard]] Config speed(std::ptrdiff_t k) const {
+    return (at(k).row.q - at(k - 1).row.q) / step(k);
+  }
   /// Returns the usual step at sample k, s: that of the motion, or the median of the steps on one
   /// side of the sample if that is less than half of it, as where a motion of few samples goes on
   /// with many.
@@ -67,10 +74,13 @@ class Samples {
   /// the mean of the three steps around it, or within a usual step if that is less.
   [[nodiscard]] Config jerk(std::ptrdiff_t k) const {
     const double usual = std::min(usual_step(k), usual_step(k + 1));
-    return (acceleration(k + 1) - acceleration(k)) / std::min((step(k) + step(k + 1) + step(k + 2)) / 3, usual);
+    return (acceleration(k + 1) - acceleration(k)) /
+           std::min((step(k) + step(k + 1) + step(k + 2)) / 3, usual);
   }
   /// Returns the mean speed over both steps beside sample k, rad/s.
-  [[nodiscard]] Config mean_speed(std::ptrdiff_t k) const { return (at(k + 1).row.q - at(k - 1).row.q) / (step(k) + step(k + 1)); }
+  [[nodiscard]] Config mean_speed(std::ptrdiff_t k) const {
+    return (at(k + 1).row.q - at(k - 1).row.q) / (step(k) + step(k + 1));
+  }
 
  private:
   /// Returns the median of three steps on the side of sample k where it is shorter, s, if that is
@@ -92,21 +102,25 @@ class Samples {
 };
 
 /// Returns true if times ascend; otherwise calls `fail` for each pair that does not.
-bool ascend(const std::vector<TimedRow>& rows, const std::function<void(const std::string&)>& fail) {
+bool ascend(const std::vector<TimedRow>& rows,
+            const std::function<void(const std::string&)>& fail) {
   bool all = true;
   for (std::size_t k = 1; k < rows.size(); ++k) {
-    if (rows[k].t > rows[k - 1].t && std::isfinite(rows[k].t) && std::isfinite(rows[k - 1].t)) continue;
+    if (rows[k].t > rows[k - 1].t && std::isfinite(rows[k].t) && std::isfinite(rows[k - 1].t))
+      continue;
     all = false;
-    fail(formatted("rows %zu-%zu: t is %.9g s after %.9g s: allowed are times that ascend", k - 1, k, rows[k].t, rows[k - 1].t));
+    fail(formatted("rows %zu-%zu: t is %.9g s after %.9g s: allowed are times that ascend", k - 1,
+                   k, rows[k].t, rows[k - 1].t));
   }
   return all;
 }
 
 }  // namespace
 
-std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
-                                                 const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
-                                                 const std::function<void(const std::string&)>& fail) {
+std::optional<CheckResult::Motion> examine_rates(
+    const Chain& chain, const Limits& limits, const std::string& source,
+    const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
+    const std::function<void(const std::string&)>& fail) {
   const JointRates rates = joint_rates(chain, limits, source);
   if (!ascend(rows, fail)) return std::nullopt;
   const Samples samples(rows);
@@ -123,44 +137,56 @@ std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limit
       for (int j = 0; j < kDof; ++j) {
         const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
         if (!(ratio <= 1 + 1e-6)) {
-          const double longest = std::max({samples.step(k), samples.step(k + 1), samples.step(k + 2)});
-          fail(formatted("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t, names[order],
-                         chain.joint_names[static_cast<std::size_t>(j)].c_str(), ratio) +
+          const double longest =
+              std::max({samples.step(k), samples.step(k + 1), samples.step(k + 2)});
+          fail(formatted("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t,
+                         names[order], chain.joint_names[static_cast<std::size_t>(j)].c_str(),
+                         ratio) +
                (order > 0 && longest > 1.5 * usual
-                    ? formatted(", at a gap in time: %.6g s, where rows are %.6g s apart", longest, usual)
+                    ? formatted(", at a gap in time: %.6g s, where rows are %.6g s apart", longest,
+                                usual)
                     : ""));
         }
         if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, t};
       }
     if (k < 0) continue;
-    const double dt = std::min(std::max(samples.step(k), samples.step(k + 1)), samples.usual_step(k));
+    const double dt =
+        std::min(std::max(samples.step(k), samples.step(k + 1)), samples.usual_step(k));
     const Config v = samples.mean_speed(k), a = samples.acceleration(k);
     const TimedRow& row = samples.at(k);
     for (int j = 0; j < kDof; ++j) {
       if (!(std::abs(row.v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
           !(std::abs(row.a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
-        fail(formatted("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", t,
-                       chain.joint_names[static_cast<std::size_t>(j)].c_str(), row.v[j], row.a[j], v[j], a[j]));
+        fail(
+            formatted("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its "
+                      "positions say %.6g and %.6g",
+                      t, chain.joint_names[static_cast<std::size_t>(j)].c_str(), row.v[j], row.a[j],
+                      v[j], a[j]));
     }
   }
   for (std::ptrdiff_t k = 1; k < n; ++k) {
     const double dt = samples.step(k);
-    const Pose &from = tools[static_cast<std::size_t>(k - 1)], &to = tools[static_cast<std::size_t>(k)];
-    motion.tool_speed = std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
-    motion.turn_speed = std::max(motion.turn_speed, Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle() / dt);
+    const Pose &from = tools[static_cast<std::size_t>(k - 1)],
+               &to = tools[static_cast<std::size_t>(k)];
+    motion.tool_speed =
+        std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
+    motion.turn_speed = std::max(
+        motion.turn_speed, Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle() / dt);
   }
   if (limits.tool_speed && !(motion.tool_speed <= 1.001 * *limits.tool_speed))
-    fail(formatted("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed, *limits.tool_speed));
+    fail(formatted("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed,
+                   *limits.tool_speed));
   if (limits.tool_turn_speed && !(motion.turn_speed <= 1.001 * *limits.tool_turn_speed))
-    fail(formatted("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g", motion.turn_speed,
-                   *limits.tool_turn_speed));
+    fail(formatted("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g",
+                   motion.turn_speed, *limits.tool_turn_speed));
   return motion;
 }
 
 std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows) {
   const Samples samples(rows);
   std::vector<RowRates> rates;
-  for (std::ptrdiff_t k = 0; k < samples.size(); ++k) rates.push_back({samples.mean_speed(k), samples.acceleration(k)});
+  for (std::ptrdiff_t k = 0; k < samples.size(); ++k)
+    rates.push_back({samples.mean_speed(k), samples.acceleration(k)});
   return rates;
 }
 

@@ -14,9 +14,10 @@ namespace swivel {
 /// Calls `fail` with one line for each rate that is not kept. `tools` holds the tool's pose at each
 /// row, base frame. Returns none if times do not ascend, because then there are no rates. Throws
 /// InputError as joint_rates() does.
-[[nodiscard]] std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
-                                                               const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
-                                                               const std::function<void(const std::string&)>& fail);
+[[nodiscard]] std::optional<CheckResult::Motion> examine_rates(
+    const Chain& chain, const Limits& limits, const std::string& source,
+    const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
+    const std::function<void(const std::string&)>& fail);
 
 /// The speed and acceleration of the joints at one row, rad/s and rad/s^2.
 struct RowRates {

@@ -35,8 +35,8 @@ class Completion {
  public:
   /// Finds the places of the rows. `of_motion`: rows are samples in time, which may be anywhere
   /// between layers. Throws InputError if the last joint is not stated and is not the roll.
-  Completion(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows, const Stated& stated,
-             bool of_motion, const Budget& budget)
+  Completion(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows,
+             const Stated& stated, bool of_motion, const Budget& budget)
       : stated_(stated),
         of_motion_(of_motion),
         budget_(budget),
@@ -46,16 +46,20 @@ class Completion {
         path_(problem_path(problem, chain_, budget)),
         first_turn_(problem.start ? (*problem.start)[kDof - 1] : 0),
         any_turn_(chain_.roll ? !stated.last_joint : chain_.free_roll && !stated.roll),
-        places_(path_, problem.smooth.has_value(), problem.smooth ? problem.smooth->position : 0, any_turn_) {
+        places_(path_, problem.smooth.has_value(), problem.smooth ? problem.smooth->position : 0,
+                any_turn_) {
     if (!stated.last_joint && !chain_.roll)
-      refuse("joint '%s' is missing: allowed are trajectories with all joints of the arm", chain_.joint_names.back().c_str());
+      refuse("joint '%s' is missing: allowed are trajectories with all joints of the arm",
+             chain_.joint_names.back().c_str());
     find_places();
   }
   Completion(const Completion&) = delete;
   Completion& operator=(const Completion&) = delete;
 
   /// Returns the number of rows whose tool is nowhere on the path.
-  [[nodiscard]] std::ptrdiff_t off_path() const { return std::count(on_path_.begin(), on_path_.end(), false); }
+  [[nodiscard]] std::ptrdiff_t off_path() const {
+    return std::count(on_path_.begin(), on_path_.end(), false);
+  }
 
   /// Returns the rows, completed with what was not stated. Call once.
   std::vector<TrajectoryRow> rows() {
@@ -68,21 +72,28 @@ class Completion {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!on_path_[k]) {
         const Pose there = pose_at(path_, place_[k]);
-        const Pose tool = any_turn_ ? rolled(tools_[k], -roll_between(there, tools_[k])) : tools_[k];
+        const Pose tool =
+            any_turn_ ? rolled(tools_[k], -roll_between(there, tools_[k])) : tools_[k];
         refuse("row %zu: the tool is %.3g m and %.3g rad from the path: allowed is 1e-6", k,
                (there.translation() - tool.translation()).norm(),
                Eigen::AngleAxisd(there.linear().transpose() * tool.linear()).angle());
       }
       if (k > 0 && place_[k] < place_[k - 1])
-        refuse("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g: allowed are rows in its order", k - 1, k,
-               places_.s_at(place_[k - 1]), places_.s_at(place_[k]));
+        refuse(
+            "rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g: allowed are rows "
+            "in its order",
+            k - 1, k, places_.s_at(place_[k - 1]), places_.s_at(place_[k]));
     }
     const int last = path_.size() - 1;
     if (rows_.size() < 2 || place_.front() > 0 || place_.back() < last)
-      refuse("the rows do not reach from the path's beginning to its end: allowed are rows along all of it");
+      refuse(
+          "the rows do not reach from the path's beginning to its end: allowed are rows along all "
+          "of it");
     label();
-    const bool at_layers = std::all_of(place_.begin(), place_.end(), [](double place) { return place == std::floor(place); }) &&
-                           std::adjacent_find(place_.begin(), place_.end(), std::greater_equal<>()) == place_.end();
+    const bool at_layers =
+        std::all_of(place_.begin(), place_.end(),
+                    [](double place) { return place == std::floor(place); }) &&
+        std::adjacent_find(place_.begin(), place_.end(), std::greater_equal<>()) == place_.end();
     if (at_layers) return std::move(rows_);
     std::vector<TrajectoryRow> laid;
     std::vector<std::size_t> made;
@@ -143,11 +154,15 @@ class Completion {
       }
       budget_.poll();
       if (on_path_[k]) {
-        const auto beyond = [&](double place) { return std::max({before - place, place - next[k], 0.0}); };
-        place_[k] = *std::min_element(fits[k].begin(), fits[k].end(), [&](double a, double b) { return beyond(a) < beyond(b); });
+        const auto beyond = [&](double place) {
+          return std::max({before - place, place - next[k], 0.0});
+        };
+        place_[k] = *std::min_element(fits[k].begin(), fits[k].end(),
+                                      [&](double a, double b) { return beyond(a) < beyond(b); });
         // The place may be out of order by rounding alone.
         const double inside = std::clamp(place_[k], before, next[k]);
-        if (std::abs(places_.s_at(inside) - places_.s_at(place_[k])) <= kSameS && places_.fits_at(tools_[k], inside))
+        if (std::abs(places_.s_at(inside) - places_.s_at(place_[k])) <= kSameS &&
+            places_.fits_at(tools_[k], inside))
           before = place_[k] = inside;
       } else if (stated_.s) {
         place_[k] = std::isfinite(rows_[k].s) ? places_.place_at(rows_[k].s) : 0;
@@ -168,9 +183,10 @@ class Completion {
     std::vector<std::ptrdiff_t> ends;
     for (std::size_t k = 0; k < fits.size(); ++k)
       for (auto place = fits[k].rbegin(); place != fits[k].rend(); ++place) {
-        const auto end = std::upper_bound(ends.begin(), ends.end(), *place, [&](double value, std::ptrdiff_t link) {
-          return value < links[static_cast<std::size_t>(link)].place;
-        });
+        const auto end = std::upper_bound(
+            ends.begin(), ends.end(), *place, [&](double value, std::ptrdiff_t link) {
+              return value < links[static_cast<std::size_t>(link)].place;
+            });
         links.push_back({*place, k, end == ends.begin() ? -1 : *(end - 1)});
         const auto link = static_cast<std::ptrdiff_t>(links.size()) - 1;
         if (end == ends.end())
@@ -179,7 +195,8 @@ class Completion {
           *end = link;
       }
     std::vector<bool> in_order(fits.size(), false);
-    for (std::ptrdiff_t at = ends.empty() ? -1 : ends.back(); at >= 0; at = links[static_cast<std::size_t>(at)].before) {
+    for (std::ptrdiff_t at = ends.empty() ? -1 : ends.back(); at >= 0;
+         at = links[static_cast<std::size_t>(at)].before) {
       const Link& link = links[static_cast<std::size_t>(at)];
       place_[link.row] = link.place;
       in_order[link.row] = true;
@@ -195,26 +212,33 @@ class Completion {
     const auto is_near = [&](std::size_t other) {
       constexpr double kNear = 4 * PlacesOnPath::kOnPath;
       return (tools_[k].translation() - tools_[other].translation()).norm() < kNear &&
-             Eigen::AngleAxisd(tools_[k].linear().transpose() * tools_[other].linear()).angle() < kNear;
+             Eigen::AngleAxisd(tools_[k].linear().transpose() * tools_[other].linear()).angle() <
+                 kNear;
     };
-    const bool at_end = (k == 0 && layer == 0) || (k + 1 == rows_.size() && layer == path_.size() - 1);
-    const bool alone = !of_motion_ && (k == 0 || !is_near(k - 1)) && (k + 1 == rows_.size() || !is_near(k + 1));
-    if (at_end || alone || std::abs(place_[k] - layer) * path_.layer(static_cast<int>(layer)).step_length <= kSameS)
+    const bool at_end =
+        (k == 0 && layer == 0) || (k + 1 == rows_.size() && layer == path_.size() - 1);
+    const bool alone =
+        !of_motion_ && (k == 0 || !is_near(k - 1)) && (k + 1 == rows_.size() || !is_near(k + 1));
+    if (at_end || alone ||
+        std::abs(place_[k] - layer) * path_.layer(static_cast<int>(layer)).step_length <= kSameS)
       place_[k] = layer;
   }
 
   [[nodiscard]] double travel(double place) const {
     const int i = std::min(static_cast<int>(std::floor(place)), path_.size() - 2);
-    return path_.layer(i).travel + (place - i) * (path_.layer(i + 1).travel - path_.layer(i).travel);
+    return path_.layer(i).travel +
+           (place - i) * (path_.layer(i + 1).travel - path_.layer(i).travel);
   }
 
   /// Returns a row at a layer between row k and the next row. Throws InputError if Newton's method
   /// finds no joints near those between the two.
   [[nodiscard]] TrajectoryRow between(std::size_t k, int layer) const {
-    const double begin = travel(place_[k]), share = (travel(layer) - begin) / (travel(place_[k + 1]) - begin);
+    const double begin = travel(place_[k]),
+                 share = (travel(layer) - begin) / (travel(place_[k + 1]) - begin);
     TrajectoryRow row = rows_[k];
     const double turn = rows_[k + 1].roll - row.roll;
-    if (chain_.free_roll) row.roll += share * (chain_.free_roll->circle() ? wrap_angle(turn) : turn);
+    if (chain_.free_roll)
+      row.roll += share * (chain_.free_roll->circle() ? wrap_angle(turn) : turn);
     const Pose& there = path_.layer(layer).tool;
     const Pose goal = chain_.free_roll ? rolled(there, row.roll) : there;
     const Config straight = row.q + share * (rows_[k + 1].q - row.q);
@@ -230,19 +254,22 @@ class Completion {
       row.q += chain_.jacobian(row.q).completeOrthogonalDecomposition().solve(off);
       if (!((row.q - straight).lpNorm<Eigen::Infinity>() <= kFarthest)) break;
     }
-    refuse("rows %zu-%zu: no joints near those between them lead to s = %.9g: allowed are rows nearer to each other", k, k + 1,
-           path_.layer(layer).s);
+    refuse(
+        "rows %zu-%zu: no joints near those between them lead to s = %.9g: allowed are rows nearer "
+        "to each other",
+        k, k + 1, path_.layer(layer).s);
   }
 
   /// Returns the angle plus the number of whole turns that brings it nearest to `other`, within
   /// bounds if there are any.
-  [[nodiscard]] static double image_near(double angle, double other, const std::optional<Roll>& bounds) {
+  [[nodiscard]] static double image_near(double angle, double other,
+                                         const std::optional<Roll>& bounds) {
     const double nearest = other + wrap_angle(angle - other);
     if (!bounds) return nearest;
     constexpr double kBound = 1e-6;  // rad
     std::optional<double> best;
-    for (double image = angle + kTwoPi * std::ceil((bounds->lower - kBound - angle) / kTwoPi); image <= bounds->upper + kBound;
-         image += kTwoPi)
+    for (double image = angle + kTwoPi * std::ceil((bounds->lower - kBound - angle) / kTwoPi);
+         image <= bounds->upper + kBound; image += kTwoPi)
       if (!best || std::abs(image - other) < std::abs(*best - other)) best = image;
     return best.value_or(nearest);
   }
@@ -259,8 +286,10 @@ class Completion {
     if (!stated_.s) row.s = places_.s_at(place_[k]);
     if (!stated_.last_joint) {
       const JointLimit& limit = chain_.limit.back();
-      const std::optional<Roll> bounds = limit.continuous ? std::optional<Roll>() : Roll{limit.lower, limit.upper};
-      row.q[kDof - 1] = image_near(roll_between(there, tools_[k]), k > 0 ? rows_[k - 1].q[kDof - 1] : first_turn_, bounds);
+      const std::optional<Roll> bounds =
+          limit.continuous ? std::optional<Roll>() : Roll{limit.lower, limit.upper};
+      row.q[kDof - 1] = image_near(roll_between(there, tools_[k]),
+                                   k > 0 ? rows_[k - 1].q[kDof - 1] : first_turn_, bounds);
     }
     if (chain_.free_roll && !stated_.roll) {
       const Roll& range = *chain_.free_roll;
@@ -313,14 +342,16 @@ namespace {
 /// Returns the rows placed on the problem's own path, or on the rounded path of
 /// with_motion_defaults() if more of the rows are on that.
 std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Problem& problem,
-                                          const std::vector<TrajectoryRow>& rows, const Stated& stated, bool of_motion,
+                                          const std::vector<TrajectoryRow>& rows,
+                                          const Stated& stated, bool of_motion,
                                           const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   auto own = std::make_unique<Completion>(robot, problem, rows, stated, of_motion, budget);
   if (problem.smooth || own->off_path() == 0) return own;
   try {
-    auto rounded = std::make_unique<Completion>(robot, with_motion_defaults(problem), rows, stated, of_motion, budget);
+    auto rounded = std::make_unique<Completion>(robot, with_motion_defaults(problem), rows, stated,
+                                                of_motion, budget);
     return rounded->off_path() < own->off_path() ? std::move(rounded) : std::move(own);
   } catch (const InputError&) {  // a given start that is not on that path
     return own;
@@ -329,16 +360,20 @@ std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Prob
 
 }  // namespace
 
-std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows,
-                                         const Stated& stated, const Budget& budget) {
+std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const Problem& problem,
+                                         std::vector<TrajectoryRow> rows, const Stated& stated,
+                                         const Budget& budget) {
   return stated.rows() ? rows : completion_of(robot, problem, rows, stated, false, budget)->rows();
 }
 
-std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem& problem, std::vector<TimedRow> rows,
-                                      const Stated& stated, const Budget& budget) {
+std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem& problem,
+                                      std::vector<TimedRow> rows, const Stated& stated,
+                                      const Budget& budget) {
   std::vector<TrajectoryRow> places;
   for (const TimedRow& row : rows) places.push_back(row.row);
-  if (!stated.rows()) places = completion_of(robot, with_motion_defaults(problem), places, stated, true, budget)->rows();
+  if (!stated.rows())
+    places =
+        completion_of(robot, with_motion_defaults(problem), places, stated, true, budget)->rows();
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k].row = places[k];
   if (rows.size() < 2 || (stated.v && stated.a && stated.last_joint)) return rows;
   const std::vector<RowRates> rates = rates_of_joints(rows);
@@ -354,7 +389,8 @@ std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem&
 }
 
 std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot, const Problem& problem,
-                                          const std::vector<TrajectoryRow>& rows, const Stated& stated, const Budget& budget) {
+                                          const std::vector<TrajectoryRow>& rows,
+                                          const Stated& stated, const Budget& budget) {
   return completion_of(robot, problem, rows, stated, false, budget)->at_layers();
 }
 

@@ -14,7 +14,9 @@ constexpr double kForgiven = 1e-6;  // m and rad
 struct Interval {
   double low = 1, high = 0;
   [[nodiscard]] bool empty() const { return !(low <= high); }
-  void cut(const Interval& other) { low = std::max(low, other.low), high = std::min(high, other.high); }
+  void cut(const Interval& other) {
+    low = std::max(low, other.low), high = std::min(high, other.high);
+  }
 };
 
 /// Returns the u in [0, 1] with |a + u (b - a)| <= radius.
@@ -37,10 +39,12 @@ Vector3d rotation_between(const Pose& a, const Pose& b) {
 /// Returns the part of the straight motion from a to b that is within the tolerance of a fixed
 /// pose. The motion may turn by 0.1 rad at most, so that the rotation from the fixed pose is linear
 /// in the parameter.
-Interval where_within(const Pose& fixed, const Pose& a, const Pose& b, const PoseDistance& tolerance) {
+Interval where_within(const Pose& fixed, const Pose& a, const Pose& b,
+                      const PoseDistance& tolerance) {
   Interval free{0, 1};
   if (std::isfinite(tolerance.position))
-    free = where_within(a.translation() - fixed.translation(), b.translation() - fixed.translation(), tolerance.position);
+    free = where_within(a.translation() - fixed.translation(),
+                        b.translation() - fixed.translation(), tolerance.position);
   if (std::isfinite(tolerance.angle) && !free.empty()) {
     const Vector3d from = rotation_between(fixed, a), to = rotation_between(fixed, b);
     if ((to - from).norm() > kPi) return {};  // on both sides of the half turn
@@ -50,14 +54,16 @@ Interval where_within(const Pose& fixed, const Pose& a, const Pose& b, const Pos
 }
 
 PoseDistance widened(const PoseDistance& tolerance, const PoseDistance& error) {
-  return {tolerance.position + error.position + kForgiven, tolerance.angle + error.angle + kForgiven};
+  return {tolerance.position + error.position + kForgiven,
+          tolerance.angle + error.angle + kForgiven};
 }
 
 /// Iterates over a path from a place on, by straight pieces that turn little and end with each
 /// step.
 class Pieces {
  public:
-  Pieces(const ToolPath& path, double begin) : path_(&path), to_(begin), end_(pose_at(path, begin)) {}
+  Pieces(const ToolPath& path, double begin)
+      : path_(&path), to_(begin), end_(pose_at(path, begin)) {}
   /// Goes to the next piece; returns false at the end of the path.
   bool next() {
     const int step = static_cast<int>(std::floor(to_));
@@ -84,10 +90,13 @@ class Pieces {
   /// Returns true if a corner at one of the step's ends is rounded.
   [[nodiscard]] bool rounded_near(int step) const {
     const auto& corners = path_->corners();
-    const auto first = std::lower_bound(corners.begin(), corners.end(), step,
-                                        [](const ToolPath::Corner& corner, int layer) { return corner.layer < layer; });
+    const auto first = std::lower_bound(
+        corners.begin(), corners.end(), step,
+        [](const ToolPath::Corner& corner, int layer) { return corner.layer < layer; });
     return std::any_of(first, corners.end() - first > 2 ? first + 2 : corners.end(),
-                       [&](const ToolPath::Corner& corner) { return corner.layer <= step + 1 && corner.reach > 0; });
+                       [&](const ToolPath::Corner& corner) {
+                         return corner.layer <= step + 1 && corner.reach > 0;
+                       });
   }
 
   static constexpr double kTurn = 0.05;  // rad
@@ -104,8 +113,9 @@ Pose pose_at(const ToolPath& path, double place) {
   return layer == place ? path.layer(layer).tool : path.at(layer, place - layer);
 }
 
-ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
-                       const PoseDistance& tolerance, int fewest, const std::array<double, 2>& rolls) {
+ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
+                       const std::array<Pose, 2>& ends, const PoseDistance& tolerance, int fewest,
+                       const std::array<double, 2>& rolls) {
   constexpr double kMost = 2048;
   const Config move = (to - from).cwiseAbs();
   // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j|
@@ -119,7 +129,8 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
   const PoseDistance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};
   const double parts2 = std::max(chord.position / std::max(0.01 * tolerance.position, kForgiven),
                                  chord.angle / std::max(0.01 * tolerance.angle, kForgiven));
-  const auto parts = static_cast<int>(std::clamp(std::ceil(std::sqrt(parts2)), static_cast<double>(fewest), kMost));
+  const auto parts = static_cast<int>(
+      std::clamp(std::ceil(std::sqrt(parts2)), static_cast<double>(fewest), kMost));
   ToolMotion motion;
   motion.error = {chord.position / parts / parts, chord.angle / parts / parts};
   motion.poses.push_back(ends[0]);
@@ -132,9 +143,11 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
   return motion;
 }
 
-std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin, std::span<const double> ends,
-                          const PoseDistance& between, const PoseDistance& waypoints) {
-  const PoseDistance on_the_way = widened(between, motion.error), at_waypoint = widened(waypoints, motion.error);
+std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin,
+                          std::span<const double> ends, const PoseDistance& between,
+                          const PoseDistance& waypoints) {
+  const PoseDistance on_the_way = widened(between, motion.error),
+                     at_waypoint = widened(waypoints, motion.error);
   std::vector<bool> reached(ends.size(), false);
   const std::size_t parts = motion.poses.size() - 1;
   // The free-space diagram of Alt & Godau. Columns are pieces of the path, cells the parts of the
@@ -152,7 +165,8 @@ std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double
       right[m] = {};
       if (!below.empty() || !left[m].empty()) {
         const Pose &a = motion.poses[m], &b = motion.poses[m + 1];
-        right[m] = where_within(piece.end(), a, b, piece.ends_at_waypoint() ? at_waypoint : on_the_way);
+        right[m] =
+            where_within(piece.end(), a, b, piece.ends_at_waypoint() ? at_waypoint : on_the_way);
         above = where_within(b, piece.start(), piece.end(), on_the_way);
         if (below.empty()) right[m].low = std::max(right[m].low, left[m].low);
         if (left[m].empty()) above.low = std::max(above.low, below.low);
@@ -171,7 +185,8 @@ std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double
   return reached;
 }
 
-PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end) {
+PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin,
+                               double end) {
   const std::size_t count = motion.poses.size();
   std::vector<PoseDistance> least(count);
   for (Pieces piece(path, begin); piece.next() && (piece.from() < end || piece.from() == begin);) {
@@ -180,7 +195,8 @@ PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, d
     const Vector3d turn = rotation_between(piece.start(), piece.end());
     for (std::size_t m = 0; m < count; ++m) {
       const Pose& tool = motion.poses[m];
-      const Vector3d offset = tool.translation() - start, rotation = rotation_between(piece.start(), tool);
+      const Vector3d offset = tool.translation() - start,
+                     rotation = rotation_between(piece.start(), tool);
       // If the path only turns, the nearest point is the one of the nearest orientation.
       const double length2 = along.squaredNorm(), angle2 = turn.squaredNorm();
       double u = 0;
@@ -190,7 +206,8 @@ PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, d
         u = rotation.dot(turn) / angle2;
       u = std::clamp(u, 0.0, last);
       const PoseDistance here{(offset - u * along).norm(), (rotation - u * turn).norm()};
-      if (here.position < least[m].position - 1e-12 || (here.position < least[m].position + 1e-12 && here.angle < least[m].angle))
+      if (here.position < least[m].position - 1e-12 ||
+          (here.position < least[m].position + 1e-12 && here.angle < least[m].angle))
         least[m] = here;
     }
   }

@@ -26,8 +26,9 @@ struct ToolMotion {
 /// % of the tolerance, or 1e-6 m and rad, with at most 2,048 parts. `ends` are the tool's poses at
 /// both ends; `fewest` is the least number of parts. At both ends `rolls`, rad, turn the tool about
 /// its own z axis; they are interpolated in between and already contained in `ends`.
-[[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
-                                     const PoseDistance& tolerance, int fewest = 4, const std::array<double, 2>& rolls = {});
+[[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
+                                     const std::array<Pose, 2>& ends, const PoseDistance& tolerance,
+                                     int fewest = 4, const std::array<double, 2>& rolls = {});
 
 /// Returns the tool pose at a place on a path. A place is a layer's number plus the fraction of the
 /// step from it: 3.5 is half way from layer 3 to layer 4.
@@ -38,11 +39,13 @@ struct ToolMotion {
 /// always within `between` of each other, and within `waypoints` where the path passes a waypoint
 /// on the way. That is whether their Frechet distance is that small: Alt & Godau 1995. Errors of
 /// the motion and 1e-6 m and rad are forgiven.
-[[nodiscard]] std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin, std::span<const double> ends,
+[[nodiscard]] std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path,
+                                        double begin, std::span<const double> ends,
                                         const PoseDistance& between, const PoseDistance& waypoints);
 
 /// Returns the largest distance of the motion's poses from the path between two places, and the
 /// largest angle at the nearest points.
-[[nodiscard]] PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end);
+[[nodiscard]] PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path,
+                                             double begin, double end);
 
 }  // namespace swivel

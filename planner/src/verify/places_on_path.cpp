@@ -38,7 +38,8 @@ PlacesOnPath::PlacesOnPath(const ToolPath& path, bool curved, double rounding, b
 
 /// Returns a lower bound of the distance of a point from a step of the path, m.
 double PlacesOnPath::least_distance(int step, const Vector3d& point) const {
-  const Vector3d from = path_->layer(step).tool.translation(), along = path_->layer(step + 1).tool.translation() - from;
+  const Vector3d from = path_->layer(step).tool.translation(),
+                 along = path_->layer(step + 1).tool.translation() - from;
   const double length2 = along.squaredNorm();
   const double t = length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0;
   return (point - from - t * along).norm() - aside_;
@@ -46,7 +47,9 @@ double PlacesOnPath::least_distance(int step, const Vector3d& point) const {
 
 /// Returns the displacement from a pose to the tool: translation, m, and rotation vector, rad.
 PlacesOnPath::Vector6 PlacesOnPath::off(const Pose& there, const Pose& tool) const {
-  const Eigen::AngleAxisd turn(there.linear().transpose() * (any_turn_ ? rolled(tool, -roll_between(there, tool)) : tool).linear());
+  const Eigen::AngleAxisd turn(
+      there.linear().transpose() *
+      (any_turn_ ? rolled(tool, -roll_between(there, tool)) : tool).linear());
   Vector6 d;
   d << tool.translation() - there.translation(), turn.angle() * turn.axis();
   return d;
@@ -64,13 +67,17 @@ double PlacesOnPath::share_of(int step, const Pose& tool, double low, double hig
   const Vector3d along = path_->layer(step + 1).tool.translation() - from.tool.translation();
   const Vector6 start = off(from.tool, tool);
   const double length2 = along.squaredNorm() + from.step_rotation.squaredNorm();
-  double t = length2 > 0 ? (start.head<3>().dot(along) + start.tail<3>().dot(from.step_rotation)) / length2 : 0;
+  double t = length2 > 0
+                 ? (start.head<3>().dot(along) + start.tail<3>().dot(from.step_rotation)) / length2
+                 : 0;
   t = std::clamp(t, low, high);
   if (!curved_ && !any_turn_ && (from.step_angle == 0 || from.step_length == 0)) return t;
   constexpr double kStep = 1e-4;
   for (int round = 0; round < 8; ++round) {
     const Vector6 here = off(path_->at(step, t), tool);
-    const Vector6 slope = (off(path_->at(step, t + kStep), tool) - off(path_->at(step, t - kStep), tool)) / (2 * kStep);
+    const Vector6 slope =
+        (off(path_->at(step, t + kStep), tool) - off(path_->at(step, t - kStep), tool)) /
+        (2 * kStep);
     if (!(slope.squaredNorm() > 1e-24)) break;
     const double next = std::clamp(t - here.dot(slope) / slope.squaredNorm(), low, high);
     const bool done = std::abs(next - t) < 1e-12;
@@ -81,7 +88,8 @@ double PlacesOnPath::share_of(int step, const Pose& tool, double low, double hig
 }
 
 template <class Reaches, class Visit>
-void PlacesOnPath::search(std::size_t node, const Vector3d& point, const Reaches& reaches, const Visit& visit) const {
+void PlacesOnPath::search(std::size_t node, const Vector3d& point, const Reaches& reaches,
+                          const Visit& visit) const {
   if (!reaches(boxes_[node].distance(point))) return;
   if (node >= leaves_) {
     const auto first = static_cast<int>((node - leaves_) * kLeaf);
@@ -121,7 +129,9 @@ std::vector<double> PlacesOnPath::fits(const Pose& tool, double s) const {
         1, tool.translation(), [](double distance) { return distance <= kOnPath; }, visit);
   // A place at a layer is found from both sides.
   std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end(), [](double a, double b) { return b - a < 1e-9; }), found.end());
+  found.erase(
+      std::unique(found.begin(), found.end(), [](double a, double b) { return b - a < 1e-9; }),
+      found.end());
   return found;
 }
 

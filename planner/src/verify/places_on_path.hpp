@@ -21,7 +21,8 @@ class PlacesOnPath {
 
   /// Returns all places at which the path has the tool's pose, ascending; if s, m, is given, only
   /// those within 1e-9 m of it.
-  [[nodiscard]] std::vector<double> fits(const Pose& tool, double s = std::numeric_limits<double>::quiet_NaN()) const;
+  [[nodiscard]] std::vector<double> fits(const Pose& tool,
+                                         double s = std::numeric_limits<double>::quiet_NaN()) const;
   /// Returns the place between `from` and `to` that comes nearest to the tool; metres and radians
   /// count alike.
   [[nodiscard]] double nearest(const Pose& tool, double from, double to) const;
@@ -38,13 +39,16 @@ class PlacesOnPath {
   struct Box {
     Vector3d low, high;
     /// Returns the distance of a point from the box, m.
-    [[nodiscard]] double distance(const Vector3d& point) const { return (point - point.cwiseMax(low).cwiseMin(high)).norm(); }
+    [[nodiscard]] double distance(const Vector3d& point) const {
+      return (point - point.cwiseMax(low).cwiseMin(high)).norm();
+    }
   };
   [[nodiscard]] Vector6 off(const Pose& there, const Pose& tool) const;
   [[nodiscard]] double share_of(int step, const Pose& tool, double low, double high) const;
   [[nodiscard]] double least_distance(int step, const Vector3d& point) const;
   template <class Reaches, class Visit>
-  void search(std::size_t node, const Vector3d& point, const Reaches& reaches, const Visit& visit) const;
+  void search(std::size_t node, const Vector3d& point, const Reaches& reaches,
+              const Visit& visit) const;
 
   const ToolPath* path_;
   bool curved_, any_turn_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stranger's program: everything made in memory, planned, changed, planned again, cancelled, judged by a check of its own.
+// A stranger's program: everything made in memory, planned, changed, planned again, cancelled,
+// judged by a check of its own.
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -18,7 +19,8 @@ namespace {
 
 /// z-y-z shoulder, elbow, z-y-z wrist; two capsules.
 std::shared_ptr<const swivel::RobotModel> make_arm() {
-  constexpr double kOffset[] = {0.14, 0.20, 0.20, 0.20, 0.20, 0.20, 0.08, 0.05};  // m, from frame to frame
+  constexpr double kOffset[] = {0.14, 0.20, 0.20, 0.20,
+                                0.20, 0.20, 0.08, 0.05};  // m, from frame to frame
   auto arm = std::make_shared<swivel::RobotModel>();
   arm->links.emplace_back().name = "base";
   for (int k = 0; k < 8; ++k) {
@@ -34,7 +36,8 @@ std::shared_ptr<const swivel::RobotModel> make_arm() {
     swivel::Link& link = arm->links.emplace_back();
     link.name = k < 7 ? "link_" + std::to_string(k + 1) : "tool";
     link.parent_joint = k;
-    if (k == 2 || k == 4) link.collision = {{.shape = swivel::Capsule{.radius = 0.05, .length = 0.36}}};
+    if (k == 2 || k == 4)
+      link.collision = {{.shape = swivel::Capsule{.radius = 0.05, .length = 0.36}}};
   }
   arm->has_srdf = true;
   arm->disabled_pairs = {{"link_3", "link_5"}};  // they meet at the elbow
@@ -80,8 +83,10 @@ int main() {
   planner.set_task(task);
   const swivel::PlanResult first = planner.plan();
   expect(first.status == swivel::PlanStatus::kSolved, "a path past a box");
-  expect(swivel::check_trajectory(planner.prepare(), planner.problem(), first.trajectory).passed, "which passes the check");
-  const swivel::Measures measures = swivel::measure(planner.prepare(), planner.problem(), first.trajectory);
+  expect(swivel::check_trajectory(planner.prepare(), planner.problem(), first.trajectory).passed,
+         "which passes the check");
+  const swivel::Measures measures =
+      swivel::measure(planner.prepare(), planner.problem(), first.trajectory);
   expect(measures.min_clearance && *measures.min_clearance >= 0.02, "and keeps its clearance");
 
   planner.move("box", at(0.5, 0.0, 0.53));  // where the wrist must pass
@@ -91,18 +96,21 @@ int main() {
   expect(cause.kind == swivel::Cause::Kind::kPair || cause.kind == swivel::Cause::Kind::kContact,
          "because two bodies are in the way");
   expect(cause.bodies[0] == "box" || cause.bodies[1] == "box", "one of which is the box");
-  expect(!barred.partial.empty() && barred.partial.size() < first.trajectory.size(), "a part of the way is known");
+  expect(!barred.partial.empty() && barred.partial.size() < first.trajectory.size(),
+         "a part of the way is known");
 
   planner.move("box", at(0.2, 0.1, 0.75));
   const swivel::PlanResult again = planner.plan();
-  expect(again.cost == first.cost && again.trajectory.size() == first.trajectory.size(), "back again: the first answer");
+  expect(again.cost == first.cost && again.trajectory.size() == first.trajectory.size(),
+         "back again: the first answer");
   swivel::Planner clone = planner.clone();
   expect(clone.plan().cost == first.cost, "a clone gives it, too");
 
   swivel::PlanOptions options;
   options.hooks.check = std::make_shared<Shoulder>(0.01);
   const swivel::PlanResult refused = planner.plan(options);
-  expect(refused.status == swivel::PlanStatus::kInfeasible && words(refused.diagnosis.cause).find("shoulder") != std::string::npos,
+  expect(refused.status == swivel::PlanStatus::kInfeasible &&
+             words(refused.diagnosis.cause).find("shoulder") != std::string::npos,
          "a check of one's own refuses, and is named");
 
   task.resolution = {.ds = 0.0002, .dphi = 0.0002};  // so fine that an answer takes minutes

@@ -27,13 +27,16 @@ Problem followed(Problem problem, const Advice& advice) {
       problem.roll = Roll{};
       break;
     case Change::kFiner:
-      for (double* step : {&problem.resolution.ds, &problem.resolution.dphi, &problem.resolution.dalpha, &problem.resolution.arc})
+      for (double* step : {&problem.resolution.ds, &problem.resolution.dphi,
+                           &problem.resolution.dalpha, &problem.resolution.arc})
         *step *= 0.5;
       problem.resolution.arcs = true;
       break;
     case Change::kClearance:
-      if (limits.self_clearance) limits.self_clearance = *limits.self_clearance * (share / limits.clearance);
-      if (limits.edge_clearance) limits.edge_clearance = *limits.edge_clearance * (share / limits.clearance);
+      if (limits.self_clearance)
+        limits.self_clearance = *limits.self_clearance * (share / limits.clearance);
+      if (limits.edge_clearance)
+        limits.edge_clearance = *limits.edge_clearance * (share / limits.clearance);
       limits.clearance = share;
       break;
     case Change::kJointMargin:
@@ -71,8 +74,9 @@ Problem followed(Problem problem, const Advice& advice) {
         if (object.name == advice.object) object.pose.translation() += advice.offset;
       break;
     case Change::kWithoutObject:
-      problem.scene.erase(std::find_if(problem.scene.begin(), problem.scene.end(),
-                                       [&](const SceneObject& object) { return object.name == advice.object; }));
+      problem.scene.erase(
+          std::find_if(problem.scene.begin(), problem.scene.end(),
+                       [&](const SceneObject& object) { return object.name == advice.object; }));
       break;
   }
   return problem;
@@ -85,9 +89,11 @@ TEST(Advise, EveryOutcomeIsWhatFollowingTheAdviceGives) {
   std::map<std::pair<Change, Outcome>, int> seen;
   int infeasible = 0, helped = 0, unknown = 0;
   for (int trial = 0; trial < trials(60); ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (random.coin()) problem.limits.joint_step = random.uniform(0.1, 0.3);
     if (random.coin(0.3)) problem.limits.clearance = random.uniform(0.02, 0.08);
     PlanOptions options;
@@ -114,23 +120,27 @@ TEST(Advise, EveryOutcomeIsWhatFollowingTheAdviceGives) {
         ++unknown;
         continue;
       }
-      if (one.change == Change::kMoveObject && one.offset.isZero()) continue;  // none of the ways helps
+      if (one.change == Change::kMoveObject && one.offset.isZero())
+        continue;  // none of the ways helps
       Advice given = one;
       if (!given.to) given.to = 0;
       const PlanResult there = plan(followed(problem, given), options);
-      ASSERT_EQ(there.status == PlanStatus::kSolved, one.outcome == Outcome::kSolved) << what << ": " << words(one);
+      ASSERT_EQ(there.status == PlanStatus::kSolved, one.outcome == Outcome::kSolved)
+          << what << ": " << words(one);
       if (one.outcome == Outcome::kSolved) {
         ASSERT_EQ(there.cost, *one.cost) << what << ": " << words(one);
       }
       if (one.outcome != Outcome::kSolved) {
         ASSERT_EQ(there.diagnosis.reached_s, one.reached_s) << what << ": " << words(one);
       }
-      // Where a limit is relaxed, it is relaxed no further than a sixteenth of the way beyond what is needed.
+      // Where a limit is relaxed, it is relaxed no further than a sixteenth of the way beyond what
+      // is needed.
       if (one.outcome != Outcome::kSolved || !one.to || !one.from) continue;
       const bool down = *one.to < *one.from;
-      const double furthest = !down                                                                      ? 8 * *one.from
-                              : one.change == Change::kToolSpeed || one.change == Change::kToolTurnSpeed ? *one.from / 8
-                                                                                                         : 0;
+      const double furthest =
+          !down                                                                      ? 8 * *one.from
+          : one.change == Change::kToolSpeed || one.change == Change::kToolTurnSpeed ? *one.from / 8
+                                                                                     : 0;
       Advice stricter = one;
       stricter.to = *one.to + (*one.from - furthest) / 16;
       if (down ? *stricter.to < *one.from : *stricter.to > *one.from) {
@@ -139,8 +149,10 @@ TEST(Advise, EveryOutcomeIsWhatFollowingTheAdviceGives) {
       }
     }
   }
-  std::printf("%d infeasible, %d helped by one change, %d changes not decided;", infeasible, helped, unknown);
-  for (const auto& [key, count] : seen) std::printf(" %s %s %d,", to_string(key.first), to_string(key.second), count);
+  std::printf("%d infeasible, %d helped by one change, %d changes not decided;", infeasible, helped,
+              unknown);
+  for (const auto& [key, count] : seen)
+    std::printf(" %s %s %d,", to_string(key.first), to_string(key.second), count);
   std::printf("\n");
   EXPECT_GE(infeasible, at_least(15));
   EXPECT_GE(helped, at_least(5));
@@ -172,7 +184,8 @@ TEST(Advise, ATorchMayTurnAboutItsAxis) {
     const PlanResult result = planner.plan();
     ASSERT_EQ(result.status, PlanStatus::kInfeasible);
     const std::vector<Advice> advice = advise(planner, result, for_seconds(60));
-    const auto free = std::find_if(advice.begin(), advice.end(), [](const Advice& a) { return a.change == Change::kFreeRoll; });
+    const auto free = std::find_if(advice.begin(), advice.end(),
+                                   [](const Advice& a) { return a.change == Change::kFreeRoll; });
     ASSERT_NE(free, advice.end());
     EXPECT_EQ(free->outcome, Outcome::kSolved);
     const PlanResult follow = plan(followed(problem, *free));
@@ -196,7 +209,8 @@ TEST(Advise, AWallMustGo) {
   EXPECT_EQ(advice[0].change, Change::kWithoutObject);
   EXPECT_EQ(advice[0].object, "wall");
   EXPECT_EQ(words(advice[0]), "no 'wall'");
-  for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_NE(advice[k].outcome, Outcome::kSolved) << words(advice[k]);
+  for (std::size_t k = 1; k < advice.size(); ++k)
+    EXPECT_NE(advice[k].outcome, Outcome::kSolved) << words(advice[k]);
   Planner solved(io::load_problem(data_dir() / "problems" / "experiment_a.yaml"));
   EXPECT_TRUE(advise(solved, solved.plan(), for_seconds(1)).empty());
 }

@@ -21,7 +21,8 @@ using namespace test;
 /// Solved, or at least a twentieth of the path further than `reached`.
 bool further(const PlanResult& result, const Diagnosis& than) {
   if (result.status == PlanStatus::kSolved) return true;
-  const int steps = result.lattice.layers - 1, reached = std::max(0, than.reached_layer.value_or(0));
+  const int steps = result.lattice.layers - 1,
+            reached = std::max(0, than.reached_layer.value_or(0));
   return result.diagnosis.reached_layer.value_or(-1) >=
          std::min(steps, reached + std::max(1, static_cast<int>(std::ceil(0.05 * steps))));
 }
@@ -41,33 +42,40 @@ std::vector<Cause> all_causes(const Problem& problem, const World& world, const 
       cause.side = side;
     }
   for (const Cause::Kind kind :
-       {Cause::Kind::kManipulability, Cause::Kind::kArmSlope, Cause::Kind::kRollSlope, Cause::Kind::kJointStep,
-        Cause::Kind::kPathError, Cause::Kind::kAngleError, Cause::Kind::kStepError})
+       {Cause::Kind::kManipulability, Cause::Kind::kArmSlope, Cause::Kind::kRollSlope,
+        Cause::Kind::kJointStep, Cause::Kind::kPathError, Cause::Kind::kAngleError,
+        Cause::Kind::kStepError})
     add(kind);
-  for (const SceneObject& object : problem.scene) add(Cause::Kind::kPair).object = object.name;  // more than any pair with it
+  for (const SceneObject& object : problem.scene)
+    add(Cause::Kind::kPair).object = object.name;  // more than any pair with it
   for (const BodyPair& pair : world.pairs())
-    if (pair.b < static_cast<int>(world.bodies().size())) add(Cause::Kind::kPair).bodies = world.names(pair);
+    if (pair.b < static_cast<int>(world.bodies().size()))
+      add(Cause::Kind::kPair).bodies = world.names(pair);
   return causes;
 }
 
-/// Of problems drawn blindly: what the diagnosis says to be enough is enough, and where it says that no single thing is, none is.
+/// Of problems drawn blindly: what the diagnosis says to be enough is enough, and where it says
+/// that no single thing is, none is.
 TEST(Cause, WithoutItPathsGoOn) {
   const std::uint64_t base = seed("Cause");
   const auto robots = all_robots();
   const int wanted = trials(40);
-  int infeasible = 0, started = 0, named = 0, confirmed = 0, none_named = 0, none_exists = 0, together = 0, together_confirmed = 0;
+  int infeasible = 0, started = 0, named = 0, confirmed = 0, none_named = 0, none_exists = 0,
+      together = 0, together_confirmed = 0;
   std::map<std::string, std::array<int, 2>> kinds;
   for (int trial = 0; infeasible < wanted; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const PreparedRobot robot(problem);
     const PlanResult result = plan(robot, problem);
     if (result.status != PlanStatus::kInfeasible) continue;
     ++infeasible;
     started += problem.start.has_value();
     const Diagnosis& d = result.diagnosis;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + problem.source +
-                             " layer " + std::to_string(d.reached_layer.value_or(-1)) + ": " + words(d.cause);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " " + problem.source + " layer " +
+                             std::to_string(d.reached_layer.value_or(-1)) + ": " + words(d.cause);
     ASSERT_NE(d.cause.kind, Cause::Kind::kNone) << what;
     if (d.without_it) {
       EXPECT_TRUE(d.together.empty()) << what;
@@ -86,7 +94,8 @@ TEST(Cause, WithoutItPathsGoOn) {
     for (const Cause& cause : all_causes(problem, robot.world(), robot.arm().chain)) {
       const auto relaxed = without(cause, problem);
       if (!relaxed || !further(plan(*relaxed), d)) continue;
-      std::printf("would have helped: %s %s: %s\n", words(cause).c_str(), cause.object.c_str(), what.c_str());
+      std::printf("would have helped: %s %s: %s\n", words(cause).c_str(), cause.object.c_str(),
+                  what.c_str());
       helps = true;
       break;
     }
@@ -98,9 +107,11 @@ TEST(Cause, WithoutItPathsGoOn) {
     ++together;
     together_confirmed += relaxed && further(plan(*relaxed), d);
   }
-  for (const auto& [kind, counts] : kinds) std::printf("%s: %d named, %d confirmed\n", kind.c_str(), counts[0], counts[1]);
+  for (const auto& [kind, counts] : kinds)
+    std::printf("%s: %d named, %d confirmed\n", kind.c_str(), counts[0], counts[1]);
   std::printf(
-      "%d infeasible, %d with a start; one thing named in %d, confirmed in %d; said to need several in %d, true of %d; what was "
+      "%d infeasible, %d with a start; one thing named in %d, confirmed in %d; said to need "
+      "several in %d, true of %d; what was "
       "named "
       "together helps in %d of %d\n",
       infeasible, started, named, confirmed, none_named, none_exists, together_confirmed, together);
@@ -126,7 +137,8 @@ TEST(Cause, OfExperimentAFromItsGivenStartIsTheLimitOfJoint5) {
   EXPECT_EQ(d.cause.side, Cause::Side::kUpper);
   ASSERT_TRUE(d.without_it.has_value());
   const PlanResult after = plan(without(d.cause, problem).value());
-  EXPECT_TRUE(further(after, d)) << to_string(after.status) << " " << after.diagnosis.reached_layer.value_or(-1);
+  EXPECT_TRUE(further(after, d)) << to_string(after.status) << " "
+                                 << after.diagnosis.reached_layer.value_or(-1);
 }
 
 }  // namespace

@@ -32,13 +32,15 @@ struct Laid {
   Diagnosis diagnose_from(int deepest) const {
     Diagnosis diagnosis;
     const EdgeRule rule = robot.world().edge_rule(robot.radii());
-    const SlotPath path_there = deepest < 0 ? SlotPath{} : best_path_to(lattice, robot.world(), rule, deepest, {});
+    const SlotPath path_there =
+        deepest < 0 ? SlotPath{} : best_path_to(lattice, robot.world(), rule, deepest, {});
     diagnose(lattice, robot.world(), rule, path_there, true, {}, diagnosis);
     return diagnosis;
   }
 };
 
-/// What find_violating_pair says of every node of a layer, one by one: "" is counted where a node is valid.
+/// What find_violating_pair says of every node of a layer, one by one: "" is counted where a node
+/// is valid.
 std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   World::Query query(laid.robot.world());
   std::map<std::string, std::int64_t> reasons;
@@ -48,12 +50,15 @@ std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
     const auto pair = query.find_violating_pair(*q, ClearanceRule::kNode);
     const auto& names = laid.robot.world().body_names();
     const auto name = [&](int body) { return names[static_cast<std::size_t>(body)]; };
-    ++reasons[!laid.lattice.manipulable(*q) ? "manipulability" : pair ? name(pair->a) + " - " + name(pair->b) : ""];
+    ++reasons[!laid.lattice.manipulable(*q) ? "manipulability"
+              : pair                        ? name(pair->a) + " - " + name(pair->b)
+                                            : ""];
   }
   return reasons;
 }
 
-/// An arm whose axes miss each other by what rounding in a file may do, so that joints are corrected on the exact chain.
+/// An arm whose axes miss each other by what rounding in a file may do, so that joints are
+/// corrected on the exact chain.
 TestRobot inexact_robot() {
   TestRobot robot = data_robot("iiwa14");
   auto model = std::make_shared<RobotModel>(*robot.model);
@@ -63,8 +68,8 @@ TestRobot inexact_robot() {
   return robot;
 }
 
-/// Verdicts are shared among nodes whose bodies have the same poses; the counts and the reason must be those of asking about every
-/// node.
+/// Verdicts are shared among nodes whose bodies have the same poses; the counts and the reason must
+/// be those of asking about every node.
 TEST(Diagnosis, CountsAreThoseOfAskingAboutEveryNode) {
   const std::uint64_t base = seed("Diagnosis");
   auto robots = all_robots();
@@ -73,18 +78,21 @@ TEST(Diagnosis, CountsAreThoseOfAskingAboutEveryNode) {
   int layers = 0, empty = 0, blocked = 0;
   for (int trial = 0; trial < trials(300); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Laid laid(random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random));
+    const Laid laid(
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random));
     const int layer = 1 + random.below(laid.lattice.layers() - 1);
     const EdgeRule rule = laid.robot.world().edge_rule(laid.robot.radii());
     if (best_path_to(laid.lattice, laid.robot.world(), rule, layer - 1, {}).empty()) continue;
     auto plain = plain_reasons(laid, layer);
     const bool any_valid = plain.erase("") > 0;
     const Diagnosis diagnosis = laid.diagnose_from(layer - 1);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     ++layers;
     for (const auto& [reason, count] : plain) {
-      const auto found = std::find_if(diagnosis.removed.begin(), diagnosis.removed.end(),
-                                      [&](const auto& removed) { return words(removed.cause) == reason; });
+      const auto found =
+          std::find_if(diagnosis.removed.begin(), diagnosis.removed.end(),
+                       [&](const auto& removed) { return words(removed.cause) == reason; });
       ASSERT_TRUE(found != diagnosis.removed.end()) << what << ": " << reason;
       ASSERT_EQ(found->count, count) << what << ": " << reason;
       ++blocked;
@@ -92,16 +100,19 @@ TEST(Diagnosis, CountsAreThoseOfAskingAboutEveryNode) {
     if (any_valid || plain.empty()) continue;
     ++empty;
     const auto most =
-        std::max_element(plain.begin(), plain.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        std::max_element(plain.begin(), plain.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
     ASSERT_EQ(words(diagnosis.empty_layers.at(0).cause), most->first) << what;
     ASSERT_EQ(diagnosis.empty_layers.at(0).first, layer) << what;
   }
-  std::printf("%d layers, %d pairs that block nodes, %d layers empty for them\n", layers, blocked, empty);
+  std::printf("%d layers, %d pairs that block nodes, %d layers empty for them\n", layers, blocked,
+              empty);
   EXPECT_GE(blocked, at_least(40));
   EXPECT_GE(empty, at_least(5));
 }
 
-/// What is shared there is the last link alone; every planner and FCL must say the same of what it hides.
+/// What is shared there is the last link alone; every planner and FCL must say the same of what it
+/// hides.
 TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
   const std::uint64_t base = seed("Inexact");
   const TestRobot robot = inexact_robot();
@@ -117,7 +128,8 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
     const PlanResult eager = plan(problem, options);
     options.planner = PlannerKind::kLazy;
     const PlanResult lazy = plan(problem, options);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     ASSERT_EQ(eager.status, lazy.status) << what;
     ASSERT_EQ(eager.cost, lazy.cost) << what;
     ASSERT_EQ(eager.diagnosis.reached_layer, lazy.diagnosis.reached_layer) << what;
@@ -126,8 +138,8 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
     asked += lazy.counters.nodes_checked;
     asked_eagerly += eager.counters.nodes_checked;
   }
-  std::printf("%d solved, %d infeasible, %lld nodes asked, by eager_dp %lld\n", solved, infeasible, static_cast<long long>(asked),
-              static_cast<long long>(asked_eagerly));
+  std::printf("%d solved, %d infeasible, %lld nodes asked, by eager_dp %lld\n", solved, infeasible,
+              static_cast<long long>(asked), static_cast<long long>(asked_eagerly));
   EXPECT_GE(solved, at_least(8));
   EXPECT_GE(infeasible, at_least(4));
   EXPECT_LT(asked, asked_eagerly);
@@ -158,7 +170,8 @@ TEST(Diagnosis, SaysByHowMuchAPoseIsOutOfReach) {
       double least = 1e9, most = 0;
       for (int layer = empty.first; layer <= empty.last; ++layer) {
         const double reach = (wrist_centre(arm, laid.path.layer(layer).tool) - arm.S).norm();
-        const double by = far ? reach - arm.upper - arm.fore : std::abs(arm.upper - arm.fore) - reach;
+        const double by =
+            far ? reach - arm.upper - arm.fore : std::abs(arm.upper - arm.fore) - reach;
         least = std::min(least, by);
         most = std::max(most, by);
       }
@@ -212,9 +225,10 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
 TEST(Diagnosis, EndsAtAFixedCountAndSaysSo) {
   Problem problem = leaving(0.8);
   problem.resolution = {.ds = 2e-5, .dphi = 1.0};
-  auto model = std::make_shared<RobotModel>(*problem.model);  // with a mesh, whose questions count for more
-  const auto shaped =
-      std::find_if(model->links.begin(), model->links.end(), [](const Link& link) { return !link.collision.empty(); });
+  auto model =
+      std::make_shared<RobotModel>(*problem.model);  // with a mesh, whose questions count for more
+  const auto shaped = std::find_if(model->links.begin(), model->links.end(),
+                                   [](const Link& link) { return !link.collision.empty(); });
   shaped->collision[0].shape = box_mesh(Vector3d::Constant(0.05));
   problem.model = model;
   const Laid laid(problem);

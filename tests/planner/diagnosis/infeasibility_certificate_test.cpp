@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates that a problem has no path: verified by verify_certificate() and by plain loops; forged ones are refused.
+// Certificates that a problem has no path: verified by verify_certificate() and by plain loops;
+// forged ones are refused.
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 
@@ -30,7 +31,8 @@ using namespace test;
 /// Nodes and edges by their definition, one by one.
 class Plain {
  public:
-  Plain(const Problem& problem, const PreparedRobot& robot, const InfeasibilityCertificate& certificate)
+  Plain(const Problem& problem, const PreparedRobot& robot,
+        const InfeasibilityCertificate& certificate)
       : path_(problem_path(problem, robot.arm().chain)),
         lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
         world_(robot.world(), problem),
@@ -54,34 +56,41 @@ class Plain {
     if (!lattice_->in_window(layer, a, b)) return false;
     const Limits& limits = lattice_->limits();
     const Config na = *lattice_->node(layer, a), nb = *lattice_->node(layer + 1, b);
-    const Config qa = *lattice_->exact_config(layer, a, na), qb = *lattice_->exact_config(layer + 1, b, nb);
+    const Config qa = *lattice_->exact_config(layer, a, na),
+                 qb = *lattice_->exact_config(layer + 1, b, nb);
     Config nodes = nb - na, rows = qb - qa;
     for (int j = 0; j < kDof; ++j) {
       for (Config* move : {&nodes, &rows})
-        if (lattice_->continuous()[static_cast<std::size_t>(j)]) (*move)[j] = std::remainder((*move)[j], kTwoPi);
+        if (lattice_->continuous()[static_cast<std::size_t>(j)])
+          (*move)[j] = std::remainder((*move)[j], kTwoPi);
       const double most = lattice_->row_step_bound(layer)[j];  // joint_step and speeds
-      if (std::abs(nodes[j]) > most + 2 * lattice_->fit_error()[j] || std::abs(rows[j]) > most) return false;
+      if (std::abs(nodes[j]) > most + 2 * lattice_->fit_error()[j] || std::abs(rows[j]) > most)
+        return false;
     }
     if (!lattice_->follows_path(layer, a, qa, b, qb)) return false;
     return limits.edges == EdgeMode::kNodes || !edge_blocked_plain(query_, rule_, qa, qa + rows);
   }
 
-  /// What is wrong with a certificate, "" where nothing is. Every valid node of its first layer is reached, every valid edge from a
-  /// reached node leads to a reached one, none of its last layer is; no node that it takes out is valid.
+  /// What is wrong with a certificate, "" where nothing is. Every valid node of its first layer is
+  /// reached, every valid edge from a reached node leads to a reached one, none of its last layer
+  /// is; no node that it takes out is valid.
   [[nodiscard]] std::string fault(const InfeasibilityCertificate& certificate) {
     std::vector<char> before;
     for (std::size_t k = 0; k < certificate.band.size(); ++k) {
-      const int layer = certificate.first_layer + static_cast<int>(k), slots = lattice_->slots(layer);
+      const int layer = certificate.first_layer + static_cast<int>(k),
+                slots = lattice_->slots(layer);
       const std::string where = "layer " + std::to_string(layer) + " slot ";
       std::vector<char> reached(static_cast<std::size_t>(slots), 0);
       for (const InfeasibilityCertificate::Range& range : certificate.band[k].reached)
-        for (int slot = range.first; slot <= range.last; ++slot) reached[static_cast<std::size_t>(slot)] = 1;
+        for (int slot = range.first; slot <= range.last; ++slot)
+          reached[static_cast<std::size_t>(slot)] = 1;
       for (const InfeasibilityCertificate::Nodes& removed : certificate.band[k].removed)
         for (int slot = removed.slots.first; slot <= removed.slots.last; ++slot)
           if (valid(layer, slot)) return where + std::to_string(slot) + " is removed and valid";
       for (int b = 0; b < slots; ++b) {
         if (reached[static_cast<std::size_t>(b)]) {
-          if (k + 1 == certificate.band.size()) return where + std::to_string(b) + " is reached in the last layer";
+          if (k + 1 == certificate.band.size())
+            return where + std::to_string(b) + " is reached in the last layer";
           continue;
         }
         if (!valid(layer, b)) continue;
@@ -114,7 +123,8 @@ auto some(Items& items, Random& random) {
 
 /// A layer of those that have what is asked for; null where none has.
 template <class Has>
-InfeasibilityCertificate::Layer* some_layer(InfeasibilityCertificate& certificate, Random& random, const Has& has) {
+InfeasibilityCertificate::Layer* some_layer(InfeasibilityCertificate& certificate, Random& random,
+                                            const Has& has) {
   std::vector<InfeasibilityCertificate::Layer*> found;
   for (InfeasibilityCertificate::Layer& layer : certificate.band)
     if (has(layer)) found.push_back(&layer);
@@ -122,13 +132,20 @@ InfeasibilityCertificate::Layer* some_layer(InfeasibilityCertificate& certificat
 }
 
 const std::vector<std::pair<std::string, Forgery>>& forgeries() {
-  const auto has_removed = [](const InfeasibilityCertificate::Layer& layer) { return !layer.removed.empty(); };
-  const auto has_edges = [](const InfeasibilityCertificate::Layer& layer) { return !layer.edges.empty(); };
-  const auto has_reached = [](const InfeasibilityCertificate::Layer& layer) { return !layer.reached.empty(); };
+  const auto has_removed = [](const InfeasibilityCertificate::Layer& layer) {
+    return !layer.removed.empty();
+  };
+  const auto has_edges = [](const InfeasibilityCertificate::Layer& layer) {
+    return !layer.edges.empty();
+  };
+  const auto has_reached = [](const InfeasibilityCertificate::Layer& layer) {
+    return !layer.reached.empty();
+  };
   static const std::vector<std::pair<std::string, Forgery>> all = {
       {"witness of nodes taken out",
        [=](InfeasibilityCertificate& certificate, Random& random) {
-         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_removed);
+         InfeasibilityCertificate::Layer* const layer =
+             some_layer(certificate, random, has_removed);
          if (layer) layer->removed.erase(some(layer->removed, random));
          return layer != nullptr;
        }},
@@ -137,7 +154,9 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          InfeasibilityCertificate::Layer* const layer =
              some_layer(certificate, random, [](const InfeasibilityCertificate::Layer& l) {
                return std::any_of(l.removed.begin(), l.removed.end(),
-                                  [](const InfeasibilityCertificate::Nodes& n) { return n.slots.first < n.slots.last; });
+                                  [](const InfeasibilityCertificate::Nodes& n) {
+                                    return n.slots.first < n.slots.last;
+                                  });
              });
          if (!layer) return false;
          auto range = some(layer->removed, random);
@@ -147,23 +166,30 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
        }},
       {"range of nodes wider, into one reached",
        [=](InfeasibilityCertificate& certificate, Random& random) {
-         InfeasibilityCertificate::Layer* const layer = some_layer(
-             certificate, random, [&](const InfeasibilityCertificate::Layer& l) { return has_removed(l) && has_reached(l); });
-         if (layer) layer->removed.back().slots.last = std::max(layer->reached.back().last, layer->removed.back().slots.last + 1);
+         InfeasibilityCertificate::Layer* const layer =
+             some_layer(certificate, random, [&](const InfeasibilityCertificate::Layer& l) {
+               return has_removed(l) && has_reached(l);
+             });
+         if (layer)
+           layer->removed.back().slots.last =
+               std::max(layer->reached.back().last, layer->removed.back().slots.last + 1);
          return layer != nullptr;
        }},
       {"reached nodes become removed ones",
        [=](InfeasibilityCertificate& certificate, Random& random) {
-         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_reached);
+         InfeasibilityCertificate::Layer* const layer =
+             some_layer(certificate, random, has_reached);
          if (!layer || certificate.witnesses.empty()) return false;
          const auto range = some(layer->reached, random);
-         layer->removed.push_back({*range, random.below(static_cast<int>(certificate.witnesses.size()))});
+         layer->removed.push_back(
+             {*range, random.below(static_cast<int>(certificate.witnesses.size()))});
          layer->reached.erase(range);
          return true;
        }},
       {"reached node taken out",
        [=](InfeasibilityCertificate& certificate, Random& random) {
-         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_reached);
+         InfeasibilityCertificate::Layer* const layer =
+             some_layer(certificate, random, has_reached);
          if (!layer) return false;
          const auto range = some(layer->reached, random);
          if (range->first == range->last)
@@ -191,7 +217,8 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
        }},
       {"shifted along the path",
        [](InfeasibilityCertificate& certificate, Random&) {
-         certificate.first_layer = certificate.layers - static_cast<int>(certificate.band.size()) + 1;
+         certificate.first_layer =
+             certificate.layers - static_cast<int>(certificate.band.size()) + 1;
          return true;
        }},
       {"witness that the problem does not have",
@@ -204,8 +231,11 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
        }},
       {"witness that is not listed",
        [=](InfeasibilityCertificate& certificate, Random& random) {
-         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_removed);
-         if (layer) layer->removed[0].witness = random.coin() ? -1 : static_cast<int>(certificate.witnesses.size());
+         InfeasibilityCertificate::Layer* const layer =
+             some_layer(certificate, random, has_removed);
+         if (layer)
+           layer->removed[0].witness =
+               random.coin() ? -1 : static_cast<int>(certificate.witnesses.size());
          return layer != nullptr;
        }},
   };
@@ -218,7 +248,8 @@ TestRobot arm_of_data(const std::string& name) {
   return robot;
 }
 
-/// Random problems; on arms planned on arcs as small ones as brute force can do. In every second one it is moves that end paths.
+/// Random problems; on arms planned on arcs as small ones as brute force can do. In every second
+/// one it is moves that end paths.
 Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
   Problem problem = random_problem(robot, random);
   Limits& limits = problem.limits;
@@ -226,7 +257,9 @@ Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
     problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 2));
     if (random.coin()) limits.tool_path_error = std::pow(10, random.uniform(-6, -3));
     if (random.coin(0.3)) limits.tool_angle_error = std::pow(10, random.uniform(-5, -2));
-    if (random.coin()) limits.edges = EdgeMode::kContinuous, limits.edge_clearance = limits.clearance + random.uniform(0, 0.05);
+    if (random.coin())
+      limits.edges = EdgeMode::kContinuous,
+      limits.edge_clearance = limits.clearance + random.uniform(0, 0.05);
     if (random.coin(0.3)) limits.tool_speed = random.uniform(0.1, 1);
   }
   if (!arcs) return problem;
@@ -234,7 +267,8 @@ Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
   limits.arm_slope = Limits().arm_slope;
   problem.resolution.arc = random.uniform(0.3, 0.6);
   problem.waypoints.resize(2);
-  problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() / (2 + random.below(3));
+  problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() /
+                          (2 + random.below(3));
   problem.resolution.dalpha = 0.5;
   return problem;
 }
@@ -242,13 +276,15 @@ Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
 /// An arm whose last joint alone has a range of more than a turn: it is taken as a circle.
 TestRobot wound_robot() {
   TestRobot robot = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
-    if (number % 2 == 0) joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
+    if (number % 2 == 0)
+      joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
   });
   robot.name = "xarm7_like, one joint of more than a turn";
   return robot;
 }
 
-/// From a start at the upper limit of that joint the tool turns on, so that a path over the circle leaves the limits.
+/// From a start at the upper limit of that joint the tool turns on, so that a path over the circle
+/// leaves the limits.
 Problem beyond_a_turn(const TestRobot& robot, Random& random) {
   Problem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
@@ -272,18 +308,23 @@ TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesA
   for (const TestRobot& robot : inexact_robots(of_robots)) robots.push_back(robot);
   const std::size_t grids = robots.size();
   const TestRobot wound = wound_robot();
-  for (const TestRobot& robot : {arm_of_data("panda_like"), arm_of_data("gen3_like"), wound}) robots.push_back(robot);
-  const auto file = std::filesystem::temp_directory_path() / ("swivel_cut_test_" + std::to_string(getpid()) + ".json");
+  for (const TestRobot& robot : {arm_of_data("panda_like"), arm_of_data("gen3_like"), wound})
+    robots.push_back(robot);
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("swivel_cut_test_" + std::to_string(getpid()) + ".json");
 
   const int wanted = trials(120);
-  int infeasible = 0, started = 0, continuous = 0, by_nodes = 0, by_edges = 0, arcs = 0, windings = 0, bytes = 0, still_proofs = 0;
+  int infeasible = 0, started = 0, continuous = 0, by_nodes = 0, by_edges = 0, arcs = 0,
+      windings = 0, bytes = 0, still_proofs = 0;
   std::map<std::string, int> forged, kinds;
   for (int trial = 0; infeasible < wanted; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::size_t number = static_cast<std::size_t>(trial) % robots.size();
-    const Problem problem = number + 1 == robots.size() && random.coin() ? beyond_a_turn(wound, random)
-                                                                         : random_task(robots[number], number >= grids, random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + problem.source;
+    const Problem problem = number + 1 == robots.size() && random.coin()
+                                ? beyond_a_turn(wound, random)
+                                : random_task(robots[number], number >= grids, random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " " + problem.source;
     const auto robot = std::make_shared<const PreparedRobot>(problem);
     Planner planner(robot, problem);
     PlanOptions options;
@@ -333,12 +374,14 @@ TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesA
   }
   std::filesystem::remove(file);
   std::printf(
-      "%d certificates of %d verified twice: %d with a start, %d with motions, %d on arcs (%d with windings); by nodes %d, by "
+      "%d certificates of %d verified twice: %d with a start, %d with motions, %d on arcs (%d with "
+      "windings); by nodes %d, by "
       "edges %d; at most %d bytes\n",
       infeasible, wanted, started, continuous, arcs, windings, by_nodes, by_edges, bytes);
   for (const auto& [kind, times] : kinds) std::printf("  %s in %d\n", kind.c_str(), times);
   int refused = 0;
-  for (const auto& [name, times] : forged) std::printf("  forged: %s: %d refused\n", name.c_str(), times), refused += times;
+  for (const auto& [name, times] : forged)
+    std::printf("  forged: %s: %d refused\n", name.c_str(), times), refused += times;
   std::printf("  %d forged ones prove the same\n", still_proofs);
   EXPECT_LE(still_proofs, refused / 50 + 1);
   EXPECT_GE(started, at_least(30));
@@ -368,7 +411,9 @@ TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
   const auto robot = std::make_shared<const PreparedRobot>(coarse);
   const auto waypoints = waypoints_in_base(coarse);
   const auto half = std::make_shared<RefusesHalf>();
-  half->tool_x = [&](const Config& q) { return (robot->arm().chain.tool(q).translation() - waypoints[0].position).norm(); };
+  half->tool_x = [&](const Config& q) {
+    return (robot->arm().chain.tool(q).translation() - waypoints[0].position).norm();
+  };
   half->most = (waypoints[1].position - waypoints[0].position).norm() / 2;
   Planner planner(robot, coarse);
   PlanOptions options;
@@ -376,8 +421,9 @@ TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
   options.hooks.check = half;
   ASSERT_EQ(planner.plan(options).status, PlanStatus::kInfeasible);
   const InfeasibilityCertificate certificate = prove_infeasible(planner.view(), {}, half);
-  EXPECT_TRUE(std::any_of(certificate.witnesses.begin(), certificate.witnesses.end(),
-                          [](const Cause& c) { return c.kind == Cause::Kind::kCheck && c.check == "half"; }));
+  EXPECT_TRUE(std::any_of(
+      certificate.witnesses.begin(), certificate.witnesses.end(),
+      [](const Cause& c) { return c.kind == Cause::Kind::kCheck && c.check == "half"; }));
   EXPECT_TRUE(verify_certificate(*robot, coarse, certificate, {}, half).passed);
   const CertificateCheck without = verify_certificate(*robot, coarse, certificate);
   EXPECT_FALSE(without.passed);

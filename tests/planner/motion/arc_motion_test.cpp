@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refined paths and motions in time of arms without an arm angle, and of arms of six joints whose tool may turn, held against the
-// check that knows nothing of either.
+// Refined paths and motions in time of arms without an arm angle, and of arms of six joints whose
+// tool may turn, held against the check that knows nothing of either.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,10 +40,13 @@ std::vector<Arm> arms() {
           {of_data("ur5e_like"), Roll{-0.8, 0.8}}};
 }
 
-double most_deviation(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+double most_deviation(const Chain& chain, const ToolPath& path,
+                      const std::vector<TrajectoryRow>& rows) {
   double most = 0;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    most = std::max(most, (chain.tool(rows[i].q).matrix() - path.layer(static_cast<int>(i)).tool.matrix()).norm());
+    most = std::max(
+        most,
+        (chain.tool(rows[i].q).matrix() - path.layer(static_cast<int>(i)).tool.matrix()).norm());
   return most;
 }
 
@@ -51,13 +54,14 @@ std::string first_of(const CheckResult& check) {
   return check.failures.empty() ? "" : check.failures[0];
 }
 
-/// What is executable is right, and what is refused has a reason: random problems of every arm, planned, refined and timed.
+/// What is executable is right, and what is refused has a reason: random problems of every arm,
+/// planned, refined and timed.
 TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
   const std::uint64_t base = seed("ArcMotions");
   const std::vector<Arm> all = arms();
   const int count = trials(12);
-  int within_windows = 0, solved_in_all = 0, executable_in_all = 0, refined_in_all = 0, cheaper = 0, starts = 0, samples = 0,
-      mean_of = 0;
+  int within_windows = 0, solved_in_all = 0, executable_in_all = 0, refined_in_all = 0, cheaper = 0,
+      starts = 0, samples = 0, mean_of = 0;
   double mean = 0;
   std::vector<double> slower;
   for (std::size_t which = 0; which < all.size(); ++which) {
@@ -65,7 +69,8 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
     std::map<std::string, int> reasons;
     for (int trial = 0; trial < count; ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial) * all.size() + which);
-      Problem problem = with_motion_defaults(motion_problem(all[which].robot, random, all[which].roll));
+      Problem problem =
+          with_motion_defaults(motion_problem(all[which].robot, random, all[which].roll));
       if (problem.roll) problem.limits.roll_slope = random.uniform(3, 20);
       if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.5, 20);
       const bool windows = problem.roll && !problem.roll->circle() && random.coin();
@@ -74,7 +79,9 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
       Planner planner(problem);
       PlanOptions options;
       options.planner = PlannerKind::kLazy;
-      const TimingOptions timing{.speed = random.coin() ? 0.05 : 0.2, .turn_speed = 0.5, .rate = random.coin() ? 250.0 : 1000.0};
+      const TimingOptions timing{.speed = random.coin() ? 0.05 : 0.2,
+                                 .turn_speed = 0.5,
+                                 .rate = random.coin() ? 250.0 : 1000.0};
       const MotionPlan plan = plan_motion(planner, options, true, timing);
       if (plan.result.status != PlanStatus::kSolved) continue;
       ++solved;
@@ -117,9 +124,10 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
       if (!chain.roll) continue;
       for (const TimedRow& row : motion.rows) EXPECT_EQ(row.row.phi, row.row.q[kDof - 1]) << what;
     }
-    std::printf("%s: %d of %d solved, %d refined, %d executable\n", all[which].robot.name.c_str(), solved, count, refined,
-                executable);
-    for (const auto& [reason, times] : reasons) std::printf("  %d refused: %s\n", times, reason.c_str());
+    std::printf("%s: %d of %d solved, %d refined, %d executable\n", all[which].robot.name.c_str(),
+                solved, count, refined, executable);
+    for (const auto& [reason, times] : reasons)
+      std::printf("  %d refused: %s\n", times, reason.c_str());
     EXPECT_GE(solved, at_least(1)) << all[which].robot.name;
     solved_in_all += solved;
     executable_in_all += executable;
@@ -128,10 +136,11 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
   std::sort(slower.begin(), slower.end());
   ASSERT_FALSE(slower.empty());
   std::printf(
-      "in all %d solved (%d with a start), %d refined, %d cheaper, mean cost %.4f of before; %d executable, %d samples, "
+      "in all %d solved (%d with a start), %d refined, %d cheaper, mean cost %.4f of before; %d "
+      "executable, %d samples, "
       "duration over ideal %.3f in the median and %.3f at the 95th percentile\n",
-      solved_in_all, starts, refined_in_all, cheaper, mean / mean_of, executable_in_all, samples, slower[slower.size() / 2],
-      slower[slower.size() * 95 / 100]);
+      solved_in_all, starts, refined_in_all, cheaper, mean / mean_of, executable_in_all, samples,
+      slower[slower.size() / 2], slower[slower.size() * 95 / 100]);
   EXPECT_GE(refined_in_all, at_least(solved_in_all * 3 / 5));
   EXPECT_GE(cheaper, at_least(solved_in_all / 2));
   EXPECT_GE(executable_in_all, at_least(solved_in_all * 9 / 10));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refined paths and motions in time on random problems, held against the check that knows nothing of either.
+// Refined paths and motions in time on random problems, held against the check that knows nothing
+// of either.
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
@@ -35,7 +36,8 @@ int for_solved(const char* name, int count, const Each& each) {
   int solved = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem =
+        motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const PreparedRobot robot(problem);
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
@@ -53,36 +55,40 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
   std::set<CostMetric> metrics;
   double sum = 0;
   const int solved =
-      for_solved("Refine", trials(40), [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
-        const Refined result = refine(robot, problem, found.trajectory);
-        EXPECT_NEAR(result.cost_before, found.cost, 1e-9 * (1 + found.cost));
-        EXPECT_LE(result.cost, result.cost_before);
-        ASSERT_EQ(result.rows.size(), found.trajectory.size());
-        EXPECT_EQ(result.refined, result.reason.empty());
-        const CheckResult check = check_trajectory(robot, problem, result.rows);
-        EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures[0]);
-        EXPECT_NEAR(check.cost, result.cost, 1e-6);
-        if (problem.start) {
-          EXPECT_EQ(result.rows[0].q, *problem.start);
-          ++starts;
-        }
-        for (std::size_t k = 0; k < result.rows.size(); ++k) {
-          EXPECT_EQ(result.rows[k].s, found.trajectory[k].s);
-          EXPECT_TRUE(result.from_second_seed || result.rows[k].branch == found.trajectory[k].branch);
-          EXPECT_TRUE(result.refined || result.rows[k].q == found.trajectory[k].q);
-          if (k > 0) turns += result.rows[k].s == result.rows[k - 1].s;
-        }
-        refined += result.refined;
-        cheaper += result.cost < result.cost_before - 1e-6;
-        seconds += result.from_second_seed;
-        metrics.insert(problem.cost.metric);
-        sum += result.cost / result.cost_before;
-        // Again the same.
-        const Refined again = refine(robot, problem, found.trajectory);
-        for (std::size_t k = 0; k < result.rows.size(); ++k) EXPECT_EQ(again.rows[k].q, result.rows[k].q);
-      });
+      for_solved("Refine", trials(40),
+                 [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
+                   const Refined result = refine(robot, problem, found.trajectory);
+                   EXPECT_NEAR(result.cost_before, found.cost, 1e-9 * (1 + found.cost));
+                   EXPECT_LE(result.cost, result.cost_before);
+                   ASSERT_EQ(result.rows.size(), found.trajectory.size());
+                   EXPECT_EQ(result.refined, result.reason.empty());
+                   const CheckResult check = check_trajectory(robot, problem, result.rows);
+                   EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures[0]);
+                   EXPECT_NEAR(check.cost, result.cost, 1e-6);
+                   if (problem.start) {
+                     EXPECT_EQ(result.rows[0].q, *problem.start);
+                     ++starts;
+                   }
+                   for (std::size_t k = 0; k < result.rows.size(); ++k) {
+                     EXPECT_EQ(result.rows[k].s, found.trajectory[k].s);
+                     EXPECT_TRUE(result.from_second_seed ||
+                                 result.rows[k].branch == found.trajectory[k].branch);
+                     EXPECT_TRUE(result.refined || result.rows[k].q == found.trajectory[k].q);
+                     if (k > 0) turns += result.rows[k].s == result.rows[k - 1].s;
+                   }
+                   refined += result.refined;
+                   cheaper += result.cost < result.cost_before - 1e-6;
+                   seconds += result.from_second_seed;
+                   metrics.insert(problem.cost.metric);
+                   sum += result.cost / result.cost_before;
+                   // Again the same.
+                   const Refined again = refine(robot, problem, found.trajectory);
+                   for (std::size_t k = 0; k < result.rows.size(); ++k)
+                     EXPECT_EQ(again.rows[k].q, result.rows[k].q);
+                 });
   std::printf(
-      "%d solved, %d refined, %d cheaper, %d with start, %d turning steps, %d from the second seed; mean cost %.4f of before\n",
+      "%d solved, %d refined, %d cheaper, %d with start, %d turning steps, %d from the second "
+      "seed; mean cost %.4f of before\n",
       solved, refined, cheaper, starts, turns, seconds, sum / solved);
   EXPECT_GE(solved, 12);
   EXPECT_GE(cheaper, solved / 2);
@@ -115,7 +121,8 @@ TEST(Refine, IsValidOnWhatUsersHave) {
       const Refined result = refine(robot, kind, found.trajectory);
       EXPECT_LE(result.cost, found.cost + 1e-9) << name << ' ' << trial;
       const CheckResult check = check_trajectory(robot, kind, result.rows);
-      EXPECT_TRUE(check.passed) << name << ' ' << trial << ' ' << (check.failures.empty() ? "" : check.failures[0]);
+      EXPECT_TRUE(check.passed) << name << ' ' << trial << ' '
+                                << (check.failures.empty() ? "" : check.failures[0]);
       ++met[name];
       if (which < inexact) ++met["inexact"];
       if (result.refined) ++met["refined"];
@@ -140,7 +147,8 @@ TEST(Refine, IsValidOnWhatUsersHave) {
   }
   for (const auto& [kind, count] : met) std::printf("%s %d, ", kind.c_str(), count);
   std::printf("\n");
-  for (const char* kind : {"whole", "reversed", "turns", "start_at"}) EXPECT_GE(met[kind], at_least(10)) << kind;
+  for (const char* kind : {"whole", "reversed", "turns", "start_at"})
+    EXPECT_GE(met[kind], at_least(10)) << kind;
   EXPECT_GE(met["inexact"], at_least(10));
   EXPECT_GE(met["refined"], at_least(40));
 }
@@ -153,15 +161,18 @@ TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
   for (int k = 0; k < kCount; ++k) {
     const double t = static_cast<double>(k) / (kCount - 1);
     Waypoint waypoint = first;
-    waypoint.position += Vector3d(0.04 * std::sin(kTwoPi * t), 0.5 * t, 0.03 * std::sin(2 * kTwoPi * t));
-    waypoint.orientation = first.orientation * Quaterniond(Eigen::AngleAxisd(0.1 * std::sin(kTwoPi * t), Vector3d::UnitY()));
+    waypoint.position +=
+        Vector3d(0.04 * std::sin(kTwoPi * t), 0.5 * t, 0.03 * std::sin(2 * kTwoPi * t));
+    waypoint.orientation = first.orientation * Quaterniond(Eigen::AngleAxisd(
+                                                   0.1 * std::sin(kTwoPi * t), Vector3d::UnitY()));
     problem.waypoints.push_back(waypoint);
   }
   problem = with_motion_defaults(problem);
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   Planner planner(problem);
-  const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 250});
+  const MotionPlan plan = plan_motion(planner, options, true,
+                                      TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 250});
   ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
   // A run of waypoints within half a micrometre of a chord has layers at its ends alone.
   EXPECT_LE(plan.result.trajectory.size(), static_cast<std::size_t>(kCount));
@@ -179,7 +190,8 @@ TEST(Refine, TheResolutionStopsMattering) {
   Problem problem = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml");
   keep_clearance_between_layers(problem.limits);
   double dearest_before = 0;
-  for (const auto& [ds, dphi] : {std::pair(0.02, 0.2), std::pair(0.01, 0.1), std::pair(0.005, 0.05), std::pair(0.001, 0.05)}) {
+  for (const auto& [ds, dphi] : {std::pair(0.02, 0.2), std::pair(0.01, 0.1), std::pair(0.005, 0.05),
+                                 std::pair(0.001, 0.05)}) {
     problem.resolution.ds = ds;
     problem.resolution.dphi = dphi;
     PlanOptions options;
@@ -200,13 +212,16 @@ PlanResult planned(const PreparedRobot& robot, const Problem& problem) {
   return plan(robot, problem, options);
 }
 
-/// Door poses where refinement used to end dearer than it need: its path lay on bounds over most of its length (4, 73), or the
-/// cheaper way past an obstacle began with a path that is not valid between its own layers (83). Costs are those of fine lattices
-/// about the best path known (bench/basin_benchmark data/problems/experiment_c.yaml --episodes 1 --first 4).
+/// Door poses where refinement used to end dearer than it need: its path lay on bounds over most of
+/// its length (4, 73), or the cheaper way past an obstacle began with a path that is not valid
+/// between its own layers (83). Costs are those of fine lattices about the best path known
+/// (bench/basin_benchmark data/problems/experiment_c.yaml --episodes 1 --first 4).
 TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
-  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  const Problem base = with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   const PreparedRobot robot(base);
-  for (const auto& [episode, fine_lattice] : {std::pair(4u, 1.98137), std::pair(73u, 3.35499), std::pair(83u, 2.22246)}) {
+  for (const auto& [episode, fine_lattice] :
+       {std::pair(4u, 1.98137), std::pair(73u, 3.35499), std::pair(83u, 2.22246)}) {
     SCOPED_TRACE(episode);
     const Problem problem = episode_problem(base, 1, episode);
     const PlanResult found = planned(robot, problem);
@@ -217,10 +232,11 @@ TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
   }
 }
 
-/// Door poses whose cheapest path changes branch at the wrist's singularity: to lead past it at a distance costs a turn of the
-/// outer joints, and bends that no smoothing takes away.
+/// Door poses whose cheapest path changes branch at the wrist's singularity: to lead past it at a
+/// distance costs a turn of the outer joints, and bends that no smoothing takes away.
 TEST(Refine, CrossesSingularitiesStraight) {
-  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  const Problem base = with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   const PreparedRobot robot(base);
   for (const unsigned episode : {60u, 88u}) {
     SCOPED_TRACE(episode);
@@ -232,7 +248,8 @@ TEST(Refine, CrossesSingularitiesStraight) {
     EXPECT_LE(refined.cost, 0.8 * refined.cost_before);
     EXPECT_LE(refined.bend, 0.2 * refined.bend_before);
     EXPECT_TRUE(check_trajectory(robot, problem, refined.rows).passed);
-    for (std::size_t k = 0; k < refined.rows.size(); ++k) EXPECT_EQ(refined.rows[k].branch, found.trajectory[k].branch);
+    for (std::size_t k = 0; k < refined.rows.size(); ++k)
+      EXPECT_EQ(refined.rows[k].branch, found.trajectory[k].branch);
   }
 }
 
@@ -247,7 +264,8 @@ class Beyond final : public StateCheck {
   }
   [[nodiscard]] bool checks_motions() const override { return true; }
   void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
-    for (std::size_t k = 0; k < motions.size(); ++k) allowed[k] = std::max(motions[k].from[joint_], motions[k].to[joint_]) <= most_;
+    for (std::size_t k = 0; k < motions.size(); ++k)
+      allowed[k] = std::max(motions[k].from[joint_], motions[k].to[joint_]) <= most_;
     asked += static_cast<int>(motions.size());
   }
   int asked = 0;
@@ -259,7 +277,9 @@ class Beyond final : public StateCheck {
 class NoCost final : public StateCost {
  public:
   [[nodiscard]] std::string name() const override { return "none"; }
-  void costs(std::span<const Config>, std::span<double> costs) override { std::fill(costs.begin(), costs.end(), 0.0); }
+  void costs(std::span<const Config>, std::span<double> costs) override {
+    std::fill(costs.begin(), costs.end(), 0.0);
+  }
 };
 
 TEST(Refine, AsksTheCallersCheck) {
@@ -270,53 +290,59 @@ TEST(Refine, AsksTheCallersCheck) {
     return value;
   };
   const int solved =
-      for_solved("CallersCheck", trials(40), [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
-        const Refined free = refine(robot, problem, found.trajectory);
-        for (const int joint : {0, 2, 4}) {
-          const double bound = most(found.trajectory, joint);
-          if (!(most(free.rows, joint) > bound + 1e-6)) continue;
-          ++beyond;
-          const auto check = std::make_shared<Beyond>(joint, bound);
-          PlanOptions options;
-          options.planner = PlannerKind::kLazy;
-          options.hooks.check = check;
-          Planner planner(problem);
-          const MotionPlan plan = plan_motion(planner, options, true, {});
-          ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
-          kept += most(plan.result.trajectory, joint) <= bound;
-          refined += plan.refinement->refined;
-          EXPECT_GT(check->asked, 0);
-          options.hooks.cost = std::make_shared<NoCost>();
-          options.evidence.postures = true;
-          const MotionPlan costly = plan_motion(planner, options, true, {});
-          EXPECT_FALSE(costly.refinement->refined);
-          EXPECT_EQ(costly.refinement->reason, "the caller's own cost is not refined");
-          EXPECT_TRUE(costly.result.evidence.postures);
-          return;
-        }
-      });
-  std::printf("%d solved, %d go beyond a bound when refined freely, %d keep it, %d of them refined\n", solved, beyond, kept,
-              refined);
+      for_solved("CallersCheck", trials(40),
+                 [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
+                   const Refined free = refine(robot, problem, found.trajectory);
+                   for (const int joint : {0, 2, 4}) {
+                     const double bound = most(found.trajectory, joint);
+                     if (!(most(free.rows, joint) > bound + 1e-6)) continue;
+                     ++beyond;
+                     const auto check = std::make_shared<Beyond>(joint, bound);
+                     PlanOptions options;
+                     options.planner = PlannerKind::kLazy;
+                     options.hooks.check = check;
+                     Planner planner(problem);
+                     const MotionPlan plan = plan_motion(planner, options, true, {});
+                     ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
+                     kept += most(plan.result.trajectory, joint) <= bound;
+                     refined += plan.refinement->refined;
+                     EXPECT_GT(check->asked, 0);
+                     options.hooks.cost = std::make_shared<NoCost>();
+                     options.evidence.postures = true;
+                     const MotionPlan costly = plan_motion(planner, options, true, {});
+                     EXPECT_FALSE(costly.refinement->refined);
+                     EXPECT_EQ(costly.refinement->reason, "the caller's own cost is not refined");
+                     EXPECT_TRUE(costly.result.evidence.postures);
+                     return;
+                   }
+                 });
+  std::printf(
+      "%d solved, %d go beyond a bound when refined freely, %d keep it, %d of them refined\n",
+      solved, beyond, kept, refined);
   EXPECT_EQ(kept, beyond);
   EXPECT_GE(beyond, at_least(4));
   EXPECT_GE(refined, at_least(2));
 }
 
 TEST(Refine, RefusesRowsOfAnotherResolution) {
-  const int solved = for_solved("Refine", 12, [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
-    Problem other = problem;
-    other.resolution.ds /= 2;
-    EXPECT_THROW(static_cast<void>(refine(robot, other, found.trajectory)), InvalidArgument);
-    EXPECT_THROW(static_cast<void>(refine(robot, problem, found.trajectory, {}, Budget(1e-9))), Stopped);
-  });
+  const int solved = for_solved(
+      "Refine", 12,
+      [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
+        Problem other = problem;
+        other.resolution.ds /= 2;
+        EXPECT_THROW(static_cast<void>(refine(robot, other, found.trajectory)), InvalidArgument);
+        EXPECT_THROW(static_cast<void>(refine(robot, problem, found.trajectory, {}, Budget(1e-9))),
+                     Stopped);
+      });
   EXPECT_GE(solved, 2);
 }
 
 TEST(Motion, PassesTheCheckOfMotions) {
   int timed = 0, not_executable = 0;
   std::size_t samples = 0;
-  const int solved =
-      for_solved("Motion", trials(40), [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
+  const int solved = for_solved(
+      "Motion", trials(40),
+      [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
         const Refined refined = refine(robot, problem, found.trajectory, {.second_seed = false});
         const TimingOptions options{.speed = 0.1, .turn_speed = 0.5, .rate = 250};
         const MotionResult result = time_trajectory(robot, problem, refined.rows, options);
@@ -345,7 +371,8 @@ TEST(Motion, PassesTheCheckOfMotions) {
         const bool near_limit = check.motion->peaks[2].ratio > 0.8;
         EXPECT_TRUE(!near_limit || !check_motion(robot, problem, fast).passed);
       });
-  std::printf("%d solved, %d timed, %d not executable, %zu samples\n", solved, timed, not_executable, samples);
+  std::printf("%d solved, %d timed, %d not executable, %zu samples\n", solved, timed,
+              not_executable, samples);
   EXPECT_GE(timed, 10);
   EXPECT_LE(not_executable, solved / 3);
 }
@@ -359,7 +386,8 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < trials(16); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem = with_motion_defaults(problem);
     EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
     if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
@@ -374,7 +402,8 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
     const auto planned = [&](double radius) {
       problem.scene[0].shape = Sphere{radius};
       Planner planner(problem);
-      return plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+      return plan_motion(planner, options, true,
+                         TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
     };
     for (int k = 0; k < 5; ++k) {
       problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
@@ -391,7 +420,8 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
     ASSERT_EQ(plan.result.trajectory.size(), plan.lattice_path.size());
     if (!plan.motion->motion) {
       ++refused;
-      std::printf("trial %d: %s at s = %.4f\n", trial, plan.motion->failure->reason.c_str(), plan.motion->failure->s);
+      std::printf("trial %d: %s at s = %.4f\n", trial, plan.motion->failure->reason.c_str(),
+                  plan.motion->failure->s);
       continue;
     }
     ++executed;
@@ -401,7 +431,8 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
     // Margins are told of the path that is executed.
     double margin = std::numeric_limits<double>::infinity();
     for (const TrajectoryRow& row : plan.result.trajectory)
-      if (const auto clearance = query.clearance(row.q)) margin = std::min(margin, clearance->margin());
+      if (const auto clearance = query.clearance(row.q))
+        margin = std::min(margin, clearance->margin());
     if (plan.result.min_margin) {
       EXPECT_NEAR(plan.result.min_margin->margin, margin, 1e-9);
     }
@@ -414,14 +445,17 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
         if (!clearance) continue;
         ++asked;
         least = std::min(least, clearance->margin());
-        EXPECT_GE(clearance->margin(), -kForgiven) << "trial " << trial << " t = " << rows[k].t << " part " << part;
+        EXPECT_GE(clearance->margin(), -kForgiven)
+            << "trial " << trial << " t = " << rows[k].t << " part " << part;
         comes_near = comes_near || clearance->margin() < 2e-3;
       }
     near += comes_near;
     EXPECT_TRUE(check_motion(robot, problem, rows).passed);
   }
-  std::printf("%d executed, %d refused, %lld points, %d motions within 2 mm of the clearance, least margin %.4f mm\n", executed,
-              refused, static_cast<long long>(asked), near, 1e3 * least);
+  std::printf(
+      "%d executed, %d refused, %lld points, %d motions within 2 mm of the clearance, least margin "
+      "%.4f mm\n",
+      executed, refused, static_cast<long long>(asked), near, 1e3 * least);
   EXPECT_GE(executed, at_least(5));
   EXPECT_GE(near, at_least(3));
   EXPECT_LE(refused, executed / 4);
@@ -435,31 +469,38 @@ std::string said_of_postures(const TimedPath& motion) {
 
 /// The lattice's path runs along the limit of a joint, which leaves it between two layers.
 TEST(Motion, IsLedThroughOtherPosturesWhereItIsAtFaultBetweenLayers) {
-  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  const Problem base = with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   Planner planner(episode_problem(base, 1, 25));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
-  const MotionPlan plan = plan_motion(planner, options, false, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
+  const MotionPlan plan = plan_motion(planner, options, false,
+                                      TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
   ASSERT_TRUE(plan.motion && plan.motion->motion) << plan.motion->failure->reason;
   const TimedPath& motion = *plan.motion->motion;
-  EXPECT_NE(said_of_postures(motion).find("'arm_left_joint_6_b' leaves its limits"), std::string::npos) << said_of_postures(motion);
+  EXPECT_NE(said_of_postures(motion).find("'arm_left_joint_6_b' leaves its limits"),
+            std::string::npos)
+      << said_of_postures(motion);
   const CheckResult check = check_motion(planner.view().robot, planner.view().problem, motion.rows);
   EXPECT_TRUE(check.passed) << check.failures[0];
   EXPECT_LT(motion.duration, 1.05 * motion.ideal);
   const JointLimit& limit = planner.view().robot.arm().chain.limit[5];
   double least = 1;
-  for (const TimedRow& row : motion.rows) least = std::min(least, std::min(row.row.q[5] - limit.lower, limit.upper - row.row.q[5]));
+  for (const TimedRow& row : motion.rows)
+    least = std::min(least, std::min(row.row.q[5] - limit.lower, limit.upper - row.row.q[5]));
   EXPECT_GE(least, -1e-9);
 }
 
-/// Layers that lie far apart before a ball, and nothing asked between them: motions of the lattice's own path.
+/// Layers that lie far apart before a ball, and nothing asked between them: motions of the
+/// lattice's own path.
 TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
   int executed = 0, led = 0, refused = 0;
   const std::uint64_t base = seed("Coarse");
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem = with_motion_defaults(problem);
     problem.limits.edges = EdgeMode::kNodes;
     problem.resolution.ds = 0.06;
@@ -469,11 +510,13 @@ TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
     double solvable = 0.02, blocked = 0.2;
     for (int k = 0; k < 5; ++k) {
       problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
-      (swivel::plan(problem, options).status == PlanStatus::kSolved ? solvable : blocked) = (solvable + blocked) / 2;
+      (swivel::plan(problem, options).status == PlanStatus::kSolved ? solvable : blocked) =
+          (solvable + blocked) / 2;
     }
     problem.scene[0].shape = Sphere{solvable};
     Planner planner(problem);
-    const MotionPlan plan = plan_motion(planner, options, false, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+    const MotionPlan plan = plan_motion(
+        planner, options, false, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
     if (plan.result.status != PlanStatus::kSolved) continue;
     ASSERT_TRUE(plan.motion);
     if (!plan.motion->motion) {
@@ -487,17 +530,20 @@ TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
     }
     ++executed;
     led += !said_of_postures(*plan.motion->motion).empty();
-    const CheckResult check = check_motion(planner.view().robot, planner.view().problem, plan.motion->motion->rows);
+    const CheckResult check =
+        check_motion(planner.view().robot, planner.view().problem, plan.motion->motion->rows);
     EXPECT_TRUE(check.passed) << "trial " << trial << ": " << check.failures[0];
   }
-  std::printf("%d executed, %d of them led through other postures, %d refused\n", executed, led, refused);
+  std::printf("%d executed, %d of them led through other postures, %d refused\n", executed, led,
+              refused);
   EXPECT_GE(executed, at_least(15));
   EXPECT_GE(led, at_least(1));
   EXPECT_LE(refused, executed / 2);
 }
 
 TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
-  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  const Problem base = with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   int jumps = 0;
   for (const std::uint64_t episode : {60u, 88u}) {
     Planner planner(episode_problem(base, 1, episode));
@@ -512,36 +558,44 @@ TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
     ASSERT_EQ(path.result.status, PlanStatus::kSolved);
     jumps += branches(path.result.trajectory) > 1;
     EXPECT_FALSE(path.motion);
-    const MotionPlan motion = plan_motion(planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 100});
+    const MotionPlan motion = plan_motion(
+        planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 100});
     ASSERT_TRUE(motion.motion && motion.motion->motion) << motion.motion->failure->reason;
     EXPECT_EQ(branches(motion.result.trajectory), 1u);
     EXPECT_GE(motion.result.lattice.cost, path.result.lattice.cost);
     EXPECT_EQ(branches(motion.lattice_path) < branches(path.lattice_path),
               std::any_of(motion.result.warnings.begin(), motion.result.warnings.end(),
-                          [](const std::string& warning) { return warning.find("branch") != std::string::npos; }));
+                          [](const std::string& warning) {
+                            return warning.find("branch") != std::string::npos;
+                          }));
   }
   EXPECT_EQ(jumps, 2);
 }
 
 /// The path bends sharply in the joints at s = 0.16 m; the tool can pass there at 240 of 250 mm/s.
 TEST(Motion, SlowsDownNoMoreThanBendsAsk) {
-  Planner planner(with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
+  Planner planner(with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
-  const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.25, .turn_speed = {}, .rate = 1000});
+  const MotionPlan plan = plan_motion(planner, options, true,
+                                      TimingOptions{.speed = 0.25, .turn_speed = {}, .rate = 1000});
   ASSERT_TRUE(plan.motion && plan.motion->motion);
   const TimedPath& motion = *plan.motion->motion;
-  EXPECT_LE(motion.duration, 1.05 * 2.2525);  // s: the shortest that bench/evidence/yardstick.py finds on this path
+  EXPECT_LE(motion.duration,
+            1.05 * 2.2525);  // s: the shortest that bench/evidence/yardstick.py finds on this path
   for (const TimedPath::Slow& slow : motion.slow) EXPECT_GE(slow.share, 0.9) << slow.from_s;
 }
 
 TEST(Motion, SlowsDownWhereTheToolWouldStrayBetweenSamples) {
-  Planner planner(with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
+  Planner planner(with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   const auto motion = [&](double rate, std::optional<double> chord) {
     const MotionPlan plan =
-        plan_motion(planner, options, true, TimingOptions{.speed = 0.25, .turn_speed = {}, .rate = rate, .chord = chord});
+        plan_motion(planner, options, true,
+                    TimingOptions{.speed = 0.25, .turn_speed = {}, .rate = rate, .chord = chord});
     EXPECT_TRUE(plan.motion && plan.motion->motion);
     // Measured again: joints half way, against the straight line that the path is.
     double most = 0;
@@ -565,7 +619,8 @@ TEST(Motion, SlowsDownWhereTheToolWouldStrayBetweenSamples) {
 }
 
 TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
-  const Problem problem = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
+  const Problem problem = with_motion_defaults(
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
   // Stopped as soon as the lattice's path is known.
   std::stop_source stop;
   PlanOptions options;
@@ -577,7 +632,8 @@ TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
   int stopped = 0, whole = 0;
   for (double timeout = 1e-4; timeout < 4; timeout *= 1.5) {
     options.timeout_s = timeout;
-    const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
+    const MotionPlan plan = plan_motion(
+        planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
     if (plan.result.status != PlanStatus::kSolved) {
       EXPECT_FALSE(plan.refinement || plan.motion);
       continue;
@@ -605,7 +661,8 @@ TEST(Motion, RefusesSpeedsThatMakeNoSense) {
   for (const TimingOptions& options :
        {TimingOptions{.speed = 0, .turn_speed = {}, .rate = 250},
         TimingOptions{.speed = std::nan(""), .turn_speed = {}, .rate = 250},
-        TimingOptions{.speed = 0.1, .turn_speed = -1, .rate = 250}, TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 0},
+        TimingOptions{.speed = 0.1, .turn_speed = -1, .rate = 250},
+        TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 0},
         TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 250, .chord = 0}})
     EXPECT_THROW(static_cast<void>(time_trajectory(robot, some, {}, options)), InvalidArgument);
 }

@@ -23,8 +23,11 @@ Fastest fastest(const Chain& chain, const TimedPath& motion) {
   Pose before = chain.tool(motion.rows[0].row.q);
   for (std::size_t k = 1; k < motion.rows.size(); ++k) {
     const Pose tool = chain.tool(motion.rows[k].row.q);
-    most.along = std::max(most.along, (tool.translation() - before.translation()).norm() * motion.rate);
-    most.turning = std::max(most.turning, Eigen::AngleAxisd(before.linear().transpose() * tool.linear()).angle() * motion.rate);
+    most.along =
+        std::max(most.along, (tool.translation() - before.translation()).norm() * motion.rate);
+    most.turning = std::max(
+        most.turning,
+        Eigen::AngleAxisd(before.linear().transpose() * tool.linear()).angle() * motion.rate);
     before = tool;
   }
   return most;
@@ -40,7 +43,8 @@ std::vector<Case> cases() {
   for (const char* name : {"panda_like", "xarm7_like", "gen3_like", "fetch_like", "kr6_like"}) {
     TestRobot robot = data_robot(name);
     robot.tip_link = "flange";
-    all.push_back({robot, std::string(name) == "kr6_like" ? std::optional(Roll{-1.5, 1.5}) : std::nullopt});
+    all.push_back(
+        {robot, std::string(name) == "kr6_like" ? std::optional(Roll{-1.5, 1.5}) : std::nullopt});
   }
   return all;
 }
@@ -63,19 +67,24 @@ TEST(ToolSpeed, IsAtMostTheOneAskedFor) {
       spot = spot || way == 0;
     }
     const double rates[] = {20, 125, 250, 1000};
-    const double rate = std::min(rates[random.below(4)], std::max(5.0, std::floor(kRows * speed / length)));
-    const std::optional<double> turn = random.coin() ? std::optional(random.uniform(0.05, 1)) : std::nullopt;
+    const double rate =
+        std::min(rates[random.below(4)], std::max(5.0, std::floor(kRows * speed / length)));
+    const std::optional<double> turn =
+        random.coin() ? std::optional(random.uniform(0.05, 1)) : std::nullopt;
     const bool limit = random.coin();
     if (limit) problem.limits.tool_speed = speed, problem.limits.tool_turn_speed = turn;
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
     Planner planner(problem);
     // A limit of the problem is kept by motions that are asked to be faster as well.
-    const MotionPlan plan = plan_motion(
-        planner, options, random.coin(),
-        TimingOptions{.speed = limit ? 1.5 * speed : speed, .turn_speed = limit || !turn ? std::nullopt : turn, .rate = rate});
+    const MotionPlan plan =
+        plan_motion(planner, options, random.coin(),
+                    TimingOptions{.speed = limit ? 1.5 * speed : speed,
+                                  .turn_speed = limit || !turn ? std::nullopt : turn,
+                                  .rate = rate});
     if (!plan.motion || !plan.motion->motion) continue;
-    SCOPED_TRACE(which.robot.name + " " + std::to_string(trial) + ", " + std::to_string(speed) + " m/s, " + std::to_string(rate));
+    SCOPED_TRACE(which.robot.name + " " + std::to_string(trial) + ", " + std::to_string(speed) +
+                 " m/s, " + std::to_string(rate));
     const TimedPath& motion = *plan.motion->motion;
     const PreparedRobot robot(problem);
     const Fastest most = fastest(robot.arm().chain, motion);
@@ -94,8 +103,10 @@ TEST(ToolSpeed, IsAtMostTheOneAskedFor) {
     limited += limit;
     on_the_spot += spot;
   }
-  std::printf("%d motions, %d as fast as asked, %d below 2 mm/s, %d with a turn speed, %d with limits, %d that turn on the spot\n",
-              timed, as_fast, slowest, with_turn, limited, on_the_spot);
+  std::printf(
+      "%d motions, %d as fast as asked, %d below 2 mm/s, %d with a turn speed, %d with limits, %d "
+      "that turn on the spot\n",
+      timed, as_fast, slowest, with_turn, limited, on_the_spot);
   EXPECT_GE(timed, at_least(25));
   EXPECT_GE(as_fast, at_least(15));
   EXPECT_GE(slowest, at_least(3));
@@ -104,8 +115,8 @@ TEST(ToolSpeed, IsAtMostTheOneAskedFor) {
   EXPECT_GE(on_the_spot, at_least(5));
 }
 
-/// The tool comes out of a turn on the spot into a straight line: travel that was nearly all rotation becomes all way within the
-/// rounded corner.
+/// The tool comes out of a turn on the spot into a straight line: travel that was nearly all
+/// rotation becomes all way within the rounded corner.
 TEST(ToolSpeed, IsKeptWhereATurnOnTheSpotBecomesALine) {
   TestRobot fetch = data_robot("fetch_like");
   fetch.tip_link = "flange";
@@ -118,14 +129,14 @@ TEST(ToolSpeed, IsKeptWhereATurnOnTheSpotBecomesALine) {
     waypoint.orientation = Quaterniond(w, x, y, z);
     problem.waypoints.push_back(waypoint);
   };
-  add({0.7171862732968365, -0.7070783629853588, 0.6728291633388533}, 0.1099952610863626, 0.17063477276616174, -0.11008714696812683,
-      0.9729674387840537);
-  add({0.7210132803836177, -0.6936896365754414, 0.6652827534388923}, 0.24944277930097308, 0.20502158160852255, -0.12296494622040632,
-      0.9384157250016427);
-  add({0.7210132803836177, -0.6936896365754414, 0.6652827534388923}, 0.2920107249735096, 0.22874116913106193, -0.1450290390788861,
-      0.9172642977184141);
-  add({0.7414693602202809, -0.6692054138603837, 0.6272145042887389}, 0.20961693482963642, 0.25478450124420293, -0.22455965490641526,
-      0.9168825895105774);
+  add({0.7171862732968365, -0.7070783629853588, 0.6728291633388533}, 0.1099952610863626,
+      0.17063477276616174, -0.11008714696812683, 0.9729674387840537);
+  add({0.7210132803836177, -0.6936896365754414, 0.6652827534388923}, 0.24944277930097308,
+      0.20502158160852255, -0.12296494622040632, 0.9384157250016427);
+  add({0.7210132803836177, -0.6936896365754414, 0.6652827534388923}, 0.2920107249735096,
+      0.22874116913106193, -0.1450290390788861, 0.9172642977184141);
+  add({0.7414693602202809, -0.6692054138603837, 0.6272145042887389}, 0.20961693482963642,
+      0.25478450124420293, -0.22455965490641526, 0.9168825895105774);
   problem.resolution.ds = 0.01;
   problem.limits.clearance = 0.005;
   problem.limits.tool_path_error = 0.002;
@@ -136,7 +147,8 @@ TEST(ToolSpeed, IsKeptWhereATurnOnTheSpotBecomesALine) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   Planner planner(problem);
-  const MotionPlan plan = plan_motion(planner, options, false, TimingOptions{.speed = 0.001, .turn_speed = {}, .rate = 250});
+  const MotionPlan plan = plan_motion(planner, options, false,
+                                      TimingOptions{.speed = 0.001, .turn_speed = {}, .rate = 250});
   ASSERT_TRUE(plan.motion && plan.motion->motion);
   const TimedPath& motion = *plan.motion->motion;
   std::printf("%.3f s, %.3f s at the speed asked for throughout\n", motion.duration, motion.ideal);
@@ -165,8 +177,11 @@ TEST(ToolSpeed, LimitsAreKeptAndSaid) {
   EXPECT_NE(both.find("limits.tool_turn_speed allows 0.1 rad/s"), std::string::npos) << both;
   problem.limits.tool_speed = problem.limits.tool_turn_speed = std::nullopt;
   planner.set_task(problem);
-  const char* const decides = "joint jerks are stated neither by the URDF nor as limits.joint_jerk: 100 rad/s^3, and this decides";
-  EXPECT_NE(warnings({.speed = 0.5, .turn_speed = {}, .rate = 250}).find(decides), std::string::npos);
+  const char* const decides =
+      "joint jerks are stated neither by the URDF nor as limits.joint_jerk: 100 rad/s^3, and this "
+      "decides";
+  EXPECT_NE(warnings({.speed = 0.5, .turn_speed = {}, .rate = 250}).find(decides),
+            std::string::npos);
   const std::string slow = warnings({.speed = 0.001, .turn_speed = 0.01, .rate = 20});
   EXPECT_NE(slow.find("100 rad/s^3\n"), std::string::npos) << slow;  // nothing more
   const std::string none = warnings({.speed = 0.02, .turn_speed = {}, .rate = 100});

@@ -27,7 +27,8 @@ Answer truth_of(const Problem& problem) {
                      [&](int layer, int a, int b) { return window_allows(lattice, layer, a, b); });
 }
 
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
+                                     PlannerKind::kParallel};
 
 void expect_same(const PlanResult& a, const PlanResult& b, const std::string& what) {
   ASSERT_EQ(a.status, b.status) << what;
@@ -53,7 +54,8 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
   for (std::size_t k = 0; k < a.diagnosis.empty_layers.size(); ++k) {
     ASSERT_EQ(a.diagnosis.empty_layers[k].first, b.diagnosis.empty_layers[k].first) << what;
     ASSERT_EQ(a.diagnosis.empty_layers[k].last, b.diagnosis.empty_layers[k].last) << what;
-    ASSERT_TRUE(a.diagnosis.empty_layers[k].cause.same_thing(b.diagnosis.empty_layers[k].cause)) << what;
+    ASSERT_TRUE(a.diagnosis.empty_layers[k].cause.same_thing(b.diagnosis.empty_layers[k].cause))
+        << what;
   }
 }
 
@@ -61,18 +63,21 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Agreement");
   const auto robots = all_robots();
   // Whose own bodies are near each other, and no SRDF says so.
-  const std::vector<TestRobot> bare{near_wrist_robot(), without_srdf(data_robot("sda5f")), without_srdf(data_robot("iiwa14"))};
+  const std::vector<TestRobot> bare{near_wrist_robot(), without_srdf(data_robot("sda5f")),
+                                    without_srdf(data_robot("iiwa14"))};
   int reduced = 0, near_motions = 0;
-  int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0, detours = 0, chosen = 0;
+  int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0,
+      detours = 0, chosen = 0;
   std::int64_t proved = 0, lazy_fcl_calls = 0;
   const int count = trials(320);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_problem(trial % 8 == 7 ? bare[static_cast<std::size_t>(trial / 8) % bare.size()]
-                                                          : robots[static_cast<std::size_t>(trial) % robots.size()],
-                                           random);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const Problem problem =
+        random_problem(trial % 8 == 7 ? bare[static_cast<std::size_t>(trial / 8) % bare.size()]
+                                      : robots[static_cast<std::size_t>(trial) % robots.size()],
+                       random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const Answer truth = truth_of(problem);
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -90,7 +95,8 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       if (HasFatalFailure()) return;
     }
     reduced += !results[0].reduced_pairs.empty();
-    near_motions += !results[0].reduced_pairs.empty() && truth.solved && problem.limits.edges == EdgeMode::kContinuous;
+    near_motions += !results[0].reduced_pairs.empty() && truth.solved &&
+                    problem.limits.edges == EdgeMode::kContinuous;
     continuous += problem.limits.edges == EdgeMode::kContinuous;
     started += problem.start.has_value();
     obstacles += !problem.scene.empty();
@@ -103,19 +109,26 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
       for (int i = 0; i < lattice.layers(); ++i) {
         const int slot = truth.slots[static_cast<std::size_t>(i)];
-        ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot)) << what;
-        ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].branch, lattice.branch_of(slot)) << what;
-        if (i > 0) label_changes += lattice.solution_of(slot) != lattice.solution_of(truth.slots[static_cast<std::size_t>(i) - 1]);
+        ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot))
+            << what;
+        ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].branch,
+                  lattice.branch_of(slot))
+            << what;
+        if (i > 0)
+          label_changes += lattice.solution_of(slot) !=
+                           lattice.solution_of(truth.slots[static_cast<std::size_t>(i) - 1]);
       }
       detours += results[2].counters.iterations > 1;
       const CheckResult check = check_trajectory(problem, results[0].trajectory);
-      ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+      ASSERT_TRUE(check.passed) << what << ": "
+                                << (check.failures.empty() ? "" : check.failures[0]);
       ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
     } else {
       ++infeasible;
       ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
       ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
-      // Pairs that are near by design cost questions, of which a diagnosis asks so many and no more.
+      // Pairs that are near by design cost questions, of which a diagnosis asks so many and no
+      // more.
       ASSERT_TRUE(results[0].diagnosis.complete || trial % 8 == 7) << what;
       if (!results[0].diagnosis.complete) continue;
       std::vector<int> empty;
@@ -125,12 +138,15 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
     }
   }
   std::printf(
-      "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, %d with a start, %d with "
+      "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, "
+      "%d with a start, %d with "
       "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
-      count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(proved),
-      static_cast<long long>(lazy_fcl_calls));
-  std::printf("%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among equal costs\n", reduced,
-              near_motions, chosen);
+      count, solved, detours, label_changes, infeasible, continuous, started, obstacles,
+      static_cast<long long>(proved), static_cast<long long>(lazy_fcl_calls));
+  std::printf(
+      "%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among "
+      "equal costs\n",
+      reduced, near_motions, chosen);
   EXPECT_GE(chosen, at_least(count / 32));
   EXPECT_GE(reduced, at_least(count / 24));
   EXPECT_GE(near_motions, at_least(3));
@@ -142,7 +158,8 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(detours, at_least(count / 20));
 }
 
-/// PlanOptions::fcl_alone beside own proofs: fresh, and by a planner that remembers, after an object has moved.
+/// PlanOptions::fcl_alone beside own proofs: fresh, and by a planner that remembers, after an
+/// object has moved.
 TEST(Agreement, FclAloneGivesTheSameAnswers) {
   const std::uint64_t base = seed("Agreement.FclAlone");
   const auto robots = all_robots();
@@ -151,9 +168,10 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
   const int count = trials(100);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     for (const PlannerKind kind : {PlannerKind::kLazy, PlannerKind::kParallel}) {
       PlanOptions options;
       options.planner = kind;
@@ -165,7 +183,8 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
         const PlanResult with_proofs = planner.plan(options), by_fcl = alone.plan(alone_options);
         expect_same(with_proofs, by_fcl, what + " " + by_fcl.planner + when);
         ++(with_proofs.status == PlanStatus::kSolved ? solved : infeasible);
-        EXPECT_EQ(by_fcl.counters.proved_free + by_fcl.counters.proved_colliding, 0) << what << when;
+        EXPECT_EQ(by_fcl.counters.proved_free + by_fcl.counters.proved_colliding, 0)
+            << what << when;
         proved += with_proofs.counters.proved_free + with_proofs.counters.proved_colliding;
         calls += with_proofs.counters.fcl_calls;
         alone_calls += by_fcl.counters.fcl_calls;
@@ -175,7 +194,8 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
       if (HasFatalFailure()) return;
       if (problem.scene.empty()) continue;
       Pose pose = problem.scene[0].pose;
-      pose.translation() += Vector3d(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02));
+      pose.translation() += Vector3d(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02),
+                                     random.uniform(-0.02, 0.02));
       planner.move(problem.scene[0].name, pose);
       alone.move(problem.scene[0].name, pose);
       ++moves;
@@ -183,9 +203,11 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
       if (HasFatalFailure()) return;
     }
   }
-  std::printf("%d plans solved, %d infeasible, %d after a move; FCL alone: %lld calls, in %d plans; else %lld, %lld certified\n",
-              solved, infeasible, moves, static_cast<long long>(alone_calls), asked, static_cast<long long>(calls),
-              static_cast<long long>(proved));
+  std::printf(
+      "%d plans solved, %d infeasible, %d after a move; FCL alone: %lld calls, in %d plans; else "
+      "%lld, %lld certified\n",
+      solved, infeasible, moves, static_cast<long long>(alone_calls), asked,
+      static_cast<long long>(calls), static_cast<long long>(proved));
   EXPECT_GE(solved, at_least(count));
   EXPECT_GE(infeasible, at_least(count / 5));
   EXPECT_GE(moves, at_least(count));
@@ -196,7 +218,8 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
 /// Arms along arcs, a roll that is chosen as well, and a part in the hand.
 TEST(Agreement, FclAloneGivesTheSameAnswersOnOtherLattices) {
   std::int64_t more = 0;
-  for (const char* name : {"panda_weld_seam", "kr6_weld_pipe", "torch_door", "iiwa14_deburr_in_hand"}) {
+  for (const char* name :
+       {"panda_weld_seam", "kr6_weld_pipe", "torch_door", "iiwa14_deburr_in_hand"}) {
     Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.02;
     problem.resolution.dphi = 0.2;
@@ -210,14 +233,17 @@ TEST(Agreement, FclAloneGivesTheSameAnswersOnOtherLattices) {
     const PlanResult by_fcl = plan(robot, problem, options);
     expect_same(with_proofs, by_fcl, name);
     std::printf("%s: %s, FCL calls %lld, alone %lld\n", name, to_string(by_fcl.status),
-                static_cast<long long>(with_proofs.counters.fcl_calls), static_cast<long long>(by_fcl.counters.fcl_calls));
-    EXPECT_GE(by_fcl.counters.fcl_calls, with_proofs.counters.fcl_calls) << name;  // bounds may clear all
+                static_cast<long long>(with_proofs.counters.fcl_calls),
+                static_cast<long long>(by_fcl.counters.fcl_calls));
+    EXPECT_GE(by_fcl.counters.fcl_calls, with_proofs.counters.fcl_calls)
+        << name;  // bounds may clear all
     more += by_fcl.counters.fcl_calls > with_proofs.counters.fcl_calls;
   }
   EXPECT_GE(more, 3);
 }
 
-/// Weights of every size, some or all of them zero, in one table so that each kind is met equally often.
+/// Weights of every size, some or all of them zero, in one table so that each kind is met equally
+/// often.
 enum class Weights { kAllZero, kSomeZero, kLeast, kMost, kBothEnds, kCount };
 
 void set_weights(Weights kind, Random& random, Cost& cost) {
@@ -247,13 +273,17 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial / kKinds) % robots.size()], random);
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial / kKinds) % robots.size()], random);
     const auto kind = static_cast<std::size_t>(trial % kKinds);
     problem.limits.step_error = std::nullopt;
-    if (random.coin(0.3)) problem.limits.joint_step = random.uniform(0.1, 0.4);  // where no path is, moves are what is missing
+    if (random.coin(0.3))
+      problem.limits.joint_step =
+          random.uniform(0.1, 0.4);  // where no path is, moves are what is missing
     set_weights(static_cast<Weights>(kind), random, problem.cost);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
-                             problem.source + " kind " + std::to_string(kind);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source + " kind " +
+                             std::to_string(kind);
     const Answer truth = truth_of(problem);
     (truth.solved ? solved : infeasible)[kind] += 1;
     std::vector<PlanResult> results;
@@ -277,17 +307,20 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
     const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
     for (int i = 0; i < lattice.layers(); ++i)
-      ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)]))
+      ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi,
+                lattice.phi(i, truth.slots[static_cast<std::size_t>(i)]))
           << what;
   }
   for (std::size_t kind = 0; kind < kKinds; ++kind) {
-    std::printf("weights of kind %zu: %d solved, %d infeasible\n", kind, solved[kind], infeasible[kind]);
+    std::printf("weights of kind %zu: %d solved, %d infeasible\n", kind, solved[kind],
+                infeasible[kind]);
     EXPECT_GE(solved[kind], at_least(count / 50));
     EXPECT_GE(infeasible[kind], at_least(count / 50));
   }
 }
 
-/// Ranges of a turn and a sliver, two turns and a sliver, and over 64 turns; a start at the limits, in the slivers and beside them.
+/// Ranges of a turn and a sliver, two turns and a sliver, and over 64 turns; a start at the limits,
+/// in the slivers and beside them.
 TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
   const std::uint64_t base = seed("Agreement.Slivers");
   int solved = 0, infeasible = 0, in_sliver = 0;
@@ -320,7 +353,8 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
     problem.limits.tool_path_error = 0.1;
     problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 1));
     problem.start = q;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const Answer truth = truth_of(problem);
     (truth.solved ? solved : infeasible) += 1;
     std::vector<PlanResult> results;
@@ -334,15 +368,20 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
       if (HasFatalFailure()) return;
     }
     ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
-    const auto of_limits = [](const std::string& warning) { return warning.find("turns apart") != std::string::npos; };
-    ASSERT_EQ(std::none_of(results[0].warnings.begin(), results[0].warnings.end(), of_limits), trial % 3 != 0) << what;
+    const auto of_limits = [](const std::string& warning) {
+      return warning.find("turns apart") != std::string::npos;
+    };
+    ASSERT_EQ(std::none_of(results[0].warnings.begin(), results[0].warnings.end(), of_limits),
+              trial % 3 != 0)
+        << what;
     if (!truth.solved) continue;
     ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
     ASSERT_EQ(results[0].trajectory[0].q, q) << what;
     const CheckResult check = check_trajectory(problem, results[0].trajectory);
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
   }
-  std::printf("%d problems: %d solved, %d infeasible; %d joints began in a sliver\n", count, solved, infeasible, in_sliver);
+  std::printf("%d problems: %d solved, %d infeasible; %d joints began in a sliver\n", count, solved,
+              infeasible, in_sliver);
   EXPECT_GE(solved, at_least(count / 4));
   EXPECT_GE(in_sliver, at_least(count / 2));
 }
@@ -382,15 +421,17 @@ TEST_P(Experiments, FourPlannersAgreeAtTheCoarseResolution) {
     options.planner = planner;
     results.push_back(plan(robot, problem, options));
     expect_same(results[0], results.back(), results.back().planner);
-    std::printf("%s %s: %s, cost %.12g, %lld nodes checked, %lld FCL calls, plan %.1f ms\n", GetParam(),
-                results.back().planner.c_str(), to_string(results.back().status), results.back().cost,
-                static_cast<long long>(results.back().counters.nodes_checked),
-                static_cast<long long>(results.back().counters.fcl_calls), results.back().time_ms["plan"]);
+    std::printf("%s %s: %s, cost %.12g, %lld nodes checked, %lld FCL calls, plan %.1f ms\n",
+                GetParam(), results.back().planner.c_str(), to_string(results.back().status),
+                results.back().cost, static_cast<long long>(results.back().counters.nodes_checked),
+                static_cast<long long>(results.back().counters.fcl_calls),
+                results.back().time_ms["plan"]);
   }
   ASSERT_EQ(results[0].status, PlanStatus::kSolved);
   EXPECT_TRUE(check_trajectory(problem, results[0].trajectory).passed);
 }
-INSTANTIATE_TEST_SUITE_P(Paper, Experiments, testing::Values("experiment_a", "experiment_b", "experiment_c"));
+INSTANTIATE_TEST_SUITE_P(Paper, Experiments,
+                         testing::Values("experiment_a", "experiment_b", "experiment_c"));
 
 }  // namespace
 }  // namespace swivel

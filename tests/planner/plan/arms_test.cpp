@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arms that are not S-R-S, planned on arcs of their self-motion: the whole way from a problem to a trajectory that is checked.
+// Arms that are not S-R-S, planned on arcs of their self-motion: the whole way from a problem to a
+// trajectory that is checked.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +25,8 @@ namespace {
 
 using namespace test;
 
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
+                                     PlannerKind::kParallel};
 
 TestRobot arm_of_data(const std::string& name) {
   TestRobot robot = data_robot(name);
@@ -32,18 +34,24 @@ TestRobot arm_of_data(const std::string& name) {
   return robot;
 }
 
-/// Offsets in the wrist, in the shoulder, in both; continuous joints; one without a closed form; one with two joints of two turns,
-/// one whose last joint alone has a range of more than a turn.
+/// Offsets in the wrist, in the shoulder, in both; continuous joints; one without a closed form;
+/// one with two joints of two turns, one whose last joint alone has a range of more than a turn.
 std::vector<TestRobot> arms() {
   TestRobot wound = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
-    if (number % 2 == 0) joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
+    if (number % 2 == 0)
+      joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
   });
   wound.name = "xarm7_like, one joint of more than a turn";
   TestRobot turns = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
     if (number % 2 == 0) joint.upper = number < 4 ? 3.1 : kTwoPi, joint.lower = -joint.upper;
   });
   turns.name = "xarm7_like, two joints of two turns";
-  return {arm_of_data("panda_like"), arm_of_data("gen3_like"), arm_of_data("fetch_like"), offset_robot(), turns, wound};
+  return {arm_of_data("panda_like"),
+          arm_of_data("gen3_like"),
+          arm_of_data("fetch_like"),
+          offset_robot(),
+          turns,
+          wound};
 }
 
 Problem random_task(const TestRobot& robot, Random& random) {
@@ -54,22 +62,26 @@ Problem random_task(const TestRobot& robot, Random& random) {
   problem.limits.joint_step = random.uniform(0.4, 1.0);
   if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
   problem.waypoints.resize(2);
-  problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() / (2 + random.below(3));
+  problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() /
+                          (2 + random.below(3));
   problem.resolution.dalpha = 0.5;
   return problem;
 }
 
-/// Every planner finds what the definition says: the least cost over nodes whose joints' values are all told apart.
+/// Every planner finds what the definition says: the least cost over nodes whose joints' values are
+/// all told apart.
 TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Arms");
   const auto robots = arms();
-  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0, sampled = 0, chosen = 0;
+  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0,
+      sampled = 0, chosen = 0;
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const Problem problem =
+        random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const PreparedRobot robot(problem);
     const bool complete = robot.arm_class().complete();
     ASSERT_EQ(robot.arm_class().kind, complete ? ArmKind::kArcs : ArmKind::kSampled) << what;
@@ -80,7 +92,8 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
     const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
     const Lattice& lattice = *turns_apart;
     const EdgeRule rule = robot.world().edge_rule(robot.radii());
-    const Answer truth = brute_force(lattice, robot.world(), rule, [](int, int, int) { return true; });
+    const Answer truth =
+        brute_force(lattice, robot.world(), rule, [](int, int, int) { return true; });
 
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -90,15 +103,19 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
       options.evidence = Evidence::all();
       results.push_back(plan(robot, problem, options));
       const PlanResult& result = results.back();
-      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved)
+          << what << ' ' << result.planner;
       ASSERT_TRUE(result.lattice.arcs && !result.lattice.grid) << what;
       ASSERT_EQ(result.lattice.complete, complete) << what;
       ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
       ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
       for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q) << what << ' ' << result.planner << " row " << i;
-      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer) << what << ' ' << result.planner;
-      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause) << what << ' ' << result.planner;
+        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q)
+            << what << ' ' << result.planner << " row " << i;
+      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer)
+          << what << ' ' << result.planner;
+      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause)
+          << what << ' ' << result.planner;
       ASSERT_EQ(result.partial.size(), results[0].partial.size()) << what << ' ' << result.planner;
     }
     started += problem.start.has_value();
@@ -113,7 +130,8 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
     ++solved;
     ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
     for (std::size_t i = 0; i < truth.slots.size(); ++i) {
-      const Config off = results[0].trajectory[i].q - *lattice.node(static_cast<int>(i), truth.slots[i]);
+      const Config off =
+          results[0].trajectory[i].q - *lattice.node(static_cast<int>(i), truth.slots[i]);
       for (std::size_t j = 0; j < kDof; ++j)
         if (!chain.limit[j].continuous) {
           ASSERT_LT(std::abs(off[static_cast<Eigen::Index>(j)]), 1e-9) << what << " row " << i;
@@ -126,7 +144,8 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
     wound += results[0].lattice.nodes != circles.nodes();
   }
   std::printf(
-      "%d problems: %d solved (%d with windings, %d whose start was chosen among equal costs), %d infeasible, %d with a start, %d "
+      "%d problems: %d solved (%d with windings, %d whose start was chosen among equal costs), %d "
+      "infeasible, %d with a start, %d "
       "continuous, %d with obstacles\n",
       count, solved, wound, chosen, infeasible, started, continuous, obstacles);
   EXPECT_GE(solved, at_least(count / 4));
@@ -137,7 +156,8 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(chosen, at_least(count / 40));
 }
 
-/// A path that turns the last joint on from near its limit: the first answer on circles leaves the limits.
+/// A path that turns the last joint on from near its limit: the first answer on circles leaves the
+/// limits.
 TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
   const std::uint64_t base = seed("Arms.Windings");
   const TestRobot robot = arms().back();
@@ -156,11 +176,12 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
     to[6] = q[6] + 1.2;
     problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(to))};
     problem.resolution = {.ds = 0.02, .dphi = 0.3, .dalpha = 0.3, .arc = 0.4};
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Planner planner(problem);
     const PlanResult first = planner.plan();
-    const ArcLattice circles(planner.prepare().arm().chain, planner.prepare().arm_class().lock, problem_path(problem, chain),
-                             problem);
+    const ArcLattice circles(planner.prepare().arm().chain, planner.prepare().arm_class().lock,
+                             problem_path(problem, chain), problem);
     wound += first.lattice.nodes > circles.nodes();
     if (first.status != PlanStatus::kSolved) continue;
     const CheckResult check = check_trajectory(planner.prepare(), problem, first.trajectory);
@@ -169,7 +190,8 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
     const PlanResult again = planner.plan();
     ASSERT_EQ(again.cost, first.cost) << what;
     ASSERT_EQ(again.trajectory.size(), first.trajectory.size()) << what;
-    for (std::size_t i = 0; i < again.trajectory.size(); ++i) ASSERT_EQ(again.trajectory[i].q, first.trajectory[i].q) << what;
+    for (std::size_t i = 0; i < again.trajectory.size(); ++i)
+      ASSERT_EQ(again.trajectory[i].q, first.trajectory[i].q) << what;
     replanned += first.lattice.nodes > circles.nodes();
   }
   std::printf("%d paths left the limits, %d of them with an answer\n", wound, replanned);
@@ -177,8 +199,8 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
   EXPECT_GE(replanned, at_least(2));
 }
 
-/// Six joints, and the turn of the tool about its own axis: all planners find the same, the check passes it, and the tool stands
-/// as the waypoints have it but for the roll.
+/// Six joints, and the turn of the tool about its own axis: all planners find the same, the check
+/// passes it, and the tool stands as the waypoints have it but for the roll.
 TEST(Arms, SixJointsAndTheRollOfTheTool) {
   for (const char* const name : {"kr6_weld_pipe", "ur5e_deburr_edge"}) {
     Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
@@ -201,7 +223,8 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
       if (!first) first = result;
       ASSERT_EQ(result.cost, first->cost) << name << ' ' << result.planner;
       for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q) << name << ' ' << result.planner << " row " << i;
+        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q)
+            << name << ' ' << result.planner << " row " << i;
     }
     const CheckResult check = check_trajectory(robot, problem, first->trajectory);
     ASSERT_TRUE(check.passed) << name << ": " << (check.failures.empty() ? "" : check.failures[0]);
@@ -223,7 +246,8 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
       EXPECT_LE((wanted.linear().col(2) - tool.linear().col(2)).norm(), 1e-9) << name;
       most = std::max(most, std::abs(q[6]));
     }
-    std::printf("%s: cost %.4f, %zu rows, a roll of up to %.2f rad\n", name, first->cost, first->trajectory.size(), most);
+    std::printf("%s: cost %.4f, %zu rows, a roll of up to %.2f rad\n", name, first->cost,
+                first->trajectory.size(), most);
     EXPECT_GT(most, 0.01) << name;  // or it would be of no use
     // Without it the arm is one of six joints, which is none.
     Problem without = problem;
@@ -237,8 +261,10 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
 double plain_roll_cost(const Problem& problem, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double before = i > 0 ? rows[i].s - rows[i - 1].s : 0, after = i + 1 < rows.size() ? rows[i + 1].s - rows[i].s : 0;
-    sum += problem.cost.roll * (before + after) / 2 * std::abs(std::remainder(rows[i].q[6], kTwoPi));
+    const double before = i > 0 ? rows[i].s - rows[i - 1].s : 0,
+                 after = i + 1 < rows.size() ? rows[i + 1].s - rows[i].s : 0;
+    sum +=
+        problem.cost.roll * (before + after) / 2 * std::abs(std::remainder(rows[i].q[6], kTwoPi));
   }
   return sum;
 }
@@ -253,7 +279,8 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
   struct Wave final : StateCost {
     [[nodiscard]] std::string name() const override { return "wave"; }
     void costs(std::span<const Config> states, std::span<double> costs) override {
-      for (std::size_t k = 0; k < states.size(); ++k) costs[k] = 0.2 + 0.2 * std::sin(5 * states[k][2]);
+      for (std::size_t k = 0; k < states.size(); ++k)
+        costs[k] = 0.2 + 0.2 * std::sin(5 * states[k][2]);
     }
   };
   for (int trial = 0; trial < count; ++trial) {
@@ -263,15 +290,18 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     problem.smooth.reset();
     if (problem.roll->lower > 0) problem.start.reset();  // it stands unturned
     problem.waypoints.resize(2 + static_cast<std::size_t>(random.below(2)));
-    problem.resolution = {.ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6)};
+    problem.resolution = {
+        .ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6)};
     problem.limits.joint_step = 1;
     problem.limits.tool_path_error = 0.05;
     problem.limits.roll_slope = random.uniform(10, 30);
     problem.limits.edges = random.coin() ? EdgeMode::kContinuous : EdgeMode::kNodes;
     problem.limits.edge_tolerance = 0.005;
     problem.cost.weights[6] = random.coin(0.3) ? 0.5 : 0;
-    if (!problem.roll->circle() && random.coin()) draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
+    if (!problem.roll->circle() && random.coin())
+      draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
     const PreparedRobot robot(problem);
     constexpr double kLeast = 1e-6;  // with some cost the nodes are the same
     problem.cost.roll = kLeast;
@@ -286,9 +316,12 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     const Lattice& lattice = *turns_apart;
     const auto turns_slowly = [&](int layer, int a, int b) {
       const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
-      return std::abs(std::remainder((*lattice.node(layer + 1, b))[6] - (*lattice.node(layer, a))[6], kTwoPi)) <= most_turn;
+      return std::abs(std::remainder(
+                 (*lattice.node(layer + 1, b))[6] - (*lattice.node(layer, a))[6], kTwoPi)) <=
+             most_turn;
     };
-    const Answer truth = brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), turns_slowly, hooks);
+    const Answer truth = brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()),
+                                     turns_slowly, hooks);
     std::optional<PlanResult> first;
     for (const PlannerKind planner : kPlanners) {
       PlanOptions options;
@@ -296,13 +329,15 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
       options.threads = 2;
       options.hooks = hooks;
       const PlanResult result = plan(robot, problem, options);
-      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved)
+          << what << ' ' << result.planner;
       if (!truth.solved) continue;
       ASSERT_EQ(result.cost, truth.cost) << what << ' ' << result.planner;
       if (!first) first = result;
       ASSERT_EQ(result.trajectory.size(), first->trajectory.size()) << what;
       for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q) << what << ' ' << result.planner << " row " << i;
+        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q)
+            << what << ' ' << result.planner << " row " << i;
     }
     if (!truth.solved) {
       ++infeasible;
@@ -312,7 +347,10 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     if (problem.waypoints[0].roll) {
       ++windows;
       for (int i = 0; i < path.size(); ++i)
-        ASSERT_LE(outside_windows(problem, path, i, first->trajectory[static_cast<std::size_t>(i)].q[6]), 1e-8) << what;
+        ASSERT_LE(
+            outside_windows(problem, path, i, first->trajectory[static_cast<std::size_t>(i)].q[6]),
+            1e-8)
+            << what;
     }
     ASSERT_EQ(free.status, PlanStatus::kSolved) << what;
     const CheckResult check = check_trajectory(robot, problem, first->trajectory);
@@ -320,22 +358,28 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     Problem unturned = problem;
     unturned.cost.roll = 0;
     const double moves = check_trajectory(robot, unturned, first->trajectory).cost;
-    const double rounding = 1e-9 * (1 + check.cost) + 2e-12 * lattice.cost_unit() * static_cast<double>(first->trajectory.size());
-    ASSERT_NEAR(check.cost, moves + plain_roll_cost(problem, first->trajectory), 1e-9 * (1 + check.cost)) << what;
+    const double rounding =
+        1e-9 * (1 + check.cost) +
+        2e-12 * lattice.cost_unit() * static_cast<double>(first->trajectory.size());
+    ASSERT_NEAR(check.cost, moves + plain_roll_cost(problem, first->trajectory),
+                1e-9 * (1 + check.cost))
+        << what;
     if (hooks.cost) {
       ++hooked;
       continue;
     }
     ASSERT_NEAR(check.cost, first->cost, rounding) << what;
     // With hardly any cost the moves are no dearer, and the tool is turned no less.
-    const double here = plain_roll_cost(problem, first->trajectory), there = plain_roll_cost(problem, free.trajectory);
+    const double here = plain_roll_cost(problem, first->trajectory),
+                 there = plain_roll_cost(problem, free.trajectory);
     ASSERT_LE(free.cost, moves + kLeast * here / problem.cost.roll + rounding) << what;
     ASSERT_LE(here, there + 1e-9 * (1 + there)) << what;
     straighter += here < 0.9 * there;
     dearer += moves > free.cost + 1e-6;
   }
   std::printf(
-      "%d problems: %d solved, %d of them with a cost of the caller's own, %d with windows of roll, %d infeasible; %d straighter, "
+      "%d problems: %d solved, %d of them with a cost of the caller's own, %d with windows of "
+      "roll, %d infeasible; %d straighter, "
       "%d "
       "of dearer moves\n",
       count, solved, hooked, windows, infeasible, straighter, dearer);
@@ -365,15 +409,19 @@ TEST(Arms, AStartThatDoesNotFitIsBadInput) {
     EXPECT_EQ(message(q), "") << name;
     Config off = q;
     off[1] += 0.01;
-    EXPECT_NE(message(off).find("start.joints: the tool is"), std::string::npos) << name << ": " << message(off);
+    EXPECT_NE(message(off).find("start.joints: the tool is"), std::string::npos)
+        << name << ": " << message(off);
     off = q;
     off[1] += 2 * kTwoPi;
-    EXPECT_NE(message(off).find("is outside its limits: allowed is"), std::string::npos) << name << ": " << message(off);
+    EXPECT_NE(message(off).find("is outside its limits: allowed is"), std::string::npos)
+        << name << ": " << message(off);
     if (!problem.roll) continue;
     for (Waypoint& waypoint : problem.waypoints) waypoint.roll = problem.roll;
     EXPECT_EQ(message(q), "");
-    problem.waypoints[0].roll = q[6] > 0 ? Roll{problem.roll->lower, q[6] - 0.01} : Roll{q[6] + 0.01, problem.roll->upper};
-    EXPECT_NE(message(q).find("the roll_min and roll_max of its waypoints"), std::string::npos) << message(q);
+    problem.waypoints[0].roll =
+        q[6] > 0 ? Roll{problem.roll->lower, q[6] - 0.01} : Roll{q[6] + 0.01, problem.roll->upper};
+    EXPECT_NE(message(q).find("the roll_min and roll_max of its waypoints"), std::string::npos)
+        << message(q);
   }
 }
 
@@ -389,11 +437,14 @@ TEST(Arms, WhatNeedsAnArmAngleSaysSo) {
   Random random(1);
   Problem problem = random_task(arms()[0], random);
   problem.limits.step_error = 0.1;
-  EXPECT_EQ(message(problem), problem.source + ": limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
+  EXPECT_EQ(message(problem),
+            problem.source +
+                ": limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
   problem.limits.step_error.reset();
   problem.limits.arm_slope = 21;
-  EXPECT_EQ(message(problem),
-            problem.source + ": limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
+  EXPECT_EQ(message(problem), problem.source +
+                                  ": limits.arm_slope: the arm has no arm angle, since it is not "
+                                  "S-R-S: allowed is to leave it out");
 }
 
 }  // namespace

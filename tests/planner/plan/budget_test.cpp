@@ -28,7 +28,8 @@ Problem experiment(const std::string& name) {
   return io::load_problem(data_dir() / "problems" / (name + ".yaml"));
 }
 
-/// Experiment A with a plate before the tool half way: no path, for a cause that must be searched for.
+/// Experiment A with a plate before the tool half way: no path, for a cause that must be searched
+/// for.
 Problem infeasible() {
   Problem problem = experiment("experiment_a");
   SceneObject plate;
@@ -40,7 +41,8 @@ Problem infeasible() {
 }
 
 TEST(Budget, EveryPositiveTimeOutHolds) {
-  for (const double seconds : {1.0, 1e8, 9.2e9, 9.3e9, 1e10, 1e300, std::numeric_limits<double>::infinity()})
+  for (const double seconds :
+       {1.0, 1e8, 9.2e9, 9.3e9, 1e10, 1e300, std::numeric_limits<double>::infinity()})
     EXPECT_FALSE(Budget(seconds).spent()) << seconds;
   EXPECT_FALSE(Budget().spent());
   EXPECT_TRUE(Budget(1e-300).spent());
@@ -69,7 +71,8 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
   const EdgeRule rule = world.edge_rule(robot.radii());
   Executor executor(2);
   const auto validity = [&] {
-    return CollisionValidity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, 4, spent);
+    return CollisionValidity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn,
+                             executor, 4, spent);
   };
   const auto long_path = [&] {
     Resolution fine = problem.resolution;
@@ -144,7 +147,8 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
 TEST(Budget, APlanStopsInTheStageThatItIsIn) {
   int stopped = 0, verdicts_kept = 0;
   for (const Problem& problem : {experiment("experiment_b"), infeasible()})
-    for (const PlannerKind planner : {PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+    for (const PlannerKind planner :
+         {PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
       Problem coarse = problem;
       if (planner == PlannerKind::kEagerDp) coarse.resolution = {.ds = 0.02, .dphi = 0.2};
       const PreparedRobot robot(coarse);
@@ -156,7 +160,8 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
       options.progress = [&](const Progress&) { ++calls; };
       const PlanResult whole = plan(robot, coarse, options);
       ASSERT_GT(calls, 3);
-      for (int call = 0; call < calls; call = call < calls - 6 ? call + std::max(1, calls / 12) : call + 1) {
+      for (int call = 0; call < calls;
+           call = call < calls - 6 ? call + std::max(1, calls / 12) : call + 1) {
         std::atomic<bool> cancel{false};
         options.cancel = &cancel;
         int heard = 0, after = 0;
@@ -179,7 +184,9 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
           ++stopped;
           EXPECT_TRUE(result.trajectory.empty()) << what;
           EXPECT_TRUE(!phrase.starts_with("laying") || result.lattice.layers == 0) << what;
-          EXPECT_TRUE(!phrase.starts_with("sweeping") || result.counters.edges <= whole.counters.edges) << what;
+          EXPECT_TRUE(!phrase.starts_with("sweeping") ||
+                      result.counters.edges <= whole.counters.edges)
+              << what;
           continue;
         }
         ++verdicts_kept;
@@ -228,21 +235,25 @@ TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
   EXPECT_FALSE(evidence.diagnosis.removed.empty());
 }
 
-/// Large allocations, long loops and destructors between the polls are what could make a stop late. Processor time, since on a busy
-/// machine the clock measures others.
+/// Large allocations, long loops and destructors between the polls are what could make a stop late.
+/// Processor time, since on a busy machine the clock measures others.
 TEST(Budget, ADeadlineHoldsOnLargeLattices) {
   struct Size {
     double ds, dphi;
   };
-  for (const auto& [name, problem] : {std::pair("solved", experiment("experiment_a")), std::pair("infeasible", infeasible())})
-    for (const Size size : {Size{0.005, 0.05}, Size{0.001, 0.01}, Size{0.0005, 0.003}, Size{1e-6, 0.5}}) {
+  for (const auto& [name, problem] :
+       {std::pair("solved", experiment("experiment_a")), std::pair("infeasible", infeasible())})
+    for (const Size size :
+         {Size{0.005, 0.05}, Size{0.001, 0.01}, Size{0.0005, 0.003}, Size{1e-6, 0.5}}) {
       Problem fine = problem;
       fine.resolution = {.ds = size.ds, .dphi = size.dphi};
       const PreparedRobot robot(fine);
       for (const auto& [planner, timeout_s] :
-           {std::pair(PlannerKind::kEager, 0.005), std::pair(PlannerKind::kEagerDp, 0.005), std::pair(PlannerKind::kLazy, 0.005),
-            std::pair(PlannerKind::kParallel, 0.005), std::pair(PlannerKind::kLazy, 0.1)}) {
-        if (planner == PlannerKind::kEager && size.dphi < 0.01) continue;  // refused for its memory on small machines
+           {std::pair(PlannerKind::kEager, 0.005), std::pair(PlannerKind::kEagerDp, 0.005),
+            std::pair(PlannerKind::kLazy, 0.005), std::pair(PlannerKind::kParallel, 0.005),
+            std::pair(PlannerKind::kLazy, 0.1)}) {
+        if (planner == PlannerKind::kEager && size.dphi < 0.01)
+          continue;  // refused for its memory on small machines
         PlanOptions options;
         options.planner = planner;
         options.evidence = Evidence::all();
@@ -252,10 +263,14 @@ TEST(Budget, ADeadlineHoldsOnLargeLattices) {
         const std::clock_t used = std::clock();
         const PlanResult result = plan(robot, fine, options);
         const double cpu_ms = 1e3 * static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
-        const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        std::printf("%s, ds %g, dphi %g, %s, %g s: %s after %.1f ms, of which %.1f ms worked\n", name, size.ds, size.dphi,
-                    result.planner.c_str(), timeout_s, to_string(result.status), ms, cpu_ms);
-        EXPECT_LT(cpu_ms, 1e3 * timeout_s + 250) << result.planner << " ds " << size.ds << " dphi " << size.dphi;
+        const double ms =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+                .count();
+        std::printf("%s, ds %g, dphi %g, %s, %g s: %s after %.1f ms, of which %.1f ms worked\n",
+                    name, size.ds, size.dphi, result.planner.c_str(), timeout_s,
+                    to_string(result.status), ms, cpu_ms);
+        EXPECT_LT(cpu_ms, 1e3 * timeout_s + 250)
+            << result.planner << " ds " << size.ds << " dphi " << size.dphi;
       }
     }
 }

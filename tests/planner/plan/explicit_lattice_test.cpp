@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lattices that list their nodes, of an arm without a spherical wrist: the same searches, the same answers as brute force.
+// Lattices that list their nodes, of an arm without a spherical wrist: the same searches, the same
+// answers as brute force.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -32,8 +33,11 @@ std::optional<Config> projected(const Chain& chain, const Pose& pose, Config q) 
   return std::nullopt;
 }
 
-/// Random nodes of every layer: some found from those of the layer before, so that paths exist, some from anywhere.
-std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chain, const ToolPath& path, const Config& start,
+/// Random nodes of every layer: some found from those of the layer before, so that paths exist,
+/// some from anywhere.
+std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chain,
+                                                               const ToolPath& path,
+                                                               const Config& start,
                                                                Random& random) {
   std::vector<std::vector<ExplicitLattice::Point>> layers;
   std::vector<Config> seeds{start};
@@ -41,8 +45,10 @@ std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chai
     std::vector<Config> found;
     const int wanted = 6 + random.below(14);
     for (int k = 0; k < wanted; ++k) {
-      Config seed = random.coin(0.8) ? seeds[static_cast<std::size_t>(random.below(static_cast<int>(seeds.size())))]
-                                     : random_config(chain, random);
+      Config seed =
+          random.coin(0.8)
+              ? seeds[static_cast<std::size_t>(random.below(static_cast<int>(seeds.size())))]
+              : random_config(chain, random);
       for (int j = 0; j < kDof; ++j) seed[j] += random.uniform(-0.3, 0.3);
       auto q = projected(chain, path.layer(layer).tool, seed);
       if (!q) continue;
@@ -66,7 +72,8 @@ std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chai
   for (std::size_t i = 0; i < layers.size(); ++i)
     for (std::size_t k = 0; k < layers[i].size(); ++k) {
       if (i > 0 && k < layers[i - 1].size()) layers[i][k].along[0] = static_cast<int>(k);
-      if (i + 1 < layers.size() && k < layers[i + 1].size()) layers[i][k].along[1] = static_cast<int>(k);
+      if (i + 1 < layers.size() && k < layers[i + 1].size())
+        layers[i][k].along[1] = static_cast<int>(k);
     }
   return layers;
 }
@@ -78,7 +85,8 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
   int solved = 0, infeasible = 0, rounds = 0, shared = 0;
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     Problem problem = random_problem(robot, random);
     problem.limits.step_error.reset();
@@ -92,7 +100,8 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
     problem.waypoints = {waypoint_of(arm.chain.tool(start)), waypoint_of(arm.chain.tool(end))};
     problem.resolution = {.ds = 0.04, .dphi = 0.3, .dalpha = 0.3};
     const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
-    const ExplicitLattice lattice(arm.chain, path, problem, random_layers(arm.chain, path, start, random));
+    const ExplicitLattice lattice(arm.chain, path, problem,
+                                  random_layers(arm.chain, path, start, random));
     const World world(*robot.model, arm, problem);
     const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
     const Answer truth = brute_force(lattice, world, rule, [](int, int, int) { return true; });
@@ -100,7 +109,8 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
 
     Executor executor(1);
     const Budget never;
-    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest, const char* planner) {
+    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest,
+                                  const char* planner) {
       ASSERT_EQ(!slots.empty(), truth.solved) << what << ' ' << planner;
       ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
       if (truth.solved) {
@@ -110,35 +120,40 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
       }
     };
     {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff, executor, 0, never);
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff,
+                                 executor, 0, never);
       EagerOutcome found;
       eager_search(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff, executor, 0, never);
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff,
+                                 executor, 0, never);
       EagerOutcome found;
       eager_dp(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager_dp");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, batch == 1 ? 1 : 4,
-                                 never);
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn,
+                                 executor, batch == 1 ? 1 : 4, never);
       const auto cost_to_go = make_cost_to_go(lattice);
       cost_to_go->sweep(lattice.layers() - 1);
       SearchCounters counters;
       const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
       rounds += static_cast<int>(counters.iterations);
       int deepest = -1;
-      if (found.path.empty()) deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
+      if (found.path.empty())
+        deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
       expect_truth(found.path, found.cost, deepest, "lazy");
       int removed = 0;
-      for (const Verdict verdict : cost_to_go->verdicts().nodes()) removed += verdict == Verdict::kRemoved;
+      for (const Verdict verdict : cost_to_go->verdicts().nodes())
+        removed += verdict == Verdict::kRemoved;
       shared += removed;
     }
     if (HasFatalFailure()) return;
   }
-  std::printf("%d solved, %d infeasible, %d rounds, %d nodes removed\n", solved, infeasible, rounds, shared);
+  std::printf("%d solved, %d infeasible, %d rounds, %d nodes removed\n", solved, infeasible, rounds,
+              shared);
   EXPECT_GE(solved, at_least(count / 10 + 1));
   EXPECT_GE(infeasible, at_least(count / 10 + 1));
   EXPECT_GE(rounds, at_least(2 * count + 1));
@@ -152,7 +167,8 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
   int infeasible = 0, named = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     Problem problem = random_problem(robot, random);
     problem.limits.step_error.reset();
@@ -171,8 +187,10 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
       const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
       const Answer truth = brute_force(lattice, world, rule, [](int, int, int) { return true; });
       if (diagnosis != nullptr && !truth.solved)
-        diagnose(lattice, world, rule, truth.deepest < 0 ? SlotPath{} : best_path_to(lattice, world, rule, truth.deepest, {}), true,
-                 {}, *diagnosis);
+        diagnose(
+            lattice, world, rule,
+            truth.deepest < 0 ? SlotPath{} : best_path_to(lattice, world, rule, truth.deepest, {}),
+            true, {}, *diagnosis);
       return truth;
     };
     Diagnosis diagnosis;
@@ -183,7 +201,8 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
     const auto relaxed = without(diagnosis.cause, problem);
     ASSERT_TRUE(relaxed.has_value()) << what;
     const Answer after = truth_of(*relaxed, nullptr);
-    EXPECT_TRUE(after.solved || after.deepest >= *diagnosis.without_it) << what << ": " << words(diagnosis.cause);
+    EXPECT_TRUE(after.solved || after.deepest >= *diagnosis.without_it)
+        << what << ": " << words(diagnosis.cause);
     ++named;
   }
   std::printf("%d infeasible, one thing named in %d\n", infeasible, named);
@@ -191,7 +210,8 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
   EXPECT_GT(named, count / 20);
 }
 
-/// Where a curve of self-motion ends because a joint is at its limit, no node is listed past it: the continuation tells.
+/// Where a curve of self-motion ends because a joint is at its limit, no node is listed past it:
+/// the continuation tells.
 TEST(ExplicitLattice, ALimitThatEndsTheNodesIsNamed) {
   const TestRobot robot = offset_robot();
   ArmModel arm = arm_of(robot);
@@ -210,7 +230,8 @@ TEST(ExplicitLattice, ALimitThatEndsTheNodesIsNamed) {
   const ExplicitLattice lattice(arm.chain, path, problem, points);
   const World world(*robot.model, arm, problem);
   Diagnosis diagnosis;
-  diagnose(lattice, world, world.edge_rule(motion_radii(arm.chain, world.bodies())), {0}, true, {}, diagnosis);
+  diagnose(lattice, world, world.edge_rule(motion_radii(arm.chain, world.bodies())), {0}, true, {},
+           diagnosis);
   EXPECT_EQ(diagnosis.cause.kind, Cause::Kind::kLimit) << words(diagnosis.cause);
   EXPECT_EQ(diagnosis.cause.joint, arm.chain.joint_names[1]);
   EXPECT_EQ(diagnosis.cause.side, Cause::Side::kUpper);
@@ -223,9 +244,11 @@ TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
   const auto robots = all_robots();
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem.limits.arm_slope = 1e6;  // any arm angle may follow any other
     problem.limits.step_error.reset();
     problem.start.reset();
@@ -233,7 +256,8 @@ TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
     const SrsArm srs = fit_srs(arm.chain, what);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
     const SrsLattice grid(arm.chain, srs, path, problem);
-    std::vector<std::vector<ExplicitLattice::Point>> layers(static_cast<std::size_t>(grid.layers()));
+    std::vector<std::vector<ExplicitLattice::Point>> layers(
+        static_cast<std::size_t>(grid.layers()));
     std::vector<std::vector<int>> slots(layers.size());  // of the grid
     std::vector<Lattice::Node> nodes;
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -250,9 +274,11 @@ TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
     for (int round = 0; round < 5; ++round) {
       ASSERT_EQ(of_grid->best(), of_list->best()) << what;
       std::int64_t expansions = 0;
-      const SlotPath wanted = best_path(*of_grid, expansions), found = best_path(*of_list, expansions);
+      const SlotPath wanted = best_path(*of_grid, expansions),
+                     found = best_path(*of_list, expansions);
       ASSERT_EQ(wanted.size(), found.size()) << what;
-      for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(wanted[i], slots[i][static_cast<std::size_t>(found[i])]) << what;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        ASSERT_EQ(wanted[i], slots[i][static_cast<std::size_t>(found[i])]) << what;
       if (found.empty()) {
         ASSERT_EQ(of_grid->deepest_reachable(), of_list->deepest_reachable()) << what;
         ++infeasible;
@@ -278,7 +304,8 @@ TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
       of_list->repair();
     }
   }
-  std::printf("%d paths compared, %d problems without one, %d removals\n", solved, infeasible, removals);
+  std::printf("%d paths compared, %d problems without one, %d removals\n", solved, infeasible,
+              removals);
   EXPECT_GE(solved, at_least(2 * count + 1));
   EXPECT_GE(infeasible, at_least(count / 2 + 1));
 }

@@ -50,7 +50,8 @@ class Wave {
   Config turns_, shift_;
 };
 
-/// Refuses where a wave is high, of motions: half way. Counts what it is asked, and that nobody else asks meanwhile.
+/// Refuses where a wave is high, of motions: half way. Counts what it is asked, and that nobody
+/// else asks meanwhile.
 class WaveCheck : public StateCheck {
  public:
   WaveCheck(Random& random, double states_above, double motions_above)
@@ -92,7 +93,9 @@ class WaveCheck : public StateCheck {
 
  private:
   struct Alone {
-    explicit Alone(WaveCheck& check) : of(check) { of.most_at_once = std::max(of.most_at_once.load(), ++of.at_once); }
+    explicit Alone(WaveCheck& check) : of(check) {
+      of.most_at_once = std::max(of.most_at_once.load(), ++of.at_once);
+    }
     ~Alone() { --of.at_once; }
     WaveCheck& of;
   };
@@ -113,7 +116,9 @@ class WaveCost : public StateCost {
     for (std::size_t k = 0; k < states.size(); ++k) costs[k] = of(states[k]);
     asked += static_cast<std::int64_t>(states.size());
   }
-  [[nodiscard]] double of(const Config& q) const { return most_ * std::max(0.0, wave_(q) - from_) / (1 - from_); }
+  [[nodiscard]] double of(const Config& q) const {
+    return most_ * std::max(0.0, wave_(q) - from_) / (1 - from_);
+  }
 
   std::int64_t asked = 0, calls = 0;
 
@@ -130,7 +135,8 @@ std::shared_ptr<WaveCheck> random_check(Random& random) {
 
 std::shared_ptr<WaveCost> random_cost(Random& random, double unit) {
   const double from = std::array{-0.999, 0.0, 0.8}[static_cast<std::size_t>(random.below(3))];
-  const double most = unit * std::array{1e-4, 0.02, 0.3, 5.0, 300.0}[static_cast<std::size_t>(random.below(5))];
+  const double most =
+      unit * std::array{1e-4, 0.02, 0.3, 5.0, 300.0}[static_cast<std::size_t>(random.below(5))];
   return std::make_shared<WaveCost>(random, from, most);
 }
 
@@ -141,25 +147,28 @@ PlanOptions options_for(PlannerKind planner) {
   return options;
 }
 
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
+                                     PlannerKind::kParallel};
 
 TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Hooks");
   const auto robots = all_robots();
-  int solved = 0, infeasible = 0, with_cost = 0, with_check = 0, with_motions = 0, other_path = 0, other_verdict = 0, by_check = 0,
-      confirmed = 0;
+  int solved = 0, infeasible = 0, with_cost = 0, with_check = 0, with_motions = 0, other_path = 0,
+      other_verdict = 0, by_check = 0, confirmed = 0;
   std::int64_t asked = 0, refused = 0, lazy_costs = 0, eager_costs = 0;
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const PreparedRobot robot(problem);
     const ToolPath path = problem_path(problem, robot.arm().chain);
     const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
     const std::shared_ptr<WaveCheck> check = trial % 4 == 1 ? nullptr : random_check(random);
-    const std::shared_ptr<WaveCost> cost = trial % 4 == 2 ? nullptr : random_cost(random, lattice.cost_unit());
+    const std::shared_ptr<WaveCost> cost =
+        trial % 4 == 2 ? nullptr : random_cost(random, lattice.cost_unit());
     const Hooks hooks{check, cost};
     const World world(robot.world(), problem);
     const Answer truth = brute_force(
@@ -185,8 +194,10 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
       ASSERT_EQ(result.cost, truth.solved ? truth.cost : 0) << who;
       for (int i = 0; truth.solved && i < lattice.layers(); ++i) {
         const auto row = static_cast<std::size_t>(i);
-        ASSERT_EQ(result.trajectory[row].phi, lattice.phi(i, truth.slots[row])) << who << " row " << i;
-        ASSERT_EQ(result.trajectory[row].branch, lattice.branch(i, truth.slots[row])) << who << " row " << i;
+        ASSERT_EQ(result.trajectory[row].phi, lattice.phi(i, truth.slots[row]))
+            << who << " row " << i;
+        ASSERT_EQ(result.trajectory[row].branch, lattice.branch(i, truth.slots[row]))
+            << who << " row " << i;
         ASSERT_EQ(result.trajectory[row].q, results[0].trajectory[row].q) << who << " row " << i;
       }
       ASSERT_EQ(words(result.diagnosis.cause), words(results[0].diagnosis.cause)) << who;
@@ -214,29 +225,36 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
     by_check += words(results[0].diagnosis.cause).starts_with("check wave");
     if (truth.solved) {
       const CheckResult checked = check_trajectory(robot, problem, results[0].trajectory);
-      ASSERT_TRUE(checked.passed) << what << ": " << (checked.failures.empty() ? "" : checked.failures[0]);
+      ASSERT_TRUE(checked.passed) << what << ": "
+                                  << (checked.failures.empty() ? "" : checked.failures[0]);
       double of_states = 0;
-      for (const TrajectoryRow& row : results[0].trajectory) of_states += cost ? cost->of(row.q) : 0;
+      for (const TrajectoryRow& row : results[0].trajectory)
+        of_states += cost ? cost->of(row.q) : 0;
       ASSERT_NEAR(checked.cost + of_states, truth.cost, 1e-9 * std::max(1.0, truth.cost)) << what;
     }
     const PlanResult plain = plan(robot, problem, options_for(PlannerKind::kLazy));
     other_verdict += plain.status != results[0].status;
     if (const Diagnosis& d = results[0].diagnosis; !truth.solved && check && d.without_it) {
       ASSERT_EQ(d.cause.kind, Cause::Kind::kCheck) << what;
-      ASSERT_TRUE(plain.status == PlanStatus::kSolved || plain.diagnosis.reached_layer.value_or(-1) >= *d.without_it) << what;
+      ASSERT_TRUE(plain.status == PlanStatus::kSolved ||
+                  plain.diagnosis.reached_layer.value_or(-1) >= *d.without_it)
+          << what;
       ++confirmed;
     }
     if (truth.solved)
-      other_path += !std::equal(plain.trajectory.begin(), plain.trajectory.end(), results[0].trajectory.begin(),
-                                [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
+      other_path += !std::equal(
+          plain.trajectory.begin(), plain.trajectory.end(), results[0].trajectory.begin(),
+          [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
   }
   std::printf(
-      "%d problems: %d solved, %d infeasible (%d by a check, %d confirmed without it); %d with costs, %d with checks, %d of "
+      "%d problems: %d solved, %d infeasible (%d by a check, %d confirmed without it); %d with "
+      "costs, %d with checks, %d of "
       "motions; another path %d times, "
-      "another verdict %d times; %lld asked, %lld refused; costs asked: %lld lazily, %lld eagerly\n",
-      count, solved, infeasible, by_check, confirmed, with_cost, with_check, with_motions, other_path, other_verdict,
-      static_cast<long long>(asked), static_cast<long long>(refused), static_cast<long long>(lazy_costs),
-      static_cast<long long>(eager_costs));
+      "another verdict %d times; %lld asked, %lld refused; costs asked: %lld lazily, %lld "
+      "eagerly\n",
+      count, solved, infeasible, by_check, confirmed, with_cost, with_check, with_motions,
+      other_path, other_verdict, static_cast<long long>(asked), static_cast<long long>(refused),
+      static_cast<long long>(lazy_costs), static_cast<long long>(eager_costs));
   EXPECT_GE(solved, count / 4);
   EXPECT_GE(infeasible, count / 10);
   EXPECT_GE(with_motions, count / 4);
@@ -248,18 +266,20 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_LT(lazy_costs, eager_costs);
 }
 
-/// How far the tool comes, and how, hangs neither on what one planner planned before nor on threads: remembered failures may end
-/// every path before any cost is asked.
+/// How far the tool comes, and how, hangs neither on what one planner planned before nor on
+/// threads: remembered failures may end every path before any cost is asked.
 TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
   const std::uint64_t base = seed("Hooks.Partial");
   TestRobot panda = data_robot("panda_like");
   panda.tip_link = "flange";
-  const std::vector<TestRobot> robots{data_robot("iiwa14"), panda, data_robot("sda5f"), windings_robot()};
+  const std::vector<TestRobot> robots{data_robot("iiwa14"), panda, data_robot("sda5f"),
+                                      windings_robot()};
   int infeasible = 0, rows = 0, costs_mattered = 0;
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem.limits.step_error.reset();
     problem.limits.arm_slope = Limits().arm_slope;
     problem.limits.joint_step = 1;
@@ -270,11 +290,12 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
     wall.shape = Sphere{0.1};
     wall.pose.translation() = waypoints_in_base(problem).back().position;
     problem.scene.push_back(wall);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     std::optional<PlanResult> first;
-    for (const auto& [kind, threads] : {std::pair(PlannerKind::kLazy, 1), std::pair(PlannerKind::kParallel, 1),
-                                        std::pair(PlannerKind::kParallel, 3), std::pair(PlannerKind::kEagerDp, 1)}) {
+    for (const auto& [kind, threads] :
+         {std::pair(PlannerKind::kLazy, 1), std::pair(PlannerKind::kParallel, 1),
+          std::pair(PlannerKind::kParallel, 3), std::pair(PlannerKind::kEagerDp, 1)}) {
       Planner planner(problem);
       for (int time = 0; time < 3; ++time) {
         PlanOptions options = options_for(kind);
@@ -284,10 +305,12 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
         options.hooks.cost = std::make_shared<WaveCost>(of_cost, -0.999, 1.0);
         const PlanResult result = planner.plan(options);
         if (!first) first = result;
-        const std::string who = what + " planner " + result.planner + " plan " + std::to_string(time);
+        const std::string who =
+            what + " planner " + result.planner + " plan " + std::to_string(time);
         ASSERT_EQ(result.status, first->status) << who;
         ASSERT_EQ(result.partial.size(), first->partial.size()) << who;
-        for (std::size_t i = 0; i < result.partial.size(); ++i) ASSERT_EQ(result.partial[i].q, first->partial[i].q) << who;
+        for (std::size_t i = 0; i < result.partial.size(); ++i)
+          ASSERT_EQ(result.partial[i].q, first->partial[i].q) << who;
         ASSERT_EQ(result.diagnosis.cause, first->diagnosis.cause) << who;
         ASSERT_EQ(result.diagnosis.removed, first->diagnosis.removed) << who;
         ASSERT_EQ(result.diagnosis.without_it, first->diagnosis.without_it) << who;
@@ -297,11 +320,13 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
     ++infeasible;
     rows += static_cast<int>(first->partial.size());
     const PlanResult plain = plan(problem, options_for(PlannerKind::kLazy));
-    costs_mattered += !std::equal(plain.partial.begin(), plain.partial.end(), first->partial.begin(), first->partial.end(),
-                                  [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
+    costs_mattered += !std::equal(
+        plain.partial.begin(), plain.partial.end(), first->partial.begin(), first->partial.end(),
+        [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
   }
-  std::printf("%d problems without a path, %d rows of the way there; in %d of them costs changed it\n", infeasible, rows,
-              costs_mattered);
+  std::printf(
+      "%d problems without a path, %d rows of the way there; in %d of them costs changed it\n",
+      infeasible, rows, costs_mattered);
   EXPECT_GE(infeasible, at_least(count / 2));
   EXPECT_GE(costs_mattered, at_least(count / 8));
 }
@@ -312,7 +337,8 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
   int solved = 0, infeasible = 0, rounds = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
     Problem problem = random_problem(robot, random);
@@ -322,7 +348,8 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
     const SrsArm srs = fit_srs(arm.chain, what);
     const ToolPath path = problem_path(problem, arm.chain);
     const SrsLattice grid(arm.chain, srs, path, problem);
-    std::vector<std::vector<ExplicitLattice::Point>> layers(static_cast<std::size_t>(grid.layers()));
+    std::vector<std::vector<ExplicitLattice::Point>> layers(
+        static_cast<std::size_t>(grid.layers()));
     std::vector<Lattice::Node> nodes;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       grid.layer_nodes(static_cast<int>(i), nodes);
@@ -339,21 +366,23 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
 
     Executor executor(1);
     const Budget never;
-    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest, const char* planner) {
+    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest,
+                                  const char* planner) {
       ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
       ASSERT_TRUE(!truth.solved || cost == truth.cost) << what << ' ' << planner;
       ASSERT_TRUE(truth.solved || deepest == truth.deepest) << what << ' ' << planner;
     };
     for (const bool stored : {true, false}) {
-      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff, executor, 0, never);
+      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff,
+                                  executor, 0, never);
       HookedValidity validity(lattice, collision, hooks, never);
       EagerOutcome found;
       (stored ? eager_search : eager_dp)(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, batch == 1 ? 1 : 4,
-                                  never);
+      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn,
+                                  executor, batch == 1 ? 1 : 4, never);
       HookedValidity validity(lattice, collision, hooks, never);
       const auto cost_to_go = make_cost_to_go(lattice);
       cost_to_go->sweep(lattice.layers() - 1);
@@ -361,7 +390,8 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
       const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
       rounds += static_cast<int>(counters.iterations);
       int deepest = -1;
-      if (found.path.empty()) deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
+      if (found.path.empty())
+        deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
       expect_truth(found.path, found.cost, deepest, "lazy");
     }
     if (HasFatalFailure()) return;
@@ -417,7 +447,8 @@ void expect_same(const PlanResult& a, const PlanResult& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.cost, b.cost);
   ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
-  for (std::size_t i = 0; i < a.trajectory.size(); ++i) EXPECT_EQ(a.trajectory[i].q, b.trajectory[i].q);
+  for (std::size_t i = 0; i < a.trajectory.size(); ++i)
+    EXPECT_EQ(a.trajectory[i].q, b.trajectory[i].q);
 }
 
 TEST(Hooks, ThatSayNothingChangeNothing) {
@@ -426,7 +457,8 @@ TEST(Hooks, ThatSayNothingChangeNothing) {
   for (const PlannerKind planner : kPlanners) {
     const PlanResult plain = plan(robot, problem, options_for(planner));
     PlanOptions options = options_for(planner);
-    options.hooks = {check_of([](const Config&) { return true; }), cost_of([](const Config&) { return 0.0; })};
+    options.hooks = {check_of([](const Config&) { return true; }),
+                     cost_of([](const Config&) { return 0.0; })};
     const PlanResult hooked = plan(robot, problem, options);
     ASSERT_EQ(plain.status, PlanStatus::kSolved);
     expect_same(plain, hooked);
@@ -441,7 +473,9 @@ TEST(Hooks, ACheckThatRefusesIsTheCause) {
   class NoMotion : public StateCheck {
    public:
     [[nodiscard]] std::string name() const override { return "rest"; }
-    void states(std::span<const Config>, std::span<bool> allowed) override { std::fill(allowed.begin(), allowed.end(), true); }
+    void states(std::span<const Config>, std::span<bool> allowed) override {
+      std::fill(allowed.begin(), allowed.end(), true);
+    }
     [[nodiscard]] bool checks_motions() const override { return true; }
     void motions(std::span<const Motion>, std::span<bool>) override {}  // nothing said is no
   };
@@ -485,7 +519,8 @@ TEST(Hooks, WhatIsNoCostIsRefusedByName) {
         static_cast<void>(plan(robot, problem, options));
         ADD_FAILURE() << cost;
       } catch (const InvalidArgument& error) {
-        EXPECT_NE(std::string(error.what()).find("state cost 'of the test'"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("state cost 'of the test'"), std::string::npos)
+            << error.what();
         EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
       }
     }
@@ -514,7 +549,8 @@ TEST(Hooks, WhatTheyThrowComesThroughAndNothingElseIsLost) {
         EXPECT_EQ(own.number, after);
         ++thrown;
       }
-      options.hooks.cost = cost_of([](const Config&) -> double { throw std::runtime_error("of the user"); });
+      options.hooks.cost =
+          cost_of([](const Config&) -> double { throw std::runtime_error("of the user"); });
       calls = 1000;
       EXPECT_THROW(static_cast<void>(plan(robot, problem, options)), std::runtime_error);
       options.hooks.cost = nullptr;
@@ -555,7 +591,8 @@ TEST(Hooks, PlansInSeveralThreadsTakeTurns) {
   const PlanResult alone = plan(robot, problem, options);
   std::vector<PlanResult> results(8);
   std::vector<std::thread> threads;
-  for (PlanResult& result : results) threads.emplace_back([&] { result = plan(robot, problem, options); });
+  for (PlanResult& result : results)
+    threads.emplace_back([&] { result = plan(robot, problem, options); });
   for (std::thread& thread : threads) thread.join();
   for (const PlanResult& result : results) expect_same(result, alone);
   EXPECT_EQ(check->most_at_once, 1);

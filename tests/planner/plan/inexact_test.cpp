@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arms whose files are rounded, or that are built a little off: nodes of the ideal arm, rows on the exact chain.
+// Arms whose files are rounded, or that are built a little off: nodes of the ideal arm, rows on the
+// exact chain.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,8 @@ namespace {
 
 using namespace test;
 
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
+                                     PlannerKind::kParallel};
 
 struct Laid {
   explicit Laid(const Problem& problem)
@@ -33,23 +35,27 @@ struct Laid {
 };
 
 Answer truth_of(const Laid& laid) {
-  return brute_force(laid.lattice, laid.robot.world(), laid.robot.world().edge_rule(laid.robot.radii()),
-                     [&](int layer, int a, int b) { return window_allows(laid.lattice, layer, a, b); });
+  return brute_force(
+      laid.lattice, laid.robot.world(), laid.robot.world().edge_rule(laid.robot.radii()),
+      [&](int layer, int a, int b) { return window_allows(laid.lattice, layer, a, b); });
 }
 
 TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
   const std::uint64_t base = seed("Inexact.Agreement");
   Random making(base);
   const std::vector<TestRobot> robots = inexact_robots(making);
-  int solved = 0, infeasible = 0, started = 0, detours = 0, continuous = 0, dearer = 0, without_row = 0, rows = 0;
+  int solved = 0, infeasible = 0, started = 0, detours = 0, continuous = 0, dearer = 0,
+      without_row = 0, rows = 0;
   double farthest = 0;
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    if (random.coin(0.3)) problem.limits.joint_step = random.uniform(0.1, 0.4);  // where steps decide
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    if (random.coin(0.3))
+      problem.limits.joint_step = random.uniform(0.1, 0.4);  // where steps decide
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const Laid laid(problem);
     const SrsLattice& lattice = laid.lattice;
     ASSERT_TRUE(lattice.is_approximate()) << what;
@@ -65,15 +71,18 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
       options.evidence = Evidence::all();
       results.push_back(plan(laid.robot, problem, options));
       const PlanResult &first = results[0], &other = results.back();
-      ASSERT_EQ(other.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible) << what << " " << other.planner;
+      ASSERT_EQ(other.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible)
+          << what << " " << other.planner;
       ASSERT_EQ(other.cost, first.cost) << what << " " << other.planner;
       ASSERT_EQ(other.lattice.cost, first.lattice.cost) << what << " " << other.planner;
       ASSERT_EQ(other.trajectory.size(), first.trajectory.size()) << what;
       for (std::size_t i = 0; i < first.trajectory.size(); ++i) {
-        ASSERT_EQ(other.trajectory[i].q, first.trajectory[i].q) << what << " " << other.planner << " row " << i;
+        ASSERT_EQ(other.trajectory[i].q, first.trajectory[i].q)
+            << what << " " << other.planner << " row " << i;
         ASSERT_EQ(other.trajectory[i].phi, first.trajectory[i].phi) << what;
       }
-      ASSERT_EQ(words(other.diagnosis.cause), words(first.diagnosis.cause)) << what << " " << other.planner;
+      ASSERT_EQ(words(other.diagnosis.cause), words(first.diagnosis.cause))
+          << what << " " << other.planner;
       ASSERT_EQ(other.diagnosis.removed, first.diagnosis.removed) << what << " " << other.planner;
     }
     started += problem.start.has_value();
@@ -96,8 +105,9 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
       const TrajectoryRow& row = result.trajectory[static_cast<std::size_t>(i)];
       ASSERT_EQ(row.phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)])) << what;
       const Pose reached = lattice.chain().tool(row.q), &asked = laid.path.layer(i).tool;
-      farthest = std::max({farthest, (reached.translation() - asked.translation()).norm(),
-                           Eigen::AngleAxisd(reached.linear().transpose() * asked.linear()).angle()});
+      farthest =
+          std::max({farthest, (reached.translation() - asked.translation()).norm(),
+                    Eigen::AngleAxisd(reached.linear().transpose() * asked.linear()).angle()});
       ++rows;
     }
     if (problem.start) {
@@ -108,7 +118,8 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
     ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
   }
   std::printf(
-      "%d problems: %d solved (%d of another cost than their nodes), %d infeasible, %d continuous, %d with a start, %d after "
+      "%d problems: %d solved (%d of another cost than their nodes), %d infeasible, %d continuous, "
+      "%d with a start, %d after "
       "failures; %d nodes without a row; %d rows within %.1e m and rad\n",
       count, solved, dearer, infeasible, continuous, started, detours, without_row, rows, farthest);
   EXPECT_LE(farthest, 1e-9);
@@ -121,8 +132,8 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
   EXPECT_GT(without_row, 100);
 }
 
-/// A row that keeps to the limits is not missed because the fitted arm's joints lie beyond them: away from singular poses every
-/// posture within the limits has a node, whose row it is.
+/// A row that keeps to the limits is not missed because the fitted arm's joints lie beyond them:
+/// away from singular poses every posture within the limits has a node, whose row it is.
 TEST(Inexact, PosturesAtTheLimitsAreRows) {
   const std::uint64_t base = seed("Inexact.Limits");
   Random random(base);
@@ -131,15 +142,16 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
     const Chain chain = arm_of(robot).chain;
     const SrsArm arm = fit_srs(chain, robot.name);
     EXPECT_FALSE(arm.exact);
-    std::printf("%s: off by %.2g mm and %.2g mrad, misfit up to %.2g rad\n", robot.name.c_str(), 1e3 * arm.deviation.offset,
-                1e3 * arm.deviation.angle, arm.fit_error.maxCoeff());
+    std::printf("%s: off by %.2g mm and %.2g mrad, misfit up to %.2g rad\n", robot.name.c_str(),
+                1e3 * arm.deviation.offset, 1e3 * arm.deviation.angle, arm.fit_error.maxCoeff());
     EXPECT_GT(arm.fit_error.minCoeff(), 0);
     for (int trial = 0; trial < 40; ++trial) {
       Config q = random_config(chain, random);
       const int joint = random.below(kDof);
       const JointLimit& limit = chain.limit[static_cast<std::size_t>(joint)];
       if (!limit.continuous) q[joint] = random.coin() ? limit.lower : limit.upper;
-      const double sine = std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
+      const double sine = std::min({std::abs(std::sin(arm.shoulder_angle(q))),
+                                    std::abs(std::sin(arm.elbow_angle(q))),
                                     std::abs(std::sin(arm.wrist_angle(q)))});
       if (sine < 0.15) continue;
       Problem problem = problem_for(robot);
@@ -148,7 +160,8 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
       next.translation().z() += 0.01;
       problem.waypoints = {waypoint_of(tool), waypoint_of(next)};
       problem.resolution = {.ds = 0.02, .dphi = kTwoPi / 3, .dalpha = 0.1};
-      // With the posture as the start its arm angle is on the lattice; without, the closest node shows that the labels are right.
+      // With the posture as the start its arm angle is on the lattice; without, the closest node
+      // shows that the labels are right.
       problem.start = q;
       const Laid laid(problem);
       const int slot = laid.lattice.start_slot();
@@ -162,7 +175,8 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
       ASSERT_TRUE(exact) << robot.name;
       ASSERT_LE((*exact - q).cwiseAbs().maxCoeff(), 1e-7) << robot.name;
       for (int j = 0; j < kDof; ++j) {
-        EXPECT_LE(std::abs((*node)[j] - q[j]), 1.5 * laid.lattice.fit_error()[j] + 1e-9) << robot.name << " joint " << j;
+        EXPECT_LE(std::abs((*node)[j] - q[j]), 1.5 * laid.lattice.fit_error()[j] + 1e-9)
+            << robot.name << " joint " << j;
         const JointLimit& bound = chain.limit[static_cast<std::size_t>(j)];
         beyond += !bound.continuous && ((*node)[j] < bound.lower || (*node)[j] > bound.upper);
       }
@@ -174,8 +188,8 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
   EXPECT_GT(beyond, 20);
 }
 
-/// Rows lie on the exact chain at the arm angle, whether Newton looked at its last step or took it as short enough. Of postures
-/// anywhere, also near singular ones, where it has to look.
+/// Rows lie on the exact chain at the arm angle, whether Newton looked at its last step or took it
+/// as short enough. Of postures anywhere, also near singular ones, where it has to look.
 TEST(Inexact, EveryRowIsOnTheExactChain) {
   const std::uint64_t base = seed("Inexact.Residual");
   Random random(base);
@@ -187,38 +201,46 @@ TEST(Inexact, EveryRowIsOnTheExactChain) {
       const SrsArm arm = fit_srs(chain, robot.name);
       for (int trial = 0; trial < trials(2000) / 4; ++trial) {
         Config q = random_config(chain, random);
-        if (trial % 4 == 0) q[1] = std::copysign(std::pow(10, random.uniform(-4, -1)), q[1]);  // near a stretched shoulder
+        if (trial % 4 == 0)
+          q[1] = std::copysign(std::pow(10, random.uniform(-4, -1)),
+                               q[1]);  // near a stretched shoulder
         const Pose tool = chain.tool(q);
         const ArmPlane plane = first_plane(arm, tool);
         if (reach_status(arm, plane.reach) != ReachStatus::kReachable) continue;
         const double phi = plane.angle_of(arm.elbow_axis(q));
         const auto circles = elbow_circles(arm, plane, tool);
         for (int branch = 0; branch < kBranches; ++branch) {
-          const auto row = solve_exact_chain(chain, arm, plane, tool, phi, srs_ik(arm, circles, phi, branch));
+          const auto row =
+              solve_exact_chain(chain, arm, plane, tool, phi, srs_ik(arm, circles, phi, branch));
           none += !row;
           if (!row) continue;
           ++rows;
           near_singular += std::abs(std::sin(arm.shoulder_angle(*row))) < 0.01;
           farthest = std::max(farthest, (chain.tool(*row).matrix() - tool.matrix()).norm());
-          most_turned = std::max(most_turned, std::abs(wrap_angle(arm_angle(arm, plane, *row) - phi)));
+          most_turned =
+              std::max(most_turned, std::abs(wrap_angle(arm_angle(arm, plane, *row) - phi)));
         }
       }
     }
-  std::printf("SWIVEL_TEST_SEED %llu: %d rows, %d poses without, %d near a stretched shoulder, residual %.2g, arm angle %.2g rad\n",
-              static_cast<unsigned long long>(base), rows, none, near_singular, farthest, most_turned);
+  std::printf(
+      "SWIVEL_TEST_SEED %llu: %d rows, %d poses without, %d near a stretched shoulder, residual "
+      "%.2g, arm angle %.2g rad\n",
+      static_cast<unsigned long long>(base), rows, none, near_singular, farthest, most_turned);
   EXPECT_GT(rows, 1000);
   EXPECT_GT(near_singular, 100);
   EXPECT_LE(farthest, 3.2e-10);  // each of nine numbers to 1e-10
   EXPECT_LE(most_turned, 1.01e-10);
 }
 
-/// A start keeps its joints wherever the fitted arm has none: stretched further than that can reach, or singular for it.
+/// A start keeps its joints wherever the fitted arm has none: stretched further than that can
+/// reach, or singular for it.
 TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
   const std::uint64_t base = seed("Inexact.Start");
   Random random(base);
   int own = 0, fitted = 0, solved = 0;
   for (int trial = 0; trial < 30; ++trial) {
-    const TestRobot robot = perturbed(trial % 2 ? continuous_robot() : data_robot("iiwa14"), 1, random);
+    const TestRobot robot =
+        perturbed(trial % 2 ? continuous_robot() : data_robot("iiwa14"), 1, random);
     const Chain chain = arm_of(robot).chain;
     const SrsArm arm = fit_srs(chain, robot.name);
     Config q = 0.3 * random_config(chain, random);
@@ -249,7 +271,8 @@ TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
     }
     solved += truth.solved;
   }
-  std::printf("%d starts with their own joints, %d with the fitted arm's, %d solved\n", own, fitted, solved);
+  std::printf("%d starts with their own joints, %d with the fitted arm's, %d solved\n", own, fitted,
+              solved);
   EXPECT_GE(own, 3);
   EXPECT_GE(fitted, 15);
   EXPECT_GE(solved, 15);

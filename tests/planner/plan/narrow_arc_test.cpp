@@ -45,15 +45,18 @@ Problem drawn(const TestRobot& robot, const ArmModel& arm, double most, Random& 
   Pose tool = arm.chain.tool(q);
   problem.waypoints.push_back(waypoint_of(tool));
   for (int k = 0; k < 2; ++k) {
-    tool.translation() += most * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    tool.translation() +=
+        most * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     problem.waypoints.push_back(waypoint_of(tool));
   }
   problem.resolution = {.ds = 0.01, .dphi = 0.2};
   return problem;
 }
 
-/// The joint margin that leaves an arc of this width where the path is narrowest; none where there is none.
-std::optional<double> margin_that_leaves(double width, const ArmModel& arm, const SrsArm& srs, Problem problem) {
+/// The joint margin that leaves an arc of this width where the path is narrowest; none where there
+/// is none.
+std::optional<double> margin_that_leaves(double width, const ArmModel& arm, const SrsArm& srs,
+                                         Problem problem) {
   double low = 0, high = 1.2;
   for (const JointLimit& limit : arm.chain.limit)
     if (!limit.continuous) high = std::min(high, 0.49 * (limit.upper - limit.lower));
@@ -62,7 +65,8 @@ std::optional<double> margin_that_leaves(double width, const ArmModel& arm, cons
     return narrowest(arm, srs, problem).width;
   };
   if (leaves(low) < width || leaves(high) > width) return std::nullopt;
-  for (int step = 0; step < 45; ++step) (leaves((low + high) / 2) < width ? high : low) = (low + high) / 2;
+  for (int step = 0; step < 45; ++step)
+    (leaves((low + high) / 2) < width ? high : low) = (low + high) / 2;
   return std::abs(leaves(low) - width) < 0.01 * width ? std::optional(low) : std::nullopt;
 }
 
@@ -87,7 +91,8 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
     const auto margin = margin_that_leaves(0.01, arm, srs, problem);
     if (!margin) continue;
     problem.limits.joint_margin = *margin;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const PlanResult with = planned(problem, true), without = planned(problem, false);
     if (without.status == PlanStatus::kSolved) {  // nothing is lost
       ASSERT_EQ(with.status, PlanStatus::kSolved) << what;
@@ -95,11 +100,13 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
     }
     if (with.status != PlanStatus::kSolved) continue;
     ++solved;
-    for (const PlannerKind kind : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kParallel}) {
+    for (const PlannerKind kind :
+         {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kParallel}) {
       const PlanResult same = planned(problem, true, kind);
       ASSERT_EQ(same.cost, with.cost) << what;
       ASSERT_EQ(same.trajectory.size(), with.trajectory.size()) << what;
-      for (std::size_t i = 0; i < same.trajectory.size(); ++i) ASSERT_EQ(same.trajectory[i].q, with.trajectory[i].q) << what;
+      for (std::size_t i = 0; i < same.trajectory.size(); ++i)
+        ASSERT_EQ(same.trajectory[i].q, with.trajectory[i].q) << what;
     }
     const CheckResult check = check_trajectory(problem, with.trajectory);
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
@@ -112,18 +119,21 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
     const PlanResult result = planner.plan(options);
     options.timeout_s = 20;
     for (const Advice& advice : advise(planner, result, options))
-      advised += advice.change == Advice::Change::kFiner && advice.outcome == Advice::Outcome::kSolved;
+      advised +=
+          advice.change == Advice::Change::kFiner && advice.outcome == Advice::Outcome::kSolved;
   }
   std::printf(
-      "%d paths through an arc of 0.01 rad solved with arcs under dphi 0.2; without, %d were missed, and finer advised for %d\n",
+      "%d paths through an arc of 0.01 rad solved with arcs under dphi 0.2; without, %d were "
+      "missed, and finer advised for %d\n",
       solved, missed, advised);
   EXPECT_GE(solved, at_least(12));
   EXPECT_GE(missed, at_least(6));
   EXPECT_EQ(advised, missed);
 }
 
-/// With a margin that just leaves no arc, "no path" holds at every resolution where that is at a waypoint, else for a tool that
-/// follows exactly; with one that just leaves an arc it holds for this resolution.
+/// With a margin that just leaves no arc, "no path" holds at every resolution where that is at a
+/// waypoint, else for a tool that follows exactly; with one that just leaves an arc it holds for
+/// this resolution.
 TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
   const std::uint64_t base = seed("NarrowArc.Holds");
   std::array<int, 3> seen{};
@@ -135,13 +145,17 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     Problem problem = drawn(robot, arm, 0.1, random);
-    const bool far = trial % 4 > 1;  // between postures far apart, what is hard to reach is between waypoints
-    if (far) problem.waypoints = {problem.waypoints[0], waypoint_of(arm.chain.tool(random_config(arm.chain, random)))};
+    const bool far =
+        trial % 4 > 1;  // between postures far apart, what is hard to reach is between waypoints
+    if (far)
+      problem.waypoints = {problem.waypoints[0],
+                           waypoint_of(arm.chain.tool(random_config(arm.chain, random)))};
     if (far) problem.resolution = {.ds = 0.05, .dphi = 0.2, .dalpha = 0.2};
     const Resolution asked = problem.resolution;
     const auto margin = far ? std::optional(0.0) : margin_that_leaves(1e-3, arm, srs, problem);
     if (!margin) continue;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     for (const double more : {0.0, 0.02}) {
       problem.limits.joint_margin = *margin + more;
       const PlanResult result = planned(problem, false);
@@ -151,7 +165,8 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
       const Diagnosis& diagnosis = result.diagnosis;
       ++seen[static_cast<std::size_t>(diagnosis.holds())];
       bool waypoint_empty = false, empty = false;
-      for (int layer = 0; layer < lattice.layers(); ++layer) {  // by sampling, each IK solution's joints within the limits
+      for (int layer = 0; layer < lattice.layers();
+           ++layer) {  // by sampling, each IK solution's joints within the limits
         if (reach_status(srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
         const auto circles = elbow_circles(srs, lattice.plane(layer), path.layer(layer).tool);
         bool any = false;
@@ -162,7 +177,8 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
             for (int j = 0; j < kDof; ++j) {
               const JointLimit& limit = arm.chain.limit[static_cast<std::size_t>(j)];
               const double m = problem.limits.joint_margin;
-              any = any && (limit.continuous || (q[j] >= limit.lower + m && q[j] <= limit.upper - m));
+              any =
+                  any && (limit.continuous || (q[j] >= limit.lower + m && q[j] <= limit.upper - m));
             }
           }
         const bool proved = lattice.proved_unreachable(layer);
@@ -177,7 +193,8 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
                                                   : Diagnosis::Holds::kThisResolution)
           << what;
       if (diagnosis.holds() != Diagnosis::Holds::kEveryResolution) continue;
-      ASSERT_EQ(path.layer(diagnosis.unreachable->layer).waypoint, diagnosis.unreachable->waypoint) << what;
+      ASSERT_EQ(path.layer(diagnosis.unreachable->layer).waypoint, diagnosis.unreachable->waypoint)
+          << what;
       problem.resolution.ds /= 3;
       problem.resolution.dphi /= 7;
       ASSERT_EQ(planned(problem, true).status, PlanStatus::kInfeasible) << what;
@@ -185,8 +202,10 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
       ++finer;
     }
   }
-  std::printf("%d for this resolution, %d for an exact tool, %d for every resolution, of which %d were tried finer\n", seen[0],
-              seen[1], seen[2], finer);
+  std::printf(
+      "%d for this resolution, %d for an exact tool, %d for every resolution, of which %d were "
+      "tried finer\n",
+      seen[0], seen[1], seen[2], finer);
   for (const int count : seen) EXPECT_GE(count, at_least(3));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of several answers of one cost is given: the one that begins nearest to the middle of the joints' ranges.
+// Which of several answers of one cost is given: the one that begins nearest to the middle of the
+// joints' ranges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,19 +37,23 @@ std::vector<Waypoint> random_line(const Chain& chain, Random& random) {
   return {first, waypoint_of(pose)};
 }
 
-/// Joints of two turns begin within half a turn of the middle, at the cost that they have where they have one turn.
+/// Joints of two turns begin within half a turn of the middle, at the cost that they have where
+/// they have one turn.
 TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
   const std::uint64_t base = seed("Order.Turns");
   int solved = 0, same_cost = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const auto [name, tip] = trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
-    const TestRobot one = with_odd_joints_between(name, tip, kPi), two = with_odd_joints_between(name, tip, kTwoPi);
+    const auto [name, tip] =
+        trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
+    const TestRobot one = with_odd_joints_between(name, tip, kPi),
+                    two = with_odd_joints_between(name, tip, kTwoPi);
     Problem problem = problem_for(one);
     problem.waypoints = random_line(arm_of(one).chain, random);
     problem.resolution = {.ds = 0.01, .dphi = 0.15, .arc = 0.3};
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
     problem.cost.metric = random.coin(0.3) ? CostMetric::kMax : CostMetric::kL2;
     if (random.coin(0.3)) problem.cost.weights[static_cast<std::size_t>(random.below(kDof))] = 0;
     const PlanResult of_one = plan(problem);
@@ -56,7 +61,8 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
     const PlanResult of_two = plan(problem);
     if (of_two.status != PlanStatus::kSolved) continue;
     ++solved;
-    for (int j = 0; j < kDof; j += 2) ASSERT_LE(std::abs(of_two.trajectory[0].q[j]), kPi + 1e-6) << what << " joint " << j + 1;
+    for (int j = 0; j < kDof; j += 2)
+      ASSERT_LE(std::abs(of_two.trajectory[0].q[j]), kPi + 1e-6) << what << " joint " << j + 1;
     same_cost += of_one.status == PlanStatus::kSolved && std::abs(of_one.cost - of_two.cost) < 1e-9;
   }
   std::printf("%d solved, %d at the same cost with one turn\n", solved, same_cost);
@@ -64,7 +70,8 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
   EXPECT_GE(same_cost, at_least(count / 4));
 }
 
-/// Branches that are each other's mirror image cost the same but for rounding: which one is taken is no matter of rounding.
+/// Branches that are each other's mirror image cost the same but for rounding: which one is taken
+/// is no matter of rounding.
 TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
   const std::uint64_t base = seed("Order.Mirrored");
   int solved = 0, rivals = 0, dearer = 0;
@@ -72,13 +79,15 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const auto [name, tip] = trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
+    const auto [name, tip] =
+        trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
     Problem problem = problem_for(with_odd_joints_between(name, tip, kPi));
     const PreparedRobot robot(problem);
     const Chain& chain = robot.arm().chain;
     problem.waypoints = random_line(chain, random);
     problem.resolution = {.ds = 2e-4, .dphi = 0.15, .arc = 0.3};  // many costs to add up
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
     const ToolPath path = problem_path(problem, chain);
     const std::unique_ptr<Lattice> made = make_lattice(chain, robot.arm_class(), path, problem);
     const Lattice& lattice = *made;
@@ -98,8 +107,10 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
       ASSERT_GE(off_middle(lattice, *lattice.node(0, slot)), off) << what << " slot " << slot;
     }
   }
-  std::printf("%d solved, %d other starts of the same cost, up to %g apart; %d of those taken were dearer by rounding\n", solved,
-              rivals, furthest, dearer);
+  std::printf(
+      "%d solved, %d other starts of the same cost, up to %g apart; %d of those taken were dearer "
+      "by rounding\n",
+      solved, rivals, furthest, dearer);
   EXPECT_GE(rivals, at_least(count / 2));
   EXPECT_GE(dearer, at_least(1));
 }
@@ -114,7 +125,8 @@ TEST(Order, ShippedArmsBeginInTheTurnNearestToTheMiddle) {
     for (std::size_t j = 0; j < kDof; ++j) {
       const JointLimit& limit = robot.arm().chain.limit[j];
       if (limit.continuous || limit.upper - limit.lower <= kTwoPi) continue;
-      const double off = result.trajectory[0].q[static_cast<Eigen::Index>(j)] - (limit.lower + limit.upper) / 2;
+      const double off =
+          result.trajectory[0].q[static_cast<Eigen::Index>(j)] - (limit.lower + limit.upper) / 2;
       EXPECT_LE(std::abs(off), kPi) << name << " joint " << j + 1;
     }
   }

@@ -37,7 +37,8 @@ SceneObject random_object(Random& random, const Problem& problem, const std::str
   object.name = name;
   object.pose = random_pose(random, problem.waypoints[0].position, 0.35);
   const double size = random.uniform(0.02, 0.12);
-  object.shape = random.coin() ? Shape(Sphere{size}) : Shape(box_mesh(Vector3d(size, 2 * size, size)));
+  object.shape =
+      random.coin() ? Shape(Sphere{size}) : Shape(box_mesh(Vector3d(size, 2 * size, size)));
   return object;
 }
 
@@ -50,14 +51,17 @@ Pose nudged(Random& random, Pose pose) {
 TEST(Planner, RemembersWithoutChangingAnAnswer) {
   const std::uint64_t base = seed("Replanning");
   const auto robots = all_robots();
-  constexpr PlannerKind kPlanners[] = {PlannerKind::kLazy, PlannerKind::kParallel, PlannerKind::kEagerDp};
+  constexpr PlannerKind kPlanners[] = {PlannerKind::kLazy, PlannerKind::kParallel,
+                                       PlannerKind::kEagerDp};
   std::map<std::string, int> changes;
   int plans = 0, solved = 0, changed_answers = 0;
   std::int64_t remembered_questions = 0, fresh_questions = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const TestRobot& robot = trial % 6 == 5 ? without_srdf(robots[0]) : robots[static_cast<std::size_t>(trial) % robots.size()];
+    const TestRobot& robot = trial % 6 == 5
+                                 ? without_srdf(robots[0])
+                                 : robots[static_cast<std::size_t>(trial) % robots.size()];
     Problem start = random_problem(robot, random);
     Planner planner(start);
     std::optional<PlanResult> last;
@@ -68,14 +72,16 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
       std::string change = "nothing";
       if (step > 0) {
         const int kind = random.below(12);
-        const std::string object = objects > 0 ? problem.scene[static_cast<std::size_t>(random.below(objects))].name : "";
+        const std::string object =
+            objects > 0 ? problem.scene[static_cast<std::size_t>(random.below(objects))].name : "";
         if (kind < 6 && objects > 0) {
           change = "move";
-          const auto& o =
-              *std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& x) { return x.name == object; });
+          const auto& o = *std::find_if(problem.scene.begin(), problem.scene.end(),
+                                        [&](const auto& x) { return x.name == object; });
           planner.move(object, nudged(random, o.pose));
           if (random.coin(0.3)) {  // two at once
-            const SceneObject& other = problem.scene[static_cast<std::size_t>(random.below(objects))];
+            const SceneObject& other =
+                problem.scene[static_cast<std::size_t>(random.below(objects))];
             planner.move(other.name, nudged(random, other.pose));
           }
         } else if (kind == 6) {
@@ -93,13 +99,15 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
         } else if (kind == 9) {
           change = "path";
           Task task = problem;
-          for (Waypoint& waypoint : task.waypoints) waypoint.position.z() += random.uniform(-0.005, 0.005);
+          for (Waypoint& waypoint : task.waypoints)
+            waypoint.position.z() += random.uniform(-0.005, 0.005);
           task.start.reset();
           planner.set_task(task);
         } else if (kind == 10) {
           change = "attach";
           if (problem.attached.empty())
-            planner.attach({"grip", Box{Vector3d(0.05, 0.08, 0.03)}, Pose::Identity(), problem.tip_link});
+            planner.attach(
+                {"grip", Box{Vector3d(0.05, 0.08, 0.03)}, Pose::Identity(), problem.tip_link});
           else
             planner.detach("grip");
         } else if (kind == 11 && objects > 0) {
@@ -111,8 +119,9 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
         }
       }
       ++changes[change];
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " step " +
-                               std::to_string(step) + " robot " + robot.name + " after: " + change;
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                               std::to_string(trial) + " step " + std::to_string(step) + " robot " +
+                               robot.name + " after: " + change;
       PlanOptions options;
       options.planner = kPlanners[random.coin(0.1) ? 2 : random.below(2)];
       options.threads = 2;
@@ -121,7 +130,8 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
       expect_same(remembered, fresh, what);
       if (HasFatalFailure()) return;
       if (options.planner != PlannerKind::kEagerDp && step > 0) {
-        remembered_questions += remembered.counters.nodes_checked + remembered.counters.edges_checked;
+        remembered_questions +=
+            remembered.counters.nodes_checked + remembered.counters.edges_checked;
         fresh_questions += fresh.counters.nodes_checked + fresh.counters.edges_checked;
       }
       ++plans;
@@ -130,8 +140,11 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
       last = fresh;
     }
   }
-  std::printf("%d plans, %d solved, %d answers unlike the one before; %lld questions where fresh planners ask %lld;", plans, solved,
-              changed_answers, static_cast<long long>(remembered_questions), static_cast<long long>(fresh_questions));
+  std::printf(
+      "%d plans, %d solved, %d answers unlike the one before; %lld questions where fresh planners "
+      "ask %lld;",
+      plans, solved, changed_answers, static_cast<long long>(remembered_questions),
+      static_cast<long long>(fresh_questions));
   for (const auto& [change, times] : changes) std::printf(" %s %d", change.c_str(), times);
   std::printf("\n");
   if (count < 60) return;
@@ -142,7 +155,8 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
   EXPECT_LT(remembered_questions, fresh_questions * 2 / 3);
 }
 
-/// What failed where the path was a moment ago is asked about first: fewer rounds of search, for the same answers.
+/// What failed where the path was a moment ago is asked about first: fewer rounds of search, for
+/// the same answers.
 TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
   const std::uint64_t base = seed("Suspects");
   const auto robots = all_robots();
@@ -150,7 +164,8 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
   std::int64_t remembered_rounds = 0, fresh_rounds = 0;
   for (int trial = 0; trial < trials(60); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem.start.reset();
     Planner planner(problem);
     for (int step = 0; step < 5; ++step) {
@@ -159,7 +174,8 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
       options.threads = 2;
       options.evidence.layers = true;
       const PlanResult remembered = planner.plan(options), fresh = plan(planner.problem(), options);
-      expect_same(remembered, fresh, "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
+      expect_same(remembered, fresh,
+                  "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
       if (HasFatalFailure()) return;
       if (step > 0) {
         ++plans;
@@ -168,7 +184,8 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
         fresh_rounds += fresh.counters.iterations;
       }
       Task task = planner.problem();
-      for (Waypoint& waypoint : task.waypoints) waypoint.position.z() += random.uniform(-0.001, 0.001);
+      for (Waypoint& waypoint : task.waypoints)
+        waypoint.position.z() += random.uniform(-0.001, 0.001);
       planner.set_task(task);
     }
   }
@@ -207,7 +224,8 @@ TEST(Planner, StopsAndGoesOn) {
       expect_same(result, fresh, "after " + std::to_string(call) + " calls");
     }
     const Pose pose = planner.problem().scene[1].pose;
-    planner.move(planner.problem().scene[1].name, nudged(*std::make_unique<Random>(static_cast<std::uint64_t>(call)), pose));
+    planner.move(planner.problem().scene[1].name,
+                 nudged(*std::make_unique<Random>(static_cast<std::uint64_t>(call)), pose));
     planner.move(planner.problem().scene[1].name, pose);
     if (call % 10 == 0) {
       expect_same(planner.plan(options), fresh, "after " + std::to_string(call) + " stops");
@@ -238,13 +256,15 @@ TEST(Planner, RefusesWhatNoProblemMayHaveAndStaysAsItWas) {
   EXPECT_THROW(planner.remove("dor"), InvalidArgument);
   EXPECT_THROW(planner.remove("door"), InvalidArgument);  // the path's frame
   EXPECT_THROW(planner.add({"door", Sphere{0.1}, Pose::Identity(), {}}), InvalidArgument);
-  EXPECT_THROW(planner.attach({"polisher", Sphere{0.1}, Pose::Identity(), "no such link"}), InvalidArgument);
+  EXPECT_THROW(planner.attach({"polisher", Sphere{0.1}, Pose::Identity(), "no such link"}),
+               InvalidArgument);
   EXPECT_THROW(planner.detach("nothing"), InvalidArgument);
   Task task = planner.problem();
   task.limits.clearance = -1;
   EXPECT_THROW(planner.set_task(task), InvalidArgument);
   EXPECT_EQ(planner.plan(options).cost, before.cost);
-  EXPECT_EQ(planner.plan(options).counters.nodes_checked, 0) << "nothing changed, so nothing is asked again";
+  EXPECT_EQ(planner.plan(options).counters.nodes_checked, 0)
+      << "nothing changed, so nothing is asked again";
 }
 
 TEST(Planner, ClonesShareNothingThatIsWritten) {

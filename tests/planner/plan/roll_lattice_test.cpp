@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// S-R-S arms whose tool may stand turned about its own z axis: roll and arm angle are chosen together.
+// S-R-S arms whose tool may stand turned about its own z axis: roll and arm angle are chosen
+// together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,23 +32,28 @@ namespace {
 
 using namespace test;
 
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
+                                     PlannerKind::kParallel};
 
-/// Arms of the data folder and made here, with limits of less and of more than a turn, without limits, and not exactly S-R-S.
+/// Arms of the data folder and made here, with limits of less and of more than a turn, without
+/// limits, and not exactly S-R-S.
 std::vector<TestRobot> robots(Random& random) {
   std::vector<TestRobot> all = all_robots();
   all.push_back(perturbed(all.front(), 1, random));
   return all;
 }
 
-/// Small enough for brute force. Some tools stand at an angle to the last joint, so that their wrist centre moves with the roll.
+/// Small enough for brute force. Some tools stand at an angle to the last joint, so that their
+/// wrist centre moves with the roll.
 Problem roll_problem(const TestRobot& robot, Random& random) {
   Problem problem = random_problem(robot, random);
   if (random.coin(0.4)) {
-    const Pose angled = Eigen::Translation3d(0.05, 0, 0.1) * Eigen::AngleAxisd(random.uniform(0.2, 1), Vector3d::UnitY());
+    const Pose angled = Eigen::Translation3d(0.05, 0, 0.1) *
+                        Eigen::AngleAxisd(random.uniform(0.2, 1), Vector3d::UnitY());
     problem.tool = problem.tool * angled;
     for (Waypoint& waypoint : problem.waypoints) {
-      const Pose moved = Pose(Eigen::Translation3d(waypoint.position) * waypoint.orientation) * angled;
+      const Pose moved =
+          Pose(Eigen::Translation3d(waypoint.position) * waypoint.orientation) * angled;
       waypoint = {moved.translation(), Quaterniond(moved.linear())};
     }
   }
@@ -59,20 +65,27 @@ Problem roll_problem(const TestRobot& robot, Random& random) {
   problem.resolution.droll = random.uniform(0.5, 1.2);
   problem.resolution.dphi = robot.name == "windings" ? 1.2 : random.uniform(0.5, 0.9);
   problem.resolution.dalpha = random.uniform(0.3, 0.6);
-  problem.limits.arm_slope = random.uniform(0.8, 2) * problem.resolution.dphi / problem.resolution.knot;
-  problem.limits.roll_slope = random.uniform(1.01, 2) * problem.resolution.droll / problem.resolution.knot;
+  problem.limits.arm_slope =
+      random.uniform(0.8, 2) * problem.resolution.dphi / problem.resolution.knot;
+  problem.limits.roll_slope =
+      random.uniform(1.01, 2) * problem.resolution.droll / problem.resolution.knot;
   if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
   if (problem.limits.tool_angle_error) problem.limits.tool_angle_error = random.uniform(0.1, 0.4);
   if (problem.waypoints.size() > 3) problem.waypoints.resize(3);
-  if (problem.start && !(problem.roll->upper - problem.roll->lower >= kTwoPi) && problem.roll->lower > 0) problem.start.reset();
-  if (!problem.roll->circle() && random.coin()) draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
-  if (random.coin(0.3)) problem.cost.roll = std::array{0.3, 3.0, 30.0}[static_cast<std::size_t>(random.below(3))];
+  if (problem.start && !(problem.roll->upper - problem.roll->lower >= kTwoPi) &&
+      problem.roll->lower > 0)
+    problem.start.reset();
+  if (!problem.roll->circle() && random.coin())
+    draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
+  if (random.coin(0.3))
+    problem.cost.roll = std::array{0.3, 3.0, 30.0}[static_cast<std::size_t>(random.below(3))];
   return problem;
 }
 
-/// Of a path whose roll and arm angle change: poses, arm angles and labels of all rows, by forward kinematics.
-void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                         const std::string& what) {
+/// Of a path whose roll and arm angle change: poses, arm angles and labels of all rows, by forward
+/// kinematics.
+void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem,
+                         const std::vector<TrajectoryRow>& rows, const std::string& what) {
   const Chain& chain = robot.arm().chain;
   const SrsArm& arm = robot.srs();
   const ToolPath path = problem_path(problem, chain);
@@ -80,16 +93,19 @@ void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem, con
   ASSERT_EQ(static_cast<int>(rows.size()), path.size()) << what;
   for (int i = 0; i < path.size(); ++i) {
     const TrajectoryRow& row = rows[static_cast<std::size_t>(i)];
-    const Pose wanted = path.layer(i).tool * Eigen::AngleAxisd(row.roll, Vector3d::UnitZ()), tool = chain.tool(row.q);
+    const Pose wanted = path.layer(i).tool * Eigen::AngleAxisd(row.roll, Vector3d::UnitZ()),
+               tool = chain.tool(row.q);
     const double tolerance = i == 0 && problem.start ? 1e-6 : 1e-9;
     ASSERT_LE((wanted.matrix() - tool.matrix()).norm(), tolerance) << what << " row " << i;
     const ArmPlane plane = carry_plane(arm, planes[static_cast<std::size_t>(i)], wanted);
-    ASSERT_LE(std::abs(wrap_angle(arm_angle(arm, plane, row.q) - row.phi)), 1e-6) << what << " row " << i;
+    ASSERT_LE(std::abs(wrap_angle(arm_angle(arm, plane, row.q) - row.phi)), 1e-6)
+        << what << " row " << i;
     if (problem.roll->upper - problem.roll->lower < kTwoPi) {
       ASSERT_GE(row.roll, problem.roll->lower - 1e-6) << what;
       ASSERT_LE(row.roll, problem.roll->upper + 1e-6) << what;
     }
-    if (problem.waypoints[0].roll) ASSERT_LE(outside_windows(problem, path, i, row.roll), 1e-6) << what << " row " << i;
+    if (problem.waypoints[0].roll)
+      ASSERT_LE(outside_windows(problem, path, i, row.roll), 1e-6) << what << " row " << i;
   }
 }
 
@@ -97,21 +113,24 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("RollLattice");
   Random any(base);
   const auto arms = robots(any);
-  int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0, inexact = 0, turned = 0, between = 0;
+  int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0,
+      inexact = 0, turned = 0, between = 0;
   int at_rest = 0, moved_after_all = 0, windows = 0, costly = 0;
   const int count = trials(80);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const Problem problem =
+        roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const PreparedRobot robot(problem);
     const Chain& chain = robot.arm().chain;
     const ToolPath path = problem_path(problem, chain);
     // Joint 7 at rest where that is enough.
     const std::optional<double> rest = last_joint_at_rest(chain, robot.arm_class(), problem);
     const bool coaxial = rest.has_value();
-    std::unique_ptr<const RollLattice> lattice = RollLattice::make(chain, robot.srs(), path, problem, {}, rest);
+    std::unique_ptr<const RollLattice> lattice =
+        RollLattice::make(chain, robot.srs(), path, problem, {}, rest);
     const EdgeRule rule = robot.world().edge_rule(robot.radii());
     // Own words for what may follow what: cells on circles.
     const auto in_window = [&](int layer, int a, int b) {
@@ -119,26 +138,35 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
       const double way = path.layer(lattice->knots()[static_cast<std::size_t>(layer) + 1]).travel -
                          path.layer(lattice->knots()[static_cast<std::size_t>(layer)]).travel;
       const double phi_cell = kTwoPi / std::ceil(kTwoPi / problem.resolution.dphi - 1e-9);
-      const double most = std::max(1.0, std::floor(problem.limits.arm_slope * way / problem.resolution.dphi + 1e-9)) * phi_cell;
+      const double most =
+          std::max(1.0,
+                   std::floor(problem.limits.arm_slope * way / problem.resolution.dphi + 1e-9)) *
+          phi_cell;
       const auto grid = [&](int at, int slot) {  // moved cells count by their own grid angle
-        return at == 0 && problem.start ? lattice->phi(0, slot)
-                                        : -kPi + phi_cell * lattice->at_roll(0).angle_of(lattice->inner(at, slot));
+        return at == 0 && problem.start
+                   ? lattice->phi(0, slot)
+                   : -kPi + phi_cell * lattice->at_roll(0).angle_of(lattice->inner(at, slot));
       };
-      if (std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) > std::min(most, kPi) + 1e-9) return false;
+      if (std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) > std::min(most, kPi) + 1e-9)
+        return false;
       if (problem.waypoints[0].roll)  // parts of what each layer allows
-        return std::abs(lattice->roll(layer, a) - lattice->roll(layer + 1, b)) <= problem.limits.roll_slope * way + 1e-9;
+        return std::abs(lattice->roll(layer, a) - lattice->roll(layer + 1, b)) <=
+               problem.limits.roll_slope * way + 1e-9;
       // Rolls: by how many values they are apart, in order.
       std::vector<double> values;
-      for (int rank = 0; rank < lattice->rolls(); ++rank) values.push_back(lattice->roll_of_rank(layer, rank));
+      for (int rank = 0; rank < lattice->rolls(); ++rank)
+        values.push_back(lattice->roll_of_rank(layer, rank));
       std::sort(values.begin(), values.end());
       const auto place = [&](int at, int slot) {
-        return static_cast<int>(std::find(values.begin(), values.end(), lattice->roll(at, slot)) - values.begin());
+        return static_cast<int>(std::find(values.begin(), values.end(), lattice->roll(at, slot)) -
+                                values.begin());
       };
       int apart = std::abs(place(layer, a) - place(layer + 1, b));
       const int n = static_cast<int>(values.size());
       const bool circle = problem.roll->upper - problem.roll->lower >= kTwoPi - 1e-9;
       if (circle) apart = std::min(apart, n - apart);
-      const double cells = std::floor(problem.limits.roll_slope * way / problem.resolution.droll + 1e-9);
+      const double cells =
+          std::floor(problem.limits.roll_slope * way / problem.resolution.droll + 1e-9);
       return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
     };
     Answer truth = brute_force(*lattice, robot.world(), rule, in_window);
@@ -157,14 +185,18 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
       options.evidence = Evidence::all();
       results.push_back(plan(robot, problem, options));
       const PlanResult& result = results.back();
-      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved)
+          << what << ' ' << result.planner;
       ASSERT_TRUE(result.lattice.grid && result.lattice.grid->rolls == lattice->rolls()) << what;
       ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
       ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
       for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q) << what << ' ' << result.planner << " row " << i;
-      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer) << what << ' ' << result.planner;
-      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause) << what << ' ' << result.planner;
+        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q)
+            << what << ' ' << result.planner << " row " << i;
+      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer)
+          << what << ' ' << result.planner;
+      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause)
+          << what << ' ' << result.planner;
     }
     started += problem.start.has_value();
     continuous += problem.limits.edges == EdgeMode::kContinuous;
@@ -182,7 +214,8 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
     const auto& rows = results[0].trajectory;
     expect_rows_on_path(robot, problem, rows, what);
     between += path.size() > lattice->layers();
-    turned += std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+    turned += std::any_of(rows.begin(), rows.end(),
+                          [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
     windows += problem.waypoints[0].roll.has_value();
     costly += problem.cost.roll > 0;
     const CheckResult check = check_trajectory(robot, problem, rows);
@@ -190,12 +223,14 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
     ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
   }
   std::printf(
-      "%d problems: %d solved (%d turn the tool, %d with layers between), %d infeasible, %d with a start, %d continuous, %d with "
+      "%d problems: %d solved (%d turn the tool, %d with layers between), %d infeasible, %d with a "
+      "start, %d continuous, %d with "
       "obstacles, "
-      "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved after all in %d; solved with windows "
+      "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved "
+      "after all in %d; solved with windows "
       "of roll %d, with a cost of it %d\n",
-      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact, at_rest, moved_after_all,
-      windows, costly);
+      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact,
+      at_rest, moved_after_all, windows, costly);
   EXPECT_GE(windows, at_least(count / 20));
   EXPECT_GE(costly, at_least(count / 12));
   EXPECT_GE(solved, at_least(count / 4));
@@ -209,7 +244,8 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(at_rest, at_least(count / 40));
 }
 
-/// Where the tool turns about joint 7's axis, a path along which that joint rests costs no more than the least of all rolls.
+/// Where the tool turns about joint 7's axis, a path along which that joint rests costs no more
+/// than the least of all rolls.
 TEST(RollLattice, JointSevenRests) {
   const std::uint64_t base = seed("RollLattice.JointSevenRests");
   Random any(base);
@@ -229,7 +265,8 @@ TEST(RollLattice, JointSevenRests) {
     problem.roll = Roll{};
     problem.resolution.knot = 2 * problem.resolution.ds;
     problem.resolution.droll = 0.2;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const PreparedRobot robot(problem);
     const ToolPath path = problem_path(problem, robot.arm().chain);
     const auto rest = last_joint_at_rest(robot.arm().chain, robot.arm_class(), problem);
@@ -239,7 +276,8 @@ TEST(RollLattice, JointSevenRests) {
       cost_to_go->sweep(lattice->layers() - 1);
       return cost_to_go->best();
     };
-    const double resting = least(make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem));
+    const double resting =
+        least(make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem));
     const double moving = least(make_lattice(robot.arm().chain, robot.arm_class(), path, problem));
     ASSERT_LE(resting, moving + 1e-9) << what;
     both += moving < kUnreachable;
@@ -254,13 +292,16 @@ TEST(RollLattice, JointSevenRests) {
     refined += plan.refinement->refined;
     for (const auto* rows : {&plan.lattice_path, &plan.result.trajectory}) {
       expect_rows_on_path(robot, planner.problem(), *rows, what);
-      for (const TrajectoryRow& row : *rows) ASSERT_NEAR(row.q[kDof - 1], *rest, robot.srs().exact ? 0 : 1e-3) << what;
+      for (const TrajectoryRow& row : *rows)
+        ASSERT_NEAR(row.q[kDof - 1], *rest, robot.srs().exact ? 0 : 1e-3) << what;
       const CheckResult check = check_trajectory(with_motion_defaults(problem), *rows);
       ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
     }
   }
-  std::printf("%d problems: %d solved both ways, %d cheaper at rest, %d not at all; %d refined; %d on arms that are not exact\n",
-              count, both, cheaper, neither, refined, inexact);
+  std::printf(
+      "%d problems: %d solved both ways, %d cheaper at rest, %d not at all; %d refined; %d on arms "
+      "that are not exact\n",
+      count, both, cheaper, neither, refined, inexact);
   EXPECT_GE(both, at_least(count / 4));
   EXPECT_GE(cheaper, at_least(count / 20));
   EXPECT_GE(refined, at_least(count / 8));
@@ -274,7 +315,8 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
     explicit NotNear(double rest) : rest_(rest) {}
     [[nodiscard]] std::string name() const override { return "rest"; }
     void states(std::span<const Config> states, std::span<bool> allowed) override {
-      for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = std::abs(states[k][kDof - 1] - rest_) > 0.5;
+      for (std::size_t k = 0; k < states.size(); ++k)
+        allowed[k] = std::abs(states[k][kDof - 1] - rest_) > 0.5;
     }
 
    private:
@@ -285,7 +327,8 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
     explicit Away(double liked) : liked_(liked) {}
     [[nodiscard]] std::string name() const override { return "away"; }
     void costs(std::span<const Config> states, std::span<double> costs) override {
-      for (std::size_t k = 0; k < states.size(); ++k) costs[k] = 10 * std::abs(states[k][kDof - 1] - liked_);
+      for (std::size_t k = 0; k < states.size(); ++k)
+        costs[k] = 10 * std::abs(states[k][kDof - 1] - liked_);
     }
 
    private:
@@ -335,7 +378,8 @@ TEST(RollLattice, RepairsAreSweeps) {
       problem.start = plan(robot, problem).trajectory[0].q;
       problem.resolution.droll = 0.35;
     }
-    const auto lattice = RollLattice::make(robot.arm().chain, robot.srs(), problem_path(problem, robot.arm().chain), problem);
+    const auto lattice = RollLattice::make(robot.arm().chain, robot.srs(),
+                                           problem_path(problem, robot.arm().chain), problem);
     const auto repaired = make_cost_to_go(*lattice);
     repaired->sweep(lattice->layers() - 1);
     std::vector<std::pair<int, int>> nodes;
@@ -343,17 +387,21 @@ TEST(RollLattice, RepairsAreSweeps) {
     for (int round = 0; round < 5; ++round) {
       const bool at_once = round % 2 == 1;
       for (int k = 0; k < (at_once ? 2 : 20); ++k) {
-        const int layer = 1 + random.below(lattice->layers() - 1), first = random.below(lattice->slots(layer));
-        for (int slot = first; slot < std::min(lattice->slots(layer), first + (at_once ? 3000 : 3)); ++slot) {
+        const int layer = 1 + random.below(lattice->layers() - 1),
+                  first = random.below(lattice->slots(layer));
+        for (int slot = first; slot < std::min(lattice->slots(layer), first + (at_once ? 3000 : 3));
+             ++slot) {
           if (repaired->verdicts().node(layer, slot) == Verdict::kRemoved) continue;
           repaired->verdicts().remove_node(layer, slot);
           nodes.emplace_back(layer, slot);
         }
       }
       std::int64_t expansions = 0;
-      const SlotPath best = repaired->best() == kUnreachable ? SlotPath() : best_path(*repaired, expansions);
+      const SlotPath best =
+          repaired->best() == kUnreachable ? SlotPath() : best_path(*repaired, expansions);
       for (int layer = 0; layer + 1 < static_cast<int>(best.size()); layer += 3) {
-        const int a = best[static_cast<std::size_t>(layer)], b = best[static_cast<std::size_t>(layer) + 1];
+        const int a = best[static_cast<std::size_t>(layer)],
+                  b = best[static_cast<std::size_t>(layer) + 1];
         repaired->remove_edge(layer, a, b);
         certificate.push_back({layer, a, b});
       }
@@ -368,34 +416,40 @@ TEST(RollLattice, RepairsAreSweeps) {
     for (int layer = 0; layer < lattice->layers(); ++layer)
       for (int slot = 0; slot < lattice->slots(layer); ++slot, ++compared)
         ASSERT_EQ(repaired->at(layer, slot), swept->at(layer, slot))
-            << "SWIVEL_TEST_SEED " << base << " trial " << trial << " layer " << layer << " slot " << slot;
+            << "SWIVEL_TEST_SEED " << base << " trial " << trial << " layer " << layer << " slot "
+            << slot;
   }
   std::printf("%d values compared, %d repairs of many, %d edges\n", compared, many, edges);
   EXPECT_GE(many, at_least(12));
   EXPECT_GE(edges, at_least(20));
 }
 
-/// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll that was chosen.
+/// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll
+/// that was chosen.
 TEST(RollLattice, PathsAreRefinedAndTimed) {
   Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.1;
   problem.resolution.dphi = 0.2;
   Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
   const PreparedRobot robot(problem);
-  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0, windows = 0, costly = 0, timed_windows = 0;
+  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0, windows = 0, costly = 0,
+      timed_windows = 0;
   const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
     Problem episode = problem;
     for (SceneObject& object : episode.scene)
       if (object.name == "door")
         object.pose = object.pose *
-                      Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)) *
+                      Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),
+                                           random.uniform(-0.1, 0.1)) *
                       Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vector3d::UnitZ());
     if (random.coin()) episode.roll = Roll{-0.5, 0.5};
-    if (!episode.roll->circle() && random.coin()) draw_windows(episode, random, random.uniform(-0.3, 0.3));
+    if (!episode.roll->circle() && random.coin())
+      draw_windows(episode, random, random.uniform(-0.3, 0.3));
     if (random.coin(0.4)) episode.cost.roll = random.uniform(0.5, 10);
     Planner planner(with_motion_defaults(episode));
-    const MotionPlan plan = plan_motion(planner, {.check = true}, true, TimingOptions{.speed = 0.05});
+    const MotionPlan plan =
+        plan_motion(planner, {.check = true}, true, TimingOptions{.speed = 0.05});
     if (plan.result.status != PlanStatus::kSolved) continue;
     const std::string what = "trial " + std::to_string(trial);
     partial += episode.roll->upper < kPi;
@@ -403,26 +457,31 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
     const auto& rows = plan.result.trajectory;
     ASSERT_EQ(rows.size(), before.size()) << what;
     ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
-    for (std::size_t i = 0; i < rows.size(); ++i) moved += std::abs(wrap_angle(rows[i].roll - before[i].roll)) > 1e-6;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      moved += std::abs(wrap_angle(rows[i].roll - before[i].roll)) > 1e-6;
     const CheckResult check = check_trajectory(with_motion_defaults(episode), rows);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
     ASSERT_NEAR(check.cost, plan.result.cost, 1e-6) << what;
     refined += plan.refinement->refined;
     windows += plan.refinement->refined && episode.waypoints[0].roll;
     costly += plan.refinement->refined && episode.cost.roll > 0;
-    turning += std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+    turning += std::any_of(rows.begin(), rows.end(),
+                           [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
     if (!plan.motion->motion) {
-      std::printf("%s%s: no motion: %s\n", what.c_str(), episode.waypoints[0].roll ? " with windows" : "",
+      std::printf("%s%s: no motion: %s\n", what.c_str(),
+                  episode.waypoints[0].roll ? " with windows" : "",
                   plan.motion->failure->reason.c_str());
       continue;
     }
     ++timed;
     timed_windows += episode.waypoints[0].roll.has_value();
-    const CheckResult motion = check_motion(planner.prepare(), with_motion_defaults(episode), plan.motion->motion->rows, {});
+    const CheckResult motion = check_motion(planner.prepare(), with_motion_defaults(episode),
+                                            plan.motion->motion->rows, {});
     ASSERT_TRUE(motion.passed) << what << ": " << motion.failures[0];
   }
   std::printf(
-      "%d problems: %d refined (%d with windows of roll, %d with a cost of it), %d turn the tool, %d timed (%d with windows), %d "
+      "%d problems: %d refined (%d with windows of roll, %d with a cost of it), %d turn the tool, "
+      "%d timed (%d with windows), %d "
       "within "
       "half a radian\n",
       count, refined, windows, costly, turning, timed, timed_windows, partial);
@@ -451,15 +510,19 @@ TEST(RollLattice, CutsAreVerified) {
     Planner planner(problem);
     if (planner.plan().status != PlanStatus::kInfeasible) continue;
     ++cuts;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
-    const CertificateCheck check = verify_certificate(planner.prepare(), planner.problem(), certificate);
+    const CertificateCheck check =
+        verify_certificate(planner.prepare(), planner.problem(), certificate);
     ASSERT_TRUE(check.passed) << what << ": " << check.failure;
-    edges += std::any_of(certificate.band.begin(), certificate.band.end(),
-                         [](const InfeasibilityCertificate::Layer& layer) { return !layer.edges.empty(); });
+    edges += std::any_of(
+        certificate.band.begin(), certificate.band.end(),
+        [](const InfeasibilityCertificate::Layer& layer) { return !layer.edges.empty(); });
     InfeasibilityCertificate wrong = certificate;
-    const auto with_removed = std::find_if(wrong.band.begin(), wrong.band.end(),
-                                           [](const InfeasibilityCertificate::Layer& layer) { return !layer.removed.empty(); });
+    const auto with_removed = std::find_if(
+        wrong.band.begin(), wrong.band.end(),
+        [](const InfeasibilityCertificate::Layer& layer) { return !layer.removed.empty(); });
     if (with_removed == wrong.band.end()) continue;
     with_removed->removed.pop_back();
     ++forged;
@@ -478,7 +541,8 @@ TEST(RollLattice, AsksTheCallersCheckBetween) {
     NotBeyond(const Chain& chain, double x) : chain_(&chain), x_(x) {}
     [[nodiscard]] std::string name() const override { return "beyond"; }
     void states(std::span<const Config> states, std::span<bool> allowed) override {
-      for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = !(chain_->tool(states[k]).translation().x() > x_);
+      for (std::size_t k = 0; k < states.size(); ++k)
+        allowed[k] = !(chain_->tool(states[k]).translation().x() > x_);
       asked += static_cast<int>(states.size());
     }
     int asked = 0;
@@ -495,9 +559,11 @@ TEST(RollLattice, AsksTheCallersCheckBetween) {
   const PlanResult free = planner.plan();
   ASSERT_EQ(free.status, PlanStatus::kSolved);
   double most = 0;  // x of the tool at rows between knots
-  for (const TrajectoryRow& row : free.trajectory) most = std::max(most, chain.tool(row.q).translation().x());
+  for (const TrajectoryRow& row : free.trajectory)
+    most = std::max(most, chain.tool(row.q).translation().x());
   PlanOptions options;
-  const auto lets = std::make_shared<NotBeyond>(chain, most + 1e-6), bars = std::make_shared<NotBeyond>(chain, most - 1e-6);
+  const auto lets = std::make_shared<NotBeyond>(chain, most + 1e-6),
+             bars = std::make_shared<NotBeyond>(chain, most - 1e-6);
   options.hooks.check = lets;
   const PlanResult same = planner.plan(options);
   EXPECT_EQ(same.cost, free.cost);
@@ -525,20 +591,23 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
       change(rows);
       const CheckResult check = check_trajectory(other, rows);
       EXPECT_FALSE(check.passed) << words;
-      EXPECT_TRUE(std::any_of(check.failures.begin(), check.failures.end(),
-                              [&](const std::string& line) { return line.find(words) != std::string::npos; }))
+      EXPECT_TRUE(std::any_of(
+          check.failures.begin(), check.failures.end(),
+          [&](const std::string& line) { return line.find(words) != std::string::npos; }))
           << words << ": " << (check.failures.empty() ? "" : check.failures[0]);
     };
     fails(
-        problem, [](auto& rows) { rows[1].roll += rows[1].roll > 0 ? -0.01 : 0.01; }, "from the path");
+        problem, [](auto& rows) { rows[1].roll += rows[1].roll > 0 ? -0.01 : 0.01; },
+        "from the path");
     fails(
         problem, [](auto& rows) { rows[1].roll = 0.9; }, "roll 0.9 is outside its range");
     fails(
         problem, [](auto& rows) { rows[1].roll = std::nan(""); }, "not finite");
     Problem narrow = problem;
-    const double least = std::min_element(result.trajectory.begin(), result.trajectory.end(), [](const auto& a, const auto& b) {
-                           return a.roll < b.roll;
-                         })->roll;
+    const double least =
+        std::min_element(result.trajectory.begin(), result.trajectory.end(),
+                         [](const auto& a, const auto& b) { return a.roll < b.roll; })
+            ->roll;
     narrow.roll->lower = least + 0.05;
     if (narrow.roll->lower < narrow.roll->upper)
       fails(
@@ -577,7 +646,8 @@ TEST(RollLattice, RefusesWhatItCannotDo) {
   wrong = problem_for(offset_robot());
   wrong.waypoints = problem.waypoints;
   wrong.roll = Roll{};
-  expect(wrong, "path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist");
+  expect(wrong,
+         "path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limits per metre of path are per metre: verdicts do not depend on how many waypoints a line is written with, and where such a
-// limit ends every path it is named, with its figures, and tried as advice.
+// Limits per metre of path are per metre: verdicts do not depend on how many waypoints a line is
+// written with, and where such a limit ends every path it is named, with its figures, and tried as
+// advice.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,13 +35,15 @@ Problem in_parts(Problem problem, int parts) {
       if (part == parts)
         waypoints.push_back(to);
       else
-        waypoints.push_back({from.position + t * (to.position - from.position), from.orientation.slerp(t, to.orientation)});
+        waypoints.push_back({from.position + t * (to.position - from.position),
+                             from.orientation.slerp(t, to.orientation)});
     }
   problem.waypoints = waypoints;
   return problem;
 }
 
-/// A line of one or two segments from a posture within the limits, that turns sometimes; coarse, so that it is planned at once.
+/// A line of one or two segments from a posture within the limits, that turns sometimes; coarse, so
+/// that it is planned at once.
 Problem random_line(const TestRobot& robot, const std::optional<Roll>& roll, Random& random) {
   Problem problem = motion_problem(robot, random, roll);
   problem.scene.clear();
@@ -54,7 +57,8 @@ Problem random_line(const TestRobot& robot, const std::optional<Roll>& roll, Ran
     to.position += random_vector(random, random.uniform(0.04, 0.15));
     if (random.coin()) {
       const Vector3d turn = random_vector(random, random.uniform(0.1, 0.8));
-      to.orientation = to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+      to.orientation =
+          to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     }
     problem.waypoints.push_back(to);
   }
@@ -83,7 +87,8 @@ void plan_in_parts(const Problem& line, const std::string& what, Tally& tally, P
     ASSERT_EQ(result.lattice.layers, first.lattice.layers) << what << " parts " << parts;
     if (first.status != PlanStatus::kSolved) {
       ASSERT_EQ(result.diagnosis.cause, first.diagnosis.cause) << what << " parts " << parts;
-      ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer) << what << " parts " << parts;
+      ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer)
+          << what << " parts " << parts;
       // The rows about the end of the paths are those of the longer list.
       ASSERT_GE(result.diagnosis.waypoints[1], parts * (first.diagnosis.waypoints[1] - 1)) << what;
       ASSERT_LE(result.diagnosis.waypoints[1], parts * first.diagnosis.waypoints[1]) << what;
@@ -94,14 +99,16 @@ void plan_in_parts(const Problem& line, const std::string& what, Tally& tally, P
   }
 }
 
-/// 200 lines of arms of six joints whose tool may turn: one verdict each; where the slope of the roll ends every path it is named.
+/// 200 lines of arms of six joints whose tool may turn: one verdict each; where the slope of the
+/// roll ends every path it is named.
 TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
   const std::uint64_t base = seed("Slopes");
   const TestRobot robots[] = {robot_of_data("kr6_like"), robot_of_data("ur5e_like")};
   Tally tally;
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     Problem line = random_line(robots[trial % 2], random.coin(0.7) ? Roll{} : Roll{-1, 1}, random);
     line.limits.roll_slope = std::exp(random.uniform(std::log(0.5), std::log(20)));
@@ -126,14 +133,16 @@ TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
     PlanOptions options;
     options.timeout_s = 20;
     const auto advice = advise(planner, planner.plan(), options);
-    const auto slope =
-        std::find_if(advice.begin(), advice.end(), [](const Advice& a) { return a.change == Advice::Change::kRollSlope; });
+    const auto slope = std::find_if(advice.begin(), advice.end(), [](const Advice& a) {
+      return a.change == Advice::Change::kRollSlope;
+    });
     ASSERT_NE(slope, advice.end()) << what;
     EXPECT_GT(*slope->to, *slope->from) << what;
     tally.advised += slope->outcome == Advice::Outcome::kSolved;
   }
-  std::printf("%d lines, %d solved, %d without a path, %d of these by the roll's slope, %d advised\n", tally.lines, tally.solved,
-              tally.infeasible, tally.by_slope, tally.advised);
+  std::printf(
+      "%d lines, %d solved, %d without a path, %d of these by the roll's slope, %d advised\n",
+      tally.lines, tally.solved, tally.infeasible, tally.by_slope, tally.advised);
   EXPECT_GE(tally.lines, at_least(200));
   EXPECT_GE(tally.solved, at_least(60));
   EXPECT_GE(tally.infeasible, at_least(20));
@@ -145,14 +154,18 @@ TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
 /// arm angle and, with a roll, by both slopes.
 TEST(Slopes, OneVerdictForALineOfSevenJointsHoweverManyWaypoints) {
   const std::uint64_t base = seed("SlopesOfSeven");
-  const TestRobot robots[] = {data_robot("iiwa14"), continuous_robot(), robot_of_data("panda_like")};
+  const TestRobot robots[] = {data_robot("iiwa14"), continuous_robot(),
+                              robot_of_data("panda_like")};
   Tally tally;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     const bool srs = trial % 3 < 2;
-    Problem line = random_line(robots[trial % 3], srs && random.coin(0.3) ? std::optional(Roll{-0.3, 0.3}) : std::nullopt, random);
+    Problem line = random_line(
+        robots[trial % 3], srs && random.coin(0.3) ? std::optional(Roll{-0.3, 0.3}) : std::nullopt,
+        random);
     if (srs) line.limits.arm_slope = random.uniform(2, 40);
     line.limits.joint_step = random.uniform(0.05, 0.4);
     line.resolution.knot = 0.04;
@@ -160,20 +173,24 @@ TEST(Slopes, OneVerdictForALineOfSevenJointsHoweverManyWaypoints) {
     plan_in_parts(line, what, tally, result);
     if (HasFatalFailure()) return;
   }
-  std::printf("%d lines, %d solved, %d without a path\n", tally.lines, tally.solved, tally.infeasible);
+  std::printf("%d lines, %d solved, %d without a path\n", tally.lines, tally.solved,
+              tally.infeasible);
   EXPECT_GE(tally.solved, at_least(20));
   EXPECT_GE(tally.infeasible, at_least(5));
 }
 
-/// A tool that turns about the axis of the last joint until that joint's range is used up: what ends every path is the end of the
-/// range, not the turn that the joint would have to unwind by in one step. A tool that may turn helps at once.
+/// A tool that turns about the axis of the last joint until that joint's range is used up: what
+/// ends every path is the end of the range, not the turn that the joint would have to unwind by in
+/// one step. A tool that may turn helps at once.
 TEST(Slopes, AJointThatHasRunOutOfTurnsIsAtItsLimit) {
   const TestRobot robot = data_robot("iiwa14");
-  const Chain chain = build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity()).chain;
+  const Chain chain =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity()).chain;
   int unwound = 0, helped = 0;
   const std::uint64_t base = seed("Unwinds");
   for (int trial = 0; trial < 4; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     Problem problem = problem_for(robot);
     problem.waypoints.assign(1, waypoint_of(chain.tool(inner_posture(chain, random))));
@@ -186,7 +203,8 @@ TEST(Slopes, AJointThatHasRunOutOfTurnsIsAtItsLimit) {
     }
     problem.resolution = {.ds = 0.005, .dphi = 0.2, .dalpha = 0.2};
     problem.limits.clearance = 0;
-    problem.limits.roll_slope = 100;  // of the advice: joint 7 may stand still while the waypoints turn
+    problem.limits.roll_slope =
+        100;  // of the advice: joint 7 may stand still while the waypoints turn
     Planner planner(problem);
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
@@ -202,13 +220,17 @@ TEST(Slopes, AJointThatHasRunOutOfTurnsIsAtItsLimit) {
     EXPECT_EQ(cause.kind, Cause::Kind::kLimit) << what;
     EXPECT_EQ(cause.joint, chain.joint_names.back()) << what;
     ASSERT_TRUE(cause.value && cause.limit) << what;
-    EXPECT_GT(cause.side == Cause::Side::kUpper ? *cause.value - *cause.limit : *cause.limit - *cause.value, 0) << what;
+    EXPECT_GT(cause.side == Cause::Side::kUpper ? *cause.value - *cause.limit
+                                                : *cause.limit - *cause.value,
+              0)
+        << what;
     EXPECT_LE(*cause.by(), problem.limits.joint_step) << what;
     EXPECT_NE(figures(cause).find("unwind"), std::string::npos) << figures(cause);
     options.timeout_s = 6;
     const auto begin = std::chrono::steady_clock::now();
     const auto advice = advise(planner, result, options);
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 7) << what;
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 7)
+        << what;
     for (const Advice& one : advice) {
       EXPECT_NE(one.change, Advice::Change::kJointStep) << what;
       helped += one.change == Advice::Change::kFreeRoll && one.outcome == Advice::Outcome::kSolved;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// S-R-S arms on arcs of self-motion, too, as arms of any other class are: two ways to the same paths, which know nothing of each
-// other, hold each other to account.
+// S-R-S arms on arcs of self-motion, too, as arms of any other class are: two ways to the same
+// paths, which know nothing of each other, hold each other to account.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,8 @@ Found least(std::unique_ptr<Lattice> lattice) {
 
 TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
   const std::uint64_t base = seed("SrsArcs");
-  const std::vector<TestRobot> robots{data_robot("iiwa14"), data_robot("sda5f"), data_robot("sda10f"), continuous_robot()};
+  const std::vector<TestRobot> robots{data_robot("iiwa14"), data_robot("sda5f"),
+                                      data_robot("sda10f"), continuous_robot()};
   const int count = trials(25);
   for (std::size_t which = 0; which < robots.size(); ++which) {
     const TestRobot& robot = robots[which];
@@ -73,7 +74,8 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
       problem.smooth.reset();
       problem.resolution.dphi = 0.05;
       problem.resolution.arc = 0.1;  // about as far from node to node as that
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + robot.name;
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                               std::to_string(trial) + " " + robot.name;
       const PreparedRobot prepared(problem);
       const Chain& chain = prepared.arm().chain;
       ASSERT_EQ(prepared.arm_class().kind, ArmKind::kSrs) << what;
@@ -89,7 +91,8 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
         arcs_alone += !arcs.joints.empty();
         continue;
       }
-      ASSERT_FALSE(arcs.joints.empty()) << what << ": no path along arcs, of cost " << grid.cost << " over the grid";
+      ASSERT_FALSE(arcs.joints.empty())
+          << what << ": no path along arcs, of cost " << grid.cost << " over the grid";
       ++both;
       const bool l2 = problem.cost.metric == CostMetric::kL2;
       (l2 ? ratios : others).push_back(arcs.cost / grid.cost);
@@ -97,21 +100,26 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
       if (arcs.cost > 1.01 * grid.cost) {
         ++finer;
         problem.resolution.arc /= 2;
-        EXPECT_LE(least(make_lattice(chain, as_others, path, problem)).cost, 1.01 * grid.cost) << what;
+        EXPECT_LE(least(make_lattice(chain, as_others, path, problem)).cost, 1.01 * grid.cost)
+            << what;
       }
       for (std::size_t i = 0; i < arcs.joints.size(); ++i)
-        ASSERT_TRUE(chain.tool(arcs.joints[i]).isApprox(path.layer(static_cast<int>(i)).tool, 1e-9)) << what << " layer " << i;
+        ASSERT_TRUE(chain.tool(arcs.joints[i]).isApprox(path.layer(static_cast<int>(i)).tool, 1e-9))
+            << what << " layer " << i;
     }
     std::printf(
-        "seed %llu, %s: %d paths, %d over the grid, %d along arcs as well (%d cheaper, %d dearer by 1 %% but not along finer "
+        "seed %llu, %s: %d paths, %d over the grid, %d along arcs as well (%d cheaper, %d dearer "
+        "by 1 %% but not along finer "
         "ones), %d "
         "along arcs alone\n",
-        static_cast<unsigned long long>(base), robot.name.c_str(), count, solved, both, cheaper, finer, arcs_alone);
+        static_cast<unsigned long long>(base), robot.name.c_str(), count, solved, both, cheaper,
+        finer, arcs_alone);
     for (auto* const some : {&ratios, &others}) {
       std::sort(some->begin(), some->end());
       if (some->empty()) continue;
-      std::printf("  %s: %zu, cost over the grid's %.4f in the median, %.4f to %.4f\n", some == &ratios ? "l2" : "max and time",
-                  some->size(), (*some)[some->size() / 2], some->front(), some->back());
+      std::printf("  %s: %zu, cost over the grid's %.4f in the median, %.4f to %.4f\n",
+                  some == &ratios ? "l2" : "max and time", some->size(), (*some)[some->size() / 2],
+                  some->front(), some->back());
     }
     EXPECT_GE(both, at_least(count / 2)) << robot.name;
     EXPECT_LE(finer, 1 + both / 20) << robot.name;

@@ -25,7 +25,8 @@ PlanOptions options_for(PlannerKind planner) {
   return options;
 }
 
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
+                                     PlannerKind::kParallel};
 
 /// A random problem; every third turns on the spot first.
 Problem turning_problem(const TestRobot& robot, Random& random, int trial) {
@@ -52,7 +53,8 @@ TEST(StartAt, TheRestOfAPathIsTheWholePathsOwn) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
     const Problem problem = turning_problem(robot, random, trial);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const SrsArm arm = fit_srs(arm_of(robot).chain, what);
     const ToolPath whole = whole_path(problem);
     const std::vector<ArmPlane> planes = carried_planes(arm, whole);
@@ -65,7 +67,8 @@ TEST(StartAt, TheRestOfAPathIsTheWholePathsOwn) {
     const Pose there = t > 0 ? whole.at(first, t) : layer.tool;
     Pose tool = there;
     const double off = random.coin(0.3) ? random.uniform(2e-6, 9e-4) : 0;
-    tool.translation() += off * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 1).normalized();
+    tool.translation() +=
+        off * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 1).normalized();
 
     ToolPath rest = whole;
     rest.begin_at(s, tool, 1e-3, what);
@@ -76,8 +79,11 @@ TEST(StartAt, TheRestOfAPathIsTheWholePathsOwn) {
     ASSERT_EQ(rest.layer(0).waypoint, cuts_a_step ? -1 : layer.waypoint) << what;
     ASSERT_LE((rest.layer(0).tool.matrix() - tool.matrix()).cwiseAbs().maxCoeff(), 1e-7) << what;
     const Pose next = rest.at(0, 1);
-    ASSERT_LE((next.matrix() - whole.layer(first + 1).tool.matrix()).cwiseAbs().maxCoeff(), 1e-12) << what;
-    ASSERT_NEAR(rest.layer(0).step_length, (whole.layer(first + 1).tool.translation() - tool.translation()).norm(), 1e-9) << what;
+    ASSERT_LE((next.matrix() - whole.layer(first + 1).tool.matrix()).cwiseAbs().maxCoeff(), 1e-12)
+        << what;
+    ASSERT_NEAR(rest.layer(0).step_length,
+                (whole.layer(first + 1).tool.translation() - tool.translation()).norm(), 1e-9)
+        << what;
     const std::vector<ArmPlane> rest_planes = carried_planes(arm, rest);
     for (int i = rest.begins_on_layer() ? 0 : 1; i < rest.size(); ++i) {
       const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(first + i);
@@ -91,7 +97,8 @@ TEST(StartAt, TheRestOfAPathIsTheWholePathsOwn) {
     (off > 0 ? aside : cuts_a_step ? between : on_layers) += 1;
     on_turns += layer.step_length == 0;
   }
-  std::printf("%d on layers, %d between, %d beside the path; %d where it turns on the spot\n", on_layers, between, aside, on_turns);
+  std::printf("%d on layers, %d between, %d beside the path; %d where it turns on the spot\n",
+              on_layers, between, aside, on_turns);
   EXPECT_GT(on_layers, count / 5);
   EXPECT_GT(between, count / 5);
   EXPECT_GT(aside, count / 6);
@@ -107,8 +114,8 @@ TEST(StartAt, FromARowOfATrajectoryTheRestIsTheSame) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot_model = robots[static_cast<std::size_t>(trial) % robots.size()];
     const Problem problem = turning_problem(robot_model, random, trial);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const PreparedRobot robot(problem);
     PlanOptions options = options_for(kPlanners[trial % 4]);
     const PlanResult whole = plan(robot, problem, options);
@@ -123,7 +130,8 @@ TEST(StartAt, FromARowOfATrajectoryTheRestIsTheSame) {
       rest.start_at = whole.trajectory[cut].s;
       options.planner = kPlanners[random.below(4)];
       const PlanResult result = plan(robot, rest, options);
-      const std::string where = what + " cut at row " + std::to_string(cut) + " planner " + result.planner;
+      const std::string where =
+          what + " cut at row " + std::to_string(cut) + " planner " + result.planner;
       ASSERT_EQ(result.status, PlanStatus::kSolved) << where;
       ASSERT_EQ(result.trajectory.size(), whole.trajectory.size() - cut) << where;
       for (std::size_t k = 0; k < result.trajectory.size(); ++k) {
@@ -139,13 +147,15 @@ TEST(StartAt, FromARowOfATrajectoryTheRestIsTheSame) {
       }
       ASSERT_NEAR(result.cost, whole.cost - spent, 1e-11 * (1 + lattice.cost_unit())) << where;
       const CheckResult checked = check_trajectory(robot, rest, result.trajectory);
-      ASSERT_TRUE(checked.passed) << where << ": " << (checked.failures.empty() ? "" : checked.failures[0]);
+      ASSERT_TRUE(checked.passed) << where << ": "
+                                  << (checked.failures.empty() ? "" : checked.failures[0]);
       if (cut > 0) {  // a trajectory that begins elsewhere is not this problem's
         refused += !check_trajectory(robot, rest, whole.trajectory).passed;
         at_turns += path.layer(static_cast<int>(cut)).step_length == 0;
         ++compared;
       }
-      spent += lattice.edge_cost(lattice.delta(whole.trajectory[cut].q, whole.trajectory[cut + 1].q));
+      spent +=
+          lattice.edge_cost(lattice.delta(whole.trajectory[cut].q, whole.trajectory[cut + 1].q));
     }
   }
   std::printf("%d solved, %d cuts (%d on turns), %d rows\n", solved, compared, at_turns, rows);
@@ -162,15 +172,18 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = turning_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random, trial);
-    problem.limits.clearance = 0.001;  // motions keep half of it, rows all: a stop may be too near for a row
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    Problem problem =
+        turning_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random, trial);
+    problem.limits.clearance =
+        0.001;  // motions keep half of it, rows all: a stop may be too near for a row
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                             std::to_string(trial) + " robot " + problem.source;
     const PreparedRobot robot(problem);
     PlanOptions options = options_for(kPlanners[trial % 4]);
     const PlanResult whole = plan(robot, problem, options);
     if (whole.status != PlanStatus::kSolved) continue;
-    const std::size_t cut = static_cast<std::size_t>(random.below(static_cast<int>(whole.trajectory.size()) - 1));
+    const std::size_t cut =
+        static_cast<std::size_t>(random.below(static_cast<int>(whole.trajectory.size()) - 1));
     const double t = random.uniform(0.1, 0.9);
     const TrajectoryRow &from = whole.trajectory[cut], &to = whole.trajectory[cut + 1];
     Problem rest = problem;
@@ -187,9 +200,12 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
       const SrsLattice lattice(robot.arm().chain, robot.srs(), there, free);
       std::vector<Lattice::Node> nodes;
       lattice.layer_nodes(0, nodes);
-      const auto distance = [&](const Lattice::Node& node) { return lattice.delta(q, node.q).norm(); };
+      const auto distance = [&](const Lattice::Node& node) {
+        return lattice.delta(q, node.q).norm();
+      };
       const auto nearest =
-          std::min_element(nodes.begin(), nodes.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+          std::min_element(nodes.begin(), nodes.end(),
+                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
       if (nearest == nodes.end()) continue;
       q += lattice.delta(q, nearest->q);
     } else {
@@ -214,19 +230,23 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
     for (std::size_t k = 1; k < result.trajectory.size(); ++k)
       ASSERT_EQ(result.trajectory[k].s, whole.trajectory[cut + k].s) << what;
     const CheckResult checked = check_trajectory(robot, rest, result.trajectory);
-    ASSERT_TRUE(checked.passed) << what << ": " << (checked.failures.empty() ? "" : checked.failures[0]);
+    ASSERT_TRUE(checked.passed) << what << ": "
+                                << (checked.failures.empty() ? "" : checked.failures[0]);
     exact += on_path;
     const ToolPath path = problem_path(rest, robot.arm().chain);
-    aside += !on_path &&
-             (whole_path(problem).at(static_cast<int>(cut), t).translation() - path.layer(0).tool.translation()).norm() > 1e-5;
+    aside += !on_path && (whole_path(problem).at(static_cast<int>(cut), t).translation() -
+                          path.layer(0).tool.translation())
+                                 .norm() > 1e-5;
     // All planners agree.
     for (const PlannerKind planner : kPlanners) {
       const PlanResult other = plan(robot, rest, options_for(planner));
       ASSERT_EQ(other.cost, result.cost) << what;
-      for (std::size_t k = 0; k < result.trajectory.size(); ++k) ASSERT_EQ(other.trajectory[k].q, result.trajectory[k].q) << what;
+      for (std::size_t k = 0; k < result.trajectory.size(); ++k)
+        ASSERT_EQ(other.trajectory[k].q, result.trajectory[k].q) << what;
     }
   }
-  std::printf("%d solved: %d on the path, %d beside it; %d have no path from there\n", solved, exact, aside, infeasible);
+  std::printf("%d solved: %d on the path, %d beside it; %d have no path from there\n", solved,
+              exact, aside, infeasible);
   EXPECT_GE(solved, count / 5);
   EXPECT_GE(exact, count / 15);
   EXPECT_GE(aside, count / 15);
@@ -257,15 +277,19 @@ TEST(StartAt, WhatDoesNotFitIsBadInput) {
     }
     return "";
   };
-  const auto expect_said = [](const std::string& message, std::initializer_list<const char*> words) {
+  const auto expect_said = [](const std::string& message,
+                              std::initializer_list<const char*> words) {
     for (const char* word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   };
   const TrajectoryRow& row = whole.trajectory[3];
   EXPECT_EQ(message_of(row.s, row.q, 1e-6), "");
-  expect_said(message_of(length, whole.trajectory.back().q, 1e-6), {"start_at", "before the end of the path"});
-  expect_said(message_of(length + 0.1, whole.trajectory.back().q, 0.1), {"start_at", "before the end of the path"});
-  expect_said(message_of(row.s + 0.001, row.q, 1e-6), {"start.joints", "0.001 m", "start_at", "1e-06", "start_tolerance"});
+  expect_said(message_of(length, whole.trajectory.back().q, 1e-6),
+              {"start_at", "before the end of the path"});
+  expect_said(message_of(length + 0.1, whole.trajectory.back().q, 0.1),
+              {"start_at", "before the end of the path"});
+  expect_said(message_of(row.s + 0.001, row.q, 1e-6),
+              {"start.joints", "0.001 m", "start_at", "1e-06", "start_tolerance"});
   EXPECT_EQ(message_of(row.s + 0.001, row.q, 0.0011), "");
   expect_said(message_of(row.s + 0.001, row.q, 0.0009), {"start.joints", "0.0009"});
   // A given start without a place stands at the path's beginning, within the tolerance.

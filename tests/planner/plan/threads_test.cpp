@@ -24,7 +24,8 @@ void expect_same_answer(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.cost, first.cost);
   EXPECT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer);
   ASSERT_EQ(result.trajectory.size(), first.trajectory.size());
-  for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+    ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);
 }
 
 void expect_same(const PlanResult& result, const PlanResult& first) {
@@ -39,9 +40,11 @@ void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause));
 }
 
-/// The result of plan_with(threads) at the first of these thread counts; those at the others are held against it.
+/// The result of plan_with(threads) at the first of these thread counts; those at the others are
+/// held against it.
 template <class PlanWith>
-PlanResult compared_at(std::initializer_list<int> thread_counts, const PlanWith& plan_with, int& compared) {
+PlanResult compared_at(std::initializer_list<int> thread_counts, const PlanWith& plan_with,
+                       int& compared) {
   std::optional<PlanResult> first;
   for (const int threads : thread_counts) {
     const PlanResult result = plan_with(threads);
@@ -62,7 +65,8 @@ TEST(Threads, SameResultAndCountsAtAnyThreadCount) {
   int compared = 0;
   for (int trial = 0; trial < trials(20); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const auto plan_with = [&](int threads) {
       PlanOptions options;
       options.threads = threads;
@@ -95,7 +99,8 @@ TEST(Threads, KeptClearancesCountTheSame) {
   EXPECT_GT(repaired, 2);
 }
 
-/// Of lattices so large that neighbours of failed nodes are asked about while those before them are dealt with.
+/// Of lattices so large that neighbours of failed nodes are asked about while those before them are
+/// dealt with.
 TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
   Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.ds = 0.003;
@@ -119,13 +124,15 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
     grown += result.counters.nodes_checked > 1000;
     solved += result.status == PlanStatus::kSolved;
   }
-  std::printf("%d plans compared, %d episodes with regions of hundreds of nodes, %d solved\n", compared, grown, solved);
+  std::printf("%d plans compared, %d episodes with regions of hundreds of nodes, %d solved\n",
+              compared, grown, solved);
   EXPECT_EQ(compared, 3 * trials(20));
   EXPECT_GE(grown, at_least(5));
   EXPECT_GE(solved, at_least(5));
 }
 
-/// Every thread has a clone of one planner, moves its objects about and plans; answers are those of fresh plans made before.
+/// Every thread has a clone of one planner, moves its objects about and plans; answers are those of
+/// fresh plans made before.
 TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
   constexpr int kThreads = 8;
   const std::uint64_t base = seed("Planner.Clones");
@@ -141,9 +148,11 @@ TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
   options.planner = PlannerKind::kLazy;
   Random random(base);
   for (int k = 0; k < kinds; ++k) {
-    Problem moved = k % 4 == 0 ? episode_problem(problem, 1, static_cast<std::uint64_t>(k)) : problem;
+    Problem moved =
+        k % 4 == 0 ? episode_problem(problem, 1, static_cast<std::uint64_t>(k)) : problem;
     for (SceneObject& object : moved.scene)
-      if (object.name != "door" && random.coin()) object.pose.translation().z() += random.uniform(-0.05, 0.05);
+      if (object.name != "door" && random.coin())
+        object.pose.translation().z() += random.uniform(-0.05, 0.05);
     if (k % 7 == 0) moved.limits.clearance = random.uniform(0, 0.02);
     steps.push_back({moved, plan(moved, options)});
   }
@@ -175,7 +184,8 @@ TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);
-  for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+  for (const PlannerKind planner :
+       {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
     PlanOptions options;
     options.planner = planner;
     options.timeout_s = 1e-9;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program may hand over wrongly: every member of a problem broken in every way, and a robot prepared for another problem.
+// What a program may hand over wrongly: every member of a problem broken in every way, and a robot
+// prepared for another problem.
 #include "swivel/core/problem/validate.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ namespace {
 
 using namespace test;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
+                 kInf = std::numeric_limits<double>::infinity();
 
 /// A valid problem in which every member is set.
 Problem full_problem() {
@@ -52,10 +54,11 @@ struct Case {
 };
 
 /// A number that each of `values` breaks.
-void add_number(std::vector<Case>& cases, const std::string& field, const std::function<double&(Problem&)>& member,
-                std::vector<double> values) {
+void add_number(std::vector<Case>& cases, const std::string& field,
+                const std::function<double&(Problem&)>& member, std::vector<double> values) {
   values.insert(values.end(), {kNaN, kInf, -kInf});
-  for (const double value : values) cases.push_back({field, [=](Problem& problem) { member(problem) = value; }});
+  for (const double value : values)
+    cases.push_back({field, [=](Problem& problem) { member(problem) = value; }});
 }
 
 std::vector<Case> all_cases() {
@@ -63,11 +66,14 @@ std::vector<Case> all_cases() {
   const std::vector<double> not_positive{0, -1}, negative{-1}, none;
   const auto limit = [&](const char* name, auto member, const std::vector<double>& values) {
     add_number(
-        cases, std::string("limits.") + name, [=](Problem& p) -> double& { return p.limits.*member; }, values);
+        cases, std::string("limits.") + name,
+        [=](Problem& p) -> double& { return p.limits.*member; }, values);
   };
-  const auto optional_limit = [&](const char* name, auto member, const std::vector<double>& values) {
+  const auto optional_limit = [&](const char* name, auto member,
+                                  const std::vector<double>& values) {
     add_number(
-        cases, std::string("limits.") + name, [=](Problem& p) -> double& { return (p.limits.*member).emplace(); }, values);
+        cases, std::string("limits.") + name,
+        [=](Problem& p) -> double& { return (p.limits.*member).emplace(); }, values);
   };
   limit("clearance", &Limits::clearance, negative);
   limit("manipulability", &Limits::manipulability, negative);
@@ -84,11 +90,14 @@ std::vector<Case> all_cases() {
   optional_limit("edge_clearance", &Limits::edge_clearance, negative);
   add_number(
       cases, "resolution.ds", [](Problem& p) -> double& { return p.resolution.ds; }, not_positive);
-  add_number(cases, "resolution.dphi", [](Problem& p) -> double& { return p.resolution.dphi; }, {0, -1, 6.3});
+  add_number(cases, "resolution.dphi", [](Problem& p) -> double& { return p.resolution.dphi; },
+             {0, -1, 6.3});
   add_number(
-      cases, "resolution.dalpha", [](Problem& p) -> double& { return p.resolution.dalpha; }, not_positive);
+      cases, "resolution.dalpha", [](Problem& p) -> double& { return p.resolution.dalpha; },
+      not_positive);
   for (std::size_t k : {0u, 6u}) {
-    add_number(cases, "cost.weights[" + std::to_string(k) + "]", [=](Problem& p) -> double& { return p.cost.weights[k]; },
+    add_number(cases, "cost.weights[" + std::to_string(k) + "]",
+               [=](Problem& p) -> double& { return p.cost.weights[k]; },
                {-1, 1e-7, 1.1e6, 1e160, 1e-300});
     add_number(
         cases, "start[" + std::to_string(k) + "]",
@@ -105,7 +114,8 @@ std::vector<Case> all_cases() {
              },
              {-1, 1e-7, 1.1e6});
   cases.push_back({"cost.roll", [](Problem& p) { p.cost.roll = 1; }});  // no roll is free
-  add_number(cases, "start_tolerance", [](Problem& p) -> double& { return p.start_tolerance; }, {0, -1, 0.11});
+  add_number(cases, "start_tolerance", [](Problem& p) -> double& { return p.start_tolerance; },
+             {0, -1, 0.11});
   add_number(
       cases, "start_at",
       [](Problem& p) -> double& {
@@ -117,42 +127,55 @@ std::vector<Case> all_cases() {
   for (int k = 0; k < 3; ++k) {
     const std::string at = "[" + std::to_string(k) + "]";
     add_number(
-        cases, "waypoints[1].position" + at, [=](Problem& p) -> double& { return p.waypoints[1].position[k]; }, none);
+        cases, "waypoints[1].position" + at,
+        [=](Problem& p) -> double& { return p.waypoints[1].position[k]; }, none);
     add_number(
-        cases, "vary[0].xyz" + at, [=](Problem& p) -> double& { return p.vary[0].xyz[k]; }, negative);
+        cases, "vary[0].xyz" + at, [=](Problem& p) -> double& { return p.vary[0].xyz[k]; },
+        negative);
     add_number(
-        cases, "vary[0].rpy" + at, [=](Problem& p) -> double& { return p.vary[0].rpy[k]; }, negative);
+        cases, "vary[0].rpy" + at, [=](Problem& p) -> double& { return p.vary[0].rpy[k]; },
+        negative);
     add_number(
-        cases, "scene[0].shape.size" + at, [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
+        cases, "scene[0].shape.size" + at,
+        [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
         not_positive);
   }
-  // Beyond kMostMetres distances are not right, and names stand on terminals and in pictures (bounds.hpp).
+  // Beyond kMostMetres distances are not right, and names stand on terminals and in pictures
+  // (bounds.hpp).
   cases.push_back({"scene[1].shape.radius", [](Problem& p) { p.scene[1].shape = Sphere{1000.1}; }});
-  cases.push_back({"scene[0].shape.size[2]", [](Problem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
-  cases.push_back({"scene[4].shape", [](Problem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
+  cases.push_back(
+      {"scene[0].shape.size[2]", [](Problem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
+  cases.push_back(
+      {"scene[4].shape", [](Problem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
   cases.push_back({"scene[3].pose", [](Problem& p) { p.scene[3].pose.translation().x() = 1e9; }});
   cases.push_back({"scene[2].name", [](Problem& p) { p.scene[2].name = "a\x1b[31m"; }});
   cases.push_back({"attached[0].name", [](Problem& p) { p.attached[0].name = "\xff"; }});
   for (int k = 0; k < 4; ++k)
-    add_number(cases, "waypoints[0].orientation", [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; },
-               {3});
+    add_number(cases, "waypoints[0].orientation",
+               [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; }, {3});
   add_number(
-      cases, "scene[1].shape.radius", [](Problem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
+      cases, "scene[1].shape.radius",
+      [](Problem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
       not_positive);
   add_number(
-      cases, "scene[2].shape.radius", [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).radius; },
+      cases, "scene[2].shape.radius",
+      [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).radius; },
       not_positive);
   add_number(
-      cases, "scene[2].shape.length", [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).length; },
+      cases, "scene[2].shape.length",
+      [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).length; },
       not_positive);
   add_number(
-      cases, "scene[3].shape.radius", [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).radius; },
+      cases, "scene[3].shape.radius",
+      [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).radius; },
       not_positive);
   add_number(
-      cases, "scene[3].shape.length", [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).length; },
+      cases, "scene[3].shape.length",
+      [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).length; },
       not_positive);
   add_number(
-      cases, "attached[0].shape.radius", [](Problem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
+      cases, "attached[0].shape.radius",
+      [](Problem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
       not_positive);
   const std::pair<const char*, std::function<Pose&(Problem&)>> poses[] = {
       {"tool", [](Problem& p) -> Pose& { return p.tool; }},
@@ -165,7 +188,8 @@ std::vector<Case> all_cases() {
         add_number(
             cases, field, [=](Problem& p) -> double& { return pose(p).matrix()(row, column); },
             row == 3 || column < 3 ? std::vector<double>{2, 1 - 1e-5 * (row == column)} : none);
-    cases.push_back({field, [=](Problem& p) { pose(p).matrix().topLeftCorner<3, 3>() *= -1; }});  // a mirror
+    cases.push_back(
+        {field, [=](Problem& p) { pose(p).matrix().topLeftCorner<3, 3>() *= -1; }});  // a mirror
     cases.push_back({field, [=](Problem& p) { pose(p).matrix().setZero(); }});
   }
   add_number(
@@ -177,24 +201,26 @@ std::vector<Case> all_cases() {
   };
   for (int k = 0; k < 3; ++k)
     add_number(
-        cases, "scene[4].shape", [=](Problem& p) -> double& { return mesh(p)->vertices[5][k]; }, none);
+        cases, "scene[4].shape", [=](Problem& p) -> double& { return mesh(p)->vertices[5][k]; },
+        none);
   for (const int corner : {-1, 8, std::numeric_limits<int>::max()})
     cases.push_back({"scene[4].shape", [=](Problem& p) { mesh(p)->triangles[3][1] = corner; }});
-  cases.insert(cases.end(), {{"model", [](Problem& p) { p.model = nullptr; }},
-                             {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
-                             {"scene[1].name", [](Problem& p) { p.scene[1].name = ""; }},
-                             {"scene[1].name", [](Problem& p) { p.scene[1].name = "box"; }},
-                             {"scene[1].name", [](Problem& p) { p.scene[1].name = "grip"; }},
-                             {"scene[1].name", [](Problem& p) { p.scene[1].name = "base_link"; }},
-                             {"scene[0].allow[1]", [](Problem& p) { p.scene[0].allow[1] = "hand"; }},
-                             {"scene[0].allow[0]", [](Problem& p) { p.scene[0].allow[0] = ""; }},
-                             {"attached[0].name", [](Problem& p) { p.attached[0].name = ""; }},
-                             {"attached[0].name", [](Problem& p) { p.attached[0].name = "link_3"; }},
-                             {"attached[1].name", [](Problem& p) { p.attached.push_back(p.attached[0]); }},
-                             {"attached[0].link", [](Problem& p) { p.attached[0].link = ""; }},
-                             {"attached[0].link", [](Problem& p) { p.attached[0].link = "hand"; }},
-                             {"path_frame", [](Problem& p) { p.path_frame = "door"; }},
-                             {"vary[0].object", [](Problem& p) { p.vary[0].object = "door"; }}});
+  cases.insert(cases.end(),
+               {{"model", [](Problem& p) { p.model = nullptr; }},
+                {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
+                {"scene[1].name", [](Problem& p) { p.scene[1].name = ""; }},
+                {"scene[1].name", [](Problem& p) { p.scene[1].name = "box"; }},
+                {"scene[1].name", [](Problem& p) { p.scene[1].name = "grip"; }},
+                {"scene[1].name", [](Problem& p) { p.scene[1].name = "base_link"; }},
+                {"scene[0].allow[1]", [](Problem& p) { p.scene[0].allow[1] = "hand"; }},
+                {"scene[0].allow[0]", [](Problem& p) { p.scene[0].allow[0] = ""; }},
+                {"attached[0].name", [](Problem& p) { p.attached[0].name = ""; }},
+                {"attached[0].name", [](Problem& p) { p.attached[0].name = "link_3"; }},
+                {"attached[1].name", [](Problem& p) { p.attached.push_back(p.attached[0]); }},
+                {"attached[0].link", [](Problem& p) { p.attached[0].link = ""; }},
+                {"attached[0].link", [](Problem& p) { p.attached[0].link = "hand"; }},
+                {"path_frame", [](Problem& p) { p.path_frame = "door"; }},
+                {"vary[0].object", [](Problem& p) { p.vary[0].object = "door"; }}});
   return cases;
 }
 
@@ -234,7 +260,8 @@ TEST(Validate, EveryMemberBrokenInEveryWayIsNamed) {
     // The same wherever a problem is taken.
     for (const std::string& message :
          {message_of([&] { (void)plan(bad); }), message_of([&] { (void)plan(robot, bad); }),
-          message_of([&] { PreparedRobot prepared(bad); }), message_of([&] { (void)check_trajectory(bad, {}); }),
+          message_of([&] { PreparedRobot prepared(bad); }),
+          message_of([&] { (void)check_trajectory(bad, {}); }),
           message_of([&] { run_campaign(robot, bad, one_episode(), [](const EpisodeRow&) {}); })})
       EXPECT_EQ(message, message_of([&] { validate(bad); }));
     ++broken;
@@ -250,7 +277,8 @@ TEST(Validate, EndsOfWhatIsAllowed) {
   problem.limits.clearance = problem.limits.manipulability = problem.limits.joint_margin = 0;
   problem.limits.edge_clearance = problem.limits.self_clearance = 0;
   problem.limits.tool_path_error = problem.limits.tool_speed = std::nullopt;
-  problem.tool.linear() = Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized()).toRotationMatrix() * (1 + 1e-8);
+  problem.tool.linear() =
+      Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized()).toRotationMatrix() * (1 + 1e-8);
   EXPECT_EQ(message_of([&] { validate(problem); }), "accepted");
 }
 
@@ -285,7 +313,8 @@ TEST(Validate, RobotModelsThatAreNone) {
       {"links[2].parent_joint", [](RobotModel& r) { r.links[2].parent_joint = 0; }},
       {"links[0].parent_joint",
        [](RobotModel& r) {
-         r.joints[0].parent_link = static_cast<int>(r.links.size()) - 1;  // the tip carries the base
+         r.joints[0].parent_link =
+             static_cast<int>(r.links.size()) - 1;  // the tip carries the base
          Joint joint;
          joint.name = "loop";
          joint.parent_link = static_cast<int>(r.links.size()) - 1;
@@ -294,9 +323,12 @@ TEST(Validate, RobotModelsThatAreNone) {
          r.joints.push_back(joint);
        }},
       {"root_link", [](RobotModel& r) { r.root_link = 99; }},
-      {"links[1].collision[0].shape", [](RobotModel& r) { r.links[1].collision[0].shape = MeshPtr(); }},
-      {"links[1].collision[0].shape.radius", [](RobotModel& r) { r.links[1].collision[0].shape = Sphere{kNaN}; }},
-      {"links[1].collision[0].pose", [](RobotModel& r) { r.links[1].collision[0].pose.matrix()(0, 0) = kNaN; }},
+      {"links[1].collision[0].shape",
+       [](RobotModel& r) { r.links[1].collision[0].shape = MeshPtr(); }},
+      {"links[1].collision[0].shape.radius",
+       [](RobotModel& r) { r.links[1].collision[0].shape = Sphere{kNaN}; }},
+      {"links[1].collision[0].pose",
+       [](RobotModel& r) { r.links[1].collision[0].pose.matrix()(0, 0) = kNaN; }},
   };
   for (const auto& [field, breaks] : cases) {
     auto bad = std::make_shared<RobotModel>(good);
@@ -307,7 +339,8 @@ TEST(Validate, RobotModelsThatAreNone) {
   }
 }
 
-/// Every difference in what a robot was prepared for is refused by name; what is not baked in may differ.
+/// Every difference in what a robot was prepared for is refused by name; what is not baked in may
+/// differ.
 TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   const Problem good = full_problem();
   const PreparedRobot robot(good);
@@ -333,9 +366,12 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   for (const auto& [what, changes] : others) {
     Problem other = good;
     changes(other);
-    for (const std::string& message : {message_of([&] { (void)plan(robot, other); }),
-                                       message_of([&] { run_campaign(robot, other, one_episode(), [](const EpisodeRow&) {}); })}) {
-      EXPECT_NE(message.find(std::string(": ") + what), std::string::npos) << what << ": " << message;
+    for (const std::string& message :
+         {message_of([&] { (void)plan(robot, other); }), message_of([&] {
+            run_campaign(robot, other, one_episode(), [](const EpisodeRow&) {});
+          })}) {
+      EXPECT_NE(message.find(std::string(": ") + what), std::string::npos)
+          << what << ": " << message;
       EXPECT_NE(message.find("prepared for"), std::string::npos) << message;
     }
   }
@@ -353,13 +389,17 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   EXPECT_EQ(message_of([&] { (void)plan(robot, moved); }), "accepted");
 }
 
-/// Problems that a program makes have no file to name: a message begins with the key then, and not with a colon.
+/// Problems that a program makes have no file to name: a message begins with the key then, and not
+/// with a colon.
 TEST(Validate, MessagesWithoutAFileBeginWithTheKey) {
   const std::vector<std::pair<const char*, std::function<void(Problem&)>>> breaks = {
       {"path: 1 waypoint", [](Problem& p) { p.waypoints.resize(1); }},
-      {"path: all waypoints are one pose", [](Problem& p) { p.waypoints.assign(3, p.waypoints[0]); }},
+      {"path: all waypoints are one pose",
+       [](Problem& p) { p.waypoints.assign(3, p.waypoints[0]); }},
       {"path: waypoint 1: turns by 180 deg",
-       [](Problem& p) { p.waypoints[1].orientation = p.waypoints[0].orientation * Quaterniond(0, 1, 0, 0); }},
+       [](Problem& p) {
+         p.waypoints[1].orientation = p.waypoints[0].orientation * Quaterniond(0, 1, 0, 0);
+       }},
       {"problem: path_frame: unknown frame", [](Problem& p) { p.path_frame = "nowhere"; }},
       {"start.joints: joint", [](Problem& p) { p.start = Config::Constant(9); }},
       {"start.joints: the tool", [](Problem& p) { p.start = Config::Zero(); }},
@@ -370,7 +410,8 @@ TEST(Validate, MessagesWithoutAFileBeginWithTheKey) {
        [](Problem& p) {
          p.attached = {{"link_3", Sphere{0.1}, Pose::Identity(), "tool0"}};
        }},
-      {"problem: attached[0].link: unknown link", [](Problem& p) { p.attached[0].link = "nothing"; }},
+      {"problem: attached[0].link: unknown link",
+       [](Problem& p) { p.attached[0].link = "nothing"; }},
       {"robot.tip_link: ", [](Problem& p) { p.tip_link = "nothing"; }},
       {"robot.tip_link: only", [](Problem& p) { p.tip_link = "link_3"; }},
   };

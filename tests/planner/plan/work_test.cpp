@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much work a plan is, in counts that no machine changes: a slower algorithm shows here, whatever the clock says. A change that
-// moves a count on purpose puts the printed row into the table, and says why in its commit.
+// How much work a plan is, in counts that no machine changes: a slower algorithm shows here,
+// whatever the clock says. A change that moves a count on purpose puts the printed row into the
+// table, and says why in its commit.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -17,7 +18,8 @@
 
 namespace {
 std::atomic<std::int64_t> allocations{0};
-// Before main, so before the unit is chosen for the whole process: how kernels group their work may show in counts.
+// Before main, so before the unit is chosen for the whole process: how kernels group their work may
+// show in counts.
 const int scalar_forced = setenv("SWIVEL_FORCE_ISA", "scalar", 1);
 
 void* counted(std::size_t size) {
@@ -53,7 +55,8 @@ struct Work {
   const char* problem;
   PlannerKind planner;
   EdgeMode edges;
-  std::int64_t nodes_checked, edges_checked, fcl_calls, proved, expansions, iterations, ik_nodes, edges_compared;
+  std::int64_t nodes_checked, edges_checked, fcl_calls, proved, expansions, iterations, ik_nodes,
+      edges_compared;
   std::int64_t most_allocations;  ///< operator new in a second plan on the same robot, rounded up
 };
 using enum PlannerKind;
@@ -83,23 +86,28 @@ constexpr Work kTable[] = {
 
 std::string row(const Work& w) {
   char text[300];
-  std::snprintf(text, sizeof text, "{\"%s\", %s, %s, %lld, %lld, %lld, %lld, %lld, %lld, %lld, %lld, %lld},", w.problem,
-                std::string(w.planner == kEager     ? "kEager"
-                            : w.planner == kEagerDp ? "kEagerDp"
-                            : w.planner == kLazy    ? "kLazy"
-                                                    : "kParallel")
-                    .c_str(),
-                w.edges == kNodes ? "kNodes" : "kContinuous", static_cast<long long>(w.nodes_checked),
-                static_cast<long long>(w.edges_checked), static_cast<long long>(w.fcl_calls), static_cast<long long>(w.proved),
-                static_cast<long long>(w.expansions), static_cast<long long>(w.iterations), static_cast<long long>(w.ik_nodes),
-                static_cast<long long>(w.edges_compared), static_cast<long long>(w.most_allocations));
+  std::snprintf(
+      text, sizeof text, "{\"%s\", %s, %s, %lld, %lld, %lld, %lld, %lld, %lld, %lld, %lld, %lld},",
+      w.problem,
+      std::string(w.planner == kEager     ? "kEager"
+                  : w.planner == kEagerDp ? "kEagerDp"
+                  : w.planner == kLazy    ? "kLazy"
+                                          : "kParallel")
+          .c_str(),
+      w.edges == kNodes ? "kNodes" : "kContinuous", static_cast<long long>(w.nodes_checked),
+      static_cast<long long>(w.edges_checked), static_cast<long long>(w.fcl_calls),
+      static_cast<long long>(w.proved), static_cast<long long>(w.expansions),
+      static_cast<long long>(w.iterations), static_cast<long long>(w.ik_nodes),
+      static_cast<long long>(w.edges_compared), static_cast<long long>(w.most_allocations));
   return text;
 }
 
 Work measured(const Work& expected) {
-  Problem problem = io::load_problem(test::data_dir() / "problems" / (std::string(expected.problem) + ".yaml"));
+  Problem problem =
+      io::load_problem(test::data_dir() / "problems" / (std::string(expected.problem) + ".yaml"));
   problem.limits.edges = expected.edges;
-  if (expected.planner == kEager || expected.planner == kEagerDp) problem.resolution.ds = 0.02;  // tests are to be quick
+  if (expected.planner == kEager || expected.planner == kEagerDp)
+    problem.resolution.ds = 0.02;  // tests are to be quick
   const PreparedRobot robot(problem);
   PlanOptions options;
   options.planner = expected.planner;

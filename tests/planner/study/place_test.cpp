@@ -22,8 +22,11 @@ using namespace test;
 Movable random_thing(Random& random, const Problem& problem) {
   const int kind = random.below(3);
   if (kind == 0 && !problem.scene.empty())
-    return {Movable::Kind::kObject,
-            problem.scene[static_cast<std::size_t>(random.below(static_cast<int>(problem.scene.size())))].name};
+    return {
+        Movable::Kind::kObject,
+        problem
+            .scene[static_cast<std::size_t>(random.below(static_cast<int>(problem.scene.size())))]
+            .name};
   return {kind == 1 ? Movable::Kind::kPath : Movable::Kind::kBase, ""};
 }
 
@@ -63,19 +66,23 @@ void expect_same(const PlacementRow& a, const PlacementRow& b, const std::string
   EXPECT_EQ(a.reason, b.reason) << what;
 }
 
-/// Every cell is what planning its problem with a planner of its own gives, bit for bit, and the same at any number of threads.
+/// Every cell is what planning its problem with a planner of its own gives, bit for bit, and the
+/// same at any number of threads.
 TEST(Place, CellsAreSinglePlans) {
   const std::uint64_t base = seed("Place.Cells");
   const auto robots = all_robots();
   std::map<std::string, int> met;
   for (int trial = 0; trial < trials(24); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    const Problem problem = random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const Problem problem =
+        random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const auto robot = std::make_shared<const PreparedRobot>(problem);
     const Movable thing = random_thing(random, problem);
     std::vector<PlacementCell> cells;
-    for (std::uint64_t k = 0; k < 12; ++k) cells.push_back({3 * k, random_offset(random, random.coin() ? 0.01 : 0.1)});
+    for (std::uint64_t k = 0; k < 12; ++k)
+      cells.push_back({3 * k, random_offset(random, random.coin() ? 0.01 : 0.1)});
     PlanOptions options;
     options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
     std::vector<std::vector<PlacementRow>> found;
@@ -87,7 +94,8 @@ TEST(Place, CellsAreSinglePlans) {
       found.back().insert(found.back().end(), more.begin(), more.end());
       ASSERT_EQ(found.back().size(), cells.size()) << what;
       EXPECT_FALSE(planner.stopped());
-      for (std::size_t k = 0; k < cells.size(); ++k) expect_same(found.back()[k], found.front()[k], what);
+      for (std::size_t k = 0; k < cells.size(); ++k)
+        expect_same(found.back()[k], found.front()[k], what);
     }
     options.evidence.postures = true;
     for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -98,7 +106,9 @@ TEST(Place, CellsAreSinglePlans) {
       row.offset = cells[k].offset;
       row.status = result.status;
       ++met[to_string(row.status)];
-      ++met[thing.kind == Movable::Kind::kObject ? "object" : thing.kind == Movable::Kind::kPath ? "path" : "base"];
+      ++met[thing.kind == Movable::Kind::kObject ? "object"
+            : thing.kind == Movable::Kind::kPath ? "path"
+                                                 : "base"];
       if (row.status == PlanStatus::kSolved) {
         row.cost = result.cost;
         if (result.min_margin) {
@@ -124,8 +134,8 @@ TEST(Place, CellsAreSinglePlans) {
     EXPECT_GE(met[name], at_least(12)) << name;
 }
 
-/// An object that moves a little from cell to cell: what is kept of its clearances from one to the next changes no answer, and
-/// spares most questions.
+/// An object that moves a little from cell to cell: what is kept of its clearances from one to the
+/// next changes no answer, and spares most questions.
 TEST(Place, NeighboursAreWhatTheyAreAlone) {
   const std::uint64_t base = seed("Place.Neighbours");
   const auto robots = all_robots();
@@ -133,12 +143,17 @@ TEST(Place, NeighboursAreWhatTheyAreAlone) {
   std::int64_t asked = 0, asked_alone = 0;
   for (int trial = 0; trial < trials(30); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (problem.scene.empty()) continue;
     const auto robot = std::make_shared<const PreparedRobot>(problem);
-    const Movable thing{Movable::Kind::kObject,
-                        problem.scene[static_cast<std::size_t>(random.below(static_cast<int>(problem.scene.size())))].name};
+    const Movable thing{
+        Movable::Kind::kObject,
+        problem
+            .scene[static_cast<std::size_t>(random.below(static_cast<int>(problem.scene.size())))]
+            .name};
     if (thing.object == problem.path_frame) continue;
     PlanOptions options;
     options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
@@ -194,8 +209,10 @@ TEST(Place, NeighboursAreWhatTheyAreAlone) {
     }
     EXPECT_EQ(shown, plans.end()) << what;
   }
-  std::printf("%d solved, %d infeasible, the verdict changed %d times; %lld nodes asked about of %lld\n", solved, infeasible,
-              changed, static_cast<long long>(asked), static_cast<long long>(asked_alone));
+  std::printf(
+      "%d solved, %d infeasible, the verdict changed %d times; %lld nodes asked about of %lld\n",
+      solved, infeasible, changed, static_cast<long long>(asked),
+      static_cast<long long>(asked_alone));
   EXPECT_GE(solved, at_least(100));
   EXPECT_GE(infeasible, at_least(20));
   EXPECT_LT(2 * asked, asked_alone);
@@ -208,7 +225,8 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
   int looked_at = 0, kept = 0;
   for (int trial = 0; trial < trials(300); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem =
+        random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const Offset offset = random_offset(random, 3);
     const Movable thing = random_thing(random, problem);
     const Problem placed = placed_problem(problem, thing, offset);
@@ -230,13 +248,16 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
     for (std::size_t k = 0; k < problem.scene.size(); ++k) {
       Pose expected = problem.scene[k].pose;
       if (thing.object == problem.scene[k].name) expected = about(expected.translation(), expected);
-      if (problem.path_frame == problem.scene[k].name) path_origin = problem.scene[k].pose.translation();
-      EXPECT_TRUE((robot * placed.scene[k].pose).matrix().isApprox(expected.matrix(), 1e-9)) << trial;
+      if (problem.path_frame == problem.scene[k].name)
+        path_origin = problem.scene[k].pose.translation();
+      EXPECT_TRUE((robot * placed.scene[k].pose).matrix().isApprox(expected.matrix(), 1e-9))
+          << trial;
       if (thing.kind != Movable::Kind::kBase && thing.object != problem.scene[k].name) {
         EXPECT_EQ(placed.scene[k].pose.matrix(), problem.scene[k].pose.matrix());
       }
     }
-    const bool moves = thing.kind == Movable::Kind::kPath || (!thing.object.empty() && thing.object == problem.path_frame);
+    const bool moves = thing.kind == Movable::Kind::kPath ||
+                       (!thing.object.empty() && thing.object == problem.path_frame);
     const auto before = waypoints_in_base(problem), after = waypoints_in_base(placed);
     for (std::size_t k = 0; k < before.size(); ++k) {
       Pose pose = Pose::Identity();
@@ -244,7 +265,9 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
       pose.translation() = before[k].position;
       if (moves) pose = about(path_origin, pose);
       EXPECT_LT((robot * after[k].position - pose.translation()).norm(), 1e-9) << trial;
-      EXPECT_LT((robot.linear() * after[k].orientation.toRotationMatrix() - pose.linear()).norm(), 1e-9) << trial;
+      EXPECT_LT((robot.linear() * after[k].orientation.toRotationMatrix() - pose.linear()).norm(),
+                1e-9)
+          << trial;
       ++looked_at;
     }
     const Problem still = placed_problem(problem, thing, {});
@@ -257,10 +280,12 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
   EXPECT_GE(looked_at, at_least(600));
   EXPECT_GE(kept, at_least(300));
   const Problem problem = random_problem(robots[0], *std::make_unique<Random>(base));
-  EXPECT_THROW((void)placed_problem(problem, {Movable::Kind::kObject, "nothing"}, {}), InvalidArgument);
+  EXPECT_THROW((void)placed_problem(problem, {Movable::Kind::kObject, "nothing"}, {}),
+               InvalidArgument);
 }
 
-/// Roll, pitch and yaw that a file is given turn into the rotation that was planned, also where two of them turn about one axis.
+/// Roll, pitch and yaw that a file is given turn into the rotation that was planned, also where two
+/// of them turn about one axis.
 TEST(Place, WrittenAnglesReadBackBitForBit) {
   const std::uint64_t base = seed("Place.Angles");
   Random random(base);
@@ -268,8 +293,10 @@ TEST(Place, WrittenAnglesReadBackBitForBit) {
   for (int trial = 0; trial < trials(20000); ++trial) {
     Vector3d rpy(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4));
     if (random.coin(0.2))
-      rpy.y() = (random.coin() ? 1 : -1) * kPi / 2 + (random.coin() ? 0 : std::pow(10, random.uniform(-17, -3)));
-    const Matrix3d wanted = from_rpy(rpy).toRotationMatrix(), written = rotation_from_rpy(written_rpy(wanted));
+      rpy.y() = (random.coin() ? 1 : -1) * kPi / 2 +
+                (random.coin() ? 0 : std::pow(10, random.uniform(-17, -3)));
+    const Matrix3d wanted = from_rpy(rpy).toRotationMatrix(),
+                   written = rotation_from_rpy(written_rpy(wanted));
     ASSERT_LT((wanted - written).norm(), 1e-11) << base << " " << trial;
     ASSERT_EQ(rotation_from_rpy(written_rpy(written)), written) << base << " " << trial;
     upright += std::abs(std::sin(rpy.y())) > 1 - 1e-9;
@@ -306,7 +333,8 @@ TEST(Place, StopsWithWhatIsKnown) {
 TEST(Place, AStartThatThePathLeavesIsBadInput) {
   Problem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
-  PlacementPlanner planner(std::make_shared<const PreparedRobot>(problem), problem, {Movable::Kind::kPath, ""}, {});
+  PlacementPlanner planner(std::make_shared<const PreparedRobot>(problem), problem,
+                           {Movable::Kind::kPath, ""}, {});
   try {
     static_cast<void>(planner.plan({{0, {0.1}}}));
     FAIL();
@@ -315,7 +343,8 @@ TEST(Place, AStartThatThePathLeavesIsBadInput) {
   }
 }
 
-/// A third of the plans at most; the best ten within 1 % of the best there are, where the criterion has one hill within a region.
+/// A third of the plans at most; the best ten within 1 % of the best there are, where the criterion
+/// has one hill within a region.
 TEST(GridRefinement, FindsTheBestWithAThirdOfThePlans) {
   const std::uint64_t base = seed("GridRefinement");
   std::int64_t asked = 0, cells = 0;
@@ -329,7 +358,8 @@ TEST(GridRefinement, FindsTheBestWithAThirdOfThePlans) {
       axes.push_back({a, -1, 1, 2.0 / std::max(1, count - 1), count});
     }
     const PlacementGrid grid(axes);
-    const Vector3d top(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2)),
+    const Vector3d top(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2),
+                       random.uniform(-1.2, 1.2)),
         center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const double radius = random.uniform(0.6, 2);
     const auto row_of = [&](std::uint64_t cell) {
@@ -372,14 +402,18 @@ TEST(GridRefinement, FindsTheBestWithAThirdOfThePlans) {
       }
     if (dimensions != 2) continue;
     for (std::uint64_t cell = 0; cell + 1 < grid.size(); ++cell) {
-      if (grid.indices(cell)[0] != grid.indices(cell + 1)[0] || all[cell].status == all[cell + 1].status) continue;
+      if (grid.indices(cell)[0] != grid.indices(cell + 1)[0] ||
+          all[cell].status == all[cell + 1].status)
+        continue;
       ++unlike;
       border += known.contains(cell) && known.contains(cell + 1);
     }
   }
   std::printf(
-      "%lld of %lld cells planned; the best ten more than 1 %% worse in %d of %d; %d of %d pairs across the border planned\n",
-      static_cast<long long>(asked), static_cast<long long>(cells), worse, compared, border, unlike);
+      "%lld of %lld cells planned; the best ten more than 1 %% worse in %d of %d; %d of %d pairs "
+      "across the border planned\n",
+      static_cast<long long>(asked), static_cast<long long>(cells), worse, compared, border,
+      unlike);
   EXPECT_GE(compared, at_least(80));
   EXPECT_LE(worse, compared / 20);
   EXPECT_GE(border, unlike * 3 / 4);
@@ -388,7 +422,8 @@ TEST(GridRefinement, FindsTheBestWithAThirdOfThePlans) {
 TEST(Place, GridsAndSamples) {
   const PlacementGrid grid({{0, -0.1, 0.1, 0.005, 41}, {2, 0.5, 0.5, 0, 1}, {5, 0, 0.3, 0.1, 4}});
   ASSERT_EQ(grid.size(), 164u);
-  for (std::uint64_t cell = 0; cell < grid.size(); ++cell) ASSERT_EQ(grid.cell(grid.indices(cell)), cell);
+  for (std::uint64_t cell = 0; cell < grid.size(); ++cell)
+    ASSERT_EQ(grid.cell(grid.indices(cell)), cell);
   EXPECT_EQ(grid.offset(80), (Offset{0, 0, 0.5, 0, 0, 0}));
   EXPECT_FALSE(std::signbit(grid.offset(80)[0]));
   EXPECT_EQ(grid.offset(163), (Offset{0.1, 0, 0.5, 0, 0, 0.3}));

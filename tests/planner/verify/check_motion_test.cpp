@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mutations of motions and trajectories: each must fail the check. Legal changes of them: each must pass.
+// Mutations of motions and trajectories: each must fail the check. Legal changes of them: each must
+// pass.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +33,8 @@ TEST_P(CheckOf, MutationsFail) {
   const auto& good = cases(timed);
   const std::uint64_t base = seed("Mutations");
   std::size_t kinds = 0;
-  for (const MotionMutation& kind : motion_mutations()) kinds += timed ? kind.of_motions : kind.of_trajectories;
+  for (const MotionMutation& kind : motion_mutations())
+    kinds += timed ? kind.of_motions : kind.of_trajectories;
   const int each = trials(static_cast<int>(1000 / kinds) + 1);
   int count = 0, number = 0;
   for (const MotionMutation& kind : motion_mutations()) {
@@ -42,23 +44,26 @@ TEST_P(CheckOf, MutationsFail) {
     std::map<std::string, int> of;
     std::string said;
     for (int trial = 0; done < each && trial < 60 * each; ++trial) {
-      Random random(base + 100000 * static_cast<std::uint64_t>(number) + static_cast<std::uint64_t>(trial));
+      Random random(base + 100000 * static_cast<std::uint64_t>(number) +
+                    static_cast<std::uint64_t>(trial));
       Judged bad = good[static_cast<std::size_t>(random.below(static_cast<int>(good.size())))];
       const std::string words = kind.mutate(bad, random);
       if (words.empty()) continue;
       for (const bool margins : {false, true}) {
         if (margins && done % 8 != 0) continue;  // takes long
         const CheckResult result = judge(bad, {margins, {}});
-        EXPECT_FALSE(result.passed) << kind.name << " (" << words << "), " << bad.what << ", trial " << trial << ", margins "
-                                    << margins;
-        EXPECT_EQ(result.failures.size(), std::min<std::size_t>(20, static_cast<std::size_t>(result.failure_count)));
+        EXPECT_FALSE(result.passed) << kind.name << " (" << words << "), " << bad.what << ", trial "
+                                    << trial << ", margins " << margins;
+        EXPECT_EQ(result.failures.size(),
+                  std::min<std::size_t>(20, static_cast<std::size_t>(result.failure_count)));
         if (said.empty()) said = words + ": " + first(result);
       }
       ++of[bad.what];
       at_corners += words.find("at a corner") != std::string::npos;
       ++done;
     }
-    std::printf("%s: %d of %zu (%d at corners), for example %s\n", kind.name.c_str(), done, of.size(), at_corners, said.c_str());
+    std::printf("%s: %d of %zu (%d at corners), for example %s\n", kind.name.c_str(), done,
+                of.size(), at_corners, said.c_str());
     EXPECT_EQ(done, each) << kind.name;
     EXPECT_GE(at_corners, kind.name == "tool sways in a swing at rest" ? at_least(5) : 0);
     EXPECT_GE(of.size(), static_cast<std::size_t>(at_least(3))) << kind.name;
@@ -79,13 +84,14 @@ TEST_P(CheckOf, LegalOnesPass) {
   for (int trial = 0; count < most && trial < 40 * most; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     Judged judged = good[static_cast<std::size_t>(trial) % good.size()];
-    const LegalChange& kind = legal_changes()[static_cast<std::size_t>(random.below(static_cast<int>(legal_changes().size())))];
+    const LegalChange& kind = legal_changes()[static_cast<std::size_t>(
+        random.below(static_cast<int>(legal_changes().size())))];
     if (!(timed ? kind.of_motions : kind.of_trajectories)) continue;
     const std::string words = kind.change(judged, random);
     if (words.empty()) continue;
     const CheckResult result = judge(judged, {count % 10 == 0, {}});
-    EXPECT_TRUE(result.passed) << kind.name << " (" << words << "), " << judged.what << ", trial " << trial << ": "
-                               << first(result);
+    EXPECT_TRUE(result.passed) << kind.name << " (" << words << "), " << judged.what << ", trial "
+                               << trial << ": " << first(result);
     ++of[kind.name];
     at_corners += words.find("at a corner") != std::string::npos;
     ++count;
@@ -94,14 +100,16 @@ TEST_P(CheckOf, LegalOnesPass) {
   std::printf("%d legal ones, %d swings at corners\n", count, at_corners);
   EXPECT_GE(count, at_least(300));
   for (const LegalChange& kind : legal_changes())
-    EXPECT_GE(of[kind.name], (timed ? kind.of_motions : kind.of_trajectories) ? at_least(3) : 0) << kind.name;
+    EXPECT_GE(of[kind.name], (timed ? kind.of_motions : kind.of_trajectories) ? at_least(3) : 0)
+        << kind.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(, CheckOf, testing::Bool(),
-                         [](const auto& of) { return of.param ? std::string("Motions") : std::string("Trajectories"); });
+INSTANTIATE_TEST_SUITE_P(, CheckOf, testing::Bool(), [](const auto& of) {
+  return of.param ? std::string("Motions") : std::string("Trajectories");
+});
 
-/// What a plan with a speed returns beside its motion follows the rounded path: it passes where the problem says nothing of
-/// corners, and the check says so.
+/// What a plan with a speed returns beside its motion follows the rounded path: it passes where the
+/// problem says nothing of corners, and the check says so.
 TEST(CheckOfPlans, RowsOfATimedPlanPass) {
   PlanOptions lazy;
   lazy.planner = PlannerKind::kLazy;
@@ -115,13 +123,15 @@ TEST(CheckOfPlans, RowsOfATimedPlanPass) {
       const MotionPlan plan = plan_motion(planner, lazy, refined, TimingOptions{0.1, {}, 250, {}});
       if (plan.result.status != PlanStatus::kSolved) continue;
       for (const bool margins : {false, true}) {
-        const CheckResult result = check_trajectory(PreparedRobot(problem), problem, plan.result.trajectory, {margins, {}});
+        const CheckResult result = check_trajectory(PreparedRobot(problem), problem,
+                                                    plan.result.trajectory, {margins, {}});
         EXPECT_TRUE(result.passed) << trial << ": " << first(result);
         rounded += result.rounded;
       }
       // Where the problem itself rounds corners by less, they are on neither path.
       problem.smooth = PathSmoothing{1e-5, 1e-4};
-      const CheckResult other = check_trajectory(PreparedRobot(problem), problem, plan.result.trajectory);
+      const CheckResult other =
+          check_trajectory(PreparedRobot(problem), problem, plan.result.trajectory);
       EXPECT_FALSE(other.rounded);
       of_all += other.passed;
     }
@@ -130,23 +140,28 @@ TEST(CheckOfPlans, RowsOfATimedPlanPass) {
   EXPECT_LE(of_all, 2);
 }
 
-/// At few samples a second the tool would leave its path between them: the motion is slowed down, or refused, but never wrong.
+/// At few samples a second the tool would leave its path between them: the motion is slowed down,
+/// or refused, but never wrong.
 TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
   int passed = 0, slowed = 0, refused = 0;
   for (const char* name : {"kr6_weld_pipe", "ur5e_deburr_edge", "iiwa14_bench"}) {
-    const Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    const Problem problem =
+        io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     for (const double rate : {2.0, 3.0, 5.0, 7.0, 10.0}) {
       Planner planner(with_motion_defaults(problem));
-      const MotionPlan plan = plan_motion(planner, {}, false, TimingOptions{0.1, {}, rate, {}});  // proves its answer
+      const MotionPlan plan =
+          plan_motion(planner, {}, false, TimingOptions{0.1, {}, rate, {}});  // proves its answer
       ASSERT_TRUE(plan.motion) << name;
       refused += plan.motion->failure.has_value();
       if (!plan.motion->motion) continue;
       const TimedPath& motion = *plan.motion->motion;
-      const CheckResult result = check_motion(PreparedRobot(problem), problem, motion.rows, {false, {}});
+      const CheckResult result =
+          check_motion(PreparedRobot(problem), problem, motion.rows, {false, {}});
       EXPECT_TRUE(result.passed) << name << " at " << rate << ": " << first(result);
       ++passed;
-      slowed += std::any_of(motion.warnings.begin(), motion.warnings.end(),
-                            [](const std::string& line) { return line.find("slowed down") != std::string::npos; });
+      slowed += std::any_of(
+          motion.warnings.begin(), motion.warnings.end(),
+          [](const std::string& line) { return line.find("slowed down") != std::string::npos; });
     }
   }
   std::printf("%d passed, %d of them slowed down, %d refused\n", passed, slowed, refused);
@@ -154,13 +169,18 @@ TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
   EXPECT_GE(slowed, 3);
 }
 
-/// The tool turns away on the spot and comes back. A motion that rests meanwhile has the same poses at its rows, and turns nowhere.
+/// The tool turns away on the spot and comes back. A motion that rests meanwhile has the same poses
+/// at its rows, and turns nowhere.
 TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
   Problem problem = problem_for(data_robot("iiwa14"));
   const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));
   const Quaterniond aside = down * Quaterniond(Eigen::AngleAxisd(0.4, Vector3d::UnitX()));
   const Vector3d corner(0.5, 0, 0.6);
-  problem.waypoints = {{{0.5, -0.1, 0.6}, down}, {corner, down}, {corner, aside}, {corner, down}, {{0.5, 0.1, 0.6}, down}};
+  problem.waypoints = {{{0.5, -0.1, 0.6}, down},
+                       {corner, down},
+                       {corner, aside},
+                       {corner, down},
+                       {{0.5, 0.1, 0.6}, down}};
   problem.resolution = {.ds = 0.02, .dphi = 0.2, .dalpha = 0.1};
   problem.smooth = PathSmoothing{1e-6, 1e-6};
   Planner planner(with_motion_defaults(problem));
@@ -177,23 +197,28 @@ TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
     std::vector<std::size_t> at;  // rows at the corner, not turned
     for (std::size_t k = 0; k < whole.size(); ++k) {
       const Pose tool = robot.arm().chain.tool(whole[k].row.q);
-      if ((tool.translation() - corner).norm() < near && tool.linear().isApprox(down.toRotationMatrix(), near)) at.push_back(k);
+      if ((tool.translation() - corner).norm() < near &&
+          tool.linear().isApprox(down.toRotationMatrix(), near))
+        at.push_back(k);
     }
     if (at.size() < 2 || at.back() - at.front() < 100) continue;
     // The last of them takes the place of all rows between, and time enough.
-    std::vector<TimedRow> rows(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(at.front()) + 1);
+    std::vector<TimedRow> rows(whole.begin(),
+                               whole.begin() + static_cast<std::ptrdiff_t>(at.front()) + 1);
     for (std::size_t k = at.back(); k < whole.size(); ++k) rows.push_back(whole[k]);
     const CheckResult result = check_motion(robot, problem, rows);
     EXPECT_FALSE(result.passed) << near;
-    EXPECT_TRUE(std::any_of(result.failures.begin(), result.failures.end(),
-                            [](const std::string& line) { return line.find("leaves the path") != std::string::npos; }))
+    EXPECT_TRUE(std::any_of(
+        result.failures.begin(), result.failures.end(),
+        [](const std::string& line) { return line.find("leaves the path") != std::string::npos; }))
         << near << ": " << first(result);
     ++tried;
   }
   EXPECT_GE(tried, 1);
 }
 
-/// A tool that may stand turned turns further and further at rest, each time by less than is forgiven.
+/// A tool that may stand turned turns further and further at rest, each time by less than is
+/// forgiven.
 TEST(CheckOfPlans, SmallChangesOfTheRollDoNotAddUp) {
   Problem problem = problem_for(data_robot("iiwa14"));
   const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));

@@ -26,8 +26,8 @@ namespace {
 
 using namespace test;
 
-/// The iiwa14 as a vendor might round it: up to 0.2 mm and 1 mrad off, so that its closed form must be corrected on the exact
-/// chain.
+/// The iiwa14 as a vendor might round it: up to 0.2 mm and 1 mrad off, so that its closed form must
+/// be corrected on the exact chain.
 TestRobot rounded_robot() {
   TestRobot robot = data_robot("iiwa14");
   auto model = std::make_shared<RobotModel>(*robot.model);
@@ -35,7 +35,8 @@ TestRobot rounded_robot() {
   for (Joint& joint : model->joints) {
     if (!joint.movable()) continue;
     const auto direction = [&] {
-      return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+      return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+          .normalized();
     };
     joint.origin.translation() += 0.2e-3 * direction();
     joint.axis = (joint.axis + 1e-3 * direction()).normalized();
@@ -45,7 +46,8 @@ TestRobot rounded_robot() {
   return robot;
 }
 
-/// A trajectory that a planner found. A row's place on the path is its layer's number; rows between layers have places between.
+/// A trajectory that a planner found. A row's place on the path is its layer's number; rows between
+/// layers have places between.
 struct Good {
   std::string what;
   Problem problem;
@@ -66,22 +68,24 @@ template <class Deviation>
 double largest(const Good& good, const Deviation& deviation) {
   double most = 0;
   for (std::size_t k = 1; k < good.rows.size(); ++k)
-    for (const double error :
-         deviation(good.chain(), *good.path, static_cast<int>(k) - 1, good.rows[k - 1].q, good.rows[k].q - good.rows[k - 1].q))
+    for (const double error : deviation(good.chain(), *good.path, static_cast<int>(k) - 1,
+                                        good.rows[k - 1].q, good.rows[k].q - good.rows[k - 1].q))
       most = std::max(most, error);
   return most;
 }
 
 std::optional<Good> solved(const std::string& what, const Problem& problem) {
   Good good{what, problem, std::make_shared<PreparedRobot>(problem), nullptr, {}, {}};
-  good.path = std::make_shared<ToolPath>(waypoints_in_base(problem), problem.resolution, problem.source);
+  good.path =
+      std::make_shared<ToolPath>(waypoints_in_base(problem), problem.resolution, problem.source);
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   good.rows = plan(*good.robot, problem, options).trajectory;
   if (good.rows.empty()) return std::nullopt;
   for (int i = 0; i < good.path->size(); ++i) {
     const Pose& tool = good.path->layer(i).tool;
-    good.planes.push_back(i == 0 ? first_plane(good.robot->srs(), tool) : carry_plane(good.robot->srs(), good.planes.back(), tool));
+    good.planes.push_back(i == 0 ? first_plane(good.robot->srs(), tool)
+                                 : carry_plane(good.robot->srs(), good.planes.back(), tool));
   }
   return good;
 }
@@ -89,25 +93,33 @@ std::optional<Good> solved(const std::string& what, const Problem& problem) {
 Waypoint moved(const Waypoint& from, const Vector3d& by, const Vector3d& turn) {
   Waypoint to = from;
   to.position += by;
-  if (turn.norm() > 0) to.orientation = to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+  if (turn.norm() > 0)
+    to.orientation =
+        to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   return to;
 }
 
-/// Three to five waypoints from a pose well inside the limits, straight and turning; every third path turns on the spot once.
+/// Three to five waypoints from a pose well inside the limits, straight and turning; every third
+/// path turns on the spot once.
 Problem some_problem(const TestRobot& robot, Random& random) {
   Problem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   const Config q = inner_posture(chain, random);
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
-  const int more = 2 + random.below(3), on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
+  const int more = 2 + random.below(3),
+            on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
   for (int k = 0; k < more; ++k)
-    problem.waypoints.push_back(moved(problem.waypoints.back(),
-                                      k == on_the_spot ? Vector3d::Zero() : random_vector(random, random.uniform(0.04, 0.1)),
-                                      random_vector(random, random.uniform(0.2, 0.5))));
+    problem.waypoints.push_back(moved(
+        problem.waypoints.back(),
+        k == on_the_spot ? Vector3d::Zero() : random_vector(random, random.uniform(0.04, 0.1)),
+        random_vector(random, random.uniform(0.2, 0.5))));
   problem.resolution = {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1};
   problem.limits.clearance = 0.002;
   problem.scene.push_back(
-      {"ball", Sphere{0.05}, random_config(chain, random).norm() > 0 ? chain.tool(random_config(chain, random)) : Pose(), {}});
+      {"ball",
+       Sphere{0.05},
+       random_config(chain, random).norm() > 0 ? chain.tool(random_config(chain, random)) : Pose(),
+       {}});
   return problem;
 }
 
@@ -121,7 +133,8 @@ const std::vector<Good>& good_trajectories() {
     for (std::size_t r = 0; r < robots.size(); ++r)
       for (int trial = 0, left = 4; left > 0 && trial < 60; ++trial) {
         Random random(base + 1000 * r + static_cast<std::uint64_t>(trial));
-        auto good = solved(robots[r].name + " " + std::to_string(trial), some_problem(robots[r], random));
+        auto good =
+            solved(robots[r].name + " " + std::to_string(trial), some_problem(robots[r], random));
         if (!good) continue;
         found.push_back(*good);
         --left;
@@ -141,7 +154,8 @@ TEST(Check, PlannersTrajectoriesPass) {
   for (const Good& good : good_trajectories()) {
     const CheckResult result = check_trajectory(*good.robot, good.problem, good.rows);
     EXPECT_TRUE(result.passed) << good.what << ": " << first(result);
-    const CheckResult verdict = check_trajectory(*good.robot, good.problem, good.rows, {.margins = false});
+    const CheckResult verdict =
+        check_trajectory(*good.robot, good.problem, good.rows, {.margins = false});
     EXPECT_TRUE(verdict.passed) << good.what << ": " << first(verdict);
     EXPECT_EQ(verdict.rows_examined, result.rows_examined) << good.what;
     EXPECT_EQ(result.rows_examined, static_cast<std::int64_t>(good.rows.size())) << good.what;
@@ -150,28 +164,37 @@ TEST(Check, PlannersTrajectoriesPass) {
     inexact += !good.robot->srs().exact;
     robots.insert(good.problem.source);
   }
-  std::printf("%zu trajectories of %zu robots, %zu rows, %zu inexact\n", good_trajectories().size(), robots.size(), rows, inexact);
+  std::printf("%zu trajectories of %zu robots, %zu rows, %zu inexact\n", good_trajectories().size(),
+              robots.size(), rows, inexact);
   EXPECT_GE(good_trajectories().size(), 20u);
   EXPECT_GE(robots.size(), 6u);
   EXPECT_GE(inexact, 3u);
 }
 
-/// Samples of a joint-linear move and of the path between two places: how far each is from the nearest of the other, at most. Knows
-/// nothing of monotone matching. Position alone; or position and angle as a share of what is given, whichever is larger.
-double deviation(const Good& good, const Config& from, const Config& to, double begin, double end, double position, double angle) {
+/// Samples of a joint-linear move and of the path between two places: how far each is from the
+/// nearest of the other, at most. Knows nothing of monotone matching. Position alone; or position
+/// and angle as a share of what is given, whichever is larger.
+double deviation(const Good& good, const Config& from, const Config& to, double begin, double end,
+                 double position, double angle) {
   constexpr int kTool = 60;
   const int path_samples = std::max(60, static_cast<int>(30 * (end - begin)));
   std::vector<Pose> tool, path;
-  for (int k = 0; k <= kTool; ++k) tool.push_back(good.chain().tool(from + static_cast<double>(k) / kTool * (to - from)));
-  for (int k = 0; k <= path_samples; ++k) path.push_back(good.pose(begin + (end - begin) * k / path_samples));
-  for (int layer = static_cast<int>(begin) + 1; layer < end; ++layer) path.push_back(good.path->layer(layer).tool);
+  for (int k = 0; k <= kTool; ++k)
+    tool.push_back(good.chain().tool(from + static_cast<double>(k) / kTool * (to - from)));
+  for (int k = 0; k <= path_samples; ++k)
+    path.push_back(good.pose(begin + (end - begin) * k / path_samples));
+  for (int layer = static_cast<int>(begin) + 1; layer < end; ++layer)
+    path.push_back(good.path->layer(layer).tool);
   double worst = 0;
   const auto all_near = [&](const std::vector<Pose>& poses, const std::vector<Pose>& others) {
     for (const Pose& pose : poses) {
       double least = 1e9;
       for (const Pose& other : others) {
-        const double turned = 2 * std::asin(std::min(1.0, (pose.linear() - other.linear()).norm() / std::sqrt(8.0)));
-        least = std::min(least, std::max((pose.translation() - other.translation()).norm() / position, turned / angle));
+        const double turned =
+            2 * std::asin(std::min(1.0, (pose.linear() - other.linear()).norm() / std::sqrt(8.0)));
+        least = std::min(
+            least,
+            std::max((pose.translation() - other.translation()).norm() / position, turned / angle));
       }
       worst = std::max(worst, least);
     }
@@ -197,7 +220,8 @@ Vector3d centre(const Shape& shape) {
   return sum / static_cast<double>((*mesh)->vertices.size());
 }
 
-/// Breaks one rule of a good trajectory, by an amount that the returned words state. No words: nothing to break here.
+/// Breaks one rule of a good trajectory, by an amount that the returned words state. No words:
+/// nothing to break here.
 using Mutation = std::function<std::string(Good&, Random&)>;
 
 std::string amount(const char* format, double value) {
@@ -216,8 +240,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          const int n = static_cast<int>(good.rows.size());
          for (int trial = 0; trial < 20; ++trial) {
            const int a = random.below(n - 2), b = std::min(n - 1, a + 3 + random.below(n));
-           const double off =
-               deviation(good, good.rows[static_cast<std::size_t>(a)].q, good.rows[static_cast<std::size_t>(b)].q, a, b, 1, 1e9);
+           const double off = deviation(good, good.rows[static_cast<std::size_t>(a)].q,
+                                        good.rows[static_cast<std::size_t>(b)].q, a, b, 1, 1e9);
            if (off < 1.5e-3) continue;
            good.rows.erase(good.rows.begin() + a + 1, good.rows.begin() + b);
            return amount("off by %.3g m, allowed is 1e-3", off);
@@ -244,7 +268,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"joint moved by 2 pi",
        [=](Good& good, Random& random) -> std::string {
-         good.rows[some_row(good, random)].q[random.below(kDof)] += random.coin() ? kTwoPi : -kTwoPi;
+         good.rows[some_row(good, random)].q[random.below(kDof)] +=
+             random.coin() ? kTwoPi : -kTwoPi;
          return "a joint moves by 2 pi less or plus 0.5 rad, allowed is 0.5";
        }},
       {"continuous joints spinning",
@@ -269,7 +294,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        [=](Good& good, Random& random) -> std::string {
          TrajectoryRow& row = good.rows[some_row(good, random)];
          const SrsArm& arm = good.robot->srs();
-         const double angles[] = {arm.shoulder_angle(row.q), arm.wrist_angle(row.q), arm.elbow_angle(row.q)};
+         const double angles[] = {arm.shoulder_angle(row.q), arm.wrist_angle(row.q),
+                                  arm.elbow_angle(row.q)};
          const int bit = random.below(3);
          if (std::abs(std::sin(angles[bit])) < 0.06) return "";
          row.branch ^= 1 << bit;
@@ -293,7 +319,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        [=](Good& good, Random& random) -> std::string {
          TrajectoryRow& row = good.rows[some_row(good, random)];
          double* const value[] = {&row.s, &row.phi, &row.q[random.below(kDof)]};
-         *value[random.below(3)] = random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
+         *value[random.below(3)] =
+             random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
          return "NaN or infinity";
        }},
       {"joint_margin",
@@ -302,7 +329,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          for (const TrajectoryRow& row : good.rows)
            for (int j = 0; j < kDof; ++j) {
              const JointLimit& limit = good.chain().limit[static_cast<std::size_t>(j)];
-             if (!limit.continuous) least = std::min({least, row.q[j] - limit.lower, limit.upper - row.q[j]});
+             if (!limit.continuous)
+               least = std::min({least, row.q[j] - limit.lower, limit.upper - row.q[j]});
            }
          good.problem.limits.joint_margin = least + 1e-7;
          return "1e-7 rad beyond a limit, allowed are 1e-9";
@@ -320,7 +348,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
              const double length = good.path->layer(static_cast<int>(k) - 1).step_length;
              const double move = std::abs(good.rows[k].q[j] - good.rows[k - 1].q[j]);
              if (length > 1e-6 && move > 0)
-               least = std::min(least, length * good.chain().limit[static_cast<std::size_t>(j)].velocity / move);
+               least = std::min(
+                   least, length * good.chain().limit[static_cast<std::size_t>(j)].velocity / move);
            }
          good.problem.limits.tool_speed = 1.05 * least;
          return "a joint must be 5 % too fast";
@@ -344,8 +373,10 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          const SrsLattice lattice(good.chain(), good.robot->srs(), *good.path, good.problem);
          double most = 0;
          for (int k = 0; k + 1 < good.path->size(); ++k) {
-           const TrajectoryRow &a = good.rows[static_cast<std::size_t>(k)], &b = good.rows[static_cast<std::size_t>(k) + 1];
-           most = std::max(most, step_error(lattice, k, 0, a.branch, a.phi, wrap_angle(b.phi - a.phi)));
+           const TrajectoryRow &a = good.rows[static_cast<std::size_t>(k)],
+                               &b = good.rows[static_cast<std::size_t>(k) + 1];
+           most = std::max(most,
+                           step_error(lattice, k, 0, a.branch, a.phi, wrap_angle(b.phi - a.phi)));
          }
          good.problem.limits.step_error = 0.9 * most;
          return amount("%.3g rad, a tenth more than allowed", most);
@@ -353,42 +384,51 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
       {"manipulability",
        [](Good& good, Random&) -> std::string {
          double least = 1e9;
-         for (const TrajectoryRow& row : good.rows) least = std::min(least, good.chain().manipulability(row.q));
+         for (const TrajectoryRow& row : good.rows)
+           least = std::min(least, good.chain().manipulability(row.q));
          good.problem.limits.manipulability = 1.01 * least;
          return "1 % too small";
        }},
       {"clearance",
        [](Good& good, Random&) -> std::string {
-         if (!good.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!good.problem.model->has_srdf)
+           return "";  // else the pairs that count depend on clearances
          const World world(good.robot->world(), good.problem.scene);
          World::Query query(world);
          double least = 1e9;
          for (const TrajectoryRow& row : good.rows)
-           if (const auto clearance = query.clearance(row.q)) least = std::min(least, clearance->distance);
+           if (const auto clearance = query.clearance(row.q))
+             least = std::min(least, clearance->distance);
          good.problem.limits.clearance = least + 0.1e-3;
          good.problem.limits.edge_clearance = 0;
          return "0.1 mm too near, FCL may err by 0.05";
        }},
-      {"edge_clearance",  // a move begins nearer than that, so its first midpoint is too near by what it has moved there, at most h
+      {"edge_clearance",  // a move begins nearer than that, so its first midpoint is too near by
+                          // what it has moved there, at most h
        [](Good& good, Random&) -> std::string {
-         if (!good.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!good.problem.model->has_srdf)
+           return "";  // else the pairs that count depend on clearances
          const World world(good.robot->world(), good.problem.scene);
          World::Query query(world);
          double least = 1e9;
          for (const TrajectoryRow& row : good.rows)
-           if (const auto clearance = query.clearance(row.q)) least = std::min(least, clearance->distance);
+           if (const auto clearance = query.clearance(row.q))
+             least = std::min(least, clearance->distance);
          good.problem.limits.edge_clearance = least + 0.2e-3;
          return "0.2 mm too near";
        }},
       {"contact",
        [=](Good& good, Random& random) -> std::string {
-         if (!good.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!good.problem.model->has_srdf)
+           return "";  // else the pairs that count depend on clearances
          const auto G = good.chain().displacements(good.rows[some_row(good, random)].q);
          const auto& bodies = good.robot->world().bodies();
-         const RobotBody& body = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];
+         const RobotBody& body =
+             bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];
          if (body.group == 0) return "";
          Pose pose = Pose::Identity();
-         pose.translation() = G[static_cast<std::size_t>(body.group)] * body.pose * centre(body.shape);
+         pose.translation() =
+             G[static_cast<std::size_t>(body.group)] * body.pose * centre(body.shape);
          good.problem.scene.push_back({"inside", Sphere{0.001}, pose, {}});
          good.problem.limits.clearance = 0;
          good.problem.limits.edges = EdgeMode::kNodes;
@@ -400,17 +440,22 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          (*good.problem.start)[random.below(kDof)] += 1e-4;
          return "1e-4 rad from the start, allowed are 1e-6";
        }},
-      {"waypoint turned away",  // the waypoint that is skipped asks for an orientation that the tool never has
+      {"waypoint turned away",  // the waypoint that is skipped asks for an orientation that the
+                                // tool never has
        [](Good& good, Random& random) -> std::string {
          const int n = good.path->size();
          const int layer = 2 + random.below(n - 4);
          const PathLayer& at = good.path->layer(layer);
-         if (at.waypoint >= 0 || good.path->layer(layer - 1).waypoint >= 0 || good.path->layer(layer + 1).waypoint >= 0) return "";
-         // Waypoints at the layers around keep the rest of the path as it is; that between them turns aside.
+         if (at.waypoint >= 0 || good.path->layer(layer - 1).waypoint >= 0 ||
+             good.path->layer(layer + 1).waypoint >= 0)
+           return "";
+         // Waypoints at the layers around keep the rest of the path as it is; that between them
+         // turns aside.
          std::vector<Waypoint> waypoints;
          for (int i = 0; i < n; ++i) waypoints.push_back(waypoint_of(good.path->layer(i).tool));
          const double turn = random.uniform(0.05, 0.9);
-         Vector3d aside = at.step_rotation.norm() > 1e-9 ? at.step_rotation.unitOrthogonal() : Vector3d::UnitX();
+         Vector3d aside =
+             at.step_rotation.norm() > 1e-9 ? at.step_rotation.unitOrthogonal() : Vector3d::UnitX();
          waypoints[static_cast<std::size_t>(layer)] =
              moved(waypoints[static_cast<std::size_t>(layer)], Vector3d::Zero(), turn * aside);
          good.problem.waypoints = waypoints;
@@ -435,11 +480,14 @@ TEST(Check, MutationsFail) {
       const std::string words = mutate(bad, random);
       if (words.empty()) continue;
       const CheckResult result = check_trajectory(*bad.robot, bad.problem, bad.rows);
-      EXPECT_FALSE(result.passed) << name << " (" << words << "), " << bad.what << ", trial " << trial;
+      EXPECT_FALSE(result.passed) << name << " (" << words << "), " << bad.what << ", trial "
+                                  << trial;
       EXPECT_GT(result.failure_count, 0);
       EXPECT_FALSE(result.failures.empty());
-      const CheckResult verdict = check_trajectory(*bad.robot, bad.problem, bad.rows, {.margins = false});
-      EXPECT_FALSE(verdict.passed) << name << " (" << words << "), " << bad.what << ", trial " << trial << ", without margins";
+      const CheckResult verdict =
+          check_trajectory(*bad.robot, bad.problem, bad.rows, {.margins = false});
+      EXPECT_FALSE(verdict.passed) << name << " (" << words << "), " << bad.what << ", trial "
+                                   << trial << ", without margins";
       EXPECT_FALSE(verdict.failures.empty());
       ++done;
     }
@@ -450,7 +498,8 @@ TEST(Check, MutationsFail) {
   EXPECT_GE(count, 20 * each);
 }
 
-/// Changes the problem under the planner's hands, once it plans: its lattice and its world know the one before.
+/// Changes the problem under the planner's hands, once it plans: its lattice and its world know the
+/// one before.
 class Fault final : public StateCheck {
  public:
   explicit Fault(std::function<void()> strike) : strike_(std::move(strike)) {}
@@ -464,7 +513,8 @@ class Fault final : public StateCheck {
   std::function<void()> strike_;
 };
 
-/// An answer that is wrong is an error of the program, never an answer; right ones are answers as they were.
+/// An answer that is wrong is an error of the program, never an answer; right ones are answers as
+/// they were.
 TEST(Check, WrongAnswersOfAPlannerAreRefused) {
   const std::uint64_t base = seed("Faults");
   const std::vector<std::function<void(Problem&, double)>> faults = {
@@ -485,7 +535,8 @@ TEST(Check, WrongAnswersOfAPlannerAreRefused) {
     ASSERT_EQ(plain.status, PlanStatus::kSolved) << good.what;
     EXPECT_TRUE(plain.checked && plain.time_ms.contains("check")) << good.what;
     ASSERT_EQ(plain.trajectory.size(), good.rows.size());
-    for (std::size_t k = 0; k < good.rows.size(); ++k) ASSERT_EQ(plain.trajectory[k].q, good.rows[k].q) << good.what;
+    for (std::size_t k = 0; k < good.rows.size(); ++k)
+      ASSERT_EQ(plain.trajectory[k].q, good.rows[k].q) << good.what;
     ++right;
     Random random(base + static_cast<std::uint64_t>(right));
     for (std::size_t k = 0; k < faults.size(); ++k) {
@@ -493,7 +544,8 @@ TEST(Check, WrongAnswersOfAPlannerAreRefused) {
       auto& problem = const_cast<Problem&>(planner.problem());
       const double x = random.uniform(0.1, 1);
       options.hooks.check = std::make_shared<Fault>([&] { faults[k](problem, x); });
-      EXPECT_THROW(static_cast<void>(planner.plan(options)), std::logic_error) << good.what << ", fault " << k;
+      EXPECT_THROW(static_cast<void>(planner.plan(options)), std::logic_error)
+          << good.what << ", fault " << k;
       options.hooks.check.reset();
       ++refused;
     }
@@ -506,15 +558,18 @@ TEST(Check, StopsWhereItsTimeIsUp) {
   const Good& good = good_trajectories()[0];
   const std::atomic<bool> cancel{true};
   for (const bool margins : {true, false})
-    EXPECT_THROW(static_cast<void>(check_trajectory(*good.robot, good.problem, good.rows, {margins, Budget({}, &cancel)})),
+    EXPECT_THROW(static_cast<void>(check_trajectory(*good.robot, good.problem, good.rows,
+                                                    {margins, Budget({}, &cancel)})),
                  Stopped);
 }
 
-/// A row at any place, by closed-form IK (solved on the exact chain of inexact arms), its joints next to those given.
+/// A row at any place, by closed-form IK (solved on the exact chain of inexact arms), its joints
+/// next to those given.
 std::optional<TrajectoryRow> row_between(const Good& good, double place) {
   const int layer = std::min(static_cast<int>(place), good.path->size() - 2);
   const double t = place - layer;
-  const TrajectoryRow &a = good.rows[static_cast<std::size_t>(layer)], &b = good.rows[static_cast<std::size_t>(layer) + 1];
+  const TrajectoryRow &a = good.rows[static_cast<std::size_t>(layer)],
+                      &b = good.rows[static_cast<std::size_t>(layer) + 1];
   if (a.branch != b.branch) return std::nullopt;
   const SrsArm& arm = good.robot->srs();
   const Pose tool = good.pose(place);
@@ -525,7 +580,8 @@ std::optional<TrajectoryRow> row_between(const Good& good, double place) {
   row.phi = wrap_angle(a.phi + t * wrap_angle(b.phi - a.phi));
   row.branch = a.branch;
   const auto q =
-      solve_exact_chain(good.chain(), arm, plane, tool, row.phi, srs_ik(arm, elbow_circles(arm, plane, tool), row.phi, row.branch));
+      solve_exact_chain(good.chain(), arm, plane, tool, row.phi,
+                        srs_ik(arm, elbow_circles(arm, plane, tool), row.phi, row.branch));
   if (!q) return std::nullopt;
   const Config straight = a.q + t * (b.q - a.q);
   for (int j = 0; j < kDof; ++j) row.q[j] = straight[j] + wrap_angle((*q)[j] - straight[j]);
@@ -534,8 +590,8 @@ std::optional<TrajectoryRow> row_between(const Good& good, double place) {
 }
 
 /// Whether a move keeps all rules, with something to spare; by samples.
-bool keeps_rules(const Good& good, const World& world, World::Query& query, const TrajectoryRow& a, double begin,
-                 const TrajectoryRow& b, double end) {
+bool keeps_rules(const Good& good, const World& world, World::Query& query, const TrajectoryRow& a,
+                 double begin, const TrajectoryRow& b, double end) {
   const Limits& limits = good.problem.limits;
   const Config move = b.q - a.q;
   const double steps = std::max(1.0, std::floor(end - begin + 1e-9));
@@ -556,27 +612,32 @@ TEST(Check, LegalResamplingsPass) {
     World::Query query(world);
     const int last = good.path->size() - 1;
     // Layers, some left out; rows between layers, none or several in a step.
-    const double keep = trial % 3 == 0 ? 1 : random.uniform(0.1, 1), insert = trial % 3 == 1 ? 0 : random.uniform(0, 1.5);
+    const double keep = trial % 3 == 0 ? 1 : random.uniform(0.1, 1),
+                 insert = trial % 3 == 1 ? 0 : random.uniform(0, 1.5);
     std::vector<double> places{static_cast<double>(last)};
     for (int i = 0; i < last; ++i) {
       if (i == 0 || random.coin(keep)) places.push_back(i);
-      for (double more = insert; random.coin(std::min(more, 1.0)); more /= 2) places.push_back(i + random.uniform(0.001, 0.999));
+      for (double more = insert; random.coin(std::min(more, 1.0)); more /= 2)
+        places.push_back(i + random.uniform(0.001, 0.999));
     }
     std::sort(places.begin(), places.end());
     std::vector<TrajectoryRow> rows{good.rows[0]};
     double place = 0;
     const auto row_at = [&](double at) {
-      return at == std::floor(at) ? std::optional(good.rows[static_cast<std::size_t>(at)]) : row_between(good, at);
+      return at == std::floor(at) ? std::optional(good.rows[static_cast<std::size_t>(at)])
+                                  : row_between(good, at);
     };
     for (std::size_t k = 1; k < places.size(); ++k) {
       const auto next = row_at(places[k]);
       if (!next) continue;
       if (!keeps_rules(good, world, query, rows.back(), place, *next, places[k])) {
-        // All the layers on the way instead: the planner's own moves; from a row between layers to the next layer.
+        // All the layers on the way instead: the planner's own moves; from a row between layers to
+        // the next layer.
         bool kept = true;
         for (double layer = std::floor(place) + 1; layer < places[k] && kept; ++layer) {
           const TrajectoryRow& row = good.rows[static_cast<std::size_t>(layer)];
-          kept = place == layer - 1 || keeps_rules(good, world, query, rows.back(), place, row, layer);
+          kept =
+              place == layer - 1 || keeps_rules(good, world, query, rows.back(), place, row, layer);
           rows.push_back(row);
           place = layer;
         }
@@ -603,8 +664,10 @@ TEST(Check, LegalResamplingsPass) {
     ++count;
     inexact += !good.robot->srs().exact;
   }
-  std::printf("%d resamplings: %d layers left out, %d rows between layers, %d of inexact arms, %d joints turned\n", count, dropped,
-              inserted, inexact, turned);
+  std::printf(
+      "%d resamplings: %d layers left out, %d rows between layers, %d of inexact arms, %d joints "
+      "turned\n",
+      count, dropped, inserted, inexact, turned);
   EXPECT_GE(count, trials(300));
   EXPECT_GE(dropped, count);
   EXPECT_GE(inserted, count);
@@ -617,7 +680,10 @@ Problem closed_problem() {
   Problem problem = problem_for(data_robot("iiwa14"));
   const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));
   const Quaterniond aside = Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitZ())) * down;
-  problem.waypoints = {{{0.5, -0.1, 0.6}, down}, {{0.5, 0.2, 0.6}, down}, {{0.6, 0.2, 0.5}, aside}, {{0.5, -0.1, 0.6}, down}};
+  problem.waypoints = {{{0.5, -0.1, 0.6}, down},
+                       {{0.5, 0.2, 0.6}, down},
+                       {{0.6, 0.2, 0.5}, aside},
+                       {{0.5, -0.1, 0.6}, down}};
   problem.resolution = {.ds = 0.02, .dphi = 0.2, .dalpha = 0.1};
   return problem;
 }
@@ -636,8 +702,9 @@ TEST(Check, TwoEqualRowsDoNotFollowAClosedPath) {
 TEST(Check, AWaypointThatTurnsIsNotSkipped) {
   Problem problem = closed_problem();
   problem.waypoints = {problem.waypoints[0], problem.waypoints[1], problem.waypoints[1]};
-  problem.waypoints[1] = {{0.5, 0.05, 0.6},
-                          problem.waypoints[0].orientation * Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitX()))};
+  problem.waypoints[1] = {
+      {0.5, 0.05, 0.6},
+      problem.waypoints[0].orientation * Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitX()))};
   // What it looks like without the turn is straight, so the tool is never off in position.
   Problem straight = problem;
   straight.waypoints.erase(straight.waypoints.begin() + 1);
@@ -653,9 +720,12 @@ TEST(Check, AWaypointThatTurnsIsNotSkipped) {
     const CheckResult result = check_trajectory(problem, rows);
     EXPECT_FALSE(result.passed);
     // By more than the arm angle, which another path carries otherwise.
-    EXPECT_TRUE(std::any_of(result.failures.begin(), result.failures.end(), [](const std::string& line) {
-      return line.find("leaves the path") != std::string::npos && line.find("rad: allowed are") != std::string::npos;
-    })) << first(result);
+    EXPECT_TRUE(std::any_of(result.failures.begin(), result.failures.end(),
+                            [](const std::string& line) {
+                              return line.find("leaves the path") != std::string::npos &&
+                                     line.find("rad: allowed are") != std::string::npos;
+                            }))
+        << first(result);
     EXPECT_TRUE(check_trajectory(straight, rows).passed) << first(check_trajectory(straight, rows));
   }
 }
@@ -686,7 +756,8 @@ TEST(Check, AJointThatSpinsWithinAStepFails) {
   EXPECT_GE(spins, 6);
 }
 
-/// The elbow goes far around the tool inside one step, in many small moves of which each is allowed.
+/// The elbow goes far around the tool inside one step, in many small moves of which each is
+/// allowed.
 TEST(Check, ManySmallMovesInOneStepDoNotAddUp) {
   int tried = 0;
   for (const Good& source : good_trajectories()) {
@@ -706,7 +777,8 @@ TEST(Check, ManySmallMovesInOneStepDoNotAddUp) {
       const ArmPlane plane = carry_plane(arm, good.planes[0], tool);
       TrajectoryRow row = rows.back();
       row.s = t * good.path->layer(0).step_length;
-      row.phi = wrap_angle(good.rows[0].phi + t * wrap_angle(good.rows[1].phi - good.rows[0].phi) + 2 * std::sin(t * kPi));
+      row.phi = wrap_angle(good.rows[0].phi + t * wrap_angle(good.rows[1].phi - good.rows[0].phi) +
+                           2 * std::sin(t * kPi));
       const Config q = srs_ik(arm, elbow_circles(arm, plane, tool), row.phi, row.branch);
       for (int j = 0; j < kDof; ++j) row.q[j] += wrap_angle(q[j] - row.q[j]);
       possible = (row.q - rows.back().q).lpNorm<Eigen::Infinity>() < 0.4;
@@ -730,7 +802,9 @@ Problem turning_problem(double noise, bool back) {
   problem.waypoints.push_back(at);
   for (int k = 0; k < 60; ++k) {
     const double turn = back && k % 6 > 2 ? -0.105 : 0.105;
-    at = moved(at, noise * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)), turn * Vector3d::UnitZ());
+    at = moved(
+        at, noise * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)),
+        turn * Vector3d::UnitZ());
     problem.waypoints.push_back(at);
   }
   problem.resolution = {.ds = 0.01, .dphi = 0.2, .dalpha = 0.035};

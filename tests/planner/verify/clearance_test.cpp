@@ -52,7 +52,8 @@ TEST(SelfClearance, LinksThatAreNearByDesignMayNotMeet) {
     EXPECT_EQ(apart.status, PlanStatus::kSolved) << clearance;
     ASSERT_TRUE(apart.min_margin && apart.min_clearance);
     EXPECT_GT(apart.min_margin->margin, 0);
-    EXPECT_DOUBLE_EQ(apart.min_margin->margin, apart.min_margin->clearance - apart.min_margin->required);
+    EXPECT_DOUBLE_EQ(apart.min_margin->margin,
+                     apart.min_margin->clearance - apart.min_margin->required);
     EXPECT_LE(*apart.min_clearance, apart.min_margin->clearance);
     EXPECT_TRUE(check_trajectory(problem, apart.trajectory).passed);
     ASSERT_EQ(apart.reduced_pairs.size(), clearance > 0.002 ? 1u : apart.reduced_pairs.size());
@@ -104,8 +105,9 @@ TEST(SelfClearance, ALargerClearanceNeverMakesAPath) {
         options.planner = PlannerKind::kLazy;
         const PlanResult result = plan(*prepared, problem, options);
         const bool solved = result.status == PlanStatus::kSolved;
-        ASSERT_TRUE(was_solved || !solved) << "SWIVEL_TEST_SEED " << base << " " << robots[r].name << " trial " << trial
-                                           << " clearance " << problem.limits.clearance;
+        ASSERT_TRUE(was_solved || !solved)
+            << "SWIVEL_TEST_SEED " << base << " " << robots[r].name << " trial " << trial
+            << " clearance " << problem.limits.clearance;
         was_solved = solved;
         solved_once |= solved;
         reduced += !result.reduced_pairs.empty();
@@ -124,8 +126,10 @@ TEST(SelfClearance, ALargerClearanceNeverMakesAPath) {
       }
     }
   }
-  std::printf("%d plans of %zu robots, %d with reduced pairs; %d problems lose their path on the way, %d keep it\n", plans,
-              robots.size(), reduced, lost, kept);
+  std::printf(
+      "%d plans of %zu robots, %d with reduced pairs; %d problems lose their path on the way, %d "
+      "keep it\n",
+      plans, robots.size(), reduced, lost, kept);
   EXPECT_EQ(plans, static_cast<int>(robots.size()) * trials(8) * kSteps);
   EXPECT_GE(reduced, at_least(plans / 10 + 1));
   EXPECT_GE(lost, at_least(4));

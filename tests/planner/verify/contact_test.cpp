@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How deep bodies that may touch are in each other: measured, and bounded in everything that judges nodes, edges and motions.
+// How deep bodies that may touch are in each other: measured, and bounded in everything that judges
+// nodes, edges and motions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,13 +26,15 @@ using namespace test;
 
 /// A disc is led along a plate, `deep` beneath its surface.
 Problem polishing(double deep, std::optional<double> allowed = {}) {
-  static const Problem loaded = io::load_problem(data_dir() / "problems" / "xarm7_polish_raster.yaml");
+  static const Problem loaded =
+      io::load_problem(data_dir() / "problems" / "xarm7_polish_raster.yaml");
   Problem problem = loaded;
   problem.waypoints.resize(2);
   problem.waypoints[1].position.y() = 0;
   problem.resolution.ds = 0.03;
   problem.resolution.arc = 0.4;
-  for (Waypoint& waypoint : problem.waypoints) waypoint.position.z() -= deep + 0.003;  // the disc ends 3 mm above the tool
+  for (Waypoint& waypoint : problem.waypoints)
+    waypoint.position.z() -= deep + 0.003;  // the disc ends 3 mm above the tool
   for (SceneObject& object : problem.scene)
     if (object.name == "plate") object.allow = {Allowed("disc", allowed)};
   return problem;
@@ -73,7 +76,8 @@ TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
   const Problem as_deep_as_it_likes = polishing(deep);
   const PlanResult free = planned(as_deep_as_it_likes);
   ASSERT_EQ(free.status, PlanStatus::kSolved);
-  for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+  for (const PlannerKind planner :
+       {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
     SCOPED_TRACE(to_string(planner));
     const PlanResult enough = planned(polishing(deep, 0.006), planner);
     ASSERT_EQ(enough.status, PlanStatus::kSolved);
@@ -90,12 +94,15 @@ TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
     EXPECT_NEAR(*cause.value, -deep, 0.1e-3);
     EXPECT_DOUBLE_EQ(*cause.limit, -(0.003 - 2 * 0.003 / 32));
     EXPECT_EQ(cause.over, 0.003);
-    EXPECT_NE(answer_text(little).find("4 mm deep, allowed 2.81 mm: 3 mm less what motions need"), std::string::npos)
+    EXPECT_NE(answer_text(little).find("4 mm deep, allowed 2.81 mm: 3 mm less what motions need"),
+              std::string::npos)
         << answer_text(little);
   }
   const CheckResult check = check_trajectory(polishing(deep, 0.003), free.trajectory);
   EXPECT_FALSE(check.passed);
-  EXPECT_NE(check.failures.at(0).find("deep in each other: allowed are 3.000 mm"), std::string::npos) << check.failures[0];
+  EXPECT_NE(check.failures.at(0).find("deep in each other: allowed are 3.000 mm"),
+            std::string::npos)
+      << check.failures[0];
   CheckOptions quick;
   quick.margins = false;
   EXPECT_FALSE(check_trajectory(polishing(deep, 0.003), free.trajectory, quick).passed);
@@ -108,13 +115,15 @@ TEST(Contact, ThatIsTooDeepHasACertificate) {
   const PlanResult result = planner.plan();
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
-  EXPECT_TRUE(std::any_of(certificate.witnesses.begin(), certificate.witnesses.end(), [](const Cause& witness) {
-    return witness.bodies == std::array<std::string, 2>{"disc", "plate"};
-  }));
+  EXPECT_TRUE(std::any_of(certificate.witnesses.begin(), certificate.witnesses.end(),
+                          [](const Cause& witness) {
+                            return witness.bodies == std::array<std::string, 2>{"disc", "plate"};
+                          }));
   const CertificateCheck check = verify_certificate(PreparedRobot(problem), problem, certificate);
   EXPECT_TRUE(check.passed) << check.failure;
   // For the same problem with a disc that may be so deep, the certificate proves nothing.
-  EXPECT_FALSE(verify_certificate(PreparedRobot(problem), polishing(0.004, 0.006), certificate).passed);
+  EXPECT_FALSE(
+      verify_certificate(PreparedRobot(problem), polishing(0.004, 0.006), certificate).passed);
 }
 
 TEST(Contact, BetweenLayersIsBoundedAsWell) {
@@ -130,8 +139,10 @@ TEST(Contact, BetweenLayersIsBoundedAsWell) {
   for (SceneObject& object : bounded.scene)
     if (object.name == "plate") object.allow = {Allowed("disc", 0.00302)};
   int deeper_at_rows = 0;
-  const World planned_in(*bounded.model, build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool),
-                         bounded);
+  const World planned_in(
+      *bounded.model,
+      build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool),
+      bounded);
   const World world(planned_in, bounded, {}, kVerdictBand);  // rows may be as deep as allowed
   World::Query query(world);
   for (const TrajectoryRow& row : free.trajectory)
@@ -145,14 +156,16 @@ TEST(Contact, BetweenLayersIsBoundedAsWell) {
   }
 }
 
-/// A tool led nearly as deep as it may be is planned, or refused at its first row: no node is left from which no motion is proved.
+/// A tool led nearly as deep as it may be is planned, or refused at its first row: no node is left
+/// from which no motion is proved.
 TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
   constexpr double kAllowed = 0.003;
   int solved = 0, refused = 0;
   for (const double deep : {0.0020, 0.0025, 0.0027, 0.0028, 0.00285, 0.0029, 0.00299}) {
     SCOPED_TRACE(deep);
     Problem problem = polishing(deep, kAllowed);
-    problem.resolution.ds = 0.005;  // straight joint motions leave the path by some 0.01 mm between layers
+    problem.resolution.ds =
+        0.005;  // straight joint motions leave the path by some 0.01 mm between layers
     problem.limits.joint_acceleration = std::array<double, kDof>{10, 10, 10, 10, 10, 10, 10};
     problem = with_motion_defaults(problem);
     const PlanResult result = planned(problem);
@@ -174,15 +187,18 @@ TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
     EXPECT_LE(*check.deepest_contact->at_most, kAllowed + 1e-12);
     TimingOptions timing;
     timing.speed = 0.05;
-    const MotionResult motion = time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
+    const MotionResult motion =
+        time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
     ASSERT_TRUE(motion.motion) << (motion.failure ? motion.failure->reason : "");
     for (const std::size_t every : {1, 5, 25}) {  // the verdict is the same for rows further apart
       std::vector<TimedRow> rows;
-      for (std::size_t k = 0; k < motion.motion->rows.size(); k += every) rows.push_back(motion.motion->rows[k]);
+      for (std::size_t k = 0; k < motion.motion->rows.size(); k += every)
+        rows.push_back(motion.motion->rows[k]);
       if (rows.back().t != motion.motion->rows.back().t) rows.push_back(motion.motion->rows.back());
       const CheckResult check_of_rows = check_motion(PreparedRobot(problem), problem, rows);
-      EXPECT_TRUE(std::none_of(check_of_rows.failures.begin(), check_of_rows.failures.end(),
-                               [](const std::string& line) { return line.find("deep") != std::string::npos; }))
+      EXPECT_TRUE(std::none_of(
+          check_of_rows.failures.begin(), check_of_rows.failures.end(),
+          [](const std::string& line) { return line.find("deep") != std::string::npos; }))
           << every << ": " << check_of_rows.failures.at(0);
     }
     ++solved;
@@ -191,7 +207,8 @@ TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
   EXPECT_EQ(refused, 3);
 }
 
-/// What is too deep between layers alone is told with its depth, and deeper contact is among what is advised.
+/// What is too deep between layers alone is told with its depth, and deeper contact is among what
+/// is advised.
 TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
   // A stylus of 8 mm is led past a pin of 12 mm, which it meets half-way between two layers.
   Problem problem = polishing(-0.05);
@@ -212,15 +229,17 @@ TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
   EXPECT_NEAR(*cause.value, -0.01, 2e-3);  // less where the stylus leaves its path
   EXPECT_DOUBLE_EQ(*cause.limit, -(0.002 - 0.002 / 32));
   EXPECT_EQ(*cause.over, 0.002);
-  EXPECT_NE(answer_text(result).find(" mm deep, allowed 1.94 mm: 2 mm less what motions need"), std::string::npos)
+  EXPECT_NE(answer_text(result).find(" mm deep, allowed 1.94 mm: 2 mm less what motions need"),
+            std::string::npos)
       << answer_text(result);
 
   Planner planner(polishing(0.004, 0.003));
   PlanOptions options;
   options.timeout_s = 60;
   const std::vector<Advice> advice = advise(planner, planner.plan(), options);
-  const auto deeper =
-      std::find_if(advice.begin(), advice.end(), [](const Advice& one) { return one.change == Advice::Change::kDepth; });
+  const auto deeper = std::find_if(advice.begin(), advice.end(), [](const Advice& one) {
+    return one.change == Advice::Change::kDepth;
+  });
   ASSERT_NE(deeper, advice.end());
   EXPECT_EQ(deeper->outcome, Advice::Outcome::kSolved);
   EXPECT_EQ(deeper->object, "plate");
@@ -228,7 +247,8 @@ TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
   ASSERT_TRUE(deeper->to);
   EXPECT_GT(*deeper->to, 0.004);
   EXPECT_LT(*deeper->to, 0.007);
-  EXPECT_NE(advice_text(advice).find("contact with 'plate' up to"), std::string::npos) << advice_text(advice);
+  EXPECT_NE(advice_text(advice).find("contact with 'plate' up to"), std::string::npos)
+      << advice_text(advice);
 }
 
 TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {
@@ -262,7 +282,8 @@ TEST(Contact, OfMotionsIsBoundedAsWell) {
   ASSERT_EQ(result.status, PlanStatus::kSolved);
   TimingOptions timing;
   timing.speed = 0.05;
-  const MotionResult motion = time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
+  const MotionResult motion =
+      time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
   ASSERT_TRUE(motion.motion) << (motion.failure ? motion.failure->reason : "");
   EXPECT_TRUE(check_motion(PreparedRobot(problem), problem, motion.motion->rows).passed);
   Problem strict = problem;
@@ -284,14 +305,18 @@ TEST(Contact, DepthsThatMeanNothingAreRefused) {
   };
   const auto mesh = [](bool closed) {
     TriangleMesh box;
-    for (int k = 0; k < 8; ++k) box.vertices.push_back(0.1 * Vector3d(k & 1, k >> 1 & 1, k >> 2 & 1));
+    for (int k = 0; k < 8; ++k)
+      box.vertices.push_back(0.1 * Vector3d(k & 1, k >> 1 & 1, k >> 2 & 1));
     box.triangles = {{0, 2, 1}, {1, 2, 3}};
     box.source = "part.stl";
     box.closed = closed;
     return std::make_shared<const TriangleMesh>(box);
   };
-  EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.0).find("scene[1].allow[0].depth: is 0: allowed is a number > 0"), std::string::npos);
-  EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.015).find("at most 0.015 m deep"), std::string::npos);  // half of 10 mm, half of 20 mm
+  EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.0)
+                .find("scene[1].allow[0].depth: is 0: allowed is a number > 0"),
+            std::string::npos);
+  EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.015).find("at most 0.015 m deep"),
+            std::string::npos);  // half of 10 mm, half of 20 mm
   EXPECT_NE(message(MeshPtr(mesh(false)), 0.001).find("part.stl is not closed"), std::string::npos);
   Problem problem = polishing(0.001, 0.002);
   problem.attached[1].shape = MeshPtr(mesh(true));

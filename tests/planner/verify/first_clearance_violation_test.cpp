@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The proof that rows and the moves between them keep clear, against questions about each of them, by FCL alone.
+// The proof that rows and the moves between them keep clear, against questions about each of them,
+// by FCL alone.
 #include "measure/first_clearance_violation.hpp"
 
 #include <gtest/gtest.h>
@@ -16,13 +17,15 @@ namespace {
 
 using test::Random;
 
-std::optional<ClearanceViolation> by_each(const World& world, const EdgeRule& rule, const Limits& limits,
-                                          const std::vector<Config>& rows) {
+std::optional<ClearanceViolation> by_each(const World& world, const EdgeRule& rule,
+                                          const Limits& limits, const std::vector<Config>& rows) {
   World::Query query(world);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (const auto pair = query.find_violating_pair(rows[k], ClearanceRule::kNode)) return ClearanceViolation{k, *pair};
+    if (const auto pair = query.find_violating_pair(rows[k], ClearanceRule::kNode))
+      return ClearanceViolation{k, *pair};
     if (k == 0 || limits.edges != EdgeMode::kContinuous) continue;
-    if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k])) return ClearanceViolation{k, *pair, true};
+    if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k]))
+      return ClearanceViolation{k, *pair, true};
   }
   return std::nullopt;
 }
@@ -67,7 +70,8 @@ Walks compare_walks(const std::vector<test::TestRobot>& robots, std::uint64_t ba
   std::int64_t rows_asked = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = test::random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem =
+        test::random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (random.coin()) problem.limits.edges = EdgeMode::kContinuous;
     // Rows that must keep less than motions, too.
     if (random.coin(0.3)) problem.limits.edge_clearance = random.uniform(0, 0.02);
@@ -79,8 +83,8 @@ Walks compare_walks(const std::vector<test::TestRobot>& robots, std::uint64_t ba
       const auto each = by_each(world, rule, problem.limits, rows),
                  found = first_clearance_violation(world, rule, problem.limits, rows, {});
       rows_asked += static_cast<std::int64_t>(rows.size());
-      const std::string what =
-          "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + problem.source;
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                               std::to_string(trial) + " " + problem.source;
       EXPECT_EQ(found.has_value(), each.has_value()) << what;
       if (!found || !each) return each;
       EXPECT_EQ(found->row, each->row) << what;
@@ -95,8 +99,9 @@ Walks compare_walks(const std::vector<test::TestRobot>& robots, std::uint64_t ba
     EXPECT_FALSE(compare());
     ++up_to_it;
   }
-  std::printf("%lld rows: %d walks free, %d end at a row, %d between two, %d of them free up to there\n",
-              static_cast<long long>(rows_asked), free, at_row, between, up_to_it);
+  std::printf(
+      "%lld rows: %d walks free, %d end at a row, %d between two, %d of them free up to there\n",
+      static_cast<long long>(rows_asked), free, at_row, between, up_to_it);
   return {free, at_row, between};
 }
 

@@ -23,9 +23,11 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
   int solved = 0, near = 0, bounded = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem =
+        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const PreparedRobot robot(problem);
     PlanOptions options;
     options.evidence = Evidence::all();
@@ -47,7 +49,8 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
     std::optional<double> least;
     double manipulability = 1e9, margin = 1e9;
     for (const TrajectoryRow& row : result.trajectory) {
-      if (const auto clearance = query.clearance(row.q)) least = std::min(least.value_or(1e9), clearance->least);
+      if (const auto clearance = query.clearance(row.q))
+        least = std::min(least.value_or(1e9), clearance->least);
       manipulability = std::min(manipulability, chain.manipulability(row.q));
       for (std::size_t k = 0; k < kDof; ++k) {
         if (chain.limit[k].continuous || chain.limit[k].wide()) continue;
@@ -65,7 +68,9 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
     bounded += measures.nearest_limit.has_value();
 
     const Measures little = measure(robot, problem, result.trajectory, {});
-    EXPECT_FALSE(little.evidence.postures || little.evidence.tool_path_error || little.min_clearance) << what;
+    EXPECT_FALSE(little.evidence.postures || little.evidence.tool_path_error ||
+                 little.min_clearance)
+        << what;
     EXPECT_EQ(little.nearest_limit.has_value(), measures.nearest_limit.has_value()) << what;
     std::vector<TrajectoryRow> fewer = result.trajectory;
     fewer.pop_back();

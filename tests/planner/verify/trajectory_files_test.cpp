@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories and motions that went through files of every format that is read: what is legal passes the check, what is not fails,
-// whether the file states s, arm angle, branch, roll and rates or the joints alone.
+// Trajectories and motions that went through files of every format that is read: what is legal
+// passes the check, what is not fails, whether the file states s, arm angle, branch, roll and rates
+// or the joints alone.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -21,7 +22,8 @@ namespace {
 using namespace test;
 using io::test::TempFolder;
 
-/// A way to write rows, and what can be seen in it: s, phi and branch; accelerations; the roll that is an arm's last joint.
+/// A way to write rows, and what can be seen in it: s, phi and branch; accelerations; the roll that
+/// is an arm's last joint.
 struct Format {
   const char* name;
   bool timed, places, rates, roll;
@@ -34,7 +36,8 @@ constexpr Format kFormats[] = {
 };
 
 /// Columns by name, the last joint first.
-std::string by_name(const std::vector<TimedRow>& rows, const io::JointNames& names, bool t, bool s) {
+std::string by_name(const std::vector<TimedRow>& rows, const io::JointNames& names, bool t,
+                    bool s) {
   std::ostringstream text;
   text.precision(17);
   for (std::size_t j = kDof; j-- > 0;) text << names[j] << (j > 0 ? "," : "");
@@ -65,16 +68,19 @@ std::string text_of(const Format& format, const Judged& judged) {
 }
 
 /// As `check` judges the file; refused is failed.
-CheckResult judge_file(const Format& format, const Judged& judged, const TempFolder& folder, const CheckOptions& options = {}) {
+CheckResult judge_file(const Format& format, const Judged& judged, const TempFolder& folder,
+                       const CheckOptions& options = {}) {
   CheckResult result;
   try {
-    const io::TrajectoryFile file =
-        io::load_trajectory_file(folder.write(format.name, text_of(format, judged)), judged.chain().joint_names);
+    const io::TrajectoryFile file = io::load_trajectory_file(
+        folder.write(format.name, text_of(format, judged)), judged.chain().joint_names);
     EXPECT_EQ(file.timed.empty(), !judged.timed);
     if (judged.timed)
-      return check_motion(*judged.robot, judged.problem, complete_motion(*judged.robot, judged.problem, file.timed, file.stated),
+      return check_motion(*judged.robot, judged.problem,
+                          complete_motion(*judged.robot, judged.problem, file.timed, file.stated),
                           options);
-    return check_trajectory(*judged.robot, judged.problem, complete_rows(*judged.robot, judged.problem, file.rows, file.stated),
+    return check_trajectory(*judged.robot, judged.problem,
+                            complete_rows(*judged.robot, judged.problem, file.rows, file.stated),
                             options);
   } catch (const InputError& error) {
     result.failures = {error.what()};
@@ -98,7 +104,8 @@ const std::vector<Judged>& cases(bool timed) {
   return timed ? motions : trajectories;
 }
 
-/// What a planner found passes through every format; joints keep their bits, and what is worked out is what the planner said.
+/// What a planner found passes through every format; joints keep their bits, and what is worked out
+/// is what the planner said.
 TEST(TrajectoryFiles, PassAsTheyWereWritten) {
   const TempFolder folder;
   int passed = 0, rolls = 0, others = 0;
@@ -106,14 +113,17 @@ TEST(TrajectoryFiles, PassAsTheyWereWritten) {
     for (const Judged& judged : cases(format.timed)) {
       const std::string what = std::string(format.name) + ": " + judged.what;
       const auto& names = judged.chain().joint_names;
-      const io::TrajectoryFile file = io::load_trajectory_file(folder.write(format.name, text_of(format, judged)), names);
+      const io::TrajectoryFile file =
+          io::load_trajectory_file(folder.write(format.name, text_of(format, judged)), names);
       ASSERT_EQ(file.rows.size(), judged.rows.size()) << what;
       const Problem of_motions = with_motion_defaults(judged.problem);
       std::vector<TrajectoryRow> rows = file.rows;
       if (!judged.timed) rows = complete_rows(*judged.robot, judged.problem, rows, file.stated);
       if (judged.timed) {
         rows.clear();
-        for (const TimedRow& row : complete_motion(*judged.robot, judged.problem, file.timed, file.stated)) rows.push_back(row.row);
+        for (const TimedRow& row :
+             complete_motion(*judged.robot, judged.problem, file.timed, file.stated))
+          rows.push_back(row.row);
       }
       for (std::size_t k = 0; k < rows.size(); ++k) {
         const TrajectoryRow &row = rows[k], &planned = judged.rows[k].row;
@@ -124,23 +134,28 @@ TEST(TrajectoryFiles, PassAsTheyWereWritten) {
         ASSERT_NEAR(wrap_angle(row.roll - planned.roll), 0, 1e-6) << where;
         ASSERT_NEAR(wrap_angle(row.q[kDof - 1] - planned.q[kDof - 1]), 0, 1e-6) << where;
         const auto& arm = judged.robot->arm_class().srs;
-        ASSERT_TRUE(!(arm || judged.chain().roll) || std::abs(wrap_angle(row.phi - planned.phi)) <= 1e-3) << where;
+        ASSERT_TRUE(!(arm || judged.chain().roll) ||
+                    std::abs(wrap_angle(row.phi - planned.phi)) <= 1e-3)
+            << where;
         ASSERT_TRUE(!arm || is_of_branch(*arm, planned.q, row.branch)) << where;
       }
-      const CheckResult check = judge_file(format, judged, folder, {.margins = false}), before = judge(judged);
+      const CheckResult check = judge_file(format, judged, folder, {.margins = false}),
+                        before = judge(judged);
       EXPECT_TRUE(check.passed) << what << ": " << first_of(check);
       EXPECT_NEAR(check.cost, before.cost, 1e-6) << what;
       passed += check.passed;
       rolls += judged.chain().tool_may_turn();
       others += !judged.robot->arm_class().srs;
     }
-  std::printf("%d files, %d of tools that may turn, %d of arms that are not S-R-S\n", passed, rolls, others);
+  std::printf("%d files, %d of tools that may turn, %d of arms that are not S-R-S\n", passed, rolls,
+              others);
   EXPECT_GE(passed, 80);
   EXPECT_GE(rolls, 8);
   EXPECT_GE(others, 8);
 }
 
-/// Whether a format can hold what has changed: messages hold neither times that are no numbers nor an arm's roll.
+/// Whether a format can hold what has changed: messages hold neither times that are no numbers nor
+/// an arm's roll.
 bool is_in_file(const Format& format, const Judged& before, const Judged& after) {
   for (const TimedRow& row : after.rows)
     if (!std::isfinite(row.t)) return false;
@@ -149,7 +164,8 @@ bool is_in_file(const Format& format, const Judged& before, const Judged& after)
   for (std::size_t k = 0; k < after.rows.size(); ++k) {
     const TimedRow &a = before.rows[k], &b = after.rows[k];
     same = same && a.t == b.t;
-    for (const auto& [one, other] : {std::pair(&a.row.q, &b.row.q), std::pair(&a.v, &b.v), std::pair(&a.a, &b.a)}) {
+    for (const auto& [one, other] :
+         {std::pair(&a.row.q, &b.row.q), std::pair(&a.v, &b.v), std::pair(&a.a, &b.a)}) {
       same = same && one->head<kDof - 1>() == other->head<kDof - 1>();
       same_roll = same_roll && (*one)[kDof - 1] == (*other)[kDof - 1];
     }
@@ -167,24 +183,27 @@ TEST(TrajectoryFiles, MutatedOnesFailInEveryFormat) {
     std::vector<const MotionMutation*> kinds;
     for (const MotionMutation& mutation : motion_mutations())
       if ((format.timed ? mutation.of_motions : mutation.of_trajectories) &&
-          (mutation.seen_in == Column::kJoints || (mutation.seen_in == Column::kRates ? format.rates : format.places)))
+          (mutation.seen_in == Column::kJoints ||
+           (mutation.seen_in == Column::kRates ? format.rates : format.places)))
         kinds.push_back(&mutation);
     int done = 0, refused = 0;
     for (int trial = 0; done < each && trial < 100 * each; ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial));
       const MotionMutation& mutation = *kinds[static_cast<std::size_t>(trial) % kinds.size()];
-      const Judged& before = good[static_cast<std::size_t>(random.below(static_cast<int>(good.size())))];
+      const Judged& before =
+          good[static_cast<std::size_t>(random.below(static_cast<int>(good.size())))];
       Judged bad = before;
       const std::string words = mutation.mutate(bad, random);
       if (words.empty() || !is_in_file(format, before, bad)) continue;
       ++done;
       const CheckResult result = judge_file(format, bad, folder, {.margins = false});
-      EXPECT_FALSE(result.passed) << format.name << ": " << mutation.name << " (" << words << "), " << bad.what << ", trial "
-                                  << trial;
+      EXPECT_FALSE(result.passed) << format.name << ": " << mutation.name << " (" << words << "), "
+                                  << bad.what << ", trial " << trial;
       EXPECT_FALSE(result.failures.empty());
       refused += result.failure_count == 0;
     }
-    std::printf("%s: %d of %zu kinds fail, %d of them refused as they are read\n", format.name, done, kinds.size(), refused);
+    std::printf("%s: %d of %zu kinds fail, %d of them refused as they are read\n", format.name,
+                done, kinds.size(), refused);
     EXPECT_EQ(done, each) << format.name;
   }
 }
@@ -199,22 +218,24 @@ TEST(TrajectoryFiles, LegalOnesPassInEveryFormat) {
     int done = 0;
     for (int trial = 0; done < each && trial < 100 * each; ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial));
-      const LegalChange& change = legal_changes()[static_cast<std::size_t>(trial) % legal_changes().size()];
+      const LegalChange& change =
+          legal_changes()[static_cast<std::size_t>(trial) % legal_changes().size()];
       if (!(format.timed ? change.of_motions : change.of_trajectories)) continue;
       Judged other = good[static_cast<std::size_t>(random.below(static_cast<int>(good.size())))];
       const std::string words = change.change(other, random);
       if (words.empty()) continue;
       ++done;
       const CheckResult result = judge_file(format, other, folder, {.margins = false});
-      EXPECT_TRUE(result.passed) << format.name << ": " << change.name << " (" << words << "), " << other.what << ", trial "
-                                 << trial << ": " << first_of(result);
+      EXPECT_TRUE(result.passed) << format.name << ": " << change.name << " (" << words << "), "
+                                 << other.what << ", trial " << trial << ": " << first_of(result);
     }
     std::printf("%s: %d pass\n", format.name, done);
     EXPECT_EQ(done, each) << format.name;
   }
 }
 
-/// A path through these offsets from a pose well inside the limits of the iiwa14, and turns about the tool's x axis.
+/// A path through these offsets from a pose well inside the limits of the iiwa14, and turns about
+/// the tool's x axis.
 struct Planned {
   Problem problem;
   std::shared_ptr<const PreparedRobot> robot;
@@ -224,8 +245,9 @@ Planned along(const std::vector<std::pair<Vector3d, double>>& steps) {
   Planned planned{problem_for(data_robot("iiwa14")), nullptr, {}};
   Config q;
   q << 0.2, 0.6, 0.1, -1.2, 0.2, 0.9, 0.3;
-  const Chain chain =
-      build_arm(*planned.problem.model, planned.problem.base_link, planned.problem.tip_link, {}, Pose::Identity()).chain;
+  const Chain chain = build_arm(*planned.problem.model, planned.problem.base_link,
+                                planned.problem.tip_link, {}, Pose::Identity())
+                          .chain;
   planned.problem.waypoints.push_back(waypoint_of(chain.tool(q)));
   for (const auto& [by, turn] : steps) {
     Waypoint to = planned.problem.waypoints.back();
@@ -246,7 +268,13 @@ std::vector<TrajectoryRow> joints_alone(const std::vector<TrajectoryRow>& rows) 
   for (std::size_t k = 0; k < rows.size(); ++k) alone[k].q = rows[k].q;
   return alone;
 }
-constexpr Stated kJointsAlone{.s = false, .phi = false, .branch = false, .roll = false, .last_joint = true, .v = false, .a = false};
+constexpr Stated kJointsAlone{.s = false,
+                              .phi = false,
+                              .branch = false,
+                              .roll = false,
+                              .last_joint = true,
+                              .v = false,
+                              .a = false};
 
 /// Paths that come back to where they were: rows are matched to places in the order of the path.
 TEST(CompleteRows, PathsThatMeetThemselves) {
@@ -263,7 +291,8 @@ TEST(CompleteRows, PathsThatMeetThemselves) {
   for (const auto& [name, steps] : paths) {
     const Planned planned = along(steps);
     ASSERT_FALSE(planned.rows.empty()) << name;
-    const auto rows = complete_rows(*planned.robot, planned.problem, joints_alone(planned.rows), kJointsAlone);
+    const auto rows =
+        complete_rows(*planned.robot, planned.problem, joints_alone(planned.rows), kJointsAlone);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       EXPECT_NEAR(rows[k].s, planned.rows[k].s, 1e-9) << name << ", row " << k;
       EXPECT_NEAR(wrap_angle(rows[k].phi - planned.rows[k].phi), 0, 1e-6) << name << ", row " << k;
@@ -275,19 +304,23 @@ TEST(CompleteRows, PathsThatMeetThemselves) {
     TimingOptions timing;
     timing.speed = 0.1;
     timing.turn_speed = 0.5;
-    const MotionResult timed = time_trajectory(*planned.robot, planned.problem, planned.rows, timing);
+    const MotionResult timed =
+        time_trajectory(*planned.robot, planned.problem, planned.rows, timing);
     ASSERT_TRUE(timed.motion) << name << ": " << timed.failure->reason;
     std::vector<TimedRow> motion = timed.motion->rows;
     for (TimedRow& row : motion) row = {row.t, {.q = row.row.q}};
     motion = complete_motion(*planned.robot, planned.problem, motion, kJointsAlone);
-    for (std::size_t k = 0; k < motion.size(); ++k)  // about a turning back the tool has each pose twice
+    for (std::size_t k = 0; k < motion.size();
+         ++k)  // about a turning back the tool has each pose twice
       EXPECT_NEAR(motion[k].row.s, timed.motion->rows[k].row.s, 5e-5) << name << ", sample " << k;
-    const CheckResult of_motion = check_motion(*planned.robot, planned.problem, motion, {.margins = false});
+    const CheckResult of_motion =
+        check_motion(*planned.robot, planned.problem, motion, {.margins = false});
     EXPECT_TRUE(of_motion.passed) << name << ": " << first_of(of_motion);
   }
 }
 
-/// A row off the path gets the nearest s between its neighbours, and the check says how far off it is.
+/// A row off the path gets the nearest s between its neighbours, and the check says how far off it
+/// is.
 TEST(CompleteRows, RowsOffThePathAreNamed) {
   const Planned planned = along({{{0.05, 0, 0}, 0}, {{0, 0.05, 0}, 0.2}});
   for (const std::size_t k : {std::size_t{0}, std::size_t{3}, planned.rows.size() - 1}) {
@@ -297,7 +330,8 @@ TEST(CompleteRows, RowsOffThePathAreNamed) {
     EXPECT_NEAR(rows[k].s, planned.rows[k].s, 2e-3);
     const CheckResult check = check_trajectory(*planned.robot, planned.problem, rows);
     ASSERT_EQ(check.failure_count, 1) << first_of(check);
-    EXPECT_TRUE(check.failures[0].starts_with("row " + std::to_string(k) + ": the tool is ")) << check.failures[0];
+    EXPECT_TRUE(check.failures[0].starts_with("row " + std::to_string(k) + ": the tool is "))
+        << check.failures[0];
     EXPECT_THROW((void)rows_at_layers(*planned.robot, planned.problem, rows, {}), InputError);
   }
   // Two rows swapped: one of them is out of order.
@@ -320,7 +354,8 @@ TEST(RowsAtLayers, OfOtherRowsMakeMotions) {
   for (const double ds : {0.004, 0.0123, 0.03}) {
     Problem other = planned.problem;
     other.resolution.ds = ds;
-    const auto rows = rows_at_layers(*planned.robot, other, joints_alone(planned.rows), kJointsAlone);
+    const auto rows =
+        rows_at_layers(*planned.robot, other, joints_alone(planned.rows), kJointsAlone);
     const CheckResult check = check_trajectory(*planned.robot, other, rows);
     EXPECT_TRUE(check.passed) << ds << ": " << first_of(check);
     const MotionResult timed = time_trajectory(*planned.robot, other, rows, timing);

@@ -37,8 +37,10 @@ struct Joints {
     names.append(names.empty() ? "'" : ", '").append(joint.name).append("'");
     if (++count == 1) first = &joint;
   }
-  [[nodiscard]] std::string sentence(const RobotModel& robot, const char* one, const char* several, const std::string& rest) const {
-    return place(robot, *first) + ": joint" + (count > 1 ? "s " : " ") + names + " " + (count > 1 ? several : one) + rest;
+  [[nodiscard]] std::string sentence(const RobotModel& robot, const char* one, const char* several,
+                                     const std::string& rest) const {
+    return place(robot, *first) + ": joint" + (count > 1 ? "s " : " ") + names + " " +
+           (count > 1 ? several : one) + rest;
   }
 };
 
@@ -52,12 +54,13 @@ std::vector<std::string> file_warnings(const RobotModel& robot, const Chain& cha
     if (!joint.hard) return;
     soft.add(joint);
     ranges.append(ranges.empty() ? "" : ", ")
-        .append(range(joint.lower, joint.upper) + " of " + range(joint.hard->lower, joint.hard->upper));
+        .append(range(joint.lower, joint.upper) + " of " +
+                range(joint.hard->lower, joint.hard->upper));
   });
   if (soft.count > 0)
-    warnings.push_back(
-        soft.sentence(robot, "keeps", "keep",
-                      " the soft limits of a safety_controller: " + ranges + " rad (`limits.soft_limits: false` leaves them out)"));
+    warnings.push_back(soft.sentence(robot, "keeps", "keep",
+                                     " the soft limits of a safety_controller: " + ranges +
+                                         " rad (`limits.soft_limits: false` leaves them out)"));
   return warnings;
 }
 
@@ -68,12 +71,14 @@ std::string joints_at_rest(const RobotModel& robot, const Chain& chain) {
     if (!limit.continuous && !(limit.lower < limit.upper)) empty.add(joint);
   });
   if (passive.count > 0)
-    return passive.sentence(robot, "is a passive_joint", "are passive_joints",
-                            " of the SRDF, which no motor moves: allowed in the arm are others: name it in robot.hold");
+    return passive.sentence(
+        robot, "is a passive_joint", "are passive_joints",
+        " of the SRDF, which no motor moves: allowed in the arm are others: name it in robot.hold");
   if (empty.count > 0)
-    return empty.sentence(robot, "has", "have",
-                          " an empty range in the URDF (lower = upper = " + text(empty.first->lower) +
-                              " rad): allowed is lower < upper, or robot.hold for a joint that stands still");
+    return empty.sentence(
+        robot, "has", "have",
+        " an empty range in the URDF (lower = upper = " + text(empty.first->lower) +
+            " rad): allowed is lower < upper, or robot.hold for a joint that stands still");
   return {};
 }
 

@@ -28,7 +28,8 @@ Pose at(const Chain::Turn& turn, double cosine, double sine) {
   return Pose(turn.still + cosine * turn.cosine + sine * turn.sine);
 }
 
-/// The displacement of what a follower carries, given the displacement `parent` of the group that carries the follower.
+/// The displacement of what a follower carries, given the displacement `parent` of the group that
+/// carries the follower.
 Pose displacement_of(const Chain::Follower& follower, const Config& q, const Pose& parent) {
   const double motion = follower.multiplier * q[follower.leader];
   if (follower.slides) return parent * Eigen::Translation3d(motion * follower.axis);
@@ -50,11 +51,13 @@ Pose joint_motion(const Joint& joint, double position) {
   throw InputError(robot.source, what);
 }
 /// Of what `robot` of a problem says.
-[[noreturn]] void fail_key(const RobotModel& robot, const char* key, const std::string& fault, const std::string& entry = {}) {
+[[noreturn]] void fail_key(const RobotModel& robot, const char* key, const std::string& fault,
+                           const std::string& entry = {}) {
   throw RobotKeyError(robot.source, key, fault, entry);
 }
 
-/// The way through the tree of links from base to tip: up to the link that both hang from, which may be the base itself, then down.
+/// The way through the tree of links from base to tip: up to the link that both hang from, which
+/// may be the base itself, then down.
 struct KinematicPath {
   std::vector<int> links, joints;  // joint k leads from link k to link k + 1
   std::size_t up = 0;              // so many joints lead from child to parent
@@ -62,34 +65,40 @@ struct KinematicPath {
 KinematicPath kinematic_path_between(const RobotModel& robot, int base, int tip) {
   const auto above = [&](int link) {
     std::vector<int> links{link};
-    for (int joint; (joint = robot.links[static_cast<std::size_t>(links.back())].parent_joint) >= 0;)
+    for (int joint;
+         (joint = robot.links[static_cast<std::size_t>(links.back())].parent_joint) >= 0;)
       links.push_back(robot.joints[static_cast<std::size_t>(joint)].parent_link);
     return links;
   };
   std::vector<int> up = above(base), down = above(tip);
   int common = -1;
-  for (; !up.empty() && !down.empty() && up.back() == down.back(); up.pop_back(), down.pop_back()) common = up.back();
+  for (; !up.empty() && !down.empty() && up.back() == down.back(); up.pop_back(), down.pop_back())
+    common = up.back();
   if (common < 0)
-    fail_key(robot, "tip_link",
-             "'" + robot.links[static_cast<std::size_t>(tip)].name + "' is not joined to base_link '" +
-                 robot.links[static_cast<std::size_t>(base)].name + "': allowed are links of one tree");
+    fail_key(
+        robot, "tip_link",
+        "'" + robot.links[static_cast<std::size_t>(tip)].name + "' is not joined to base_link '" +
+            robot.links[static_cast<std::size_t>(base)].name + "': allowed are links of one tree");
   KinematicPath way;
   way.up = up.size();
   way.links = std::move(up);
   way.links.push_back(common);
   way.links.insert(way.links.end(), down.rbegin(), down.rend());
   for (std::size_t k = 0; k + 1 < way.links.size(); ++k)
-    way.joints.push_back(robot.links[static_cast<std::size_t>(way.links[k < way.up ? k : k + 1])].parent_joint);
+    way.joints.push_back(
+        robot.links[static_cast<std::size_t>(way.links[k < way.up ? k : k + 1])].parent_joint);
   return way;
 }
 
 int require_link(const RobotModel& robot, const char* key, const std::string& name) {
   const int link = robot.find_link(name);
-  if (link < 0) fail_key(robot, key, "unknown link '" + name + "': allowed are the links of the robot");
+  if (link < 0)
+    fail_key(robot, key, "unknown link '" + name + "': allowed are the links of the robot");
   return link;
 }
 
-/// The joint that leads, through others perhaps, a joint that mimics: position = multiplier * leader's + offset.
+/// The joint that leads, through others perhaps, a joint that mimics: position = multiplier *
+/// leader's + offset.
 struct Lead {
   int leader = -1;
   double multiplier = 1, offset = 0;
@@ -102,7 +111,8 @@ std::vector<Lead> leads_of(const RobotModel& robot) {
   // Leaders may mimic others, in any order of the file: a joint waits for its own.
   std::vector<std::size_t> waiting;
   for (std::size_t first = 0; first < robot.joints.size(); ++first) {
-    for (std::size_t j = first; leads[j].leader < 0; j = static_cast<std::size_t>(robot.joints[j].mimic->joint)) {
+    for (std::size_t j = first; leads[j].leader < 0;
+         j = static_cast<std::size_t>(robot.joints[j].mimic->joint)) {
       if (waiting.size() == robot.joints.size())
         fail(robot, "joint '" + robot.joints[j].name + "' mimics itself: allowed is another");
       waiting.push_back(j);
@@ -110,7 +120,8 @@ std::vector<Lead> leads_of(const RobotModel& robot) {
     for (; !waiting.empty(); waiting.pop_back()) {
       const Joint::Mimic& mimic = *robot.joints[waiting.back()].mimic;
       const Lead& next = leads[static_cast<std::size_t>(mimic.joint)];
-      leads[waiting.back()] = {next.leader, mimic.multiplier * next.multiplier, mimic.multiplier * next.offset + mimic.offset};
+      leads[waiting.back()] = {next.leader, mimic.multiplier * next.multiplier,
+                               mimic.multiplier * next.offset + mimic.offset};
     }
   }
   return leads;
@@ -126,33 +137,43 @@ bool is_bounded(const Joint& joint) {
 
 bool is_outside(const Joint& joint, double position) {
   constexpr double kRounding = 1e-9;
-  return is_bounded(joint) && (position < joint.lower - kRounding || position > joint.upper + kRounding);
+  return is_bounded(joint) &&
+         (position < joint.lower - kRounding || position > joint.upper + kRounding);
 }
 
 std::string limits_allowed(const Joint& joint) {
-  return "is outside its limits: allowed is " + formatted("%.9g", joint.lower) + " to " + formatted("%.9g", joint.upper);
+  return "is outside its limits: allowed is " + formatted("%.9g", joint.lower) + " to " +
+         formatted("%.9g", joint.upper);
 }
 
-/// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
-std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold, const std::vector<int>& arm,
-                                   const std::vector<Lead>& leads) {
+/// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints
+/// follow.
+std::vector<double> held_positions(const RobotModel& robot,
+                                   const std::map<std::string, double>& hold,
+                                   const std::vector<int>& arm, const std::vector<Lead>& leads) {
   std::vector<double> position(robot.joints.size(), 0.0);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const Joint& joint = robot.joints[j];
-    if (is_bounded(joint) && !is_in(arm, static_cast<int>(j))) position[j] = std::clamp(0.0, joint.lower, joint.upper);
+    if (is_bounded(joint) && !is_in(arm, static_cast<int>(j)))
+      position[j] = std::clamp(0.0, joint.lower, joint.upper);
   }
   for (const auto& [name, value] : hold) {
     const int j = robot.find_joint(name);
     const auto refuse = [&, &name = name](const std::string& fault) {
       fail_key(robot, "hold", "joint '" + name + "' " + fault, name);
     };
-    if (j < 0) fail_key(robot, "hold", "unknown joint '" + name + "': allowed are the joints of the robot", name);
+    if (j < 0)
+      fail_key(robot, "hold", "unknown joint '" + name + "': allowed are the joints of the robot",
+               name);
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (!joint.movable()) refuse("is fixed: allowed are movable joints");
     if (joint.mimic)
-      refuse("mimics another: allowed is that one, '" +
-             robot.joints[static_cast<std::size_t>(leads[static_cast<std::size_t>(j)].leader)].name + "'");
-    if (is_outside(joint, value)) refuse("at " + formatted("%.9g", value) + " " + limits_allowed(joint));
+      refuse(
+          "mimics another: allowed is that one, '" +
+          robot.joints[static_cast<std::size_t>(leads[static_cast<std::size_t>(j)].leader)].name +
+          "'");
+    if (is_outside(joint, value))
+      refuse("at " + formatted("%.9g", value) + " " + limits_allowed(joint));
     position[static_cast<std::size_t>(j)] = value;
   }
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
@@ -163,42 +184,50 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     const std::string& name = robot.joints[leader].name;
     if (joint.movable() && hold.count(name) > 0 && is_outside(joint, position[j]))
       fail_key(robot, "hold",
-               "joint '" + name + "' at " + formatted("%.9g", position[leader]) + ": joint '" + joint.name +
-                   "', which mimics it, is then at " + formatted("%.9g", position[j]) + " and " + limits_allowed(joint),
+               "joint '" + name + "' at " + formatted("%.9g", position[leader]) + ": joint '" +
+                   joint.name + "', which mimics it, is then at " + formatted("%.9g", position[j]) +
+                   " and " + limits_allowed(joint),
                name);
   }
   return position;
 }
 
 /// Movable joints between base and tip that are none of the arm's, from the base on.
-std::vector<HeldJoint> held_between(const RobotModel& robot, const KinematicPath& way, const std::vector<int>& arm,
-                                    const std::map<std::string, double>& hold, const std::vector<Lead>& leads,
+std::vector<HeldJoint> held_between(const RobotModel& robot, const KinematicPath& way,
+                                    const std::vector<int>& arm,
+                                    const std::map<std::string, double>& hold,
+                                    const std::vector<Lead>& leads,
                                     const std::vector<double>& position) {
   std::vector<HeldJoint> held;
   for (const int j : way.joints) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (!joint.movable() || is_in(arm, j)) continue;
-    const Joint& leader = robot.joints[static_cast<std::size_t>(leads[static_cast<std::size_t>(j)].leader)];
-    held.push_back({joint.name, position[static_cast<std::size_t>(j)], joint.type == Joint::Type::kPrismatic,
-                    hold.count(leader.name) > 0, joint.mimic ? leader.name : ""});
+    const Joint& leader =
+        robot.joints[static_cast<std::size_t>(leads[static_cast<std::size_t>(j)].leader)];
+    held.push_back({joint.name, position[static_cast<std::size_t>(j)],
+                    joint.type == Joint::Type::kPrismatic, hold.count(leader.name) > 0,
+                    joint.mimic ? leader.name : ""});
   }
   return held;
 }
 
-/// A joint of the arm can do no more than what mimics it: limits by position and rates of the follower are its leader's as well.
+/// A joint of the arm can do no more than what mimics it: limits by position and rates of the
+/// follower are its leader's as well.
 void narrow(const RobotModel& robot, const Joint& follower, const Lead& lead, JointLimit& limit) {
   const double m = lead.multiplier;
   if (m == 0) return;
   const std::string& leader = robot.joints[static_cast<std::size_t>(lead.leader)].name;
   if (is_bounded(follower)) {
     const double a = (follower.lower - lead.offset) / m, b = (follower.upper - lead.offset) / m;
-    if (limit.continuous) limit.lower = -std::numeric_limits<double>::infinity(), limit.upper = -limit.lower;
+    if (limit.continuous)
+      limit.lower = -std::numeric_limits<double>::infinity(), limit.upper = -limit.lower;
     limit.continuous = false;
     limit.lower = std::max(limit.lower, std::min(a, b));
     limit.upper = std::min(limit.upper, std::max(a, b));
     if (limit.lower > limit.upper)
       fail(robot, "joint '" + follower.name + "' mimics '" + leader +
-                      "' of the arm, and no position of it is within the limits of both: allowed are limits that meet");
+                      "' of the arm, and no position of it is within the limits of both: allowed "
+                      "are limits that meet");
   }
   const auto rate = [&](double& leaders, double own) {
     if (own > 0) leaders = leaders > 0 ? std::min(leaders, own / std::abs(m)) : own / std::abs(m);
@@ -208,22 +237,28 @@ void narrow(const RobotModel& robot, const Joint& follower, const Lead& lead, Jo
   rate(limit.jerk, follower.jerk);
 }
 
-/// A posture is known by its joints up to whole turns of those that have a turn or more: what follows must then stand as before.
-void require_same_after_a_turn(const RobotModel& robot, const Chain& chain, const Chain::Follower& follower) {
+/// A posture is known by its joints up to whole turns of those that have a turn or more: what
+/// follows must then stand as before.
+void require_same_after_a_turn(const RobotModel& robot, const Chain& chain,
+                               const Chain::Follower& follower) {
   const JointLimit& limit = chain.limit[static_cast<std::size_t>(follower.leader)];
   if (!limit.continuous && limit.upper - limit.lower < kTwoPi - 1e-3) return;
   if (!follower.slides && follower.multiplier == std::round(follower.multiplier)) return;
-  fail(robot,
-       "joint '" + follower.name + "' mimics '" + chain.joint_names[static_cast<std::size_t>(follower.leader)] +
-           "' of the arm, which can make a whole turn, and stands elsewhere after one: not supported: allowed are a range of "
-           "less than a turn, or a multiplier that is a whole number on a joint that turns");
+  fail(robot, "joint '" + follower.name + "' mimics '" +
+                  chain.joint_names[static_cast<std::size_t>(follower.leader)] +
+                  "' of the arm, which can make a whole turn, and stands elsewhere after one: not "
+                  "supported: allowed are a range of "
+                  "less than a turn, or a multiplier that is a whole number on a joint that turns");
 }
 
-/// Which group each link is of, outwards from the way; joints outside the way that mimic the arm's become followers of the chain.
-void group_links(const RobotModel& robot, const KinematicPath& way, const std::vector<int>& arm, const std::vector<Lead>& leads,
-                 ArmModel& model) {
+/// Which group each link is of, outwards from the way; joints outside the way that mimic the arm's
+/// become followers of the chain.
+void group_links(const RobotModel& robot, const KinematicPath& way, const std::vector<int>& arm,
+                 const std::vector<Lead>& leads, ArmModel& model) {
   constexpr int kUnknown = -1;
-  const auto group_of = [&](int link) -> int& { return model.links[static_cast<std::size_t>(link)].group; };
+  const auto group_of = [&](int link) -> int& {
+    return model.links[static_cast<std::size_t>(link)].group;
+  };
   for (LinkPlacement& placement : model.links) placement.group = kUnknown;
   std::vector<int> order;  // links whose group is known
   int on_way = 0;
@@ -263,11 +298,13 @@ void group_links(const RobotModel& robot, const KinematicPath& way, const std::v
       group_of(to) = beyond(j, group, sign);
       order.push_back(to);
     };
-    for (const int j : below[static_cast<std::size_t>(link)]) go(j, robot.joints[static_cast<std::size_t>(j)].child_link, 1);
+    for (const int j : below[static_cast<std::size_t>(link)])
+      go(j, robot.joints[static_cast<std::size_t>(j)].child_link, 1);
     if (const int j = robot.links[static_cast<std::size_t>(link)].parent_joint; j >= 0)
       go(j, robot.joints[static_cast<std::size_t>(j)].parent_link, -1);
   }
-  for (const Chain::Follower& follower : chain.followers) require_same_after_a_turn(robot, chain, follower);
+  for (const Chain::Follower& follower : chain.followers)
+    require_same_after_a_turn(robot, chain, follower);
 }
 
 }  // namespace
@@ -301,15 +338,18 @@ std::vector<Pose> Chain::all_displacements(const Config& q) const {
 }
 
 int Chain::root_of(int group) const {
-  return group <= static_cast<int>(kDof) ? group : followers[static_cast<std::size_t>(group) - kDof - 1].root;
+  return group <= static_cast<int>(kDof)
+             ? group
+             : followers[static_cast<std::size_t>(group) - kDof - 1].root;
 }
 
 Chain::Joints Chain::joints_between(int group_a, int group_b) const {
   const int root_a = root_of(group_a), root_b = root_of(group_b);
   Joints joints{std::min(root_a, root_b), std::max(root_a, root_b)};
   const auto add = [&](int joint) {
-    joints = joints.first == joints.last ? Joints{joint, joint + 1}
-                                         : Joints{std::min(joints.first, joint), std::max(joints.last, joint + 1)};
+    joints = joints.first == joints.last
+                 ? Joints{joint, joint + 1}
+                 : Joints{std::min(joints.first, joint), std::max(joints.last, joint + 1)};
   };
   for (int group : {group_a, group_b})
     while (group > static_cast<int>(kDof)) {
@@ -327,7 +367,9 @@ Pose Chain::tool(const Config& q) const {
 Vector3d Chain::tool_point(const Config& cosine, const Config& sine) const {
   Eigen::Vector4d p = home.matrix().col(3);
   for (std::size_t k = kDof; k-- > 0;)
-    p = at(turn[k], cosine[static_cast<Eigen::Index>(k)], sine[static_cast<Eigen::Index>(k)]).matrix() * p;
+    p = at(turn[k], cosine[static_cast<Eigen::Index>(k)], sine[static_cast<Eigen::Index>(k)])
+            .matrix() *
+        p;
   return p.head<3>();
 }
 
@@ -359,52 +401,61 @@ std::vector<std::string> limit_warnings(const Chain& chain) {
   return warnings;
 }
 
-ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
-                   const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll) {
+ArmModel build_arm(const RobotModel& robot, const std::string& base_link,
+                   const std::string& tip_link, const std::map<std::string, double>& hold,
+                   const Pose& tool, const std::optional<Roll>& roll) {
   const int base = require_link(robot, "base_link", base_link);
   const int tip = require_link(robot, "tip_link", tip_link);
   const KinematicPath way = kinematic_path_between(robot, base, tip);
   for (const int j : way.joints)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kFree)
-      fail(robot,
-           "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' between '" + base_link + "' and '" + tip_link +
-               "' is floating or planar: allowed between base_link and tip_link are fixed, revolute, continuous and prismatic");
+      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' between '" +
+                      base_link + "' and '" + tip_link +
+                      "' is floating or planar: allowed between base_link and tip_link are fixed, "
+                      "revolute, continuous and prismatic");
   std::vector<int> arm;
   for (const int j : way.joints) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (joint.movable() && !joint.mimic && hold.count(joint.name) == 0) arm.push_back(j);
   }
   // A seventh joint that turns makes the roll one coordinate more.
-  const bool seven = arm.size() >= kDof &&
-                     (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type != Joint::Type::kPrismatic);
+  const bool seven =
+      arm.size() >= kDof &&
+      (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type !=
+                    Joint::Type::kPrismatic);
   const std::size_t joints = seven || !roll ? kDof : kDof - 1;
   if (!roll && arm.size() == kDof - 1)
     fail_key(robot, "tip_link",
              "the arm from '" + base_link + "' to '" + tip_link +
-                 "' has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`, or [lower, upper] "
+                 "' has six joints: allowed with a tool that may turn about its own z axis: add "
+                 "`roll: free`, or [lower, upper] "
                  "in rad, to `path`");
   if (arm.size() < joints)
     fail_key(robot, "tip_link",
-             "only " + std::to_string(arm.size()) + " movable joints that are not held between '" + base_link + "' and '" +
-                 tip_link + "': allowed are at least seven, or six with path.roll");
+             "only " + std::to_string(arm.size()) + " movable joints that are not held between '" +
+                 base_link + "' and '" + tip_link +
+                 "': allowed are at least seven, or six with path.roll");
   arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
-      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's " +
-                      (seven ? "seven" : "six") + " joints must turn");
+      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name +
+                      "' is prismatic: the arm's " + (seven ? "seven" : "six") +
+                      " joints must turn");
   const std::vector<Lead> leads = leads_of(robot);
   for (const int j : way.joints) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     const int leader = leads[static_cast<std::size_t>(j)].leader;
     if (joint.movable() && joint.mimic && is_in(arm, leader))
-      fail(robot, "joint '" + joint.name + "', between '" + base_link + "' and '" + tip_link + "', mimics '" +
-                      robot.joints[static_cast<std::size_t>(leader)].name +
-                      "' of the arm: not supported: the tool would move by that joint in two places; allowed are such joints on "
+      fail(robot, "joint '" + joint.name + "', between '" + base_link + "' and '" + tip_link +
+                      "', mimics '" + robot.joints[static_cast<std::size_t>(leader)].name +
+                      "' of the arm: not supported: the tool would move by that joint in two "
+                      "places; allowed are such joints on "
                       "links that do not carry the tool");
   }
   const std::vector<double> position = held_positions(robot, hold, arm, leads);
 
-  // Parents come before children only by luck in a file: a link waits, with its children so far, for its parent.
+  // Parents come before children only by luck in a file: a link waits, with its children so far,
+  // for its parent.
   ArmModel model;
   model.links.resize(robot.links.size());
   std::vector<char> known(robot.links.size(), 0);
@@ -422,10 +473,12 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
       const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
       const LinkPlacement& parent = model.links[static_cast<std::size_t>(joint.parent_link)];
       LinkPlacement& placement = model.links[static_cast<std::size_t>(waiting.back())];
-      placement.pose = parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
+      placement.pose =
+          parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
     }
   }
-  const Pose root_in_base = model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
+  const Pose root_in_base =
+      model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
   for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
 
   Chain& chain = model.chain;
@@ -433,11 +486,13 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
     const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
     chain.joint_names[k] = joint.name;
-    const auto place = static_cast<std::size_t>(std::find(way.joints.begin(), way.joints.end(), arm[k]) - way.joints.begin());
+    const auto place = static_cast<std::size_t>(
+        std::find(way.joints.begin(), way.joints.end(), arm[k]) - way.joints.begin());
     chain.axis[k] = (place < way.up ? -1.0 : 1.0) * (frame.linear() * joint.axis).normalized();
     chain.point[k] = frame.translation();
     chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
-    chain.limit[k] = {joint.lower,        joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous,
+    chain.limit[k] = {joint.lower,        joint.upper,
+                      joint.velocity,     joint.type == Joint::Type::kContinuous,
                       joint.acceleration, joint.jerk};
   }
   group_links(robot, way, arm, leads, model);

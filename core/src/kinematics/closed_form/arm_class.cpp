@@ -21,8 +21,10 @@ ArmClass classify(const Chain& chain, const std::string& source) {
     result.kind = ArmKind::kSrs;
   } catch (const NotSrs& error) {
     if (chain.free_roll)
-      throw InputError(
-          source, "path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist; here " + error.why());
+      throw InputError(source,
+                       "path.roll: of arms of seven joints allowed for those with spherical "
+                       "shoulder and wrist; here " +
+                           error.why());
     other(error.why());
   }
   return result;
@@ -32,7 +34,8 @@ std::string ArmClass::method() const {
   switch (kind) {
     case ArmKind::kSrs:
       return srs->exact ? "closed form: spherical shoulder and wrist; arm angle"
-                        : "closed form of the nearest arm with spherical shoulder and wrist, polished; arm angle";
+                        : "closed form of the nearest arm with spherical shoulder and wrist, "
+                          "polished; arm angle";
     case ArmKind::kArcs:
       return lock.words() + "; arcs of self-motion";
     case ArmKind::kSampled:

@@ -72,7 +72,8 @@ void append(Pose& G, const Vector3d& axis, const Vector3d& point, const Angle& x
   G.linear() = R;
 }
 
-CommonNormal common_normal(const Vector3d& p, const Vector3d& a, const Vector3d& q, const Vector3d& b) {
+CommonNormal common_normal(const Vector3d& p, const Vector3d& a, const Vector3d& q,
+                           const Vector3d& b) {
   CommonNormal normal;
   const Vector3d cross = a.cross(b), d = q - p;
   const double sine = cross.norm();
@@ -114,10 +115,13 @@ struct Meetings {
   std::array<Meeting, 4> at;
   int count = 0;
 };
-Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double radius2, double scale2, double slack) {
+Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double radius2,
+              double scale2, double slack) {
   Meetings result;
   const double d = normal.distance, s = normal.sine;
-  const auto add = [&](const Angle& q, double y1, double y2) { result.at[static_cast<std::size_t>(result.count++)] = {q, y1, y2}; };
+  const auto add = [&](const Angle& q, double y1, double y2) {
+    result.at[static_cast<std::size_t>(result.count++)] = {q, y1, y2};
+  };
   // The other coordinate, up to its sign, also where its square is negative by up to the slack; -1
   // where there is none.
   const auto other = [&](double y) {
@@ -149,18 +153,20 @@ Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double
 }
 
 /// Adds the candidates whose joints 4-6 make the rotation R, given joints 1-3.
-void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candidate, double slack, double aligned,
-               Candidates& result) {
+void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candidate, double slack,
+               double aligned, Candidates& result) {
   const Vector3d& a = wrist.axis[3];
   const Vector3d& b = wrist.axis[4];
   const Vector3d& c = wrist.axis[5];
   // cosine cos(q_5) + sine sin(q_5) = R c . a less its constant part; the discriminant by the cross
   // product, since near the singular pose the cosine has lost half its digits.
   const Vector3d target = R * c, e = R * wrist.across;
-  const double P = wrist.middle_cosine, Q = wrist.middle_sine, square = P * P + Q * Q, cosine = a.dot(target);
+  const double P = wrist.middle_cosine, Q = wrist.middle_sine, square = P * P + Q * Q,
+               cosine = a.dot(target);
   const double K = cosine - wrist.first_cosine * wrist.last_cosine;
-  const double discriminant = a.cross(target).squaredNorm() - wrist.first_cosine * wrist.first_cosine -
-                              wrist.last_cosine * wrist.last_cosine + 2 * wrist.first_cosine * wrist.last_cosine * cosine;
+  const double discriminant =
+      a.cross(target).squaredNorm() - wrist.first_cosine * wrist.first_cosine -
+      wrist.last_cosine * wrist.last_cosine + 2 * wrist.first_cosine * wrist.last_cosine * cosine;
   if (discriminant < -slack * square) return;
   const double half = std::sqrt(std::abs(discriminant)), apart = a.cross(target).norm();
   const auto add = [&](const Angle& q4) {
@@ -186,13 +192,15 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
   }
 }
 
-void solve(const SphericalWrist& wrist, const Pose& D, double slack, double aligned, Candidates& result) {
+void solve(const SphericalWrist& wrist, const Pose& D, double slack, double aligned,
+           Candidates& result) {
   const CommonNormal& normal = wrist.normal;
   const Vector3d& a = wrist.axis[0];
   const Vector3d& b = wrist.axis[1];
   // Where W must come to, in the frame of axis 1.
   const Vector3d v = D * wrist.centre - normal.first;
-  const double height = a.dot(v), vn = normal.n.dot(v), vm = normal.m.dot(v), radius2 = vn * vn + vm * vm;
+  const double height = a.dot(v), vn = normal.n.dot(v), vm = normal.m.dot(v),
+               radius2 = vn * vn + vm * vm;
   Wave f1 = wrist.reach, f2 = wrist.height;
   f1.constant += (radius2 + height * height + normal.distance * normal.distance) / 2;
   f2.constant -= normal.cosine * height;
@@ -202,23 +210,29 @@ void solve(const SphericalWrist& wrist, const Pose& D, double slack, double alig
     Candidate candidate;
     candidate[0] = Angle::of(m.y1 * vn + m.y2 * vm, m.y1 * vm - m.y2 * vn);
     // W as joint 3 turns it, and as joint 1 needs it, about axis 2.
-    const Vector3d from = wrist.foot + m.q.cosine * wrist.cosine + m.q.sine * wrist.sine - normal.second;
-    const Vector3d to = normal.first + m.y1 * normal.n + m.y2 * normal.m + height * a - normal.second;
+    const Vector3d from =
+        wrist.foot + m.q.cosine * wrist.cosine + m.q.sine * wrist.sine - normal.second;
+    const Vector3d to =
+        normal.first + m.y1 * normal.n + m.y2 * normal.m + height * a - normal.second;
     candidate[1] = turn_between(b, from, to);
     candidate[2] = m.q;
-    const Matrix3d R = rotation(a, candidate[0]) * rotation(b, candidate[1]) * rotation(wrist.axis[2], candidate[2]);
+    const Matrix3d R = rotation(a, candidate[0]) * rotation(b, candidate[1]) *
+                       rotation(wrist.axis[2], candidate[2]);
     add_wrist(wrist, R.transpose() * D.linear(), candidate, slack, aligned, result);
   }
 }
 
-void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned, Candidates& result) {
+void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned,
+           Candidates& result) {
   const CommonNormal& normal = arm.normal;
   const Vector3d &a1 = arm.axis[0], &z = arm.axis[1], &a5 = arm.axis[4], &a6 = arm.axis[5];
   // u = Rot(axis 1, q_1) z keeps D a_6 . u = z . R_5 a_6 and the height of a point of axis 6 along
   // u.
   const double along = a1.dot(z);
   const Vector3d still = along * a1, cosine = z - still, sine = a1.cross(z);
-  const auto wave = [&](const Vector3d& v, double less) { return Wave{still.dot(v) - less, cosine.dot(v), sine.dot(v)}; };
+  const auto wave = [&](const Vector3d& v, double less) {
+    return Wave{still.dot(v) - less, cosine.dot(v), sine.dot(v)};
+  };
   const Wave f1 = wave(D * normal.second - arm.point[0], z.dot(normal.first - arm.point[0]));
   const Wave f2 = wave(D.linear() * a6, normal.cosine * arm.along_a);
   const double radius2 = arm.along_n * arm.along_n + arm.along_m * arm.along_m;
@@ -229,7 +243,8 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
     const Meeting& m = meetings.at[static_cast<std::size_t>(k)];
     Candidate candidate;
     candidate[0] = m.q;
-    candidate[4] = Angle::of(m.y1 * arm.along_n + m.y2 * arm.along_m, m.y1 * arm.along_m - m.y2 * arm.along_n);
+    candidate[4] =
+        Angle::of(m.y1 * arm.along_n + m.y2 * arm.along_m, m.y1 * arm.along_m - m.y2 * arm.along_n);
     // D' = exp(-[S_1] q_1) D must be a planar motion times joints 5 and 6.
     Pose left = Pose::Identity();
     append(left, a1, arm.point[0], -candidate[0]);
@@ -245,12 +260,14 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
       append(planar, a5, normal.first, -candidate[4]);
       // |upper + Rot(z, q_3) fore| is known.
       const Vector3d reach = across_part(z, planar * arm.point[3] - arm.point[1]);
-      const Wave elbow{(upper2 + fore2 - reach.squaredNorm()) / 2, arm.upper.dot(arm.fore), arm.upper.dot(cross)};
+      const Wave elbow{(upper2 + fore2 - reach.squaredNorm()) / 2, arm.upper.dot(arm.fore),
+                       arm.upper.dot(cross)};
       const Angle total = turn_between(z, arm.across, planar.linear() * arm.across);
       for (const Angle& q3 : roots(elbow, slack)) {
         const Angle q2 = turn_between(z, arm.upper + q3.cosine * arm.fore + q3.sine * cross, reach);
         const std::array<Angle, 3> turns = {q2, q3, total + -(q2 + q3)};
-        for (std::size_t j = 0; j < 3; ++j) candidate[j + 1] = arm.sign[j + 1] < 0 ? -turns[j] : turns[j];
+        for (std::size_t j = 0; j < 3; ++j)
+          candidate[j + 1] = arm.sign[j + 1] < 0 ? -turns[j] : turns[j];
         result.add(candidate);
       }
     };
@@ -261,11 +278,14 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
       // angle as it can.
       const Vector3d arm6 = across_part(a6, wrist - normal.second);
       const auto planar = [&](const Vector3d& v) { return across_part(z, left.linear() * v); };
-      const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]), c = planar(arm6),
-                     s = -planar(a6.cross(arm6));
-      const Wave bend{f.squaredNorm() + c.squaredNorm() - upper2 - fore2, 2 * f.dot(c), 2 * f.dot(s)};
+      const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]),
+                     c = planar(arm6), s = -planar(a6.cross(arm6));
+      const Wave bend{f.squaredNorm() + c.squaredNorm() - upper2 - fore2, 2 * f.dot(c),
+                      2 * f.dot(s)};
       const Roots square = roots(bend, 0);
-      add_planar(square.count > 0 ? square.angle[0] : Angle::of(-bend.constant * bend.cosine, -bend.constant * bend.sine));
+      add_planar(square.count > 0
+                     ? square.angle[0]
+                     : Angle::of(-bend.constant * bend.cosine, -bend.constant * bend.sine));
     }
   }
 }
@@ -292,8 +312,8 @@ bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
     last = miss;
     Config6 error;
     const Matrix3d left = tool.linear() * reached.linear().transpose();
-    error << tool.translation() - reached.translation(), (left(2, 1) - left(1, 2)) / 2, (left(0, 2) - left(2, 0)) / 2,
-        (left(1, 0) - left(0, 1)) / 2;
+    error << tool.translation() - reached.translation(), (left(2, 1) - left(1, 2)) / 2,
+        (left(0, 2) - left(2, 0)) / 2, (left(1, 0) - left(0, 1)) / 2;
     Matrix6 normal = J.transpose() * J;
     normal.diagonal().array() += 1e-2 * error.squaredNorm() + 1e-18;
     const Config6 move = normal.llt().solve(J.transpose() * error);
@@ -303,7 +323,8 @@ bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
 
 /// Brings every angle into (-pi, pi].
 void wrap(Config6& q) {
-  for (double& angle : q) angle = std::remainder(angle, kTwoPi) > -kPi ? std::remainder(angle, kTwoPi) : kPi;
+  for (double& angle : q)
+    angle = std::remainder(angle, kTwoPi) > -kPi ? std::remainder(angle, kTwoPi) : kPi;
 }
 
 void add_distinct(const Config6& q, ClosedForm::Solutions& result) {
@@ -313,7 +334,8 @@ void add_distinct(const Config6& q, ClosedForm::Solutions& result) {
       return apart < kSame || apart > kTwoPi - kSame;
     });
   });
-  if (!known && result.count < ClosedForm::kMaxSolutions) result.q[static_cast<std::size_t>(result.count++)] = q;
+  if (!known && result.count < ClosedForm::kMaxSolutions)
+    result.q[static_cast<std::size_t>(result.count++)] = q;
 }
 
 /// Adds solutions beside q that Newton did not reach from the starts of a nearly fitted chain. Near
@@ -322,7 +344,8 @@ void add_distinct(const Config6& q, ClosedForm::Solutions& result) {
 /// Both lie along the right singular vector v of the least singular value s. The further the chain
 /// is from the fitted one, the larger |det J| still is where that happens: up to a third of `fold`,
 /// the deviation in m or rad, was measured.
-void add_beside_fold(const SixChain& chain, const Pose& tool, const Config6 q, double fold, ClosedForm::Solutions& result) {
+void add_beside_fold(const SixChain& chain, const Pose& tool, const Config6 q, double fold,
+                     ClosedForm::Solutions& result) {
   const Matrix6 J = chain.jacobian(q);
   if (std::abs(J.determinant()) > fold) return;
   const Eigen::JacobiSVD<Matrix6> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -335,7 +358,8 @@ void add_beside_fold(const SixChain& chain, const Pose& tool, const Config6 q, d
   };
   // Along v the pose misses by s t + bend t^2 / 2 (along u), which vanishes once more.
   constexpr double kDelta = 1e-4;  // rad
-  const double bend = u.dot((chain.jacobian(q + kDelta * v) - chain.jacobian(q - kDelta * v)) * v) / (2 * kDelta);
+  const double bend =
+      u.dot((chain.jacobian(q + kDelta * v) - chain.jacobian(q - kDelta * v)) * v) / (2 * kDelta);
   const double other = -2 * svd.singularValues()[kSix - 1] / bend;
   if (std::abs(other) < kFarthest) add_from(other);
   for (const double t : {0.1, 0.4, 1.2}) {
@@ -356,7 +380,8 @@ std::pair<Vector3d, double> centre_of(const SixChain& chain, std::size_t first) 
   }
   const Vector3d centre = A.partialPivLu().solve(b);
   double miss = 0;
-  for (std::size_t k = first; k < first + 3; ++k) miss = std::max(miss, across_part(chain.axis[k], centre - chain.point[k]).norm());
+  for (std::size_t k = first; k < first + 3; ++k)
+    miss = std::max(miss, across_part(chain.axis[k], centre - chain.point[k]).norm());
   return {centre, miss};
 }
 
@@ -375,19 +400,22 @@ bool aligned(const Vector3d& a, const Vector3d& b) {
 }
 
 std::optional<SphericalWrist> spherical_wrist(const SixChain& chain, FitDeviation& deviation) {
-  if (aligned(chain.axis[3], chain.axis[4]) || aligned(chain.axis[4], chain.axis[5])) return std::nullopt;
+  if (aligned(chain.axis[3], chain.axis[4]) || aligned(chain.axis[4], chain.axis[5]))
+    return std::nullopt;
   SphericalWrist wrist;
   wrist.axis = chain.axis;
   std::tie(wrist.centre, deviation.offset) = centre_of(chain, 3);
   if (!(deviation.offset <= kMissTolerance)) return std::nullopt;
   const auto& a = chain.axis;
-  const CommonNormal normal = wrist.normal = common_normal(chain.point[0], a[0], chain.point[1], a[1]);
+  const CommonNormal normal = wrist.normal =
+      common_normal(chain.point[0], a[0], chain.point[1], a[1]);
   if (normal.distance == 0 && normal.sine == 0) return std::nullopt;
   wrist.foot = chain.point[2] + a[2].dot(wrist.centre - chain.point[2]) * a[2];
   wrist.cosine = wrist.centre - wrist.foot;
   wrist.sine = a[2].cross(wrist.cosine);
   const Vector3d F = wrist.foot - normal.second;
-  wrist.reach = {-(F.squaredNorm() + wrist.cosine.squaredNorm()) / 2, -F.dot(wrist.cosine), -F.dot(wrist.sine)};
+  wrist.reach = {-(F.squaredNorm() + wrist.cosine.squaredNorm()) / 2, -F.dot(wrist.cosine),
+                 -F.dot(wrist.sine)};
   wrist.scale2 = F.squaredNorm() + wrist.cosine.squaredNorm();
   wrist.height = {a[1].dot(F), a[1].dot(wrist.cosine), a[1].dot(wrist.sine)};
   wrist.first_cosine = a[3].dot(a[4]);
@@ -408,8 +436,11 @@ std::optional<ThreeParallel> three_parallel(const SixChain& chain, FitDeviation&
     z += arm.sign[k] * chain.axis[k];
   }
   z.normalize();
-  for (std::size_t k = 1; k < 4; ++k) deviation.angle = std::max(deviation.angle, z.cross(chain.axis[k]).norm());
-  if (!(deviation.angle <= kAngleTolerance) || aligned(z, chain.axis[0]) || aligned(z, chain.axis[4])) return std::nullopt;
+  for (std::size_t k = 1; k < 4; ++k)
+    deviation.angle = std::max(deviation.angle, z.cross(chain.axis[k]).norm());
+  if (!(deviation.angle <= kAngleTolerance) || aligned(z, chain.axis[0]) ||
+      aligned(z, chain.axis[4]))
+    return std::nullopt;
   for (std::size_t k = 1; k < 4; ++k) arm.axis[k] = arm.sign[k] * z;
   arm.axis[1] = z;
   arm.upper = across_part(z, chain.point[2] - chain.point[1]);
@@ -428,7 +459,8 @@ std::optional<ThreeParallel> three_parallel(const SixChain& chain, FitDeviation&
 
 Pose SixChain::tool(const Config6& q) const {
   Pose G = Pose::Identity();
-  for (std::size_t k = 0; k < kSix; ++k) append(G, axis[k], point[k], Angle::of(q[static_cast<Eigen::Index>(k)]));
+  for (std::size_t k = 0; k < kSix; ++k)
+    append(G, axis[k], point[k], Angle::of(q[static_cast<Eigen::Index>(k)]));
   return product(G, home);
 }
 
@@ -486,7 +518,8 @@ std::optional<ClosedForm> ClosedForm::of(const SixChain& chain) {
   std::optional<ClosedForm> best;
   const auto better = [&](const FitDeviation& deviation) {
     const double miss = std::max(deviation.offset, deviation.angle);
-    return !best || (!best->fit_.exact && miss < std::max(best->fit_.deviation.offset, best->fit_.deviation.angle));
+    return !best || (!best->fit_.exact &&
+                     miss < std::max(best->fit_.deviation.offset, best->fit_.deviation.angle));
   };
   for (const bool parallel : {false, true}) {
     for (const bool reverse : {false, true}) {
@@ -502,7 +535,8 @@ std::optional<ClosedForm> ClosedForm::of(const SixChain& chain) {
         const auto method = spherical_wrist(seen, deviation);
         if (!method || !better(deviation)) continue;
         form.method_ = *method;
-        form.fit_ = {reverse ? Structure::kSphericalShoulder : Structure::kSphericalWrist, reverse ? 0 : 3, deviation, false};
+        form.fit_ = {reverse ? Structure::kSphericalShoulder : Structure::kSphericalWrist,
+                     reverse ? 0 : 3, deviation, false};
       }
       const double miss = std::max(deviation.offset, deviation.angle);
       form.fit_.exact = miss < kExact;
@@ -524,7 +558,8 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Flips flips) const {
   if (reversed_) D = D.inverse(Eigen::Isometry);
   Candidates candidates;
   candidates.flips = flips;
-  std::visit([&](const auto& method) { swivel::solve(method, D, slack_, aligned_, candidates); }, method_);
+  std::visit([&](const auto& method) { swivel::solve(method, D, slack_, aligned_, candidates); },
+             method_);
   Solutions result;
   Candidate last;
   Config6 angles;
@@ -554,7 +589,8 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Flips flips) const {
   }
   if (!fit_.exact) {
     const double fold = std::max(fit_.deviation.offset, fit_.deviation.angle);
-    for (int k = 0; k < result.count; ++k) add_beside_fold(chain_, tool, result.q[static_cast<std::size_t>(k)], fold, result);
+    for (int k = 0; k < result.count; ++k)
+      add_beside_fold(chain_, tool, result.q[static_cast<std::size_t>(k)], fold, result);
   }
   return result;
 }
@@ -564,12 +600,14 @@ ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack, Flips f
   if (reversed_) D = D.inverse(Eigen::Isometry);
   Candidates candidates;
   candidates.flips = flips;
-  std::visit([&](const auto& method) { swivel::solve(method, D, slack, aligned_, candidates); }, method_);
+  std::visit([&](const auto& method) { swivel::solve(method, D, slack, aligned_, candidates); },
+             method_);
   Solutions result;
   for (; result.count < std::min<int>(candidates.count, kMaxSolutions); ++result.count) {
     const auto k = static_cast<std::size_t>(result.count);
     for (std::size_t j = 0; j < kSix; ++j)
-      result.q[k][static_cast<Eigen::Index>(reversed_ ? kSix - 1 - j : j)] = candidates.at[k][j].radians();
+      result.q[k][static_cast<Eigen::Index>(reversed_ ? kSix - 1 - j : j)] =
+          candidates.at[k][j].radians();
   }
   return result;
 }
@@ -623,7 +661,9 @@ LockMethod lock_method(const Chain& chain) {
 }
 
 std::string LockMethod::words() const {
-  if (best < 0) return "no closed form: no three neighbouring axes meet in a point or are parallel where one joint is locked";
+  if (best < 0)
+    return "no closed form: no three neighbouring axes meet in a point or are parallel where one "
+           "joint is locked";
   const ClosedFormFit& fit = *by_joint[static_cast<std::size_t>(best)];
   const auto is_roll = [&](int j) { return roll && j + 1 == static_cast<int>(kDof); };
   std::string text = "closed form: axes ";
@@ -634,14 +674,16 @@ std::string LockMethod::words() const {
   }
   text += fit.structure == Structure::kParallel ? " are parallel" : " meet in a point";
   if (!fit.exact) {
-    text += fit.structure == Structure::kParallel ? formatted(" within %.2g mrad", 1e3 * fit.deviation.angle)
-                                                  : formatted(" within %.2g mm", 1e3 * fit.deviation.offset);
+    text += fit.structure == Structure::kParallel
+                ? formatted(" within %.2g mrad", 1e3 * fit.deviation.angle)
+                : formatted(" within %.2g mm", 1e3 * fit.deviation.offset);
   }
   text += is_roll(best) ? "; locks the roll" : "; locks joint " + std::to_string(best + 1);
   std::string others;
   for (int j = 0; j < kDof; ++j)
     if (j != best && by_joint[static_cast<std::size_t>(j)])
-      others += (others.empty() ? is_roll(best) ? "joint " : "" : ", ") + (is_roll(j) ? "the roll" : std::to_string(j + 1));
+      others += (others.empty() ? is_roll(best) ? "joint " : "" : ", ") +
+                (is_roll(j) ? "the roll" : std::to_string(j + 1));
   if (!others.empty()) text += " (or " + others + ")";
   return text;
 }

@@ -41,10 +41,13 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
     if (sine2 < 1e-6) continue;
     const Vector3d d = chain.point[k + 1] - chain.point[k];
     const Vector3d meet = chain.point[k] + (d.cross(b).dot(a.cross(b)) / sine2) * a;
-    if (distance(k + 1, meet) < kMeets && distance(k + 2, meet) < kMeets) add_alignments(chain, static_cast<int>(k), result);
+    if (distance(k + 1, meet) < kMeets && distance(k + 2, meet) < kMeets)
+      add_alignments(chain, static_cast<int>(k), result);
   }
   for (std::size_t k = 0; k + 2 < kDof; ++k) {
-    if (chain.axis[k].cross(chain.axis[k + 1]).norm() > kMeets || chain.axis[k].cross(chain.axis[k + 2]).norm() > kMeets) continue;
+    if (chain.axis[k].cross(chain.axis[k + 1]).norm() > kMeets ||
+        chain.axis[k].cross(chain.axis[k + 2]).norm() > kMeets)
+      continue;
     // A fourth axis parallel to these three, beyond one joint.
     if (k + 4 < kDof) add_alignments(chain, static_cast<int>(k) + 2, result);
     if (k >= 2) add_alignments(chain, static_cast<int>(k) - 2, result);

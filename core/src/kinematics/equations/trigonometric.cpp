@@ -56,7 +56,8 @@ double polished(const Monic& f, double t) {
 }
 
 /// Appends the real or nearly real roots of t^2 + p t + q, a factor of f.
-void quadratic(double p, double q, const Monic& f, double slack, std::array<double, 4>& root, int& count) {
+void quadratic(double p, double q, const Monic& f, double slack, std::array<double, 4>& root,
+               int& count) {
   const auto at = [&] { return static_cast<std::size_t>(count++); };
   const double middle = -p / 2, discriminant = middle * middle - q;
   if (discriminant >= 0) {
@@ -104,7 +105,8 @@ Roots roots(const Wave& wave, double slack) {
   if (amplitude < DBL_MIN) return wave.constant == 0 ? everywhere() : result;
   const double discriminant = (amplitude - wave.constant) * (amplitude + wave.constant);
   if (discriminant < -slack * square) return result;
-  const double half = std::sqrt(std::abs(discriminant)), c = -wave.constant * wave.cosine, s = -wave.constant * wave.sine;
+  const double half = std::sqrt(std::abs(discriminant)), c = -wave.constant * wave.cosine,
+               s = -wave.constant * wave.sine;
   result.angle[0] = Angle::of(c - half * wave.sine, s + half * wave.cosine);
   result.angle[1] = Angle::of(c + half * wave.sine, s - half * wave.cosine);
   result.count = 2;
@@ -114,14 +116,17 @@ Roots roots(const Wave& wave, double slack) {
 Roots roots(const Wave2& wave, double slack) {
   constexpr double c1 = 0.30901699437494742, s1 = 0.95105651629515357;   // of 72 deg
   constexpr double c2 = -0.80901699437494742, s2 = 0.58778525229247313;  // of 144 deg
-  static constexpr std::array<Angle, 5> kOrigin = {{{1, 0}, {c1, s1}, {c2, s2}, {c2, -s2}, {c1, -s1}}};
-  static constexpr std::array<Angle, 5> kDouble = {{{1, 0}, {c2, s2}, {c1, -s1}, {c1, s1}, {c2, -s2}}};
+  static constexpr std::array<Angle, 5> kOrigin = {
+      {{1, 0}, {c1, s1}, {c2, s2}, {c2, -s2}, {c1, -s1}}};
+  static constexpr std::array<Angle, 5> kDouble = {
+      {{1, 0}, {c2, s2}, {c1, -s1}, {c1, s1}, {c2, -s2}}};
   // The leading coefficient is the value opposite the origin.
   double leading = 0;
   std::size_t best = 0;
   for (std::size_t k = 0; k < 5; ++k) {
-    const double value = wave.constant - wave.cosine * kOrigin[k].cosine - wave.sine * kOrigin[k].sine +
-                         wave.cosine2 * kDouble[k].cosine + wave.sine2 * kDouble[k].sine;
+    const double value = wave.constant - wave.cosine * kOrigin[k].cosine -
+                         wave.sine * kOrigin[k].sine + wave.cosine2 * kDouble[k].cosine +
+                         wave.sine2 * kDouble[k].sine;
     if (std::abs(value) > std::abs(leading)) {
       leading = value;
       best = k;
@@ -135,17 +140,20 @@ Roots roots(const Wave2& wave, double slack) {
   const double p3 = wave.cosine2 * twice.cosine + wave.sine2 * twice.sine;
   const double p4 = wave.sine2 * twice.cosine - wave.cosine2 * twice.sine;
   const double inverse = 1 / (p0 - p1 + p3);
-  const Monic f = {(2 * p2 - 4 * p4) * inverse, (2 * p0 - 6 * p3) * inverse, (2 * p2 + 4 * p4) * inverse, (p0 + p1 + p3) * inverse};
+  const Monic f = {(2 * p2 - 4 * p4) * inverse, (2 * p0 - 6 * p3) * inverse,
+                   (2 * p2 + 4 * p4) * inverse, (p0 + p1 + p3) * inverse};
 
   // Ferrari: t = y - a/4 and y^4 + p y^2 + q y + r = (y^2 + u y + v)(y^2 - u y + w).
   const double quarter = f.a / 4, a2 = quarter * quarter;
-  const double p = f.b - 6 * a2, q = f.c - 2 * f.b * quarter + 8 * a2 * quarter, r = f.d - f.c * quarter + f.b * a2 - 3 * a2 * a2;
+  const double p = f.b - 6 * a2, q = f.c - 2 * f.b * quarter + 8 * a2 * quarter,
+               r = f.d - f.c * quarter + f.b * a2 - 3 * a2 * a2;
   const double u2 = resolvent_root(2 * p, p * p - 4 * r, -q * q), u = std::sqrt(u2);
   const double sum = p + u2, square = sum * sum - 4 * r;
   // w - v can be computed in two ways: one cancels where u is small, the other where v and w are
   // nearly equal.
-  const double difference =
-      square > 0.01 * (sum * sum + 4 * std::abs(r)) || u == 0 ? std::copysign(std::sqrt(std::max(0.0, square)), q) : q / u;
+  const double difference = square > 0.01 * (sum * sum + 4 * std::abs(r)) || u == 0
+                                ? std::copysign(std::sqrt(std::max(0.0, square)), q)
+                                : q / u;
   std::array<double, 4> t{};
   int count = 0;
   quadratic(2 * quarter + u, a2 + u * quarter + (sum - difference) / 2, f, slack, t, count);
@@ -157,7 +165,8 @@ Roots roots(const Wave2& wave, double slack) {
     result.angle[static_cast<std::size_t>(k)] = origin + Angle{(1 - x * x) * unit, 2 * x * unit};
   }
   for (std::size_t k = 1; k < 4; ++k)  // four at most: insertion
-    for (std::size_t j = k; k < static_cast<std::size_t>(count) && j > 0 && order(result.angle[j]) < order(result.angle[j - 1]);
+    for (std::size_t j = k; k < static_cast<std::size_t>(count) && j > 0 &&
+                            order(result.angle[j]) < order(result.angle[j - 1]);
          --j)
       std::swap(result.angle[j], result.angle[j - 1]);
   return result;

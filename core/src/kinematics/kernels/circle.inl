@@ -57,24 +57,31 @@ void solve_triple(const TripleTask& task) {
   double* __restrict last1 = task.q[1][2];
   double* __restrict mask0 = task.mask[0];
   double* __restrict mask1 = task.mask[1];
-  const double a02 = task.m[0][0], b02 = task.m[0][1], c02 = task.m[0][2], a12 = task.m[1][0], b12 = task.m[1][1],
-               c12 = task.m[1][2], a22 = task.m[2][0], b22 = task.m[2][1], c22 = task.m[2][2], a20 = task.m[3][0],
-               b20 = task.m[3][1], c20 = task.m[3][2], a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
+  const double a02 = task.m[0][0], b02 = task.m[0][1], c02 = task.m[0][2], a12 = task.m[1][0],
+               b12 = task.m[1][1], c12 = task.m[1][2], a22 = task.m[2][0], b22 = task.m[2][1],
+               c22 = task.m[2][2], a20 = task.m[3][0], b20 = task.m[3][1], c20 = task.m[3][2],
+               a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
   const double base0 = task.base[0], base1 = task.base[1], base2 = task.base[2], shift = task.shift;
-  const double upper0 = task.upper[0], upper1 = task.upper[1], upper2 = task.upper[2], least_sine = task.least_sine;
+  const double upper0 = task.upper[0], upper1 = task.upper[1], upper2 = task.upper[2],
+               least_sine = task.least_sine;
 // GCC gives up on more than ten run-time alias checks, and forgets restrict on locals
 #pragma GCC ivdep
   for (int k = 0; k < task.n; ++k) {
-    const double x = a02 * s[k] + b02 * c[k] + c02, y = a12 * s[k] + b12 * c[k] + c12, z = a22 * s[k] + b22 * c[k] + c22;
+    const double x = a02 * s[k] + b02 * c[k] + c02, y = a12 * s[k] + b12 * c[k] + c12,
+                 z = a22 * s[k] + b22 * c[k] + c22;
     const double h = __builtin_sqrt(x * x + y * y);
     const double first = atan2_poly(y, x), middle = atan2_poly(h, z);
     const double last = atan2_poly(a21 * s[k] + b21 * c[k] + c21, -(a20 * s[k] + b20 * c[k] + c20));
     const double first_flip = first > 0 ? first - 3.1415926535897931 : first + 3.1415926535897931;
     const double last_flip = last > 0 ? last - 3.1415926535897931 : last + 3.1415926535897931;
-    const double f0 = image_from(first, base0), m0 = image_from(middle - shift, base1), l0 = image_from(last, base2);
-    const double f1 = image_from(first_flip, base0), m1 = image_from(-middle - shift, base1), l1 = image_from(last_flip, base2);
-    const double excess0 = larger(larger(f0 - upper0, m0 - upper1), larger(l0 - upper2, least_sine - h));
-    const double excess1 = larger(larger(f1 - upper0, m1 - upper1), larger(l1 - upper2, least_sine - h));
+    const double f0 = image_from(first, base0), m0 = image_from(middle - shift, base1),
+                 l0 = image_from(last, base2);
+    const double f1 = image_from(first_flip, base0), m1 = image_from(-middle - shift, base1),
+                 l1 = image_from(last_flip, base2);
+    const double excess0 =
+        larger(larger(f0 - upper0, m0 - upper1), larger(l0 - upper2, least_sine - h));
+    const double excess1 =
+        larger(larger(f1 - upper0, m1 - upper1), larger(l1 - upper2, least_sine - h));
     first0[k] = f0;
     middle0[k] = m0;
     last0[k] = l0;

@@ -95,7 +95,9 @@ inline Vec3<V> constant(const double* from) {
 
 template <class V>
 inline V dot(const V* a, const V* b) {
-  return (((a[0] * b[0]) + (a[2] * b[2] + a[4] * b[4])) + ((a[1] * b[1]) + (a[3] * b[3] + a[5] * b[5]))) + a[6] * b[6];
+  return (((a[0] * b[0]) + (a[2] * b[2] + a[4] * b[4])) +
+          ((a[1] * b[1]) + (a[3] * b[3] + a[5] * b[5]))) +
+         a[6] * b[6];
 }
 
 /// Computes sine and cosine of an angle of a few turns, to about 1 ulp. Source: reduction to an
@@ -112,13 +114,17 @@ inline void sine_cosine(V x, V& sine, V& cosine) {
               (-1.66666666666666324348e-01 +
                z * (8.33333333332248946124e-03 +
                     z * (-1.98412698298579493134e-04 +
-                         z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-  const V c = 1.0 - (0.5 * z - z * z *
-                                   (4.16666666666666019037e-02 +
-                                    z * (-1.38888888888741095749e-03 +
-                                         z * (2.48015872894767294178e-05 +
-                                              z * (-2.75573143513906633035e-07 +
-                                                   z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))))));
+                         z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 +
+                                                                z * 1.58969099521155010221e-10)))));
+  const V c =
+      1.0 -
+      (0.5 * z -
+       z * z *
+           (4.16666666666666019037e-02 +
+            z * (-1.38888888888741095749e-03 +
+                 z * (2.48015872894767294178e-05 +
+                      z * (-2.75573143513906633035e-07 +
+                           z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))))));
   const V m = quarters - 4.0 * ((quarters * 0.25 + kRound) - kRound), square = m * m;  // -2 ... 2
   const V a = square == 1.0 ? c : s, b = square == 1.0 ? s : c;
   const V turned = square == 4.0 ? -a : a;
@@ -135,8 +141,8 @@ struct Stand {
 template <class V>
 inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Stand<V>& out) {
   const NewtonChain& chain = *task.chain;
-  Vec3<V> X = constant<V>(chain.first[0]), Y = constant<V>(chain.first[1]), Z = constant<V>(chain.first[2]),
-          P = constant<V>(chain.first[3]);
+  Vec3<V> X = constant<V>(chain.first[0]), Y = constant<V>(chain.first[1]),
+          Z = constant<V>(chain.first[2]), P = constant<V>(chain.first[3]);
   for (int k = 0; k < 7; ++k) {
     out.axis[k] = Z;
     out.point[k] = P;
@@ -157,8 +163,8 @@ inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Sta
   out.tool = P + in_base(L[3]);
   const Vec3<V> tx = in_base(L[0]), ty = in_base(L[1]), tz = in_base(L[2]);
   out.miss = constant<V>(task.tool[3]) - out.tool;
-  out.turn =
-      0.5 * ((cross(tx, constant<V>(task.tool[0])) + cross(ty, constant<V>(task.tool[1]))) + cross(tz, constant<V>(task.tool[2])));
+  out.turn = 0.5 * ((cross(tx, constant<V>(task.tool[0])) + cross(ty, constant<V>(task.tool[1]))) +
+                    cross(tz, constant<V>(task.tool[2])));
 }
 
 /// Computes the moves particular + lambda null that close the pose error to first order. Returns 0
@@ -236,7 +242,8 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
 
 /// Computes linear() for one point, with vectors along the rows of the matrix.
 template <>
-inline double linear<double>(const NewtonTask& task, const double* q, double* particular, double* null) {
+inline double linear<double>(const NewtonTask& task, const double* q, double* particular,
+                             double* null) {
   double angle[8], sine[8], cosine[8], A[6][8];  // seven joints, and the pose error
   for (int k = 0; k < 7; ++k) angle[k] = q[k] + task.chain->link[k].turn;
   angle[7] = 0;
@@ -312,7 +319,8 @@ void solve_lanes(const NewtonTask& task, int at) {
   };
   const auto scatter = [&](V value, double* to, int offset) {
     __builtin_memcpy(lanes, &value, sizeof value);
-    for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane) to[(at + lane) * 7 + offset] = lanes[lane];
+    for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane)
+      to[(at + lane) * 7 + offset] = lanes[lane];
   };
   V q[7], particular[7], null[7], found = V{};
   for (int j = 0; j < 7; ++j) q[j] = gather(task.start, 7, j);
@@ -358,7 +366,8 @@ void solve_lanes(const NewtonTask& task, int at) {
     }
   }
   __builtin_memcpy(lanes, &found, sizeof found);
-  for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane) task.found[at + lane] = lanes[lane] > 0;
+  for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane)
+    task.found[at + lane] = lanes[lane] > 0;
 }
 
 void solve(const NewtonTask& task) {

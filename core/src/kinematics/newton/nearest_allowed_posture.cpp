@@ -14,7 +14,9 @@ std::optional<Config> nearest_allowed_posture(const Chain& chain, const Config& 
   if (allowed(q)) return q;
   const Pose tool = chain.tool(q);
   const PoseNewton newton(chain);
-  const auto point_near = [&](const Config& start) { return newton.nearest(start, tool, Config::Ones(), kSteps); };
+  const auto point_near = [&](const Config& start) {
+    return newton.nearest(start, tool, Config::Ones(), kSteps);
+  };
   const auto here = point_near(q);
   if (!here) return std::nullopt;
   struct Side {

@@ -133,34 +133,38 @@ void PoseNewton::tangents(std::span<const Config> q, const Pose& tool, Points& o
   for (Config& tangent : out.tangent) tangent /= tangent.norm();
 }
 
-std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const Pose& tool, const Config& scale2, int steps) const {
+std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const Pose& tool,
+                                                     const Config& scale2, int steps) const {
   NewtonTask one = task(tool, NewtonMove::kNearest, steps);
   std::copy(scale2.begin(), scale2.end(), one.scale2);
   return run(one, start);
 }
 
-void PoseNewton::nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2, int steps, Points& out) const {
+void PoseNewton::nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2,
+                         int steps, Points& out) const {
   NewtonTask all = task(tool, NewtonMove::kNearest, steps);
   std::copy(scale2.begin(), scale2.end(), all.scale2);
   run(all, starts, out);
 }
 
-std::optional<PoseNewton::Point> PoseNewton::with_joint_at(const Config& start, const Pose& tool, int joint, double value) const {
+std::optional<PoseNewton::Point> PoseNewton::with_joint_at(const Config& start, const Pose& tool,
+                                                           int joint, double value) const {
   NewtonTask one = task(tool, NewtonMove::kLocked, kLockedSteps);
   one.joint = joint;
   one.value = &value;
   return run(one, start);
 }
 
-void PoseNewton::with_joint_at(std::span<const Config> starts, const Pose& tool, int joint, std::span<const double> values,
-                               Points& out) const {
+void PoseNewton::with_joint_at(std::span<const Config> starts, const Pose& tool, int joint,
+                               std::span<const double> values, Points& out) const {
   NewtonTask all = task(tool, NewtonMove::kLocked, kLockedSteps);
   all.joint = joint;
   all.value = values.data();
   run(all, starts, out);
 }
 
-std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const Pose& tool, int steps) const {
+std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const Pose& tool,
+                                                      int steps) const {
   constexpr double kStride = 0.5;  // rad
   Config q = start;
   Linear at;

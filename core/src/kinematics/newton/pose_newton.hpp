@@ -33,14 +33,16 @@ class PoseNewton {
   /// Returns the point within 1e-10 of the pose `tool` to which Newton steps of least norm, sum
   /// (scale_j dq_j)^2, lead from q; `scale2` has the squares of the scales. Returns none after
   /// `steps` steps, or where a step would be longer than 1 rad or the Jacobian loses rank.
-  [[nodiscard]] std::optional<Point> nearest(const Config& q, const Pose& tool, const Config& scale2, int steps) const;
+  [[nodiscard]] std::optional<Point> nearest(const Config& q, const Pose& tool,
+                                             const Config& scale2, int steps) const;
   /// Returns the point of the pose `tool` to which Newton steps of least norm lead from a q that
   /// may be far away, none if they do not arrive in `steps` steps. Each step is cut to half a
   /// radian.
   [[nodiscard]] std::optional<Point> approach(const Config& q, const Pose& tool, int steps) const;
   /// Returns the point of the pose `tool` near q at which a joint (0-based) has a value, bit for
   /// bit, rad; none where Newton does not arrive in 8 steps.
-  [[nodiscard]] std::optional<Point> with_joint_at(const Config& q, const Pose& tool, int joint, double value) const;
+  [[nodiscard]] std::optional<Point> with_joint_at(const Config& q, const Pose& tool, int joint,
+                                                   double value) const;
 
   // Functions for many points at once, in vector code. They give the same bits as one call for each
   // point.
@@ -60,10 +62,11 @@ class PoseNewton {
   /// Computes the tangents at points that reach the pose already; the points stay as they are.
   void tangents(std::span<const Config> q, const Pose& tool, Points& out) const;
   /// Computes for each start what nearest() for one start does.
-  void nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2, int steps, Points& out) const;
+  void nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2, int steps,
+               Points& out) const;
   /// Computes for each start and value what with_joint_at() for one start does.
-  void with_joint_at(std::span<const Config> starts, const Pose& tool, int joint, std::span<const double> values,
-                     Points& out) const;
+  void with_joint_at(std::span<const Config> starts, const Pose& tool, int joint,
+                     std::span<const double> values, Points& out) const;
 
   /// Returns the task for the vector kernels, without points.
   [[nodiscard]] NewtonTask task(const Pose& tool, NewtonMove move, int steps) const;

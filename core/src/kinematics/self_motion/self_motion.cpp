@@ -33,7 +33,8 @@ Flip flip_of(const Chain& chain, int lock, const std::vector<Alignment>& alignme
   if (forms.empty()) return {};
   const ClosedFormFit& fit = forms.front().second.fit();
   const bool one = std::all_of(forms.begin(), forms.end(), [&](const auto& form) {
-    return form.second.fit().exact && form.second.fit().structure == fit.structure && form.second.fit().first == fit.first;
+    return form.second.fit().exact && form.second.fit().structure == fit.structure &&
+           form.second.fit().first == fit.first;
   });
   if (!one || fit.structure == Structure::kParallel) return {};
   const int first = fit.first < lock ? fit.first : fit.first + 1;
@@ -42,7 +43,8 @@ Flip flip_of(const Chain& chain, int lock, const std::vector<Alignment>& alignme
   if (std::abs(axis(first).dot(axis(first + 1))) > kPerpendicular ||
       std::abs(axis(first + 1).dot(axis(first + 2))) > kPerpendicular)
     return {};
-  const auto at = std::find_if(alignments.begin(), alignments.end(), [&](const Alignment& a) { return a.joint == first + 1; });
+  const auto at = std::find_if(alignments.begin(), alignments.end(),
+                               [&](const Alignment& a) { return a.joint == first + 1; });
   return at == alignments.end() ? Flip() : Flip(first, at->angle);
 }
 
@@ -54,12 +56,14 @@ bool keeps_limits(const Chain& chain, const SelfMotionData& data) {
   if (chain.roll && first + 2 == kDof - 1) return false;  // it turns the tool
   return data.circle[first] && data.circle[first + 2] &&
          (data.circle[first + 1] ||
-          std::abs(wrap_angle(data.lower[first + 1] + data.upper[first + 1] - 2 * flip.aligned())) < kSymmetric);
+          std::abs(wrap_angle(data.lower[first + 1] + data.upper[first + 1] - 2 * flip.aligned())) <
+              kSymmetric);
 }
 
 }  // namespace
 
-SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin, const std::array<double, kDof>& weights) {
+SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin,
+                       const std::array<double, kDof>& weights) {
   auto data = std::make_unique<SelfMotionData>(chain);
   // Without a lock any joint serves: it decides where closed arcs begin.
   data->lock = method.best >= 0 ? method.best : 2;
@@ -83,14 +87,16 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
     Config& start = data->starts.emplace_back();
     for (std::size_t j = 0; j < kDof; ++j) {
       const double turns = k * std::sqrt(kPrime[j]), part = turns - std::floor(turns);
-      const double low = data->circle[j] ? -kPi : data->lower[j], high = data->circle[j] ? kPi : data->upper[j];
+      const double low = data->circle[j] ? -kPi : data->lower[j],
+                   high = data->circle[j] ? kPi : data->upper[j];
       start[static_cast<Eigen::Index>(j)] = low + part * (high - low);
     }
   }
   // Half a cell from 0, so that no value is a multiple of 90 degrees.
   for (int k = 0; method.best >= 0 && k < kSeeds; ++k) {
     const double value = kTwoPi * (k + 0.5) / kSeeds - kPi;
-    if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value))) data->forms.emplace_back(value, *form);
+    if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value)))
+      data->forms.emplace_back(value, *form);
   }
   data->flip = flip_of(chain, data->lock, data->alignments, data->forms);
   data->flip_keeps_limits = keeps_limits(chain, *data);
@@ -115,7 +121,8 @@ std::vector<SelfMotionArc> SelfMotion::curves(const Pose& tool) const {
   return result;
 }
 
-std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known, Flipped flipped) const {
+std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known,
+                                            Flipped flipped) const {
   const bool both = !data_->flip.none() && !(data_->flip_keeps_limits && flipped == Flipped::kOne);
   std::vector<SelfMotionArc> result;
   find_curves(*data_, tool, known, [&](std::vector<Point>& points, bool closed) {
@@ -124,8 +131,9 @@ std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Co
     for (Point& p : points) data_->flip.apply(p);
     cut_at_limits(*data_, tool, points, closed, result);
   });
-  std::stable_sort(result.begin(), result.end(),
-                   [](const SelfMotionArc& a, const SelfMotionArc& b) { return less(a.q[0], b.q[0]); });
+  std::stable_sort(
+      result.begin(), result.end(),
+      [](const SelfMotionArc& a, const SelfMotionArc& b) { return less(a.q[0], b.q[0]); });
   return result;
 }
 
@@ -199,14 +207,16 @@ double least_largest(const Config& move, const Config& along, const Config& weig
 
 }  // namespace
 
-std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q, const Pose& tool, Least least) const {
+std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q, const Pose& tool,
+                                                      Least least) const {
   PoseNewton::Points found;
   data_->newton.nearest(q, tool, data_->scale2, kImageSteps, found);
   if (least == Least::kLargest) {
     std::vector<Config> guesses = found.q;
     for (std::size_t k = 0; k < q.size(); ++k)
       if (found.found[k] != 0)
-        guesses[k] += least_largest(found.q[k] - q[k], found.tangent[k], data_->scale, kMostDrift) * found.tangent[k];
+        guesses[k] += least_largest(found.q[k] - q[k], found.tangent[k], data_->scale, kMostDrift) *
+                      found.tangent[k];
     PoseNewton::Points drifted;
     data_->newton.nearest(guesses, tool, data_->scale2, kImageSteps, drifted);
     for (std::size_t k = 0; k < q.size(); ++k)
@@ -218,7 +228,8 @@ std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q,
   return result;
 }
 
-std::optional<Config> SelfMotion::point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const {
+std::optional<Config> SelfMotion::point(const SelfMotionArc& arc, int chord, double u,
+                                        const Pose& tool) const {
   const auto p = data_->newton.nearest(arc.at(chord, u), tool, kPlain, kImageSteps);
   if (!p) return std::nullopt;
   Config q = p->q;
@@ -226,7 +237,8 @@ std::optional<Config> SelfMotion::point(const SelfMotionArc& arc, int chord, dou
   return q;
 }
 
-std::optional<Config> SelfMotion::with_joint_at(const Config& q, const Pose& tool, int joint, double value) const {
+std::optional<Config> SelfMotion::with_joint_at(const Config& q, const Pose& tool, int joint,
+                                                double value) const {
   const auto p = data_->newton.with_joint_at(q, tool, joint, value);
   if (!p) return std::nullopt;
   Config found = p->q;

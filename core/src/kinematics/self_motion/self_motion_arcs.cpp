@@ -27,7 +27,8 @@ struct Crossing {
 /// Calls add(u, whether it rises) for every u in [0, 1) at which start + cubic equals `value`.
 template <class Add>
 void cubic_crossings(const Cubic& cubic, int j, double start, double value, const Add& add) {
-  const double b = cubic.m0[j], c = 3 * cubic.d[j] - 2 * cubic.m0[j] - cubic.m1[j], d = cubic.m0[j] + cubic.m1[j] - 2 * cubic.d[j];
+  const double b = cubic.m0[j], c = 3 * cubic.d[j] - 2 * cubic.m0[j] - cubic.m1[j],
+               d = cubic.m0[j] + cubic.m1[j] - 2 * cubic.d[j];
   const auto f = [&](double u) { return start - value + u * (b + u * (c + u * d)); };
   // Monotone between the roots of b + 2 c u + 3 d u^2.
   std::array<double, 4> knots{0, 1, 1, 1};
@@ -56,7 +57,8 @@ void cubic_crossings(const Cubic& cubic, int j, double start, double value, cons
 /// Cuts one curve at the joint limits.
 class Cutter {
  public:
-  Cutter(const SelfMotionData& data, const Pose& tool, std::vector<SelfMotionArc>& out) : data_(data), tool_(tool), out_(out) {}
+  Cutter(const SelfMotionData& data, const Pose& tool, std::vector<SelfMotionArc>& out)
+      : data_(data), tool_(tool), out_(out) {}
   void cut(const std::vector<Point>& points, bool closed);
 
  private:
@@ -64,7 +66,8 @@ class Cutter {
   /// Finds the point of a chord at which the crossing's joint stands exactly on its limit, or
   /// another joint on its own, `joint`, where that is passed first. Returns false where Newton
   /// fails.
-  bool solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end, int& joint) const;
+  bool solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end,
+                 int& joint) const;
   void finish(SelfMotionArc&& arc);
 
   const SelfMotionData& data_;
@@ -77,7 +80,8 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
   crossings_.clear();
   const auto size = points.size();
   for (int k = 0; k < chords; ++k) {
-    const Point &a = points[static_cast<std::size_t>(k)], &b = points[(static_cast<std::size_t>(k) + 1) % size];
+    const Point &a = points[static_cast<std::size_t>(k)],
+                &b = points[(static_cast<std::size_t>(k) + 1) % size];
     std::optional<Cubic> cubic;
     const std::size_t before = crossings_.size();
     // A cubic leaves its first point by 1.6 chords at most (below).
@@ -87,30 +91,38 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
       if (data_.circle[at]) continue;
       if (a.q[j] - away > data_.lower[at] && a.q[j] + away < data_.upper[at]) continue;
       if (!cubic) cubic.emplace(a, b, 1.0);
-      const double middle = (data_.lower[at] + data_.upper[at]) / 2, start = middle + wrapped(a.q[j] - middle);
+      const double middle = (data_.lower[at] + data_.upper[at]) / 2,
+                   start = middle + wrapped(a.q[j] - middle);
       // A cubic leaves the range of its ends by 4/27 of the fit error of its tangents at most.
-      const double bulge = 0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
-      const double least = std::min(start, start + cubic->d[j]) - bulge, most = std::max(start, start + cubic->d[j]) + bulge;
+      const double bulge =
+          0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
+      const double least = std::min(start, start + cubic->d[j]) - bulge,
+                   most = std::max(start, start + cubic->d[j]) + bulge;
       // Limits plus or minus a turn lie beyond the range.
       if (least > data_.lower[at] && most < data_.upper[at]) continue;
       for (const bool upper : {true, false})
         for (const double turn : {-kTwoPi, 0.0, kTwoPi}) {
           const double value = (upper ? data_.upper[at] : data_.lower[at]) + turn;
           if (value < least || value > most) continue;
-          cubic_crossings(*cubic, j, start, value, [&](double u, bool rising) { crossings_.push_back({k, u, j, upper, rising}); });
+          cubic_crossings(*cubic, j, start, value, [&](double u, bool rising) {
+            crossings_.push_back({k, u, j, upper, rising});
+          });
         }
     }
     const auto here = crossings_.begin() + static_cast<std::ptrdiff_t>(before);
-    std::stable_sort(here, crossings_.end(), [](const Crossing& x, const Crossing& y) { return x.u < y.u; });
+    std::stable_sort(here, crossings_.end(),
+                     [](const Crossing& x, const Crossing& y) { return x.u < y.u; });
     // A joint with a range of a whole turn meets both limits at once: it leaves by one, then enters
     // by the other.
     for (auto next = here; next != crossings_.end() && next + 1 != crossings_.end(); ++next)
-      if (next[0].joint == next[1].joint && next[1].u - next[0].u < 1e-9 && next[1].leaves() && !next[0].leaves())
+      if (next[0].joint == next[1].joint && next[1].u - next[0].u < 1e-9 && next[1].leaves() &&
+          !next[0].leaves())
         std::swap(next[0], next[1]);
   }
 }
 
-bool Cutter::solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end, int& joint) const {
+bool Cutter::solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end,
+                       int& joint) const {
   const Point &a = points[static_cast<std::size_t>(crossing.chord)],
               &b = points[(static_cast<std::size_t>(crossing.chord) + 1) % points.size()];
   const Cubic cubic(a, b, 1.0);
@@ -180,9 +192,10 @@ void Cutter::finish(SelfMotionArc&& arc) {
     const std::size_t next = (k + 1) % arc.q.size();
     const Cubic cubic({arc.q[k], arc.tangent[k]}, {arc.q[next], arc.tangent[next]}, 1);
     const Config middle = 1.5 * cubic.d - 0.25 * (cubic.m0 + cubic.m1);
-    length += (data_.scale.cwiseProduct(cubic.m0).norm() + 4 * data_.scale.cwiseProduct(middle).norm() +
-               data_.scale.cwiseProduct(cubic.m1).norm()) /
-              6;
+    length +=
+        (data_.scale.cwiseProduct(cubic.m0).norm() + 4 * data_.scale.cwiseProduct(middle).norm() +
+         data_.scale.cwiseProduct(cubic.m1).norm()) /
+        6;
     arc.length.push_back(length);
   }
   out_.push_back(std::move(arc));
@@ -212,7 +225,9 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
   for (int k = closed ? 0 : -1; k < count; ++k) {
     const Crossing* from = k >= 0 ? &crossings_[static_cast<std::size_t>(k)] : nullptr;
     const bool last = k + 1 == count;
-    const Crossing* to = !last ? &crossings_[static_cast<std::size_t>(k + 1)] : closed ? &crossings_[0] : nullptr;
+    const Crossing* to = !last    ? &crossings_[static_cast<std::size_t>(k + 1)]
+                         : closed ? &crossings_[0]
+                                  : nullptr;
     if (from != nullptr && from->leaves()) continue;
     if (to != nullptr && !to->leaves()) continue;
     // Points from `first` to `end` - 1, counted on over the wrap.
@@ -237,7 +252,8 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
     }
     for (int n = first; n < end; ++n) {
       // Leave out a point that coincides with the end on the limit.
-      if (from != nullptr && n == first && difference(at(n).q, arc.q[0]).squaredNorm() < 1e-16) continue;
+      if (from != nullptr && n == first && difference(at(n).q, arc.q[0]).squaredNorm() < 1e-16)
+        continue;
       arc.q.push_back(at(n).q);
       arc.tangent.push_back(at(n).tangent);
     }
@@ -256,8 +272,8 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
 
 }  // namespace
 
-void cut_at_limits(const SelfMotionData& data, const Pose& tool, const std::vector<Point>& points, bool closed,
-                   std::vector<SelfMotionArc>& arcs) {
+void cut_at_limits(const SelfMotionData& data, const Pose& tool, const std::vector<Point>& points,
+                   bool closed, std::vector<SelfMotionArc>& arcs) {
   Cutter(data, tool, arcs).cut(points, closed);
 }
 

@@ -69,8 +69,12 @@ class Curves {
     return half % 2 == 1 ? v.tangent : Config(-v.tangent);
   }
   Vertex& at(int half) { return vertices_[static_cast<std::size_t>(half / 2)]; }
-  [[nodiscard]] const Vertex& at(int half) const { return vertices_[static_cast<std::size_t>(half / 2)]; }
-  [[nodiscard]] bool open(int half) const { return at(half).next[static_cast<std::size_t>(half % 2)] < 0; }
+  [[nodiscard]] const Vertex& at(int half) const {
+    return vertices_[static_cast<std::size_t>(half / 2)];
+  }
+  [[nodiscard]] bool open(int half) const {
+    return at(half).next[static_cast<std::size_t>(half % 2)] < 0;
+  }
   void link(int half, int other) {
     at(half).next[static_cast<std::size_t>(half % 2)] = other;
     at(other).next[static_cast<std::size_t>(other % 2)] = half;
@@ -85,7 +89,9 @@ class Curves {
   }
   void add_end(int half) { open_.push_back({half, at(half).q}); }
   /// Of the pairs that a flip makes one is computed.
-  [[nodiscard]] ClosedForm::Flips flips() const { return data_.flip.none() ? ClosedForm::Flips::kBoth : ClosedForm::Flips::kOne; }
+  [[nodiscard]] ClosedForm::Flips flips() const {
+    return data_.flip.none() ? ClosedForm::Flips::kBoth : ClosedForm::Flips::kOne;
+  }
   [[nodiscard]] Config kept(Config q) const {
     if (!data_.flip.kept(q)) data_.flip.apply(q);
     return q;
@@ -143,7 +149,8 @@ class Curves {
   [[nodiscard]] double first_step(const Point& p, double step) const;
   /// Returns `next` with its tangent turned along the curve; none where it is no acceptable step
   /// from p.
-  [[nodiscard]] std::optional<Point> accepted(const Point& p, const Config& guess, double step, std::optional<Point> next) const;
+  [[nodiscard]] std::optional<Point> accepted(const Point& p, const Config& guess, double step,
+                                              std::optional<Point> next) const;
   [[nodiscard]] std::optional<Point> advance(const Walk& walk, double& step) const;
   /// Returns the first open half-edge that a move from p passes, `count` points after the half-edge
   /// `from`; -1: none.
@@ -182,7 +189,8 @@ void Curves::add_seeds() {
     const bool exact = form.fit().exact;
     auto& list = exact ? solved : started;
     const std::size_t before = list.q.size();
-    for (const Config6& six : exact ? form.solve(tool_, flips()) : form.starts(tool_, 1e-2, flips())) {
+    for (const Config6& six :
+         exact ? form.solve(tool_, flips()) : form.starts(tool_, 1e-2, flips())) {
       const Config q = kept(with_joint(six, data_.lock, value));
       list.q.push_back(q);
       list.lock.push_back(value);
@@ -203,7 +211,8 @@ void Curves::add_seeds() {
       if (!p || data_.aligned(p->q)) continue;
       if (!exact) {
         bool twice = false;
-        for (std::size_t other = static_cast<std::size_t>(first_.back()); other < vertices_.size(); ++other)
+        for (std::size_t other = static_cast<std::size_t>(first_.back()); other < vertices_.size();
+             ++other)
           twice = twice || difference(vertices_[other].q, p->q).squaredNorm() < 1e-12;
         if (twice) continue;
       }
@@ -226,7 +235,8 @@ std::optional<double> Curves::fit_error(int half, int other) const {
   if (!(length2 > 0 && length2 < kLongChord * kLongChord)) return std::nullopt;
   const double length = std::sqrt(length2);
   const Config t0 = outward(half), t1 = -outward(other);
-  if (turned_away(t0, chord, length) > kBend || turned_away(t1, chord, length) > kBend) return std::nullopt;
+  if (turned_away(t0, chord, length) > kBend || turned_away(t1, chord, length) > kBend)
+    return std::nullopt;
   const double miss = (chord - (length / 2) * (t0 + t1)).norm();
   if (miss > kUneven * length || data_.passes_alignment(at(half).q, chord)) return std::nullopt;
   return miss;
@@ -249,7 +259,8 @@ std::optional<Curves::Turn> Curves::turning(int half, int other) const {
   constexpr double kOff = 0.25;          // part of the chord
   constexpr double kWithin = 0.2;        // likewise
   if (!maybe_near(at(other).q, at(half).q, kLong)) return std::nullopt;
-  const Config chord = difference(at(other).q, at(half).q), t0 = outward(half), t1 = -outward(other);
+  const Config chord = difference(at(other).q, at(half).q), t0 = outward(half),
+               t1 = -outward(other);
   const double length = chord.norm();
   if (!(length > 0 && length < kLong) || t0.dot(t1) < kLeastCosine) return std::nullopt;
   // An arc of a circle has its chord along the bisector of its tangents.
@@ -259,7 +270,8 @@ std::optional<Curves::Turn> Curves::turning(int half, int other) const {
   if (!(along > 0 && miss < kOff) || data_.passes_alignment(at(half).q, chord)) return std::nullopt;
   // With tangents of this length a cubic passes the middle of the circle's arc.
   const double tangent = length / (0.5 + 0.25 * both);
-  return Turn{miss, {half, other, at(half).q + chord / 2 + (tangent / 8) * (t0 - t1), kWithin * length}};
+  return Turn{miss,
+              {half, other, at(half).q + chord / 2 + (tangent / 8) * (t0 - t1), kWithin * length}};
 }
 
 void Curves::join(int half, int other, int depth, std::vector<Gap>& gaps) {
@@ -350,20 +362,24 @@ void Curves::bridge_ends() {
 double Curves::first_step(const Point& p, double step) const {
   step = std::min(kStep, 2 * step);
   for (const Alignment& a : data_.alignments) {
-    const double apart = std::abs(wrap_angle(p.q[a.joint] - a.angle)), rate = std::abs(p.tangent[a.joint]);
+    const double apart = std::abs(wrap_angle(p.q[a.joint] - a.angle)),
+                 rate = std::abs(p.tangent[a.joint]);
     if (rate * step > 0.7 * apart) step = std::max(kLeastStep, 0.7 * apart / rate);
   }
   return step;
 }
 
-std::optional<Point> Curves::accepted(const Point& p, const Config& guess, double step, std::optional<Point> next) const {
+std::optional<Point> Curves::accepted(const Point& p, const Config& guess, double step,
+                                      std::optional<Point> next) const {
   if (!next) return std::nullopt;
   const Config move = next->q - p.q;
   const double length = move.norm();
   if (length > 1.3 * step || (next->q - guess).norm() > 0.1 * step) return std::nullopt;
   if (next->tangent.dot(p.tangent) < 0) next->tangent = -next->tangent;
-  if (next->tangent.dot(p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03) return std::nullopt;
-  if ((move - (length / 2) * (p.tangent + next->tangent)).norm() > 0.02 * length) return std::nullopt;
+  if (next->tangent.dot(p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03)
+    return std::nullopt;
+  if ((move - (length / 2) * (p.tangent + next->tangent)).norm() > 0.02 * length)
+    return std::nullopt;
   if (data_.passes_alignment(p.q, move)) return std::nullopt;
   return next;
 }
@@ -371,7 +387,9 @@ std::optional<Point> Curves::accepted(const Point& p, const Config& guess, doubl
 std::optional<Point> Curves::advance(const Walk& walk, double& step) const {
   for (step = first_step(walk.here, step); step >= kLeastStep; step /= 2) {
     const Config guess = walk.guess(step);
-    if (const auto next = accepted(walk.here, guess, step, data_.newton.nearest(guess, tool_, kPlain, kCloseSteps))) return next;
+    if (const auto next = accepted(walk.here, guess, step,
+                                   data_.newton.nearest(guess, tool_, kPlain, kCloseSteps)))
+      return next;
   }
   return std::nullopt;
 }
@@ -405,7 +423,8 @@ void Curves::trace(int half, const Trail* trail) {
     std::optional<Point> next;
     // no open half-edge was there when the trail was followed: there are fewer now
     bool alone = false;
-    if (const auto at = static_cast<std::size_t>(count); trail != nullptr && at < trail->points.size()) {
+    if (const auto at = static_cast<std::size_t>(count);
+        trail != nullptr && at < trail->points.size()) {
       next = trail->points[at];
       step = trail->steps[at];
       alone = trail->met < 0 || at + 1 < trail->points.size();
@@ -414,7 +433,8 @@ void Curves::trace(int half, const Trail* trail) {
     }
     if (!next) return;
     // An open half-edge that this step passes is the continuation.
-    if (const int other = alone ? -1 : met(half, count, walk.here, next->q - walk.here.q); other >= 0) {
+    if (const int other = alone ? -1 : met(half, count, walk.here, next->q - walk.here.q);
+        other >= 0) {
       link(here, other);
       return;
     }
@@ -487,7 +507,8 @@ void Curves::trace_all() {
   for (const auto& quarter : quarters) {
     auto& followed = trails.emplace_back();
     for (const int half : quarter)
-      if (PoseNewton::sooner_at_once() && reached[static_cast<std::size_t>(half)] == 0) followed.push_back({half});
+      if (PoseNewton::sooner_at_once() && reached[static_cast<std::size_t>(half)] == 0)
+        followed.push_back({half});
     follow(followed);
     for (const Trail& trail : followed)
       if (trail.met >= 0) reached[static_cast<std::size_t>(trail.met)] = 1;
@@ -568,9 +589,11 @@ void Curves::find(std::span<const Config> known_points) {
     for (const Config6& six : form.starts(tool_, parallel ? kFarParallel : kFarTriple, flips())) {
       const Config start = kept(with_joint(six, data_.lock, value));
       const auto seed = [&](const Vertex& v) {
-        return maybe_near(v.q, start, data_.other, kSeed) && difference(v.q, start).squaredNorm() < kSeed * kSeed;
+        return maybe_near(v.q, start, data_.other, kSeed) &&
+               difference(v.q, start).squaredNorm() < kSeed * kSeed;
       };
-      if (std::any_of(vertices_.begin() + first_[k], vertices_.begin() + first_[k + 1], seed)) continue;
+      if (std::any_of(vertices_.begin() + first_[k], vertices_.begin() + first_[k + 1], seed))
+        continue;
       starts.push_back(start);
     }
   }
@@ -609,13 +632,15 @@ void Curves::visit(const VisitCurve& visit) const {
   }
   for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
     const auto& vertex = vertices_[static_cast<std::size_t>(v)];
-    if (!seen[static_cast<std::size_t>(v)] && vertex.next[0] >= 0 && vertex.next[1] >= 0) walk(v, 1);
+    if (!seen[static_cast<std::size_t>(v)] && vertex.next[0] >= 0 && vertex.next[1] >= 0)
+      walk(v, 1);
   }
 }
 
 }  // namespace
 
-void find_curves(const SelfMotionData& data, const Pose& tool, std::span<const Config> known, const VisitCurve& visit) {
+void find_curves(const SelfMotionData& data, const Pose& tool, std::span<const Config> known,
+                 const VisitCurve& visit) {
   Curves curves(data, tool);
   curves.find(known);
   curves.visit(visit);

@@ -13,6 +13,7 @@ using VisitCurve = std::function<void(std::vector<self_motion::Point>& points, b
 
 /// Visits every self-motion curve at a pose, joint limits ignored; of curves that come in pairs
 /// (`data.flip`) one of two. SelfMotion says how curves are found, and what `known` is.
-void find_curves(const SelfMotionData& data, const Pose& tool, std::span<const Config> known, const VisitCurve& visit);
+void find_curves(const SelfMotionData& data, const Pose& tool, std::span<const Config> known,
+                 const VisitCurve& visit);
 
 }  // namespace swivel

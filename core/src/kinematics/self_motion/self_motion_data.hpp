@@ -48,7 +48,9 @@ struct Cubic {
     m0 = length * a.tangent;
     m1 = (length * sign_b) * b.tangent;
   }
-  [[nodiscard]] Config at(double u) const { return u * m0 + (u * u) * (3 * d - 2 * m0 - m1) + (u * u * u) * (m0 + m1 - 2 * d); }
+  [[nodiscard]] Config at(double u) const {
+    return u * m0 + (u * u) * (3 * d - 2 * m0 - m1) + (u * u * u) * (m0 + m1 - 2 * d);
+  }
   [[nodiscard]] double at(int j, double u) const {
     return u * (m0[j] + u * (3 * d[j] - 2 * m0[j] - m1[j] + u * (m0[j] + m1[j] - 2 * d[j])));
   }
@@ -66,7 +68,9 @@ class Flip {
   [[nodiscard]] double aligned() const { return aligned_; }
   /// Returns true if q is on the side of a pair that is computed; at the alignment, to rounding,
   /// both are.
-  [[nodiscard]] bool kept(const Config& q) const { return none() || std::sin(q[first_ + 1] - aligned_) > -1e-9; }
+  [[nodiscard]] bool kept(const Config& q) const {
+    return none() || std::sin(q[first_ + 1] - aligned_) > -1e-9;
+  }
   void apply(Config& q) const {
     q[first_] += kPi;
     q[first_ + 1] = 2 * aligned_ - q[first_ + 1];
@@ -113,8 +117,9 @@ struct SelfMotionData {
     return true;
   }
   [[nodiscard]] bool aligned(const Config& q) const {
-    return std::any_of(alignments.begin(), alignments.end(),
-                       [&](const Alignment& a) { return std::abs(wrap_angle(q[a.joint] - a.angle)) < self_motion::kSingular; });
+    return std::any_of(alignments.begin(), alignments.end(), [&](const Alignment& a) {
+      return std::abs(wrap_angle(q[a.joint] - a.angle)) < self_motion::kSingular;
+    });
   }
   /// Whether the move passes over an alignment.
   [[nodiscard]] bool passes_alignment(const Config& q, const Config& move) const {

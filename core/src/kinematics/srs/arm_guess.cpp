@@ -17,7 +17,8 @@ namespace swivel {
 namespace {
 
 std::string lower_case(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name;
 }
 
@@ -26,13 +27,16 @@ std::string lower_case(std::string name) {
 bool ends_with_word(const std::string& name, const std::string& word) {
   const std::string lower = lower_case(name);
   if (!lower.ends_with(word)) return false;
-  return lower.size() == word.size() || std::isalnum(static_cast<unsigned char>(lower[lower.size() - word.size() - 1])) == 0;
+  return lower.size() == word.size() ||
+         std::isalnum(static_cast<unsigned char>(lower[lower.size() - word.size() - 1])) == 0;
 }
 
 /// Returns true if a name has the word between separators, as left_hip_yaw has hip.
 bool has_word(const std::string& name, const std::string& word) {
   const std::string lower = lower_case(name);
-  const auto letter = [&](std::size_t at) { return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0; };
+  const auto letter = [&](std::size_t at) {
+    return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0;
+  };
   for (std::size_t at = lower.find(word); at != std::string::npos; at = lower.find(word, at + 1))
     if ((at == 0 || !letter(at - 1)) && !letter(at + word.size())) return true;
   return false;
@@ -73,7 +77,10 @@ constexpr int kLeast = static_cast<int>(kDof) - 1;
 class Guesser {
  public:
   explicit Guesser(const RobotModel& robot)
-      : robot_(robot), children_(robot.links.size()), depth_(robot.links.size(), 0), row_below_(robot.links.size(), 0) {
+      : robot_(robot),
+        children_(robot.links.size()),
+        depth_(robot.links.size(), 0),
+        row_below_(robot.links.size(), 0) {
     for (const Joint& joint : robot.joints) {
       children_[joint.parent_link].push_back(&joint);
       if (joint.mimic) leaders_.insert(joint.mimic->joint);
@@ -97,12 +104,14 @@ class Guesser {
       // are seven others.
       constexpr std::ptrdiff_t kMostTried = 16;  // a finger has few joints
       const auto end = row.rbegin() + (is_six ? 0 : std::min(kMostTried, std::ssize(row) - kLeast));
-      const auto spherical = std::find_if(row.rbegin(), end, [&](int link) { return is_srs(link); });
+      const auto spherical =
+          std::find_if(row.rbegin(), end, [&](int link) { return is_srs(link); });
       const int last = spherical == end ? row.back() : *spherical;
       const int joints = is_six ? kLeast : static_cast<int>(kDof);
       const ArmGuess guess{base_name(last, joints), tip_name(last), joints};
       const auto known = [&](const ArmGuess& other) { return other.tip == guess.tip; };
-      if (std::any_of(srs.begin(), srs.end(), known) || std::any_of(seven.begin(), seven.end(), known) ||
+      if (std::any_of(srs.begin(), srs.end(), known) ||
+          std::any_of(seven.begin(), seven.end(), known) ||
           std::any_of(six.begin(), six.end(), known))
         continue;
       (is_six ? six : spherical == end ? seven : srs).push_back(guess);
@@ -119,11 +128,14 @@ class Guesser {
   static bool moves_alone(const Joint& joint) { return joint.movable() && !joint.mimic; }
 
   /// Returns how many joints move on their own in the longest chain from this joint on.
-  [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[joint.child_link] + moves_alone(joint); }
+  [[nodiscard]] int depth_below(const Joint& joint) const {
+    return depth_[joint.child_link] + moves_alone(joint);
+  }
 
   /// Returns how many arm joints follow each other in the longest row from this joint on.
   [[nodiscard]] int row_from(const Joint& joint) const {
-    if (joint.type == Joint::Type::kFixed || mimics_above(joint)) return row_below_[joint.child_link];
+    if (joint.type == Joint::Type::kFixed || mimics_above(joint))
+      return row_below_[joint.child_link];
     return is_arm_joint(joint) ? row_below_[joint.child_link] + 1 : 0;
   }
 
@@ -136,8 +148,10 @@ class Guesser {
   /// Returns true if a joint turns on its own, as those of an arm do. A joint that others mimic
   /// moves a linkage if the arm goes on behind it, else a hand.
   bool is_arm_joint(const Joint& joint) const {
-    return (joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kContinuous) && !joint.mimic &&
-           (depth_[joint.child_link] > 0 || !leaders_.contains(static_cast<int>(&joint - robot_.joints.data()))) &&
+    return (joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kContinuous) &&
+           !joint.mimic &&
+           (depth_[joint.child_link] > 0 ||
+            !leaders_.contains(static_cast<int>(&joint - robot_.joints.data()))) &&
            !is_leg_name(joint.name);
   }
 
@@ -161,7 +175,8 @@ class Guesser {
     if (row_below_[link] < kLeast) return false;
     if (is_base_name(robot_.links[link].name)) return true;
     const auto& below = children_[link];
-    return std::count_if(below.begin(), below.end(), [&](const Joint* joint) { return row_from(*joint) >= kLeast; }) > 1;
+    return std::count_if(below.begin(), below.end(),
+                         [&](const Joint* joint) { return row_from(*joint) >= kLeast; }) > 1;
   }
 
   /// Returns the link and those fixed to it, from the link outwards.
@@ -176,8 +191,8 @@ class Guesser {
   /// Returns a link fixed to this one that is named like a tool, none if there is none.
   std::optional<int> tool_link(int link) const {
     const std::vector<int> fixed = fixed_to(link);
-    for (const char* const word :
-         {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector", "end_effector_link", "tool_frame"})
+    for (const char* const word : {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector",
+                                   "end_effector_link", "tool_frame"})
       for (const int other : fixed)
         if (ends_with_word(robot_.links[other].name, word)) return other;
     return {};
@@ -202,7 +217,8 @@ class Guesser {
       for (const Joint* joint : children_[visit.link])
         if (depth_below(*joint) > 0) moving.push_back(joint);
       // A hand begins where an arm branches, and behind a flange.
-      const bool hand = whole && (moving.size() > 1 || (visit.row.back() == visit.link && tool_link(visit.link)));
+      const bool hand =
+          whole && (moving.size() > 1 || (visit.row.back() == visit.link && tool_link(visit.link)));
       if (moving.empty() || hand) {
         if (whole) rows_.push_back(visit.row);
         continue;
@@ -215,7 +231,8 @@ class Guesser {
         if (mimics_above(**joint)) {
           if (row_below_[next.link] >= kLeast) next.row.clear();  // a whole arm goes on behind it
         } else if ((*joint)->movable()) {
-          const bool goes_on = is_arm_joint(**joint) && !(whole && (is_hand_name((*joint)->name) || is_sensor(**joint)));
+          const bool goes_on = is_arm_joint(**joint) &&
+                               !(whole && (is_hand_name((*joint)->name) || is_sensor(**joint)));
           if (whole && !goes_on) {  // a finger
             rows_.push_back(visit.row);
             continue;
@@ -229,7 +246,8 @@ class Guesser {
 
   std::vector<std::string> longest_row() const {
     std::vector<std::string> names;
-    for (int joint = robot_.links[end_of_most_].parent_joint; joint >= 0 && static_cast<int>(names.size()) < most_;) {
+    for (int joint = robot_.links[end_of_most_].parent_joint;
+         joint >= 0 && static_cast<int>(names.size()) < most_;) {
       if (moves_alone(robot_.joints[joint])) names.push_back(robot_.joints[joint].name);
       joint = robot_.links[robot_.joints[joint].parent_link].parent_joint;
     }
@@ -241,8 +259,10 @@ class Guesser {
     try {
       int root = link;
       while (leads_up_from(root)) root = robot_.joints[robot_.links[root].parent_joint].parent_link;
-      static_cast<void>(
-          fit_srs(build_arm(robot_, robot_.links[root].name, robot_.links[link].name, {}, Pose::Identity()).chain, ""));
+      static_cast<void>(fit_srs(
+          build_arm(robot_, robot_.links[root].name, robot_.links[link].name, {}, Pose::Identity())
+              .chain,
+          ""));
       return true;
     } catch (const InputError&) {
       return false;
@@ -258,7 +278,9 @@ class Guesser {
     for (const Joint* joint : children_[link]) {
       if (is_sensor(*joint)) continue;
       if (children_[link].size() == 1) return joint;
-      if (!joint->movable() && children_[joint->child_link].empty() && joint->origin.isApprox(Pose::Identity(), kSame)) continue;
+      if (!joint->movable() && children_[joint->child_link].empty() &&
+          joint->origin.isApprox(Pose::Identity(), kSame))
+        continue;
       if (found != nullptr) return nullptr;
       found = joint;
     }
@@ -272,7 +294,9 @@ class Guesser {
     while (const Joint* const onwards = only_onwards(tip)) {
       if (onwards->type != Joint::Type::kFixed) break;
       const auto& below = children_[onwards->child_link];
-      if (std::any_of(below.begin(), below.end(), [](const Joint* joint) { return joint->movable(); })) break;
+      if (std::any_of(below.begin(), below.end(),
+                      [](const Joint* joint) { return joint->movable(); }))
+        break;
       tip = onwards->child_link;
     }
     return robot_.links[tip].name;
@@ -283,10 +307,13 @@ class Guesser {
   /// one turns.
   std::string base_name(int last, int joints) const {
     int link = last;
-    for (int count = 0; leads_up_from(link); link = robot_.joints[robot_.links[link].parent_joint].parent_link) {
+    for (int count = 0; leads_up_from(link);
+         link = robot_.joints[robot_.links[link].parent_joint].parent_link) {
       if (count >= joints && is_base_name(robot_.links[link].name)) break;
       const Joint& joint = robot_.joints[robot_.links[link].parent_joint];
-      if (count == kLeast && joints == kLeast && joint.movable() && !joint.mimic && joint.type != Joint::Type::kPrismatic) break;
+      if (count == kLeast && joints == kLeast && joint.movable() && !joint.mimic &&
+          joint.type != Joint::Type::kPrismatic)
+        break;
       count += moves_alone(joint);
     }
     return robot_.links[link].name;

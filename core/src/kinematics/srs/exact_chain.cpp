@@ -56,7 +56,8 @@ Config solved(std::array<std::array<double, kDof + 1>, kDof>& rows) {
 
 }  // namespace
 
-std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
+std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm,
+                                        const ArmPlane& plane, const Pose& tool, double phi,
                                         const Config& seed) {
   if (arm.exact) return seed;
   constexpr int kSteps = 5;
@@ -74,7 +75,9 @@ std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm, c
     const Pose reached = G[kDof] * chain.home;
     // Direction of axis 4 of the fitted arm, and the fitted axes that turn it.
     const double c0 = std::cos(q[0]), s0 = std::sin(q[0]), c1 = std::cos(q[1]), s1 = std::sin(q[1]);
-    const auto by_two = [&](const Vector3d& v) { return turned(turned(v, arm.axis[1], c1, s1), arm.axis[0], c0, s0); };
+    const auto by_two = [&](const Vector3d& v) {
+      return turned(turned(v, arm.axis[1], c1, s1), arm.axis[0], c0, s0);
+    };
     const Vector3d h = by_two(turned(arm.axis[3], arm.axis[2], std::cos(q[2]), std::sin(q[2])));
     const double x = h.dot(plane.r), y = h.dot(ur);
     Eigen::Matrix<double, 7, 1> error;
@@ -101,7 +104,8 @@ std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm, c
     rows[6][2] = by_two(arm.axis[2]).cross(h).dot(normal);
     const Config change = solved(rows);
     q += change;
-    if (change.lpNorm<Eigen::Infinity>() <= kLastStep && x * x + y * y >= kLeastSine * kLeastSine) return near_seed(q);
+    if (change.lpNorm<Eigen::Infinity>() <= kLastStep && x * x + y * y >= kLeastSine * kLeastSine)
+      return near_seed(q);
   }
   return std::nullopt;
 }
@@ -120,13 +124,16 @@ Config measure_fit_error(const Chain& chain, const SrsArm& arm) {
     for (std::size_t j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain.limit[j];
       const bool turns = limit.continuous || limit.wide();
-      q[static_cast<Eigen::Index>(j)] = turns ? uniform(-kPi, kPi) : uniform(limit.lower, limit.upper);
+      q[static_cast<Eigen::Index>(j)] =
+          turns ? uniform(-kPi, kPi) : uniform(limit.lower, limit.upper);
     }
-    const double least_sine = std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
-                                        std::abs(std::sin(arm.wrist_angle(q)))});
+    const double least_sine =
+        std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
+                  std::abs(std::sin(arm.wrist_angle(q)))});
     const Pose tool = chain.tool(q);
     const ArmPlane plane = first_plane(arm, tool);
-    if (least_sine < kLeastSine || reach_status(arm, plane.reach) != ReachStatus::kReachable) continue;
+    if (least_sine < kLeastSine || reach_status(arm, plane.reach) != ReachStatus::kReachable)
+      continue;
     const double phi = plane.angle_of(arm.elbow_axis(q));
     Config apart = srs_ik(arm, elbow_circles(arm, plane, tool), phi, arm.branch(q)) - q;
     for (double& joint : apart) joint = std::abs(wrap_angle(joint));
@@ -135,8 +142,9 @@ Config measure_fit_error(const Chain& chain, const SrsArm& arm) {
   return fit_error;
 }
 
-std::optional<Config> solve_exact_chain_turned(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
-                                               double phi, const Config& seed) {
+std::optional<Config> solve_exact_chain_turned(const Chain& chain, const SrsArm& arm,
+                                               const ArmPlane& plane, const Pose& tool, double phi,
+                                               const Config& seed) {
   const Pose turned = rolled(tool, roll_between(tool, chain.tool(seed)));
   return solve_exact_chain(chain, arm, carry_plane(arm, plane, turned), turned, phi, seed);
 }

@@ -20,7 +20,8 @@ double order(const Angle& x) {
 
 /// Returns the angle half-way from a to b, counter-clockwise.
 Angle between(const Angle& a, const Angle& b) {
-  const double cosine = a.cosine * b.cosine + a.sine * b.sine, sine = a.cosine * b.sine - a.sine * b.cosine;
+  const double cosine = a.cosine * b.cosine + a.sine * b.sine,
+               sine = a.cosine * b.sine - a.sine * b.cosine;
   // the sum vanishes at half a turn
   if (cosine < 0) return Angle::of(b.sine - a.sine, a.cosine - b.cosine);
   const double sign = sine >= 0 ? 1 : -1;
@@ -42,15 +43,18 @@ AngleRange::AngleRange(double lower, double upper)
 
 bool AngleRange::holds(double x, double y) const {
   if (all_ || none_) return all_;
-  const bool after = lower_.cosine * y - lower_.sine * x >= 0, before = x * upper_.sine - y * upper_.cosine >= 0;
+  const bool after = lower_.cosine * y - lower_.sine * x >= 0,
+             before = x * upper_.sine - y * upper_.cosine >= 0;
   return wide_ ? after || before : after && before;
 }
 
 TripleLimits::TripleLimits(const std::array<std::array<double, 2>, 3>& ranges, double shift)
-    : ranges_{AngleRange(ranges[0][0], ranges[0][1]), AngleRange(ranges[1][0] + shift, ranges[1][1] + shift),
+    : ranges_{AngleRange(ranges[0][0], ranges[0][1]),
+              AngleRange(ranges[1][0] + shift, ranges[1][1] + shift),
               AngleRange(ranges[2][0], ranges[2][1])} {}
 
-void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<AngleArc>& out) const {
+void TripleLimits::arcs(const TripleCircle& circle, bool negative,
+                        std::vector<AngleArc>& out) const {
   out.clear();
   const double sign = negative ? -1 : 1;
   const auto &x = circle[0], &y = circle[1], &z = circle[2], &u = circle[3], &v = circle[4];
@@ -69,15 +73,18 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<A
   std::size_t count = 0;
   const auto add = [&](const Angle& phi) { ends[count++] = {order(phi), phi}; };
   // Adds the arm angles at which the rows p and q have the direction `end`.
-  const auto meet = [&](const std::array<double, 3>& p, double p_sign, const std::array<double, 3>& q, const Angle& end) {
+  const auto meet = [&](const std::array<double, 3>& p, double p_sign,
+                        const std::array<double, 3>& q, const Angle& end) {
     const double c = p_sign * end.sine, s = end.cosine;
-    for (const Angle& phi : roots(Wave{c * p[2] - s * q[2], c * p[1] - s * q[1], c * p[0] - s * q[0]}, 0))
+    for (const Angle& phi :
+         roots(Wave{c * p[2] - s * q[2], c * p[1] - s * q[1], c * p[0] - s * q[0]}, 0))
       if (sign * (p_sign * at(p, phi) * end.cosine + at(q, phi) * end.sine) > -kDoubtful) add(phi);
   };
   for (const auto end : {&AngleRange::lower, &AngleRange::upper}) {
     if (!ranges_[0].all()) meet(x, 1, y, (ranges_[0].*end)());
     if (!ranges_[2].all()) meet(u, -1, v, (ranges_[2].*end)());
-    if (const Angle& middle = (ranges_[1].*end)(); !ranges_[1].all() && sign * middle.sine > -kDoubtful)
+    if (const Angle& middle = (ranges_[1].*end)();
+        !ranges_[1].all() && sign * middle.sine > -kDoubtful)
       for (const Angle& phi : roots(Wave{z[2] - middle.cosine, z[1], z[0]}, 0)) add(phi);
   }
   if (count == 0) {
@@ -85,18 +92,22 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<A
     return;
   }
   for (std::size_t k = 1; k < count; ++k)  // twelve at most: insertion
-    for (std::size_t j = k; j > 0 && ends[j].order < ends[j - 1].order; --j) std::swap(ends[j], ends[j - 1]);
+    for (std::size_t j = k; j > 0 && ends[j].order < ends[j - 1].order; --j)
+      std::swap(ends[j], ends[j - 1]);
   const auto same = [](const End& a, const End& b) { return a.phi == b.phi; };
-  count =
-      static_cast<std::size_t>(std::unique(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(count), same) - ends.begin());
+  count = static_cast<std::size_t>(
+      std::unique(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(count), same) -
+      ends.begin());
 
   // All angles between two neighbouring ends are within the ranges, or none is.
   std::array<bool, 12> inside{};
   for (std::size_t k = 0; k < count; ++k) {
     const Angle& a = ends[k].phi;
-    inside[k] = allowed(count == 1 ? Angle{-a.cosine, -a.sine} : between(a, ends[k + 1 < count ? k + 1 : 0].phi));
+    inside[k] = allowed(count == 1 ? Angle{-a.cosine, -a.sine}
+                                   : between(a, ends[k + 1 < count ? k + 1 : 0].phi));
   }
-  if (std::all_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count), [](bool in) { return in; })) {
+  if (std::all_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](bool in) { return in; })) {
     out.push_back({-kPi, kPi});
     return;
   }
@@ -110,7 +121,8 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<A
   }
 }
 
-void common_arcs(const std::vector<AngleArc>& a, const std::vector<AngleArc>& b, std::vector<AngleArc>& out) {
+void common_arcs(const std::vector<AngleArc>& a, const std::vector<AngleArc>& b,
+                 std::vector<AngleArc>& out) {
   out.clear();
   for (const AngleArc& one : a)
     for (const AngleArc& other : b) {
@@ -126,7 +138,8 @@ void common_arcs(const std::vector<AngleArc>& a, const std::vector<AngleArc>& b,
         out.push_back(both);
       }
     }
-  std::sort(out.begin(), out.end(), [](const AngleArc& x, const AngleArc& y) { return x.begin < y.begin; });
+  std::sort(out.begin(), out.end(),
+            [](const AngleArc& x, const AngleArc& y) { return x.begin < y.begin; });
 }
 
 }  // namespace swivel

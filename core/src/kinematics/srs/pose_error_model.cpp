@@ -17,13 +17,16 @@ PoseErrorModel::PoseErrorModel(const Chain& chain, const SrsArm& arm)
   for (int joint = 1; joint <= kDof; ++joint) {
     const auto j = static_cast<std::size_t>(joint - 1);
     const std::size_t own = part_of(joint);
-    const double angle = std::atan2(chain.axis[j].cross(arm.axis[j]).norm(), chain.axis[j].dot(arm.axis[j])) + kRounding;
+    const double angle =
+        std::atan2(chain.axis[j].cross(arm.axis[j]).norm(), chain.axis[j].dot(arm.axis[j])) +
+        kRounding;
     const double offset = (about_[own] - chain.point[j]).cross(chain.axis[j]).norm() + kRounding;
     // A turn about an axis at an angle e from the fitted one, d beside its point, takes what is at
     // a distance r from that point 2 e (r + d) + 2 d away from where the fitted turn takes it, and
     // turns it by 2 asin(e) against that.
     for (std::size_t part = own; part < about_.size(); ++part) {
-      const double radius = (own == kShoulder && part > kShoulder ? upper_ : 0) + (own < kWrist && part == kWrist ? fore_ : 0);
+      const double radius = (own == kShoulder && part > kShoulder ? upper_ : 0) +
+                            (own < kWrist && part == kWrist ? fore_ : 0);
       shift_[part] += 2 * angle * (radius + offset) + 2 * offset;
       turn_[part] += 2 * std::asin(std::min(1.0, angle));
     }
@@ -34,15 +37,17 @@ PoseErrorBound PoseErrorModel::from_fitted(int group, double reach, const Config
   const std::size_t part = part_of(group);
   const PoseErrorBound unknown = PoseErrorBound::unknown(about_[part]);
   if (group == kDof) return {about_[part], 0, 0};  // the tool stands where the layer puts it
-  // With a smaller sine a row might have flipped the elbow: solve_exact_chain() moves no joint by more than
-  // kMostCorrection.
+  // With a smaller sine a row might have flipped the elbow: solve_exact_chain() moves no joint by
+  // more than kMostCorrection.
   constexpr double kLeastSine = 0.05;
   static_assert(kLeastSine >= kMostCorrection);
   const double wrist =
       // Distance of the fitted arm's wrist centre at the row's joints from where it should be.
       shift_[kWrist];
   if (!(wrist < reach)) return unknown;
-  const auto cosine = [&](double d) { return (d * d - upper_ * upper_ - fore_ * fore_) / (2 * upper_ * fore_); };
+  const auto cosine = [&](double d) {
+    return (d * d - upper_ * upper_ - fore_ * fore_) / (2 * upper_ * fore_);
+  };
   const double most = std::max(std::abs(cosine(reach - wrist)), std::abs(cosine(reach + wrist)));
   if (!(most < 1) || std::sqrt(1 - most * most) < kLeastSine) return unknown;
   const double sine = std::sqrt(1 - most * most);
@@ -59,7 +64,9 @@ PoseErrorBound PoseErrorModel::from_fitted(int group, double reach, const Config
     return turn < kPi / 2 && ratio < 1 ? std::asin(ratio) : std::numeric_limits<double>::infinity();
   };
   const auto known = [&](double turn, double shift) {
-    return std::isfinite(turn) ? PoseErrorBound{about_[part], turn + turn_[part], shift + shift_[part]} : unknown;
+    return std::isfinite(turn)
+               ? PoseErrorBound{about_[part], turn + turn_[part], shift + shift_[part]}
+               : unknown;
   };
   if (part == kElbow) return known(fore, upper_ * upper);
   if (part == kShoulder) {
@@ -90,7 +97,8 @@ double PoseErrorModel::jacobian_change(double reach, const Config& q) const {
   return std::sqrt(squares);
 }
 
-PoseErrorBound PoseErrorModel::between_exact_configs(int group, double reach, const Config& q) const {
+PoseErrorBound PoseErrorModel::between_exact_configs(int group, double reach,
+                                                     const Config& q) const {
   const PoseErrorBound row = from_fitted(group, reach, q);
   return {row.about, 2 * row.turn, 2 * row.shift};
 }

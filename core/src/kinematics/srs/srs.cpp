@@ -49,8 +49,8 @@ Crossing cross(const Line& first, const Line& second) {
 
 /// Returns the common point of axes i, i+1, i+2 (0-based), neighbours perpendicular; appends to
 /// `problem` what is wrong.
-Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const char* what, FitDeviation& deviation,
-                    std::string& problem) {
+Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const char* what,
+                    FitDeviation& deviation, std::string& problem) {
   const std::string names[2] = {"axes " + std::to_string(i + 1) + " and " + std::to_string(i + 2),
                                 "axes " + std::to_string(i + 2) + " and " + std::to_string(i + 3)};
   const Crossing crossing[2] = {cross(line[i], line[i + 1]), cross(line[i + 2], line[i + 1])};
@@ -75,8 +75,9 @@ Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const cha
   deviation.offset = std::max(deviation.offset, gap);
   if (gap > kMissTolerance) {
     problem += problem.empty() ? "" : "; ";
-    problem += "axes " + std::to_string(i + 1) + " and " + std::to_string(i + 3) + " meet axis " + std::to_string(i + 2) +
-               formatted(" %.1f mm apart", 1e3 * gap) + " (no spherical " + what + ")";
+    problem += "axes " + std::to_string(i + 1) + " and " + std::to_string(i + 3) + " meet axis " +
+               std::to_string(i + 2) + formatted(" %.1f mm apart", 1e3 * gap) + " (no spherical " +
+               what + ")";
   }
   return 0.5 * (crossing[0].middle + crossing[1].middle);
 }
@@ -96,13 +97,15 @@ EulerTriple fit_triple(const Vector3d& first, const Vector3d& second, const Vect
 /// Returns the entries (TripleCircle) of B^T M B Ry(shift) needed for z-y-z, for one of the three
 /// matrices of R(phi) = A sin + B cos + C.
 std::array<double, 5> triple_entries(const EulerTriple& triple, const Matrix3d& M) {
-  const Matrix3d N =
-      triple.basis.transpose() * M * triple.basis * Eigen::AngleAxisd(triple.shift, Vector3d::UnitY()).toRotationMatrix();
+  const Matrix3d N = triple.basis.transpose() * M * triple.basis *
+                     Eigen::AngleAxisd(triple.shift, Vector3d::UnitY()).toRotationMatrix();
   return {N(0, 2), N(1, 2), N(2, 2), N(2, 0), N(2, 1)};
 }
 
-TripleCircle triple_circle(const EulerTriple& triple, const Matrix3d& A, const Matrix3d& B, const Matrix3d& C) {
-  const auto a = triple_entries(triple, A), b = triple_entries(triple, B), c = triple_entries(triple, C);
+TripleCircle triple_circle(const EulerTriple& triple, const Matrix3d& A, const Matrix3d& B,
+                           const Matrix3d& C) {
+  const auto a = triple_entries(triple, A), b = triple_entries(triple, B),
+             c = triple_entries(triple, C);
   TripleCircle circle;
   for (std::size_t k = 0; k < 5; ++k) circle[k] = {a[k], b[k], c[k]};
   return circle;
@@ -112,9 +115,11 @@ Matrix3d turn(const Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
-std::array<double, 3> solve_euler(const TripleCircle& circle, double shift, double s, double c, bool flip) {
+std::array<double, 3> solve_euler(const TripleCircle& circle, double shift, double s, double c,
+                                  bool flip) {
   const auto at = [&](std::size_t k) { return circle[k][0] * s + circle[k][1] * c + circle[k][2]; };
-  const double first = std::atan2(at(1), at(0)), middle = std::atan2(std::hypot(at(0), at(1)), at(2)),
+  const double first = std::atan2(at(1), at(0)),
+               middle = std::atan2(std::hypot(at(0), at(1)), at(2)),
                last = std::atan2(at(4), -at(3));
   if (!flip) return {first, middle - shift, last};
   return {wrap_angle(first + kPi), -middle - shift, wrap_angle(last + kPi)};
@@ -134,10 +139,13 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   if (problem.empty()) {
     arm.deviation.offset = std::max(arm.deviation.offset, std::abs(out_of_plane));
     if (std::abs(out_of_plane) > kMissTolerance)
-      problem = formatted("the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is normal to",
-                          1e3 * std::abs(out_of_plane));
+      problem = formatted(
+          "the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is "
+          "normal to",
+          1e3 * std::abs(out_of_plane));
   }
-  if (!problem.empty()) throw NotSrs(source, problem, "a spherical shoulder and wrist within 1 mm and 0.57 deg");
+  if (!problem.empty())
+    throw NotSrs(source, problem, "a spherical shoulder and wrist within 1 mm and 0.57 deg");
 
   arm.axis[1] = line[1].a;
   arm.axis[0] = perpendicular_part(line[0].a, line[1].a);
@@ -151,7 +159,9 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   arm.upper = (arm.E - arm.S).norm();
   arm.fore = (arm.W - arm.E).norm();
   if (arm.upper < kMissTolerance || arm.fore < kMissTolerance)
-    throw NotSrs(source, std::string("axis 4 runs through the ") + (arm.upper < arm.fore ? "shoulder" : "wrist") + " centre",
+    throw NotSrs(source,
+                 std::string("axis 4 runs through the ") +
+                     (arm.upper < arm.fore ? "shoulder" : "wrist") + " centre",
                  "elbows at least 1 mm away");
   const Vector3d straight = (arm.E - arm.S).normalized(), fore = (arm.W - arm.E).normalized();
   arm.elbow_shift = std::atan2(straight.cross(fore).dot(a4), straight.dot(fore));
@@ -165,7 +175,8 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
 }
 
 int SrsArm::branch(const Config& q) const {
-  return (std::sin(shoulder_angle(q)) < 0 ? kShoulderBit : 0) | (std::sin(wrist_angle(q)) < 0 ? kWristBit : 0) |
+  return (std::sin(shoulder_angle(q)) < 0 ? kShoulderBit : 0) |
+         (std::sin(wrist_angle(q)) < 0 ? kWristBit : 0) |
          (std::sin(elbow_angle(q)) < 0 ? kElbowBit : 0);
 }
 
@@ -215,15 +226,18 @@ ReachStatus reach_status(const SrsArm& arm, double reach) {
   constexpr double kMargin = 1e-9;
   const double low = std::abs(arm.upper - arm.fore), high = arm.upper + arm.fore;
   if (reach < low - kMargin || reach > high + kMargin) return ReachStatus::kOutOfReach;
-  if (reach < low + kMargin || reach > high - kMargin || reach < 1e-6) return ReachStatus::kSingular;
+  if (reach < low + kMargin || reach > high - kMargin || reach < 1e-6)
+    return ReachStatus::kSingular;
   return ReachStatus::kReachable;
 }
 
-std::array<ElbowCircle, 2> elbow_circles(const SrsArm& arm, const ArmPlane& plane, const Pose& tool) {
-  const double d2 = plane.reach * plane.reach, sum = arm.upper + arm.fore, difference = arm.upper - arm.fore;
+std::array<ElbowCircle, 2> elbow_circles(const SrsArm& arm, const ArmPlane& plane,
+                                         const Pose& tool) {
+  const double d2 = plane.reach * plane.reach, sum = arm.upper + arm.fore,
+               difference = arm.upper - arm.fore;
   // Half-angle form: acos loses half the digits near the straight arm.
-  const double bend =
-      2 * std::atan2(std::sqrt(std::max(0.0, sum * sum - d2)), std::sqrt(std::max(0.0, d2 - difference * difference)));
+  const double bend = 2 * std::atan2(std::sqrt(std::max(0.0, sum * sum - d2)),
+                                     std::sqrt(std::max(0.0, d2 - difference * difference)));
   const Vector3d& a4 = arm.axis[3];
   const Vector3d ur = plane.u.cross(plane.r);
   const Matrix3d goal = tool.linear() * arm.home_rotation.transpose();
@@ -240,15 +254,18 @@ std::array<ElbowCircle, 2> elbow_circles(const SrsArm& arm, const ArmPlane& plan
     const Matrix3d C = plane.u * u0.transpose();
     circle.shoulder = triple_circle(arm.shoulder, A, B, C);
     const Matrix3d R4t = R4.transpose();
-    circle.wrist = triple_circle(arm.wrist, R4t * A.transpose() * goal, R4t * B.transpose() * goal, R4t * C.transpose() * goal);
+    circle.wrist = triple_circle(arm.wrist, R4t * A.transpose() * goal, R4t * B.transpose() * goal,
+                                 R4t * C.transpose() * goal);
   }
   return circles;
 }
 
-Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, double phi, int branch) {
+Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, double phi,
+              int branch) {
   const ElbowCircle& circle = circles[branch & kElbowBit ? 1 : 0];
   const double s = std::sin(phi), c = std::cos(phi);
-  const auto shoulder = solve_euler(circle.shoulder, arm.shoulder.shift, s, c, branch & kShoulderBit);
+  const auto shoulder =
+      solve_euler(circle.shoulder, arm.shoulder.shift, s, c, branch & kShoulderBit);
   const auto wrist = solve_euler(circle.wrist, arm.wrist.shift, s, c, branch & kWristBit);
   Config q;
   q << shoulder[0], shoulder[1], shoulder[2], circle.q4, wrist[0], wrist[1], wrist[2];

@@ -48,13 +48,15 @@ double length_at(const SelfMotionArc& arc, int chord, double u) {
 }
 
 /// The nearest point of a chord's cubic; none beyond `within`.
-std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord, const Config& q, double within) {
+std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord, const Config& q,
+                                double within) {
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
   const Config line = difference(arc.q[next], arc.q[k]), way = difference(q, arc.q[k]);
   const double length2 = line.squaredNorm();
   const double along = way.dot(line) / length2;
   if (along < -0.5 || along > 1.5) {
-    if (way.squaredNorm() > within * within && (way - line).squaredNorm() > within * within) return std::nullopt;
+    if (way.squaredNorm() > within * within && (way - line).squaredNorm() > within * within)
+      return std::nullopt;
   }
   double u = std::clamp(along, 0.0, 1.0);
   Config off = difference(q, arc.at(chord, u));
@@ -77,7 +79,8 @@ struct Box {
   Config middle, radius;
   /// False where the cubic is surely further than `within` from q.
   [[nodiscard]] bool maybe_near(const Config& q, double within) const {
-    for (int j = kDof - 1; j >= 0; --j) {  // the last joints turn most: most chords are told by them
+    for (int j = kDof - 1; j >= 0;
+         --j) {  // the last joints turn most: most chords are told by them
       const double apart = std::abs(q[j] - middle[j]), reach = radius[j] + within;
       if (apart > reach && apart < kTwoPi - reach) return false;
     }
@@ -92,7 +95,8 @@ Box box_of(const SelfMotionArc& arc, int number, int chord) {
   const Config d = difference(arc.q[next], arc.q[k]);
   const double third = d.norm() / 3;
   const Config first = third * arc.tangent[k], second = d - third * arc.tangent[next];
-  const Config low = first.cwiseMin(second).cwiseMin(d).cwiseMin(0), high = first.cwiseMax(second).cwiseMax(d).cwiseMax(0);
+  const Config low = first.cwiseMin(second).cwiseMin(d).cwiseMin(0),
+               high = first.cwiseMax(second).cwiseMax(d).cwiseMax(0);
   return {number, chord, arc.q[k] + (low + high) / 2, ((high - low) / 2).array() + kRounding};
 }
 
@@ -106,7 +110,8 @@ class Finder {
         boxes_.push_back(box_of(arcs_[static_cast<std::size_t>(number)], number, chord));
     }
   }
-  /// Near where the last question was answered first: nodes are asked about in the order of their arcs.
+  /// Near where the last question was answered first: nodes are asked about in the order of their
+  /// arcs.
   [[nodiscard]] std::optional<Place> find(const Config& q) {
     if (last_.arc >= 0) {
       const SelfMotionArc& arc = arcs_[static_cast<std::size_t>(last_.arc)];
@@ -116,15 +121,19 @@ class Finder {
           if (!arc.closed) break;
           chord %= arc.chords();
         }
-        if (!boxes_[first_[static_cast<std::size_t>(last_.arc)] + static_cast<std::size_t>(chord)].maybe_near(q, kOnArc)) continue;
-        if (const auto place = nearest_on(arc, last_.arc, chord, q, kOnArc); place && inner(*place)) return last_ = *place;
+        if (!boxes_[first_[static_cast<std::size_t>(last_.arc)] + static_cast<std::size_t>(chord)]
+                 .maybe_near(q, kOnArc))
+          continue;
+        if (const auto place = nearest_on(arc, last_.arc, chord, q, kOnArc); place && inner(*place))
+          return last_ = *place;
       }
     }
     std::optional<Place> best;
     for (const Box& box : boxes_) {
       const double within = best ? best->away : kCatch;
       if (!box.maybe_near(q, within)) continue;
-      const auto place = nearest_on(arcs_[static_cast<std::size_t>(box.arc)], box.arc, box.chord, q, within);
+      const auto place =
+          nearest_on(arcs_[static_cast<std::size_t>(box.arc)], box.arc, box.chord, q, within);
       if (place && (!best || place->away < best->away)) best = place;
     }
     if (best) last_ = *best;
@@ -146,11 +155,12 @@ struct Image {
   bool asked = false;  // for its roll, however near the arc's end
 };
 
-/// What is carried on from the layer before, of nodes with twins one of two, whose twins come behind them. The start of a path
-/// follows as the last.
+/// What is carried on from the layer before, of nodes with twins one of two, whose twins come
+/// behind them. The start of a path follows as the last.
 struct Before {
   std::vector<Config> q;
-  std::vector<int> slots;  // of each; -1 where it is carried on alone, since its roll is outside the layer's window
+  std::vector<int> slots;  // of each; -1 where it is carried on alone, since its roll is outside
+                           // the layer's window
   int nodes = 0;           // slots of the layer
   bool start = false;
   [[nodiscard]] int start_slot() const { return nodes; }
@@ -162,11 +172,12 @@ struct Before {
 };
 
 /// Adds the points of an arc at which the roll has a value. They take the place of images nearby.
-void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc, int number, double spacing,
-                 std::vector<Image>& images) {
+void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc,
+                 int number, double spacing, std::vector<Image>& images) {
   for (int chord = 0; chord < arc.chords(); ++chord) {
     const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-    const double from = wrap_angle(arc.q[k][kDof - 1] - roll), to = from + difference(arc.q[next][kDof - 1], arc.q[k][kDof - 1]);
+    const double from = wrap_angle(arc.q[k][kDof - 1] - roll),
+                 to = from + difference(arc.q[next][kDof - 1], arc.q[k][kDof - 1]);
     if (!(from < 0 && to > 0) && !(from > 0 && to < 0)) continue;
     double low = 0, high = 1;
     for (int halving = 0; halving < 30; ++halving) {
@@ -189,15 +200,18 @@ void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const 
 /// Fills a layer.
 class Layer {
  public:
-  Layer(const SelfMotion& motion, const Pose& tool, double spacing) : motion_(motion), tool_(tool), spacing_(spacing) {}
+  Layer(const SelfMotion& motion, const Pose& tool, double spacing)
+      : motion_(motion), tool_(tool), spacing_(spacing) {}
   /// `images` of one arc, in the order of their lengths.
   void place(const SelfMotionArc& arc, const std::vector<Image>& images);
-  /// Leaves out the points whose roll the layer does not allow. Returns the slot of each that there was, -1: none.
+  /// Leaves out the points whose roll the layer does not allow. Returns the slot of each that there
+  /// was, -1: none.
   std::vector<int> keep_window(const PathLayer& layer);
   /// Adds the twins of all points.
   void add_flipped(const Before& before);
   std::vector<Point> points;
-  std::vector<std::pair<int, int>> continued;  // slot of the layer before, and the slot here that continues it
+  std::vector<std::pair<int, int>>
+      continued;  // slot of the layer before, and the slot here that continues it
 
  private:
   void add(const Config& q, double length) {
@@ -221,7 +235,8 @@ void Layer::fill(const SelfMotionArc& arc, double from, double to) {
     double length = from + part * ((to - from) / parts);
     if (length >= arc.whole()) length -= arc.whole();  // of closed arcs
     const auto above = std::upper_bound(arc.length.begin(), arc.length.end(), length);
-    const int chord = std::clamp(static_cast<int>(above - arc.length.begin()) - 1, 0, arc.chords() - 1);
+    const int chord =
+        std::clamp(static_cast<int>(above - arc.length.begin()) - 1, 0, arc.chords() - 1);
     const auto k = static_cast<std::size_t>(chord);
     const double u = (length - arc.length[k]) / (arc.length[k + 1] - arc.length[k]);
     if (const auto q = motion_.point(arc, chord, u, tool_)) add(*q, length);
@@ -237,7 +252,9 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
     if (image.asked) {
       // It has been given room.
     } else if (arc.closed) {
-      if (!kept.empty() && (at - kept.back()->place.length < least || kept.front()->place.length + whole - at < least)) continue;
+      if (!kept.empty() && (at - kept.back()->place.length < least ||
+                            kept.front()->place.length + whole - at < least))
+        continue;
     } else if (at - (kept.empty() ? 0 : kept.back()->place.length) < least || whole - at < least) {
       continue;
     }
@@ -258,31 +275,38 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
     fill(arc, 0, whole);
   } else {
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      const double at = kept[k]->place.length,
-                   next = k + 1 < kept.size() ? kept[k + 1]->place.length : kept[0]->place.length + whole;
+      const double at = kept[k]->place.length, next = k + 1 < kept.size()
+                                                          ? kept[k + 1]->place.length
+                                                          : kept[0]->place.length + whole;
       add(kept[k]->q, at);
       fill(arc, at, next);
     }
     // What was filled across the wrap goes to the front.
-    const auto wrapped = std::find_if(lengths_.begin() + static_cast<std::ptrdiff_t>(first) + 1, lengths_.end(),
-                                      [&](double x) { return x < kept[0]->place.length; });
+    const auto wrapped =
+        std::find_if(lengths_.begin() + static_cast<std::ptrdiff_t>(first) + 1, lengths_.end(),
+                     [&](double x) { return x < kept[0]->place.length; });
     const auto by = wrapped - lengths_.begin();
-    std::rotate(points.begin() + static_cast<std::ptrdiff_t>(first), points.begin() + by, points.end());
+    std::rotate(points.begin() + static_cast<std::ptrdiff_t>(first), points.begin() + by,
+                points.end());
     std::rotate(lengths_.begin() + static_cast<std::ptrdiff_t>(first), wrapped, lengths_.end());
   }
   const std::size_t end = points.size();
   for (std::size_t k = first; k < end; ++k) {
-    if (k > first || (arc.closed && end > first + 1)) points[k].beside[0] = static_cast<int>(k > first ? k - 1 : end - 1);
-    if (k + 1 < end || (arc.closed && end > first + 1)) points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
+    if (k > first || (arc.closed && end > first + 1))
+      points[k].beside[0] = static_cast<int>(k > first ? k - 1 : end - 1);
+    if (k + 1 < end || (arc.closed && end > first + 1))
+      points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
   }
   for (const Image& image : images) {
     if (image.source < 0) continue;
     // The node that continues the source: its image, or what stands in its way.
     const auto begin = lengths_.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto above = static_cast<std::size_t>(std::lower_bound(begin, lengths_.end(), image.place.length) - lengths_.begin());
+    const auto above = static_cast<std::size_t>(
+        std::lower_bound(begin, lengths_.end(), image.place.length) - lengths_.begin());
     std::size_t nearest = first;
     double least_gap = -1;
-    for (const std::size_t k : {first, above - 1, above, end - 1}) {  // the ends are neighbours where the arc is closed
+    for (const std::size_t k :
+         {first, above - 1, above, end - 1}) {  // the ends are neighbours where the arc is closed
       if (k < first || k >= end) continue;
       double gap = std::abs(lengths_[k] - image.place.length);
       if (arc.closed) gap = std::min(gap, whole - gap);
@@ -305,7 +329,9 @@ std::vector<int> Layer::keep_window(const PathLayer& layer) {
     if (keeps) kept.push_back(point);
   }
   if (kept.size() == points.size()) return slot_of;
-  const auto moved = [&](int slot) { return slot < 0 ? -1 : slot_of[static_cast<std::size_t>(slot)]; };
+  const auto moved = [&](int slot) {
+    return slot < 0 ? -1 : slot_of[static_cast<std::size_t>(slot)];
+  };
   for (Point& point : kept)
     for (int& slot : point.beside) slot = moved(slot);
   for (auto& [source, slot] : continued) slot = moved(slot);
@@ -325,7 +351,8 @@ void Layer::add_flipped(const Before& before) {
     point.along[0] = before.flipped_of(point.along[0]);
     points.push_back(point);
   }
-  for (std::size_t k = 0; k < links; ++k) continued.emplace_back(before.flipped_of(continued[k].first), continued[k].second + by);
+  for (std::size_t k = 0; k < links; ++k)
+    continued.emplace_back(before.flipped_of(continued[k].first), continued[k].second + by);
 }
 
 std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
@@ -337,7 +364,8 @@ std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
 
 /// Foot on `axis` nearest `other`, of neighbouring joints, at a displacement of the former.
 Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
-  const Vector3d &a = chain.axis[axis], &b = chain.axis[other], n = a.cross(b), d = chain.point[other] - chain.point[axis];
+  const Vector3d &a = chain.axis[axis], &b = chain.axis[other], n = a.cross(b),
+                 d = chain.point[other] - chain.point[axis];
   const double sine2 = n.squaredNorm();
   if (sine2 < 1e-12) return chain.point[axis];
   return chain.point[axis] + (d.cross(b).dot(n) / sine2) * a;
@@ -345,18 +373,24 @@ Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
 
 }  // namespace
 
-ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
+ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method,
+                                     const ToolPath& path, const Problem& problem,
                                      const Budget& budget) {
   const TraceSpan span("arcs");
   if (problem.start) {
     validate_start(problem, chain, path);
-    if (chain.roll) static_cast<void>(roll_of_start(problem, chain, path, {chain.limit.back().lower, chain.limit.back().upper}));
+    if (chain.roll)
+      static_cast<void>(roll_of_start(problem, chain, path,
+                                      {chain.limit.back().lower, chain.limit.back().upper}));
   }
-  const SelfMotion motion(chain, method, problem.limits.joint_margin, weights_of(chain, problem.cost));
+  const SelfMotion motion(chain, method, problem.limits.joint_margin,
+                          weights_of(chain, problem.cost));
   // Nodes drift with the tool as the cost would have it.
-  const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm : SelfMotion::Least::kLargest;
+  const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm
+                                                            : SelfMotion::Least::kLargest;
   Layers result;
-  for (std::size_t j = 0; j < kDof; ++j) result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
+  for (std::size_t j = 0; j < kDof; ++j)
+    result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
   const bool twins = motion.has_flipped_arcs();
   Before before;
   for (int i = 0; i < path.size(); ++i) {
@@ -389,7 +423,8 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
           continue;
         }
         if (!inside) {
-          q = motion.point(arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u, tool);
+          q = motion.point(arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u,
+                           tool);
           if (!q) continue;
         }
         images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, source});
@@ -406,13 +441,16 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       // Where the roll costs least, and the ends of what it may be.
       const Roll& window = path.layer(i).window;
       const auto add = [&](double roll) {
-        add_at_roll(roll, motion, tool, arcs[k], static_cast<int>(k), problem.resolution.arc, images[k]);
+        add_at_roll(roll, motion, tool, arcs[k], static_cast<int>(k), problem.resolution.arc,
+                    images[k]);
       };
       if (chain.roll && problem.cost.roll > 0) add(0);
       if (chain.roll && window.lower > chain.limit.back().lower) add(window.lower);
-      if (chain.roll && window.upper < chain.limit.back().upper && window.upper > window.lower) add(window.upper);
-      std::stable_sort(images[k].begin(), images[k].end(),
-                       [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
+      if (chain.roll && window.upper < chain.limit.back().upper && window.upper > window.lower)
+        add(window.upper);
+      std::stable_sort(images[k].begin(), images[k].end(), [](const Image& a, const Image& b) {
+        return a.place.length < b.place.length;
+      });
       layer.place(arcs[k], images[k]);
     }
     std::vector<Config> nodes;
@@ -444,22 +482,25 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       }
     }
     if (before.start)
-      for (Point& point : layer.points) point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
+      for (Point& point : layer.points)
+        point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
     before = {std::move(nodes), std::move(slot_of), slots, false};
     result.points.push_back(std::move(layer.points));
   }
   return result;
 }
 
-ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
-                       const Budget& budget)
+ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
+                       const Problem& problem, const Budget& budget)
     : ArcLattice(chain, method, path, problem, build(chain, method, path, problem, budget)) {}
 
-ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, Layers&& layers)
+ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
+                       const Problem& problem, Layers&& layers)
     : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
       method_(method),
       problem_(problem),
-      layers_{{}, layers.circles, std::move(layers.windings), std::move(layers.next), layers.arcs} {}
+      layers_{{}, layers.circles, std::move(layers.windings), std::move(layers.next), layers.arcs} {
+}
 
 int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
   const auto J = chain.jacobian(q);
@@ -471,7 +512,9 @@ int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
   const ClosedFormFit& fit = *method.by_joint[static_cast<std::size_t>(method.best)];
   // The triple, or the last of three parallel axes and the two behind it.
   const int first = fit.structure == Structure::kParallel ? (fit.first == 1 ? 3 : 0) : fit.first;
-  const auto axis = [&](int k) -> Vector3d { return rest.block<3, 1>(3, std::min(first + k, kSix - 1)); };
+  const auto axis = [&](int k) -> Vector3d {
+    return rest.block<3, 1>(3, std::min(first + k, kSix - 1));
+  };
   const bool triple = axis(0).dot(axis(1).cross(axis(2))) < 0;
   return (triple ? 1 : 0) | (whole != triple ? 2 : 0);
 }
@@ -479,7 +522,8 @@ int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
 double arc_angle(const Chain& chain, const Config& q) {
   if (chain.roll) return q[kDof - 1];
   const auto G = chain.displacements(q);
-  const Vector3d S = G[1] * foot(chain, 1, 0), E = G[3] * foot(chain, 3, 2), W = G[5] * foot(chain, 5, 6);
+  const Vector3d S = G[1] * foot(chain, 1, 0), E = G[3] * foot(chain, 3, 2),
+                 W = G[5] * foot(chain, 5, 6);
   const Vector3d u = (W - S).normalized();
   Vector3d r = u.cross(Vector3d::UnitZ());
   if (r.norm() < 1e-3) r = u.cross(Vector3d::UnitX());
@@ -496,8 +540,9 @@ double ArcLattice::phi(int layer, int slot) const {
 }
 
 int ArcLattice::next_on_arc(int layer, int slot) const {
-  return layers_.next.empty() ? neighbour_in_redundancy(layer, slot, 1)
-                              : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+  return layers_.next.empty()
+             ? neighbour_in_redundancy(layer, slot, 1)
+             : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
 }
 
 ArcLattice::Rows ArcLattice::followed(const std::vector<int>& slots) const {
@@ -521,14 +566,16 @@ ArcLattice::Fit ArcLattice::fit(std::size_t j, const Rows& rows) const {
     least = std::min(least, q[at]);
     most = std::max(most, q[at]);
   }
-  const double lower = chain().limit[j].lower + limits().joint_margin, upper = chain().limit[j].upper - limits().joint_margin;
+  const double lower = chain().limit[j].lower + limits().joint_margin,
+               upper = chain().limit[j].upper - limits().joint_margin;
   const auto keeps = [&](double turn) { return least + turn >= lower && most + turn <= upper; };
   Fit fit;
   if (problem_.start) {
     if (keeps(0)) fit = {0.0, true};
     return fit;
   }
-  double turns = std::ceil((lower - rows[0][at]) / kTwoPi), nearest = std::numeric_limits<double>::infinity(), fitting = nearest;
+  double turns = std::ceil((lower - rows[0][at]) / kTwoPi),
+         nearest = std::numeric_limits<double>::infinity(), fitting = nearest;
   each_image(j, rows[0][at], [&](double image) {
     const double off = off_middle(j, image), turn = kTwoPi * turns++;
     const bool kept = keeps(turn);
@@ -538,7 +585,8 @@ ArcLattice::Fit ArcLattice::fit(std::size_t j, const Rows& rows) const {
   return fit;
 }
 
-std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std::vector<int>& slots) const {
+std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(
+    const std::vector<int>& slots) const {
   Rows rows = followed(slots);
   Joints failed{};
   for (std::size_t j = 0; j < kDof; ++j) {
@@ -606,12 +654,16 @@ std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
     for (int slot = 0; slot < slots(i); ++slot) {
       const int after = next_on_arc(i, slot);
       if (after < 0) continue;
-      for (std::size_t a = first[static_cast<std::size_t>(slot)]; a < first[static_cast<std::size_t>(slot) + 1]; ++a)
-        for (std::size_t b = first[static_cast<std::size_t>(after)]; b < first[static_cast<std::size_t>(after) + 1]; ++b)
-          if ((points[b].q - points[a].q).cwiseAbs().maxCoeff() < kPi) next[a] = static_cast<int>(b);
+      for (std::size_t a = first[static_cast<std::size_t>(slot)];
+           a < first[static_cast<std::size_t>(slot) + 1]; ++a)
+        for (std::size_t b = first[static_cast<std::size_t>(after)];
+             b < first[static_cast<std::size_t>(after) + 1]; ++b)
+          if ((points[b].q - points[a].q).cwiseAbs().maxCoeff() < kPi)
+            next[a] = static_cast<int>(b);
     }
   }
-  return std::unique_ptr<Lattice>(new ArcLattice(chain(), method_, path(), problem_, std::move(wound)));
+  return std::unique_ptr<Lattice>(
+      new ArcLattice(chain(), method_, path(), problem_, std::move(wound)));
 }
 
 }  // namespace swivel

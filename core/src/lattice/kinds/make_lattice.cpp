@@ -26,26 +26,32 @@ bool turns_about_last_joint(const Chain& chain) {
 
 }  // namespace
 
-std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
-                                      const Budget& budget) {
-  if (chain.free_roll && !path.unturned()) return RollLattice::make(chain, *arm.srs, path, problem, budget);
-  if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
+std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
+                                      const Problem& problem, const Budget& budget) {
+  if (chain.free_roll && !path.unturned())
+    return RollLattice::make(chain, *arm.srs, path, problem, budget);
+  if (arm.kind == ArmKind::kSrs)
+    return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
   if (problem.limits.arm_slope != Limits().arm_slope)
     throw InputError(problem.source,
-                     "limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
+                     "limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed "
+                     "is to leave it out");
   return std::make_unique<ArcLattice>(chain, arm.lock, path, problem, budget);
 }
 
-std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm, const Problem& problem) {
+std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
+                                         const Problem& problem) {
   // Where the roll costs something joint 7 had better turn.
-  if (!arm.srs || problem.start || !problem.rolls.empty() || problem.cost.roll > 0 || !turns_about_last_joint(chain))
+  if (!arm.srs || problem.start || !problem.rolls.empty() || problem.cost.roll > 0 ||
+      !turns_about_last_joint(chain))
     return std::nullopt;
   const JointLimit& limit = chain.limit.back();
   if (limit.continuous) return 0.0;
   return limit.wide() ? std::clamp(0.0, limit.lower, limit.upper) : (limit.lower + limit.upper) / 2;
 }
 
-std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
+std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm,
+                                              const ToolPath& path, const Problem& problem,
                                               const Budget& budget) {
   const auto rest = last_joint_at_rest(chain, arm, problem);
   return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest) : nullptr;

@@ -22,49 +22,58 @@ namespace {
 constexpr double kSingularSine = 1e-6;
 constexpr double kMostTurning = 5;  // dalpha, that the path may turn from a knot to the next
 
-/// Planes of layers for a tool that is turned: those of the tool that is not, under the smallest rotation.
-std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& planes, const std::vector<int>& layers,
-                                const ToolPath& turned) {
+/// Planes of layers for a tool that is turned: those of the tool that is not, under the smallest
+/// rotation.
+std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& planes,
+                                const std::vector<int>& layers, const ToolPath& turned) {
   std::vector<ArmPlane> found;
   found.reserve(layers.size());
   for (std::size_t k = 0; k < layers.size(); ++k)
-    found.push_back(carry_plane(arm, planes[static_cast<std::size_t>(layers[k])], turned.layer(static_cast<int>(k)).tool));
+    found.push_back(carry_plane(arm, planes[static_cast<std::size_t>(layers[k])],
+                                turned.layer(static_cast<int>(k)).tool));
   return found;
 }
 
 bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& most) {
-  return !most || std::all_of(deviation.begin(), deviation.end(), [&](double x) { return x <= *most; });
+  return !most ||
+         std::all_of(deviation.begin(), deviation.end(), [&](double x) { return x <= *most; });
 }
 
 }  // namespace
 
-std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
-                                               const Budget& budget, std::optional<double> last_joint) {
+std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm,
+                                               const ToolPath& path, const Problem& problem,
+                                               const Budget& budget,
+                                               std::optional<double> last_joint) {
   if (problem.limits.step_error)
-    throw InputError(problem.source, "limits.step_error: allowed without path.roll, or for arms of six joints");
-  return std::unique_ptr<RollLattice>(
-      new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint));
+    throw InputError(problem.source,
+                     "limits.step_error: allowed without path.roll, or for arms of six joints");
+  return std::unique_ptr<RollLattice>(new RollLattice(
+      chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint));
 }
 
 RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resolution& resolution) {
   // How far the layers are, in steps from knot to knot; knots are spread evenly.
   std::vector<double> way{0};
   for (int i = 0; i + 1 < path.size(); ++i)
-    way.push_back(way.back() + std::max(path.layer(i).step_length / resolution.knot,
-                                        path.layer(i).step_angle / (kMostTurning * resolution.dalpha)));
+    way.push_back(way.back() +
+                  std::max(path.layer(i).step_length / resolution.knot,
+                           path.layer(i).step_angle / (kMostTurning * resolution.dalpha)));
   const double steps = std::max(1.0, std::ceil(way.back() - 1e-9)), step = way.back() / steps;
   Knots knots;
   knots.layers = {0};
   for (double goal = 1; knots.layers.back() + 1 < path.size(); ++goal) {
-    const auto last = std::upper_bound(way.begin(), way.end(), goal * step + 1e-9) - way.begin() - 1;
+    const auto last =
+        std::upper_bound(way.begin(), way.end(), goal * step + 1e-9) - way.begin() - 1;
     if (last > knots.layers.back()) knots.layers.push_back(static_cast<int>(last));
   }
   knots.path = std::make_unique<const ToolPath>(path.with_layers(knots.layers));
   return knots;
 }
 
-RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
-                         Knots knots, std::optional<double> last_joint)
+RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                         const Problem& problem, const Budget& budget, Knots knots,
+                         std::optional<double> last_joint)
     : Lattice(chain, *knots.path, problem, arm.fit_error),
       arm_(&arm),
       last_joint_(last_joint),
@@ -79,7 +88,8 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   std::vector<Config> bounds(static_cast<std::size_t>(layers()) - 1, Config::Zero());
   for (std::size_t k = 0; k < bounds.size(); ++k)
     for (int i = knots_[k]; i < knots_[k + 1]; ++i)
-      bounds[k] += whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+      bounds[k] +=
+          whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
   set_row_step_bounds(std::move(bounds));
 
   const Roll& range = *chain.free_roll;
@@ -99,28 +109,29 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
     std::vector<double> rolls = rolls_along(value);
     ToolPath turned = knot_path_->with_rolls(rolls);
     std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
-    turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm, of_nodes, budget, std::move(planes),
-                                               last_joint_));
+    turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm,
+                                               of_nodes, budget, std::move(planes), last_joint_));
   }
   if (problem.start) {
-    start_path_ = std::make_unique<const ToolPath>(
-        knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), start_roll_)));
+    start_path_ = std::make_unique<const ToolPath>(knot_path_->with_rolls(
+        std::vector<double>(static_cast<std::size_t>(layers()), start_roll_)));
     start_ = std::make_unique<const SrsLattice>(chain, arm, *start_path_, problem, budget,
                                                 planes_at(arm, planes_, knots_, *start_path_));
   }
   width_ = at_roll(0).width();
   const double needed = 24.0 * static_cast<double>(nodes());
   if (static_cast<double>(rolls()) * width_ > 1e9 || !fits_in_memory(needed))
-    throw InputError(
-        problem.source,
-        "resolution: " + std::to_string(nodes()) +
-            " nodes of roll and arm angle are more than this machine has memory for: allowed are larger droll, dphi or knot");
+    throw InputError(problem.source, "resolution: " + std::to_string(nodes()) +
+                                         " nodes of roll and arm angle are more than this machine "
+                                         "has memory for: allowed are larger droll, dphi or knot");
 
   const int angles = at_roll(0).angles();
   for (int k = 0; k + 1 < layers(); ++k) {
     Window& window = windows_.emplace_back();
     window.phi = static_cast<int>(std::min<double>(
-        angles / 2, std::max<double>(std::min(1, angles / 2), std::floor(limits_.arm_slope * way(k) / resolution.dphi + 1e-9))));
+        angles / 2,
+        std::max<double>(std::min(1, angles / 2),
+                         std::floor(limits_.arm_slope * way(k) / resolution.dphi + 1e-9))));
     widest_ = std::max(widest_, window.phi);
   }
   find_near(problem);
@@ -135,7 +146,8 @@ void RollLattice::find_near(const Problem& problem) {
   const double droll = problem.resolution.droll;
   const int values = rolls(), most = circle_ ? (values - 1) / 2 : values - 1;
   bool turns = values == 1;
-  std::vector<int> of_cells(static_cast<std::size_t>(most) + 1, -1);  // which lists, where all layers have the same rolls
+  std::vector<int> of_cells(static_cast<std::size_t>(most) + 1,
+                            -1);  // which lists, where all layers have the same rolls
   for (int step = 0; step + 1 < layers(); ++step) {
     const double reach = limits_.roll_slope * way(step);
     const int cells = static_cast<int>(std::min<double>(most, std::floor(reach / droll + 1e-9)));
@@ -159,7 +171,8 @@ void RollLattice::find_near(const Problem& problem) {
       if (alike) {
         for (int by = -cells; by <= cells; ++by) {
           const int value = value_of_[static_cast<std::size_t>(rank)] + by;
-          if (circle_ || (value >= 0 && value < values)) join(rank, rank_[static_cast<std::size_t>((value + values) % values)]);
+          if (circle_ || (value >= 0 && value < values))
+            join(rank, rank_[static_cast<std::size_t>((value + values) % values)]);
         }
       } else {
         const double from = step == 0 && start_ ? start_roll_ : roll_of_rank(step, rank);
@@ -170,9 +183,10 @@ void RollLattice::find_near(const Problem& problem) {
       for (auto& list : *all) std::sort(list.begin(), list.end());
   }
   if (!turns && !windows_of_roll_ && limits_.roll_slope * problem.resolution.knot < droll) {
-    const std::string text =
-        formatted("limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
-                  droll / problem.resolution.knot);
+    const std::string text = formatted(
+        "limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is "
+        "at least %.6g rad/m",
+        droll / problem.resolution.knot);
     throw InputError(problem.source, text);
   }
 }
@@ -193,28 +207,34 @@ void RollLattice::choose_rolls(double nominal, double droll) {
   if (windows_of_roll_) {
     double widest = 0;
     for (int layer = 0; layer < layers(); ++layer)
-      widest = std::max(widest, path_->layer(layer).window.upper - path_->layer(layer).window.lower);
+      widest =
+          std::max(widest, path_->layer(layer).window.upper - path_->layer(layer).window.lower);
     const int n = static_cast<int>(std::ceil(widest / droll - 1e-9));
     for (int k = 0; k <= n; ++k) values_.push_back(n > 0 ? static_cast<double>(k) / n : 0);
   } else if (circle_) {
     const int n = std::max(1, static_cast<int>(std::ceil(kTwoPi / droll - 1e-9)));
-    for (int k = 0; k < n; ++k) values_.push_back(k == 0 ? nominal : wrap_angle(nominal + kTwoPi * k / n));
+    for (int k = 0; k < n; ++k)
+      values_.push_back(k == 0 ? nominal : wrap_angle(nominal + kTwoPi * k / n));
   } else {
     const auto below = static_cast<int>(std::floor((nominal - range.lower) / droll + 1e-9));
     const auto above = static_cast<int>(std::floor((range.upper - nominal) / droll + 1e-9));
-    constexpr double kApart = 1e-3;  // of a step: an end of the range that is no further from a cell is that cell
+    constexpr double kApart =
+        1e-3;  // of a step: an end of the range that is no further from a cell is that cell
     if (nominal - below * droll - range.lower > kApart * droll) values_.push_back(range.lower);
-    for (int k = -below; k <= above; ++k) values_.push_back(std::clamp(nominal + k * droll, range.lower, range.upper));
+    for (int k = -below; k <= above; ++k)
+      values_.push_back(std::clamp(nominal + k * droll, range.lower, range.upper));
     if (range.upper - (nominal + above * droll) > kApart * droll) values_.push_back(range.upper);
   }
   value_of_.resize(values_.size());
   std::iota(value_of_.begin(), value_of_.end(), 0);
   for (const int value : value_of_) {
     double& sum = away.emplace_back(0);
-    for (const double roll : rolls_along(value)) sum += std::abs(circle_ ? wrap_angle(roll - nominal) : roll - nominal) / layers();
+    for (const double roll : rolls_along(value))
+      sum += std::abs(circle_ ? wrap_angle(roll - nominal) : roll - nominal) / layers();
   }
-  std::stable_sort(value_of_.begin(), value_of_.end(),
-                   [&](int a, int b) { return away[static_cast<std::size_t>(a)] < away[static_cast<std::size_t>(b)] - 1e-9; });
+  std::stable_sort(value_of_.begin(), value_of_.end(), [&](int a, int b) {
+    return away[static_cast<std::size_t>(a)] < away[static_cast<std::size_t>(b)] - 1e-9;
+  });
   rank_.resize(values_.size());
   for (std::size_t rank = 0; rank < value_of_.size(); ++rank)
     rank_[static_cast<std::size_t>(value_of_[rank])] = static_cast<int>(rank);
@@ -243,7 +263,9 @@ std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
   for (int rank = 0; rank < rolls(); ++rank) {
     const auto reach = at_roll(rank).out_of_reach(layer);
     if (!reach) return std::nullopt;
-    if (!nearest || std::abs(reach->distance - reach->limit) < std::abs(nearest->distance - nearest->limit)) nearest = reach;
+    if (!nearest ||
+        std::abs(reach->distance - reach->limit) < std::abs(nearest->distance - nearest->limit))
+      nearest = reach;
   }
   return nearest;
 }
@@ -267,7 +289,8 @@ int RollLattice::neighbour_along_path(int layer, int slot, int by) const {
   return slot;
 }
 
-void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
+                                             std::vector<int>& out) const {
   if (is_approximate() || (layer == 0 && start_)) {
     out.assign(1, slot);
     return;
@@ -277,7 +300,9 @@ void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned group
 }
 
 PoseErrorBound RollLattice::pose_error_of_node(int layer, int group, const Config& q) const {
-  return is_approximate() ? PoseErrorBound::unknown(at_roll(0).pose_error_of_node(layer, group, q).about) : PoseErrorBound{};
+  return is_approximate()
+             ? PoseErrorBound::unknown(at_roll(0).pose_error_of_node(layer, group, q).about)
+             : PoseErrorBound{};
 }
 
 PoseErrorBound RollLattice::pose_error_between(int layer, int group, const Config& q) const {
@@ -286,22 +311,27 @@ PoseErrorBound RollLattice::pose_error_between(int layer, int group, const Confi
 
 bool RollLattice::in_window(int layer, int a, int b) const {
   const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
-  return std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b)) && in_arm_window(layer, a, b);
+  return std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b)) &&
+         in_arm_window(layer, a, b);
 }
 
-std::optional<Lattice::RollStep> RollLattice::roll_step(int layer, int a, const Config&, int b, const Config&) const {
+std::optional<Lattice::RollStep> RollLattice::roll_step(int layer, int a, const Config&, int b,
+                                                        const Config&) const {
   const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
   const double change = roll(layer + 1, b) - roll(layer, a);
-  return RollStep{std::abs(circle_ ? wrap_angle(change) : change), limits_.roll_slope * way(layer), way(layer),
+  return RollStep{std::abs(circle_ ? wrap_angle(change) : change), limits_.roll_slope * way(layer),
+                  way(layer),
                   std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b))};
 }
 
 bool RollLattice::in_arm_window(int layer, int a, int b) const {
   if (branch(layer, a) != branch(layer + 1, b)) return false;
-  const int angles = at_roll(0).angles(), window = phi_window(layer), to = at_roll(0).angle_of(b % width_);
+  const int angles = at_roll(0).angles(), window = phi_window(layer),
+            to = at_roll(0).angle_of(b % width_);
   if (layer == 0 && start_) {
     const double cell = -kPi + kTwoPi * to / angles;
-    return std::abs(wrap_angle(cell - start_->phi(0, start_->start_slot()))) <= window * kTwoPi / angles + 1e-9;
+    return std::abs(wrap_angle(cell - start_->phi(0, start_->start_slot()))) <=
+           window * kTwoPi / angles + 1e-9;
   }
   const int apart = std::abs(at_roll(0).angle_of(a % width_) - to);
   return std::min(apart, angles - apart) <= window;
@@ -309,7 +339,8 @@ bool RollLattice::in_arm_window(int layer, int a, int b) const {
 
 void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
   out.clear();
-  const int angles = at_roll(0).angles(), window = phi_window(layer), windings = at_roll(0).windings();
+  const int angles = at_roll(0).angles(), window = phi_window(layer),
+            windings = at_roll(0).windings();
   int first = 0, count = std::min(2 * window + 1, angles);
   if (layer == 0 && start_) {
     const double step = kTwoPi / angles, from = (start_->phi(0, start_->start_slot()) + kPi) / step;
@@ -329,17 +360,19 @@ void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const 
     }
 }
 
-std::optional<Config> RollLattice::solve(int i, double roll, double phi, int branch, const Config& near,
-                                         InterpolatedEdge& fault) const {
+std::optional<Config> RollLattice::solve(int i, double roll, double phi, int branch,
+                                         const Config& near, InterpolatedEdge& fault) const {
   const Pose tool = rolled(whole_->layer(i).tool, roll);
   const ArmPlane plane = carry_plane(*arm_, planes_[static_cast<std::size_t>(i)], tool);
   const ReachStatus reach = reach_status(*arm_, plane.reach);
   if (reach != ReachStatus::kReachable) {
-    fault.fault = reach == ReachStatus::kSingular ? InterpolatedEdge::Fault::kSingular : InterpolatedEdge::Fault::kNoIk;
+    fault.fault = reach == ReachStatus::kSingular ? InterpolatedEdge::Fault::kSingular
+                                                  : InterpolatedEdge::Fault::kNoIk;
     return std::nullopt;
   }
   Config q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), phi, branch);
-  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine) {
+  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine ||
+      std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine) {
     fault.fault = InterpolatedEdge::Fault::kSingular;
     return std::nullopt;
   }
@@ -358,11 +391,13 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain_->limit[static_cast<std::size_t>(j)];
     const double margin = limits_.joint_margin - kLimitTolerance;
-    if (!continuous_[static_cast<std::size_t>(j)] && !(q[j] >= limit.lower + margin && q[j] <= limit.upper - margin))
+    if (!continuous_[static_cast<std::size_t>(j)] &&
+        !(q[j] >= limit.lower + margin && q[j] <= limit.upper - margin))
       fault.joints |= static_cast<std::uint8_t>(1u << j);
   }
   if (fault.joints) fault.fault = InterpolatedEdge::Fault::kLimit;
-  if (fault.fault == InterpolatedEdge::Fault::kNone && !manipulable(q)) fault.fault = InterpolatedEdge::Fault::kManipulability;
+  if (fault.fault == InterpolatedEdge::Fault::kNone && !manipulable(q))
+    fault.fault = InterpolatedEdge::Fault::kManipulability;
   return fault.fault == InterpolatedEdge::Fault::kNone ? std::optional(q) : std::nullopt;
 }
 
@@ -371,12 +406,15 @@ double RollLattice::roll_at(int i, const Config& q, double chosen) const {
 }
 
 template <class Visit>
-Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const {
+Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, int b,
+                                            const Config& qb, const Visit& visit) const {
   InterpolatedEdge interpolated;
-  const int first = knots_[static_cast<std::size_t>(layer)], last = knots_[static_cast<std::size_t>(layer) + 1];
+  const int first = knots_[static_cast<std::size_t>(layer)],
+            last = knots_[static_cast<std::size_t>(layer) + 1];
   const double roll = this->roll(layer, a), phi = this->phi(layer, a);
   const double roll_change = this->roll(layer + 1, b) - roll;
-  const double dphi = wrap_angle(this->phi(layer + 1, b) - phi), droll = circle_ ? wrap_angle(roll_change) : roll_change;
+  const double dphi = wrap_angle(this->phi(layer + 1, b) - phi),
+               droll = circle_ ? wrap_angle(roll_change) : roll_change;
   const int branch = this->branch(layer, a);
   const double begin = whole_->layer(first).travel, way = whole_->layer(last).travel - begin;
   // Where a window narrows between two knots the roll follows its end.
@@ -397,24 +435,28 @@ Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, 
     interpolated.q = *to;
     const Config move = *to - from;
     const double to_roll = roll_at(i + 1, *to, i + 1 == last ? roll + droll : chosen(i + 1, t));
-    const double travel = whole_->layer(i + 1).travel - whole_->layer(i).travel, most_turn = limits_.roll_slope * travel;
+    const double travel = whole_->layer(i + 1).travel - whole_->layer(i).travel,
+                 most_turn = limits_.roll_slope * travel;
     const double turned = std::abs(wrap_angle(to_roll - from_roll));
-    const Config& bound = whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+    const Config& bound =
+        whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
     if (!((move.cwiseAbs().array() <= bound.array()).all())) {
       interpolated.fault = InterpolatedEdge::Fault::kStep;
     } else if ((last_joint_ || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
       interpolated.fault = InterpolatedEdge::Fault::kRollSlope;
       interpolated.roll = {turned, most_turn, travel, false};
-    } else if (limits_.tool_path_error && !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
+    } else if (limits_.tool_path_error &&
+               !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
       interpolated.fault = InterpolatedEdge::Fault::kPathError;
-    } else if (limits_.tool_angle_error && !keeps(angle_deviation(*chain_, *whole_, i, from, move), limits_.tool_angle_error)) {
+    } else if (limits_.tool_angle_error &&
+               !keeps(angle_deviation(*chain_, *whole_, i, from, move), limits_.tool_angle_error)) {
       interpolated.fault = InterpolatedEdge::Fault::kAngleError;
     }
     if (interpolated.fault != InterpolatedEdge::Fault::kNone) return interpolated;
     if (i + 1 < last) {
       interpolated.rows.push_back(*to);
-      visit(
-          TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to, circle_ ? wrap_angle(to_roll) : to_roll});
+      visit(TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to,
+                          circle_ ? wrap_angle(to_roll) : to_roll});
     }
     from = *to;
     from_roll = to_roll;
@@ -422,14 +464,16 @@ Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, 
   return interpolated;
 }
 
-Lattice::InterpolatedEdge RollLattice::interpolate_edge(int layer, int a, const Config& qa, int b, const Config& qb) const {
+Lattice::InterpolatedEdge RollLattice::interpolate_edge(int layer, int a, const Config& qa, int b,
+                                                        const Config& qb) const {
   return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
 }
 
 LatticeInfo RollLattice::describe() const {
   LatticeInfo info = Lattice::describe();
   const SrsLattice& one = at_roll(0);
-  info.grid = LatticeInfo::Grid{one.angles(), kBranches, one.windings(), widest_phi_window(), rolls()};
+  info.grid =
+      LatticeInfo::Grid{one.angles(), kBranches, one.windings(), widest_phi_window(), rolls()};
   return info;
 }
 
@@ -444,8 +488,8 @@ std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots)
                              [&](const TrajectoryRow& row) { rows.push_back(row); }));
       q = rows.back().q + delta(rows.back().q, q);
     }
-    rows.push_back(
-        {path_->layer(k).s, phi(k, slot), branch(k, slot), q, roll_at(knots_[static_cast<std::size_t>(k)], q, roll(k, slot))});
+    rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q,
+                    roll_at(knots_[static_cast<std::size_t>(k)], q, roll(k, slot))});
   }
   return rows;
 }

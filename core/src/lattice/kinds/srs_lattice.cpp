@@ -22,13 +22,15 @@ namespace swivel {
 namespace {
 
 constexpr double kSingularSine = 1e-6;
-constexpr double kSliver = 1e-3;   // rad, what a range may have beyond whole turns without another image
+constexpr double kSliver =
+    1e-3;  // rad, what a range may have beyond whole turns without another image
 constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
 constexpr double kMostWindings = 1024;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
 constexpr std::size_t kLastJoint = kDof - 1;
 /// Of groups of links, as of shares_body_poses().
-constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000, kTool = 0b10000000;
+constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000,
+                   kTool = 0b10000000;
 
 int wrapped_index(long long j, int n) {
   return static_cast<int>(((j % n) + n) % n);
@@ -39,8 +41,8 @@ double image_from(double q, double base) {
   return q + kTwoPi * std::ceil((base - q) / kTwoPi);
 }
 
-/// Where the turn of a wide joint begins that its angles are given in: the one about 0, or the nearest that leaves 31 turns to both
-/// limits.
+/// Where the turn of a wide joint begins that its angles are given in: the one about 0, or the
+/// nearest that leaves 31 turns to both limits.
 double turn_within(const JointLimit& limit) {
   constexpr double kFromLimits = (kMostTurns / 2 - 1) * kTwoPi;
   return std::clamp(-kPi, limit.lower + kFromLimits, limit.upper - kFromLimits - kTwoPi);
@@ -57,15 +59,17 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
-                       std::vector<ArmPlane> planes, std::optional<double> last_joint)
+SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                       const Problem& problem, const Budget& budget, std::vector<ArmPlane> planes,
+                       std::optional<double> last_joint)
     : Lattice(chain, path, problem, arm.fit_error),
       id_(next_id()),
       arm_(&arm),
       last_joint_(last_joint),
       planes_(std::move(planes)) {
   const TraceSpan span("lattice");
-  if (last_joint_) continuous_[kLastJoint] = true;  // whatever the arm angle, it stays within its limits
+  if (last_joint_)
+    continuous_[kLastJoint] = true;  // whatever the arm angle, it stays within its limits
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
   double windings = 1;
@@ -76,25 +80,31 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
     if (last_joint_ && j == kLastJoint) {
       images = {*last_joint_ - kPi, std::numeric_limits<double>::infinity(), 1};
     } else if (continuous_[j]) {
-      images = {limit.continuous ? -kPi : turn_within(limit), std::numeric_limits<double>::infinity(), 1};
+      images = {limit.continuous ? -kPi : turn_within(limit),
+                std::numeric_limits<double>::infinity(), 1};
     } else {
-      const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
+      const double lower = limit.lower + limits_.joint_margin,
+                   upper = limit.upper - limits_.joint_margin;
       const auto joint = static_cast<Eigen::Index>(j);
-      images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower, arm.fit_error[joint]);
+      images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower,
+                              arm.fit_error[joint]);
     }
     if (!(std::abs(images.base) <= kFarthest))
-      throw InputError(problem.source, "joint '" + chain.joint_names[j] +
-                                           "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
-    if (images.count > 1) wound += (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
+      throw InputError(
+          problem.source,
+          "joint '" + chain.joint_names[j] +
+              "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
+    if (images.count > 1)
+      wound +=
+          (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
     windings *= images.count;
   }
   if (windings > kMostWindings) {
     const std::string number = formatted("%.4g", windings);
-    throw InputError(
-        problem.source,
-        "joint limits allow " + number + " windings (" + wound +
-            "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
-            "counts as continuous");
+    throw InputError(problem.source, "joint limits allow " + number + " windings (" + wound +
+                                         "): allowed are 1024: narrow these limits in the URDF, or "
+                                         "widen them to more than 64 turns, so that the joint "
+                                         "counts as continuous");
   }
   windings_ = static_cast<int>(windings);
 
@@ -106,11 +116,14 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
   if (width > 1e8 || !fits_in_memory(needed))
     throw InputError(problem.source, "resolution: " + std::to_string(layers()) + " layers x " +
-                                         std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) +
-                                         ", this machine has " + gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
+                                         std::to_string(static_cast<long long>(width)) +
+                                         " nodes need " + gigabytes(needed) +
+                                         ", this machine has " + gigabytes(machine_memory()) +
+                                         ": allowed are larger ds or dphi");
   angles_ = static_cast<int>(wanted);
-  window_ = static_cast<int>(
-      std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
+  window_ = static_cast<int>(std::min<double>(
+      angles_ / 2,
+      std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
   window_ = std::max(window_, angles_ > 1 ? 1 : 0);
 
   sine_.resize(static_cast<std::size_t>(3 * angles_));
@@ -144,7 +157,8 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   if (resolution.arcs) place_off_grid_nodes(budget);
 }
 
-std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget) {
+std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
+                                     const Budget& budget) {
   if (path.unturned()) {
     std::vector<ArmPlane> planes = carried_planes(arm, *path.unturned(), budget);
     for (int i = 0; i < path.size(); ++i) {
@@ -154,7 +168,9 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, co
     return planes;
   }
   std::optional<ArmPlane> last;  // of the whole path's layers
-  const auto carried = [&](const Pose& tool) { return last ? carry_plane(arm, *last, tool) : first_plane(arm, tool); };
+  const auto carried = [&](const Pose& tool) {
+    return last ? carry_plane(arm, *last, tool) : first_plane(arm, tool);
+  };
   for (std::size_t i = 0; i < path.before().size(); ++i) {
     if (i % 64 == 0) budget.poll();
     last = carried(path.before()[i]);
@@ -169,8 +185,10 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, co
   return planes;
 }
 
-SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start, double fit_error) {
-  const double whole = std::floor((upper - lower) / kTwoPi), rest = (upper - lower) - whole * kTwoPi;
+SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start,
+                                              double fit_error) {
+  const double whole = std::floor((upper - lower) / kTwoPi),
+               rest = (upper - lower) - whole * kTwoPi;
   Images images;
   images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
   const double length = images.count * kTwoPi;
@@ -178,7 +196,8 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
   const double slack = std::max(0.0, (length - (upper - lower)) / 2);
   images.base = lower - kLimitTolerance - std::min(fit_error, slack);
   images.upper = upper + kLimitTolerance + fit_error;
-  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
+  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the
+  // lower where the start is there.
   if (start >= images.base + length) images.base = upper + kLimitTolerance - length;
   return images;
 }
@@ -193,8 +212,10 @@ void SrsLattice::place_start(const Problem& problem) {
   int winding = 0;
   for (int k = 0; k < kDof; ++k) {
     const Images& images = images_[static_cast<std::size_t>(k)];
-    const int image =
-        images.count == 1 ? 0 : std::clamp(static_cast<int>(std::floor((q[k] - images.base) / kTwoPi)), 0, images.count - 1);
+    const int image = images.count == 1
+                          ? 0
+                          : std::clamp(static_cast<int>(std::floor((q[k] - images.base) / kTwoPi)),
+                                       0, images.count - 1);
     winding = winding * images.count + image;
   }
   const int nearest = wrapped_index(std::llround((start.phi + kPi) / kTwoPi * angles_), angles_);
@@ -214,7 +235,8 @@ std::optional<Config> SrsLattice::fitted_start(const Config& q, double phi) cons
 }
 
 bool SrsLattice::singular(const Config& q) const {
-  return std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine;
+  return std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine ||
+         std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine;
 }
 
 std::uint8_t SrsLattice::joints_outside(const Config& row) const {
@@ -222,7 +244,8 @@ std::uint8_t SrsLattice::joints_outside(const Config& row) const {
   for (int k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain_->limit[static_cast<std::size_t>(k)];
     const double margin = limits_.joint_margin - kLimitTolerance;
-    if (!continuous_[static_cast<std::size_t>(k)] && !(row[k] >= limit.lower + margin && row[k] <= limit.upper - margin))
+    if (!continuous_[static_cast<std::size_t>(k)] &&
+        !(row[k] >= limit.lower + margin && row[k] <= limit.upper - margin))
       outside |= 1u << k;
   }
   return static_cast<std::uint8_t>(outside);
@@ -247,14 +270,18 @@ void SrsLattice::solve(int layer, int first, int count, LayerNodes& out) const {
 
 void LayerNodes::repeat(int elbow, int from, int to, int count) {
   for (const Span& arrays : arrays_[static_cast<std::size_t>(elbow)])
-    for (std::size_t array = arrays.begin; array < arrays.end; array += static_cast<std::size_t>(count_))
+    for (std::size_t array = arrays.begin; array < arrays.end;
+         array += static_cast<std::size_t>(count_))
       std::copy_n(data_.data() + array + from, count, data_.data() + array + to);
 }
 
 std::optional<double> SrsLattice::elbow_angle(int layer, int elbow) const {
   const Images& images = images_[kElbowJoint];
-  if (images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) || !elbow_alive(layer, elbow)) return std::nullopt;
-  return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4, images.base);
+  if (images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) ||
+      !elbow_alive(layer, elbow))
+    return std::nullopt;
+  return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4,
+                    images.base);
 }
 
 void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
@@ -262,15 +289,18 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   out.layer_ = layer;
   out.first_ = first;
   const bool start = layer == 0 && start_;
-  const std::uint8_t moved = off_grid_.empty() ? std::uint8_t{0} : off_grid_branches_[static_cast<std::size_t>(layer)];
-  const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start, moved};
+  const std::uint8_t moved =
+      off_grid_.empty() ? std::uint8_t{0} : off_grid_branches_[static_cast<std::size_t>(layer)];
+  const LayerNodes::Layout layout{id_,   count, elbow_alive(layer, 0), elbow_alive(layer, 1),
+                                  start, moved};
   if (layout == out.layout_ && !start) return;
   out.layout_ = layout;
   out.count_ = count;
   out.arrays_ = {};
   out.offsets_.resize(static_cast<std::size_t>(solutions()));
   constexpr std::size_t kOwn = kDof + 1;  // joints and a mask
-  const auto own = static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings_) * kOwn;
+  const auto own =
+      static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings_) * kOwn;
   const auto needed = static_cast<Eigen::Index>((tracks_ + own) * n);
   if (out.data_.size() < needed) out.data_.setZero(needed);
   std::size_t used = 0;
@@ -283,13 +313,15 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   std::fill_n(out.data_.data() + free, n, 0.0);
   std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
   if (start) {
-    for (LayerNodes::Offsets& solution : out.offsets_) solution = {.q = {}, .mask = {never, free}, .alive = false};
+    for (LayerNodes::Offsets& solution : out.offsets_)
+      solution = {.q = {}, .mask = {never, free}, .alive = false};
     return lay_out_start(out);
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
     const std::size_t begin = used;
-    // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with windings, per IK solution.
+    // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with
+    // windings, per IK solution.
     std::array<std::array<std::size_t, kDof>, 2> track{};
     std::array<std::array<std::size_t, 2>, 2> mask{};  // [sign][triple]
     if (alive)
@@ -299,20 +331,23 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
         for (std::size_t& triple : mask[sign]) triple = windings_ == 1 ? allot() : never;
         out.shared_[static_cast<std::size_t>(elbow)][sign] = {track[sign], mask[sign], alive};
       }
-    for (int winding = 0, first_solution = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
+    for (int winding = 0, first_solution = elbow ? kElbowBit * windings_ : 0;
+         winding < 4 * windings_; ++winding) {
       const int solution = first_solution + winding, branch = solution / windings_;
       LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
       offsets.alive = alive;
       offsets.mask = {never, free};
       if (!alive) continue;
-      const std::size_t shoulder = branch & kShoulderBit ? 1 : 0, wrist = branch & kWristBit ? 1 : 0;
+      const std::size_t shoulder = branch & kShoulderBit ? 1 : 0,
+                        wrist = branch & kWristBit ? 1 : 0;
       if (windings_ == 1)
         offsets.mask = {mask[shoulder][0], mask[wrist][1]};
       else
         offsets.mask = {allot(), free};
       for (int j = 0; j < kDof; ++j)
-        offsets.q[static_cast<std::size_t>(j)] = track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
-                                                 static_cast<std::size_t>(winding_images(solution % windings_, j)) * n;
+        offsets.q[static_cast<std::size_t>(j)] =
+            track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
+            static_cast<std::size_t>(winding_images(solution % windings_, j)) * n;
     }
     out.arrays_[static_cast<std::size_t>(elbow)][0] = {begin, used};
   }
@@ -342,7 +377,8 @@ void SrsLattice::lay_out_start(LayerNodes& out) const {
   double* const mask = out.data_.data() + used;
   std::fill_n(mask, n, std::numeric_limits<double>::infinity());
   if (fault(0, start_->slot).status != NodeStatus::kValid) return;
-  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_); k < n; k += angles_)
+  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_);
+       k < n; k += angles_)
     mask[k] = 0;
 }
 
@@ -354,7 +390,8 @@ TripleTask SrsLattice::triple_task(const ElbowCircle& circle, int triple) const 
   task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
   task.least_sine = kSingularSine;
   for (std::size_t j = 0; j < 3; ++j) {
-    const Images& images = images_[static_cast<std::size_t>(triple == 0 ? kShoulderJoints : kWristJoints) + j];
+    const Images& images =
+        images_[static_cast<std::size_t>(triple == 0 ? kShoulderJoints : kWristJoints) + j];
     task.base[j] = images.base;
     task.upper[j] = windings_ == 1 ? images.upper : std::numeric_limits<double>::infinity();
   }
@@ -363,12 +400,14 @@ TripleTask SrsLattice::triple_task(const ElbowCircle& circle, int triple) const 
 
 void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
   if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
-  const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
+  const ElbowCircle& circle =
+      circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
   const int first_solution = elbow ? kElbowBit * windings_ : 0;
   double* const data = out.data_.data();
   const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[static_cast<std::size_t>(elbow)];
   const bool shares_masks = windings_ == 1;
-  std::vector<double> unlimited;  // masks of singularity alone, where the limits are each winding's own
+  std::vector<double>
+      unlimited;  // masks of singularity alone, where the limits are each winding's own
   if (!shares_masks) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
   for (int triple = 0; triple < 2; ++triple) {
     const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
@@ -377,15 +416,17 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
     task.sin_phi = sine_.data() + out.first_ + begin;
     task.cos_phi = cosine_.data() + out.first_ + begin;
     for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t s = 0; s < 2; ++s) task.q[s][j] = data + sign[s].q[static_cast<std::size_t>(joint0) + j] + begin;
+      for (std::size_t s = 0; s < 2; ++s)
+        task.q[s][j] = data + sign[s].q[static_cast<std::size_t>(joint0) + j] + begin;
     for (std::size_t s = 0; s < 2; ++s)
-      task.mask[s] = shares_masks
-                         ? data + sign[s].mask[static_cast<std::size_t>(triple)] + begin
-                         : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
+      task.mask[s] = shares_masks ? data + sign[s].mask[static_cast<std::size_t>(triple)] + begin
+                                  : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) *
+                                                           static_cast<std::size_t>(task.n);
     circle_kernels().solve_triple(task);
   }
   for (std::size_t s = 0; s < 2 && last_joint_; ++s)
-    std::fill(data + sign[s].q[kLastJoint] + begin, data + sign[s].q[kLastJoint] + end, *last_joint_);
+    std::fill(data + sign[s].q[kLastJoint] + begin, data + sign[s].q[kLastJoint] + end,
+              *last_joint_);
   std::fill(data + sign[0].q[kElbowJoint] + begin, data + sign[0].q[kElbowJoint] + end,
             image_from(circle.q4, images_[kElbowJoint].base));
   const std::size_t n = static_cast<std::size_t>(out.count_);
@@ -396,10 +437,12 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
         double* to = data + sign[s].q[j] + image * n;
         for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
       }
-  for (int solution = first_solution; solution < first_solution + 4 * windings_ && out.layout_.moved; ++solution)
+  for (int solution = first_solution;
+       solution < first_solution + 4 * windings_ && out.layout_.moved; ++solution)
     if (out.layout_.moved >> (solution / windings_) & 1) copy_shared(solution, begin, end, out);
   const auto length = static_cast<std::size_t>(end - begin);
-  for (int solution = first_solution; solution < first_solution + 4 * windings_ && !shares_masks; ++solution) {
+  for (int solution = first_solution; solution < first_solution + 4 * windings_ && !shares_masks;
+       ++solution) {
     const int branch = solution / windings_;
     const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
     const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
@@ -407,8 +450,8 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
     for (std::size_t k = 0; k < length; ++k) {
       double excess = shoulder[k] + wrist[k];
       for (int j = 0; j < kDof; ++j)
-        excess =
-            std::max(excess, out.q(solution, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
+        excess = std::max(excess, out.q(solution, j)[static_cast<std::size_t>(begin) + k] -
+                                      images_[static_cast<std::size_t>(j)].upper);
       mask[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
     }
   }
@@ -416,9 +459,11 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
     const int solution = solution_of(moved.slot);
     if (elbow_side_of(solution) != elbow) continue;
     const LayerNodes::Offsets& own = out.at(solution);
-    for (int k = wrapped_index(static_cast<long long>(angle_of(moved.slot)) - out.first_, angles_); k < end; k += angles_) {
+    for (int k = wrapped_index(static_cast<long long>(angle_of(moved.slot)) - out.first_, angles_);
+         k < end; k += angles_) {
       if (k < begin) continue;
-      for (std::size_t j = 0; j < kDof; ++j) data[own.q[j] + static_cast<std::size_t>(k)] = moved.q[static_cast<Eigen::Index>(j)];
+      for (std::size_t j = 0; j < kDof; ++j)
+        data[own.q[j] + static_cast<std::size_t>(k)] = moved.q[static_cast<Eigen::Index>(j)];
       data[own.mask[0] + static_cast<std::size_t>(k)] = 0;
     }
   }
@@ -428,21 +473,26 @@ void SrsLattice::copy_shared(int solution, int begin, int end, LayerNodes& out) 
   const int branch = branch_of(solution * angles_);
   double* const data = out.data_.data();
   const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[branch & kElbowBit ? 1 : 0];
-  const LayerNodes::Offsets &shoulder = sign[branch & kShoulderBit ? 1 : 0], &wrist = sign[branch & kWristBit ? 1 : 0];
+  const LayerNodes::Offsets &shoulder = sign[branch & kShoulderBit ? 1 : 0],
+                            &wrist = sign[branch & kWristBit ? 1 : 0];
   const LayerNodes::Offsets& own = out.at(solution);
   for (int j = 0; j < kDof; ++j) {
-    const auto image = static_cast<std::size_t>(winding_images(solution % windings_, j)) * static_cast<std::size_t>(out.count_);
-    const double* from = data + (j < kWristJoints ? shoulder : wrist).q[static_cast<std::size_t>(j)] + image;
+    const auto image = static_cast<std::size_t>(winding_images(solution % windings_, j)) *
+                       static_cast<std::size_t>(out.count_);
+    const double* from =
+        data + (j < kWristJoints ? shoulder : wrist).q[static_cast<std::size_t>(j)] + image;
     std::copy(from + begin, from + end, data + own.q[static_cast<std::size_t>(j)] + begin);
   }
   if (windings_ > 1) return;  // each winding has a mask of its own
   for (int k = begin; k < end; ++k)
     data[own.mask[0] + static_cast<std::size_t>(k)] =
-        data[shoulder.mask[0] + static_cast<std::size_t>(k)] + data[wrist.mask[1] + static_cast<std::size_t>(k)];
+        data[shoulder.mask[0] + static_cast<std::size_t>(k)] +
+        data[wrist.mask[1] + static_cast<std::size_t>(k)];
 }
 
 std::optional<Config> SrsLattice::node(int layer, int slot) const {
-  if (layer == 0 && start_) return fault(0, slot).status == NodeStatus::kValid ? std::optional(start_->node) : std::nullopt;
+  if (layer == 0 && start_)
+    return fault(0, slot).status == NodeStatus::kValid ? std::optional(start_->node) : std::nullopt;
   if (const OffGridNode* moved = find_off_grid(layer, slot)) return moved->q;
   const auto j = static_cast<std::size_t>(angle_of(slot));
   return solved(layer, slot, sine_[j], cosine_[j]);
@@ -451,7 +501,8 @@ std::optional<Config> SrsLattice::node(int layer, int slot) const {
 std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, double cosine) const {
   const int branch = branch_of(slot), elbow = branch & kElbowBit ? 1 : 0;
   if (!elbow_alive(layer, elbow)) return std::nullopt;
-  const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
+  const ElbowCircle& circle =
+      circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
   Config q;
   double excess = 0;
   for (int triple = 0; triple < 2; ++triple) {
@@ -467,7 +518,9 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
     }
     circle_kernels().solve_triple(task);
     const std::size_t sign = branch & (triple == 0 ? kShoulderBit : kWristBit) ? 1 : 0;
-    for (int j = 0; j < 3; ++j) q[(triple == 0 ? kShoulderJoints : kWristJoints) + j] = joints[sign][static_cast<std::size_t>(j)];
+    for (int j = 0; j < 3; ++j)
+      q[(triple == 0 ? kShoulderJoints : kWristJoints) + j] =
+          joints[sign][static_cast<std::size_t>(j)];
     excess += mask[sign];
   }
   q[kElbowJoint] = image_from(circle.q4, images_[kElbowJoint].base);
@@ -482,8 +535,9 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
 
 std::optional<Config> SrsLattice::on_exact_chain(int layer, int slot, const Config& q) const {
   const Pose& tool = path_->layer(layer).tool;
-  return last_joint_ ? solve_exact_chain_turned(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q)
-                     : solve_exact_chain(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
+  return last_joint_
+             ? solve_exact_chain_turned(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q)
+             : solve_exact_chain(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
 }
 
 std::optional<Config> SrsLattice::exact_config(int layer, int slot, const Config& q) const {
@@ -498,11 +552,14 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   NodeFault fault;
   const bool given = layer == 0 && start_;
   if (given && slot != start_->slot) return {NodeStatus::kNoIk};
-  if (given && !arm_->exact) return {singular(start_->row) ? NodeStatus::kSingular : NodeStatus::kValid};
+  if (given && !arm_->exact)
+    return {singular(start_->row) ? NodeStatus::kSingular : NodeStatus::kValid};
   const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
   if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
   if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
-  Config q = given ? start_->row : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
+  Config q = given ? start_->row
+                   : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot),
+                            branch_of(slot));
   if (singular(q)) return {NodeStatus::kSingular};
   if (given) return fault;
   if (last_joint_) q[kLastJoint] = *last_joint_;
@@ -527,7 +584,8 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
 }
 
 std::optional<Lattice::Reach> SrsLattice::out_of_reach(int layer) const {
-  const double distance = plane(layer).reach, most = arm_->upper + arm_->fore, least = std::abs(arm_->upper - arm_->fore);
+  const double distance = plane(layer).reach, most = arm_->upper + arm_->fore,
+               least = std::abs(arm_->upper - arm_->fore);
   if (distance > most) return Reach{distance, most};
   if (distance < least) return Reach{distance, least};
   return std::nullopt;
@@ -538,7 +596,8 @@ void SrsLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   solve(layer, nodes);
   out.clear();
   for (int slot = 0; slot < width(); ++slot)
-    if (nodes.valid(solution_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(solution_of(slot), angle_of(slot))});
+    if (nodes.valid(solution_of(slot), angle_of(slot)))
+      out.push_back({slot, nodes.config(solution_of(slot), angle_of(slot))});
 }
 
 int SrsLattice::neighbour_in_redundancy(int, int slot, int by) const {
@@ -549,13 +608,14 @@ int SrsLattice::neighbour_along_path(int layer, int slot, int by) const {
   return layer + by < 0 || layer + by >= layers() ? -1 : slot;
 }
 
-void SrsLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+void SrsLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
+                                            std::vector<int>& out) const {
   if (!shares_body_poses(groups)) return out.assign(1, slot);
   if (last_joint_ && groups & kTool) groups |= kWristLinks;
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
   out.clear();
-  const int signs =
-      (groups & kShoulderLinks ? kShoulderBit : 0) | (groups & kWristLinks ? kWristBit : 0) | (all_angles ? 0 : kElbowBit);
+  const int signs = (groups & kShoulderLinks ? kShoulderBit : 0) |
+                    (groups & kWristLinks ? kWristBit : 0) | (all_angles ? 0 : kElbowBit);
   const int branch = branch_of(slot);
   const int first = all_angles ? 0 : angle_of(slot), last = all_angles ? angles_ - 1 : first;
   for (int solution = 0, other = 0; solution < solutions(); solution += windings_, ++other) {
@@ -573,15 +633,18 @@ unsigned SrsLattice::manipulability_groups() const {
 }
 
 bool SrsLattice::all_below_manipulability(int layer, const Config& q) const {
-  constexpr double kBand = 1e-10;  // determinants of lengths of metres, which rounding changes by 1e-12
+  constexpr double kBand =
+      1e-10;  // determinants of lengths of metres, which rounding changes by 1e-12
   const auto J = chain_->jacobian(q);
   const Eigen::Matrix<double, 6, 6> G = J * J.transpose();
-  const double found = G.determinant(), allowed = limits().manipulability * limits().manipulability - kBand;
+  const double found = G.determinant(),
+               allowed = limits().manipulability * limits().manipulability - kBand;
   if (!pose_error_model_ || !(found < allowed)) return found < allowed;
-  if (last_joint_ || (layer == 0 && start_) || found < kBand) return false;  // not known, or G's inverse is all rounding
-  // No singular value s of J grows by more than `change` to the row, so their product, the manipulability, grows by at most
-  // (1 + change * mean of 1 / s)^6. That mean is at most the root of the mean of 1 / s^2, which are the eigenvalues of G's inverse.
-  // docs/theory.md, Lemma 6.
+  if (last_joint_ || (layer == 0 && start_) || found < kBand)
+    return false;  // not known, or G's inverse is all rounding
+  // No singular value s of J grows by more than `change` to the row, so their product, the
+  // manipulability, grows by at most (1 + change * mean of 1 / s)^6. That mean is at most the root
+  // of the mean of 1 / s^2, which are the eigenvalues of G's inverse. docs/theory.md, Lemma 6.
   const double change = pose_error_model_->jacobian_change(plane(layer).reach, q);
   const double ratio = 1 + change * std::sqrt(G.inverse().trace() / 6);
   return found * std::pow(ratio, 12) < allowed;
@@ -595,15 +658,18 @@ PoseErrorBound SrsLattice::pose_error_of_node(int layer, int group, const Config
 
 PoseErrorBound SrsLattice::pose_error_between(int layer, int group, const Config& q) const {
   if (!pose_error_model_) return {};
-  return layer == 0 && start_ ? PoseErrorBound::unknown(pose_error_model_->about(group))
-                              : pose_error_model_->between_exact_configs(group, plane(layer).reach, q);
+  return layer == 0 && start_
+             ? PoseErrorBound::unknown(pose_error_model_->about(group))
+             : pose_error_model_->between_exact_configs(group, plane(layer).reach, q);
 }
 
-bool SrsLattice::may_change_elbow_side(int step_layer, int layer, int side, int other_layer, int other) const {
+bool SrsLattice::may_change_elbow_side(int step_layer, int layer, int side, int other_layer,
+                                       int other) const {
   if (side == other) return true;
   if (!alive(layer, side) || !alive(other_layer, other)) return false;
   const auto angle = elbow_angle(layer, side), other_angle = elbow_angle(other_layer, other);
-  return !angle || !other_angle || std::abs(*angle - *other_angle) <= step_bound(step_layer)[kElbowJoint];
+  return !angle || !other_angle ||
+         std::abs(*angle - *other_angle) <= step_bound(step_layer)[kElbowJoint];
 }
 
 bool SrsLattice::step_error_allowed(int layer, int a, int b) const {
@@ -613,7 +679,8 @@ bool SrsLattice::step_error_allowed(int layer, int a, int b) const {
 }
 
 bool SrsLattice::in_window(int layer, int a, int b) const {
-  if (layer == 0 && start_) return std::abs(wrap_angle(cell_angle(b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
+  if (layer == 0 && start_)
+    return std::abs(wrap_angle(cell_angle(b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
   const int apart = std::abs(angle_of(a) - angle_of(b));
   return std::min(apart, angles_ - apart) <= window_;
 }
@@ -622,7 +689,8 @@ SrsLattice::Run SrsLattice::grid_run(double phi_from) const {
   const double step = kTwoPi / angles_;
   const auto first = static_cast<long long>(std::ceil((phi_from + kPi - 1e-9) / step - window_));
   const auto last = static_cast<long long>(std::floor((phi_from + kPi + 1e-9) / step + window_));
-  return {wrapped_index(first, angles_), static_cast<int>(std::min<long long>(last - first + 1, angles_))};
+  return {wrapped_index(first, angles_),
+          static_cast<int>(std::min<long long>(last - first + 1, angles_))};
 }
 
 void SrsLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
@@ -637,12 +705,15 @@ void SrsLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
 
 SrsLattice::Run SrsLattice::run_after(int layer, int a) const {
   if (layer == 0 && start_) return grid_run(start_->phi);
-  return {wrapped_index(static_cast<long long>(angle_of(a)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
+  return {wrapped_index(static_cast<long long>(angle_of(a)) - window_, angles_),
+          std::min(2 * window_ + 1, angles_)};
 }
 
 SrsLattice::Run SrsLattice::run_before(int layer, int b) const {
-  if (layer == 0 && start_) return in_window(0, start_->slot, b) ? Run{angle_of(start_->slot), 1} : Run{0, 0};
-  return {wrapped_index(static_cast<long long>(angle_of(b)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
+  if (layer == 0 && start_)
+    return in_window(0, start_->slot, b) ? Run{angle_of(start_->slot), 1} : Run{0, 0};
+  return {wrapped_index(static_cast<long long>(angle_of(b)) - window_, angles_),
+          std::min(2 * window_ + 1, angles_)};
 }
 
 LatticeInfo SrsLattice::describe() const {

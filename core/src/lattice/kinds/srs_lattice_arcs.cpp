@@ -38,22 +38,26 @@ void SrsLattice::prepare_arcs() {
           ranges[j] = {begin, end};
           continue;
         }
-        // Of an arm that is not exact, images reach beyond the limits by the fit error; its rows are surely within them as far
-        // inside.
-        const double inside = limits_.joint_margin - kLimitTolerance + fit_error()[static_cast<Eigen::Index>(first + j)];
+        // Of an arm that is not exact, images reach beyond the limits by the fit error; its rows
+        // are surely within them as far inside.
+        const double inside = limits_.joint_margin - kLimitTolerance +
+                              fit_error()[static_cast<Eigen::Index>(first + j)];
         ranges[j] = {std::max(begin, limit.lower + inside), std::min(end, limit.upper - inside)};
       }
-      triple_limits_[static_cast<std::size_t>(triple)].emplace_back(ranges, triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift);
+      triple_limits_[static_cast<std::size_t>(triple)].emplace_back(
+          ranges, triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift);
     }
   }
 }
 
-void SrsLattice::triple_arcs(int layer, int solution, int triple, std::vector<AngleArc>& out) const {
+void SrsLattice::triple_arcs(int layer, int solution, int triple,
+                             std::vector<AngleArc>& out) const {
   const int branch = solution / windings_;
   const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][branch & kElbowBit ? 1 : 0];
   const auto winding = static_cast<std::size_t>(triple_winding(solution, triple));
   const TripleLimits& limits = triple_limits_[static_cast<std::size_t>(triple)][winding];
-  limits.arcs(triple == 0 ? circle.shoulder : circle.wrist, (branch & (triple == 0 ? kShoulderBit : kWristBit)) != 0, out);
+  limits.arcs(triple == 0 ? circle.shoulder : circle.wrist,
+              (branch & (triple == 0 ? kShoulderBit : kWristBit)) != 0, out);
 }
 
 bool SrsLattice::elbow_within(int layer, int solution) const {
@@ -61,7 +65,9 @@ bool SrsLattice::elbow_within(int layer, int solution) const {
   if (!elbow_alive(layer, elbow)) return false;
   const Images& images = images_[3];
   const double turns =
-      std::ceil((images.base - circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4) / kTwoPi);
+      std::ceil((images.base -
+                 circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4) /
+                kTwoPi);
   const double q4 = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4 +
                     kTwoPi * (turns + winding_images(solution % windings_, 3));
   return q4 <= images.upper;
@@ -107,9 +113,11 @@ void SrsLattice::place_off_grid_nodes(const Budget& budget) {
       for (int solution = side * half; solution < (side + 1) * half; ++solution) {
         if (!elbow_within(layer, solution)) continue;
         const auto found = [&](int triple) -> const std::vector<AngleArc>& {
-          const bool negative = (solution / windings_ & (triple == 0 ? kShoulderBit : kWristBit)) != 0;
+          const bool negative =
+              (solution / windings_ & (triple == 0 ? kShoulderBit : kWristBit)) != 0;
           const auto t = static_cast<std::size_t>(triple),
-                     k = 2 * static_cast<std::size_t>(triple_winding(solution, triple)) + (negative ? 1 : 0);
+                     k = 2 * static_cast<std::size_t>(triple_winding(solution, triple)) +
+                         (negative ? 1 : 0);
           if (!known[t][k]) triple_arcs(layer, solution, triple, of_triple[t][k]);
           known[t][k] = 1;
           return of_triple[t][k];
@@ -123,7 +131,8 @@ void SrsLattice::place_off_grid_nodes(const Budget& budget) {
   }
 }
 
-void SrsLattice::place_off_grid_nodes_of(int layer, int solution, const std::vector<AngleArc>& arcs) {
+void SrsLattice::place_off_grid_nodes_of(int layer, int solution,
+                                         const std::vector<AngleArc>& arcs) {
   struct Move {
     int cell;
     double phi, away;  // away: from the cell's own angle
@@ -131,11 +140,14 @@ void SrsLattice::place_off_grid_nodes_of(int layer, int solution, const std::vec
   std::vector<Move> moves;
   const double step = kTwoPi / angles_;
   const auto cell_at = [&](double phi) { return std::llround((phi + kPi) / step); };
-  const auto angle_of_cell = [&](long long cell) { return -kPi + step * static_cast<double>(cell); };
+  const auto angle_of_cell = [&](long long cell) {
+    return -kPi + step * static_cast<double>(cell);
+  };
   const auto add = [&](long long cell, double phi) {
     const int wrapped = static_cast<int>((cell % angles_ + angles_) % angles_);
     const double away = std::abs(phi - angle_of_cell(cell));
-    const auto same = std::find_if(moves.begin(), moves.end(), [&](const Move& move) { return move.cell == wrapped; });
+    const auto same = std::find_if(moves.begin(), moves.end(),
+                                   [&](const Move& move) { return move.cell == wrapped; });
     if (same == moves.end())
       moves.push_back({wrapped, wrap_angle(phi), away});
     else if (away < same->away)
@@ -152,28 +164,32 @@ void SrsLattice::place_off_grid_nodes_of(int layer, int solution, const std::vec
     if (!first_inside) add(first, begin);
     if (!last_inside) add(last, end);
   }
-  std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.cell < b.cell; });
+  std::sort(moves.begin(), moves.end(),
+            [](const Move& a, const Move& b) { return a.cell < b.cell; });
   for (const Move& move : moves) {
     const int slot = solution * angles_ + move.cell;
     const auto own = static_cast<std::size_t>(move.cell);
     const double phi = angle_of_cell(move.cell);
     const bool near = std::any_of(arcs.begin(), arcs.end(), [&](const AngleArc& arc) {
-      return std::abs(wrap_angle(phi - (arc.begin + arc.end) / 2)) <= (arc.end - arc.begin) / 2 + 10 * kHair;
+      return std::abs(wrap_angle(phi - (arc.begin + arc.end) / 2)) <=
+             (arc.end - arc.begin) / 2 + 10 * kHair;
     });
-    // Another arc may lead through the cell's own angle, or one may end there: the node itself tells. Bounds of an arm that is not
-    // exact are wider than the arcs.
+    // Another arc may lead through the cell's own angle, or one may end there: the node itself
+    // tells. Bounds of an arm that is not exact are wider than the arcs.
     if ((near || !arm_->exact) && solved(layer, slot, sine_[own], cosine_[own])) continue;
     const auto q = solved(layer, slot, std::sin(move.phi), std::cos(move.phi));
     if (!q) continue;  // beside a singular pose
     off_grid_.push_back({slot, move.phi, *q});
-    off_grid_branches_[static_cast<std::size_t>(layer)] |= static_cast<std::uint8_t>(1 << branch_of(slot));
+    off_grid_branches_[static_cast<std::size_t>(layer)] |=
+        static_cast<std::uint8_t>(1 << branch_of(slot));
   }
 }
 
 const SrsLattice::OffGridNode* SrsLattice::find_off_grid(int layer, int slot) const {
   const std::span<const OffGridNode> here = off_grid_nodes(layer);
   const auto found =
-      std::lower_bound(here.begin(), here.end(), slot, [](const OffGridNode& moved, int wanted) { return moved.slot < wanted; });
+      std::lower_bound(here.begin(), here.end(), slot,
+                       [](const OffGridNode& moved, int wanted) { return moved.slot < wanted; });
   return found != here.end() && found->slot == slot ? &*found : nullptr;
 }
 

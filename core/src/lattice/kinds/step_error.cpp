@@ -6,8 +6,10 @@
 
 namespace swivel {
 
-double step_error(const SrsLattice& lattice, int layer, int end, int branch, double phi, double dphi) {
-  constexpr double kStep = 1e-3;  // of the step parameter; truncation and rounding both stay below 1e-6 of the value
+double step_error(const SrsLattice& lattice, int layer, int end, int branch, double phi,
+                  double dphi) {
+  constexpr double kStep =
+      1e-3;  // of the step parameter; truncation and rounding both stay below 1e-6 of the value
   const SrsArm& arm = lattice.arm();
   const ArmPlane& plane = lattice.plane(layer + end);
   const auto joints = [&](double t, double angle) -> std::optional<Config> {
@@ -18,8 +20,8 @@ double step_error(const SrsLattice& lattice, int layer, int end, int branch, dou
   };
   const auto center = joints(0, phi);
   const auto ahead = joints(kStep, phi + kStep * dphi), behind = joints(-kStep, phi - kStep * dphi);
-  const auto s_ahead = joints(kStep, phi), s_behind = joints(-kStep, phi), phi_ahead = joints(0, phi + kStep),
-             phi_behind = joints(0, phi - kStep);
+  const auto s_ahead = joints(kStep, phi), s_behind = joints(-kStep, phi),
+             phi_ahead = joints(0, phi + kStep), phi_behind = joints(0, phi - kStep);
   if (!center || !ahead || !behind || !s_ahead || !s_behind || !phi_ahead || !phi_behind)
     return std::numeric_limits<double>::infinity();
   const auto difference = [](const Config& a, const Config& b) {

@@ -21,7 +21,9 @@ constexpr int kRun = 16;  // angles relaxed at once
 int stride_of(const SrsLattice& lattice) {
   constexpr double kTurn = 0.6;
   const double turn_per_layer = lattice.window() * kTwoPi / lattice.angles();
-  return turn_per_layer > 0 ? static_cast<int>(std::clamp(std::round(kTurn / turn_per_layer), 4.0, 32.0)) : 4;
+  return turn_per_layer > 0
+             ? static_cast<int>(std::clamp(std::round(kTurn / turn_per_layer), 4.0, 32.0))
+             : 4;
 }
 
 struct Interval {
@@ -30,7 +32,9 @@ struct Interval {
     low = std::min(low, other.low);
     high = std::max(high, other.high);
   }
-  [[nodiscard]] float gap(const Interval& other) const { return std::max(low - other.high, other.low - high); }
+  [[nodiscard]] float gap(const Interval& other) const {
+    return std::max(low - other.high, other.low - high);
+  }
 };
 
 constexpr auto kMiddle = SrsLattice::kMiddleJoints;
@@ -67,7 +71,8 @@ struct alignas(64) Circle {
     sum.least = values.minCoeff();
     if (sum.least == kNever) return sum;
     for (std::size_t m = 0; m < kMiddle.size(); ++m)
-      relax_kernels().coarse_range(q[kMiddle[m]].data() + at, values.data(), kRun, sum.joint[m].low, sum.joint[m].high);
+      relax_kernels().coarse_range(q[kMiddle[m]].data() + at, values.data(), kRun, sum.joint[m].low,
+                                   sum.joint[m].high);
     return sum;
   }
 };
@@ -118,9 +123,10 @@ class Chords {
       for (int at = c; at < end; ++at) {
         load(at, side);
         const bool meets_other = end == c + 1 && meets(at);
-        for (int solution = first_solution(side); solution < first_solution(side) + lattice_.solutions() / 2; ++solution) {
-          float* const row =
-              rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(solution) * n_;
+        for (int solution = first_solution(side);
+             solution < first_solution(side) + lattice_.solutions() / 2; ++solution) {
+          float* const row = rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() +
+                             static_cast<std::ptrdiff_t>(solution) * n_;
           if (circle(at, solution).alive)
             bound(at, solution, meets_other, row);
           else
@@ -145,7 +151,8 @@ class Chords {
   }
   [[nodiscard]] int layer_at(int c) const { return std::min(c * stride_, lattice_.layers() - 1); }
   Circle& circle(int c, int solution) {
-    return circles_[static_cast<std::size_t>(c) % circles_.size()][static_cast<std::size_t>(solution)];
+    return circles_[static_cast<std::size_t>(c) % circles_.size()]
+                   [static_cast<std::size_t>(solution)];
   }
   /// Computes the bounds of an IK solution's nodes from those of layer c - 1; zeros in layer 0.
   void bound(int c, int solution, bool meets_other, float* best) {
@@ -174,20 +181,23 @@ class Chords {
     LayerNodes& nodes = nodes_[static_cast<std::size_t>(side)];
     lattice_.lay_out(layer_at(c), 0, n_, nodes);
     lattice_.solve_part(side, 0, n_, nodes);
-    for (int solution = first_solution(side); solution < first_solution(side) + lattice_.solutions() / 2; ++solution) {
+    for (int solution = first_solution(side);
+         solution < first_solution(side) + lattice_.solutions() / 2; ++solution) {
       Circle& to = circle(c, solution);
       to.alive = false;
       if (!nodes.alive(solution)) continue;
       const auto length = static_cast<std::size_t>(n_ + 2 * window_ + kRun);
       to.value.resize(length, kNever);
       Eigen::Map<Eigen::ArrayXf> value(to.value.data() + window_, n_);
-      value = (Track(nodes.mask(solution, 0), n_) + Track(nodes.mask(solution, 1), n_)).cast<float>();
+      value =
+          (Track(nodes.mask(solution, 0), n_) + Track(nodes.mask(solution, 1), n_)).cast<float>();
       to.alive = value.minCoeff() == 0;
       if (!to.alive) continue;
       for (int k = 0; k < kDof; ++k) {
         std::vector<float>& q = to.q[k];
         q.resize(length);
-        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes.q(solution, k), n_).cast<float>();
+        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) =
+            Track(nodes.q(solution, k), n_).cast<float>();
         wrap(q);
       }
     }
@@ -206,7 +216,8 @@ class Chords {
     for (int run = 0; run < runs(); ++run) {
       const int last = std::min(length, begin(run) + kRun + 2 * window_) - 1;
       for (int part = begin(run) / kRun; part <= last / kRun; ++part)
-        circle.near[static_cast<std::size_t>(run)].add(circle.parts[static_cast<std::size_t>(part)]);
+        circle.near[static_cast<std::size_t>(run)].add(
+            circle.parts[static_cast<std::size_t>(part)]);
     }
   }
 
@@ -217,17 +228,22 @@ class Chords {
     Lanes best = Lanes::Constant(kNever);
     const Summary own = here.summary(at);
     if (own.least == kNever) return best;
-    const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
+    const auto worst_of_all = [&] {
+      return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff();
+    };
     relax_with(here, begin(run), count, circle(c - 1, solution), best.data());
     float worst = worst_of_all();
-    const int side = lattice_.elbow_side_of(solution), first = meets_other ? 0 : first_solution(side);
-    for (int other = first; other < (meets_other ? lattice_.solutions() : first + lattice_.solutions() / 2); ++other) {
+    const int side = lattice_.elbow_side_of(solution),
+              first = meets_other ? 0 : first_solution(side);
+    for (int other = first;
+         other < (meets_other ? lattice_.solutions() : first + lattice_.solutions() / 2); ++other) {
       const Circle& before = circle(c - 1, other);
       if (other == solution || !before.alive) continue;
       const Summary& near = before.near[static_cast<std::size_t>(run)];
       float norm = 0;
       for (std::size_t m = 0; m < kMiddle.size(); ++m)
-        if (task_.turn[kMiddle[m]] == 0) norm = std::max(norm, task_.scale[kMiddle[m]] * own.joint[m].gap(near.joint[m]));
+        if (task_.turn[kMiddle[m]] == 0)
+          norm = std::max(norm, task_.scale[kMiddle[m]] * own.joint[m].gap(near.joint[m]));
       if (near.least == kNever || near.least + norm >= worst) continue;
       relax_with(here, begin(run), count, before, best.data());
       worst = worst_of_all();
@@ -235,7 +251,8 @@ class Chords {
     return best;
   }
 
-  void relax_with(const Circle& here, int begin, int count, const Circle& before, float* best) const {
+  void relax_with(const Circle& here, int begin, int count, const Circle& before,
+                  float* best) const {
     if (!before.alive) return;
     int first = begin, last = begin + count - 1 + 2 * window_;  // positions in `before`
     while (first <= last && before.value[static_cast<std::size_t>(first)] == kNever) ++first;
@@ -268,7 +285,8 @@ class Chords {
 
 }  // namespace
 
-ChordLowerBound::ChordLowerBound(const SrsLattice& lattice, const Budget& budget, const ParallelFor& work)
+ChordLowerBound::ChordLowerBound(const SrsLattice& lattice, const Budget& budget,
+                                 const ParallelFor& work)
     : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const TraceSpan span("coarse bound");
   Chords chords(lattice, stride_, budget, work);

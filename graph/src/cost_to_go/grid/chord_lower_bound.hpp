@@ -17,7 +17,8 @@ namespace swivel {
 class ChordLowerBound {
  public:
   /// Computes the bounds. Throws Stopped.
-  explicit ChordLowerBound(const SrsLattice& lattice, const Budget& budget = {}, const ParallelFor& work = {});
+  explicit ChordLowerBound(const SrsLattice& lattice, const Budget& budget = {},
+                           const ParallelFor& work = {});
 
   /// Returns the least bound over the last layer: infinite where some layer stops every path, and
   /// no bound where costs exceed single precision.

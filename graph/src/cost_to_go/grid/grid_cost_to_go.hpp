@@ -15,9 +15,9 @@ namespace swivel {
 /// The cost-to-go of a grid in vector code, within the arm-slope window, over all pairs of IK
 /// solutions.
 ///
-/// Extent::kBounded leaves out what cannot matter: nodes that ChordLowerBound proves to lie on no path
-/// of cost `limit` or less. best() is then exact as well, and so is at() on every best path: as
-/// long as no cost that is coarsely best() exceeds the limit, no path that matters is missing;
+/// Extent::kBounded leaves out what cannot matter: nodes that ChordLowerBound proves to lie on no
+/// path of cost `limit` or less. best() is then exact as well, and so is at() on every best path:
+/// as long as no cost that is coarsely best() exceeds the limit, no path that matters is missing;
 /// where one does, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for
 /// goals before the last layer, what deepest_reachable() finds takes its place: exact costs from
 /// layer 0 on, or that nothing is left.
@@ -27,14 +27,15 @@ namespace swivel {
 class GridCostToGo final : public CostToGo {
  public:
   /// Takes over the memory of `recycled`, which may be null.
-  explicit GridCostToGo(const SrsLattice& lattice, Pruning pruning = Pruning::kNone, const Budget& budget = {},
-                        GridCostToGo* recycled = nullptr);
+  explicit GridCostToGo(const SrsLattice& lattice, Pruning pruning = Pruning::kNone,
+                        const Budget& budget = {}, GridCostToGo* recycled = nullptr);
   ~GridCostToGo() override;
 
   [[nodiscard]] const SrsLattice& lattice() const override { return *lattice_; }
   [[nodiscard]] double at(int layer, int slot) const override {
     const int solution = lattice_->solution_of(slot), j = lattice_->angle_of(slot);
-    return tiles_of(solution)[tile_index(layer, solution, j / kTileWidth)][static_cast<std::size_t>(j % kTileWidth)];
+    return tiles_of(solution)[tile_index(layer, solution, j / kTileWidth)]
+                             [static_cast<std::size_t>(j % kTileWidth)];
   }
   [[nodiscard]] double best() const override;
   [[nodiscard]] int deepest_reachable() override;
@@ -71,18 +72,24 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] OneNode one_node(int layer, int slot);
   /// Returns the joints of a column of one elbow side, valid until the next call.
   [[nodiscard]] const LayerNodes& neighbours(int layer, int side, int column);
-  [[nodiscard]] int tile_columns() const { return (lattice_->angles() + kTileWidth - 1) / kTileWidth; }
+  [[nodiscard]] int tile_columns() const {
+    return (lattice_->angles() + kTileWidth - 1) / kTileWidth;
+  }
   [[nodiscard]] std::size_t tile_of_layer(int solution, int column) const {
-    return static_cast<std::size_t>(solution) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(solution) * static_cast<std::size_t>(tile_columns()) +
+           static_cast<std::size_t>(column);
   }
   [[nodiscard]] int half_solutions() const { return lattice_->solutions() / 2; }
   [[nodiscard]] int first_solution(int side) const { return side * half_solutions(); }
   [[nodiscard]] const TileTable& tiles_of(int solution) const {
     return apart_ && lattice_->elbow_side_of(solution) ? tiles_[1] : tiles_[0];
   }
-  [[nodiscard]] TileTable& tiles_of(int solution) { return apart_ && lattice_->elbow_side_of(solution) ? tiles_[1] : tiles_[0]; }
+  [[nodiscard]] TileTable& tiles_of(int solution) {
+    return apart_ && lattice_->elbow_side_of(solution) ? tiles_[1] : tiles_[0];
+  }
   [[nodiscard]] std::size_t tile_index(int layer, int solution, int column) const {
-    return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->solutions(), 0) + tile_of_layer(solution, column);
+    return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->solutions(), 0) +
+           tile_of_layer(solution, column);
   }
   double& value_at(int layer, int slot);  // the tile is held from now on
 
@@ -110,20 +117,23 @@ class GridCostToGo final : public CostToGo {
   void begin_with_all(int side, int layer, Workspace& workspace);  // every node at cost 0
   /// Loads the values of columns, and their joints. Columns that are not among those `reached`, if
   /// given, get no value and need no joints.
-  void load_tiles(int side, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached = nullptr);
+  void load_tiles(int side, int layer, const ColumnSet& columns, Workspace& workspace,
+                  const ColumnSet* reached = nullptr);
   void reach_back(int side, int step_layer, const Workspace& to, Workspace& from);
   void relax(int side, int step_layer, Workspace& from, const Workspace& to);
-  void relax_run(int step_layer, Workspace& from, int solution, int first, int count, const Workspace& to, int other, double* best);
+  void relax_run(int step_layer, Workspace& from, int solution, int first, int count,
+                 const Workspace& to, int other, double* best);
   void apply_masks(int side, Workspace& workspace) const;
   void add_node_costs(int side, Workspace& workspace) const;
   void prune_above_limit(int side, Workspace& workspace) const;
   void publish_values(int side, Workspace& workspace) const;
   /// Returns true if no step takes a joint from one range into the other. Continuous joints have no
   /// plain ranges, which tell nothing.
-  [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const;
+  [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a,
+                                 const JointRange& b) const;
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
-  [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int solution, int column, const Workspace& to,
-                                 int other) const;
+  [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int solution, int column,
+                                 const Workspace& to, int other) const;
   /// Finds the angles in the windows of these; gaps between two of a column are filled, so there
   /// may be more.
   void widen(const AngleSet& angles, AngleSet& result) const;
@@ -131,7 +141,8 @@ class GridCostToGo final : public CostToGo {
   /// Replaces the values kept of these angles. Returns true if any differ, `changed` says which.
   /// What the workspace holds of other angles of their columns may be too much, since not all of
   /// their windows were loaded.
-  [[nodiscard]] bool renew_tiles(int side, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);
+  [[nodiscard]] bool renew_tiles(int side, const Workspace& workspace, const AngleSet& angles,
+                                 AngleSet& changed);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
@@ -148,7 +159,9 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] const float* cost_before(int layer) const;
   void begin_reach_rows(int layers);
   void keep_reach(int side, int layer, float* kept);
-  [[nodiscard]] bool knows_reach() const { return reach_.known && reach_.removed == verdicts_.removed(); }
+  [[nodiscard]] bool knows_reach() const {
+    return reach_.known && reach_.removed == verdicts_.removed();
+  }
   void forget_reach() {
     reach_.known = false;
     reach_.slack = Reach::kSlack;

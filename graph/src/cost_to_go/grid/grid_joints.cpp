@@ -34,7 +34,8 @@ void GridCostToGo::solve_columns(Workspace& workspace, int side, int first, int 
     lattice_->solve_part(side, window + begin, window + end, joints.nodes);
     for (int done = column; done < next; ++done) find_ranges(joints, side, done);
     // The window reaches around the circle.
-    if (begin < window) joints.nodes.repeat(side, window + begin, window + begin + n, std::min(end, window) - begin);
+    if (begin < window)
+      joints.nodes.repeat(side, window + begin, window + begin + n, std::min(end, window) - begin);
     if (end > n - window) {
       const int from = std::max(begin, n - window);
       joints.nodes.repeat(side, window + from, window + from - n, end - from);
@@ -82,7 +83,8 @@ const LayerNodes& GridCostToGo::neighbours(int layer, int side, int column) {
   constexpr std::int64_t kLayersApart = 67;
   if (neighbours_.empty()) neighbours_.resize(kNeighbourhoods);
   const std::int64_t in_layer = side * tile_columns() + column;
-  Neighbours& found = neighbours_[static_cast<std::size_t>(layer * kLayersApart + in_layer) % kNeighbourhoods];
+  Neighbours& found =
+      neighbours_[static_cast<std::size_t>(layer * kLayersApart + in_layer) % kNeighbourhoods];
   if (const std::int64_t of = layer * std::int64_t{2} * tile_columns() + in_layer; found.of != of) {
     const int count = std::min(kTileWidth, lattice_->angles());
     found.of = of;
@@ -94,8 +96,10 @@ const LayerNodes& GridCostToGo::neighbours(int layer, int side, int column) {
 }
 
 GridCostToGo::OneNode GridCostToGo::one_node(int layer, int slot) {
-  const int solution = lattice_->solution_of(slot), angle = lattice_->angle_of(slot), column = angle / kTileWidth;
-  return {&neighbours(layer, lattice_->elbow_side_of(solution), column), solution, angle - column * kTileWidth};
+  const int solution = lattice_->solution_of(slot), angle = lattice_->angle_of(slot),
+            column = angle / kTileWidth;
+  return {&neighbours(layer, lattice_->elbow_side_of(solution), column), solution,
+          angle - column * kTileWidth};
 }
 
 Config GridCostToGo::config(int layer, int slot) {

@@ -27,7 +27,8 @@ void GridCostToGo::begin_with_all(int side, int layer, Workspace& workspace) {
   std::fill_n(workspace.row.begin() + side * width, width, 0.0);
   solve_columns(workspace, side, 0, tile_columns());
   Workspace::Half& half = workspace.half(side);
-  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions(); ++solution)
+  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions();
+       ++solution)
     for (int column = 0; column < tile_columns() && half.joints->nodes.alive(solution); ++column)
       half.tiles.push_back({solution, column, true});
   apply_masks(side, workspace);
@@ -40,7 +41,9 @@ void GridCostToGo::reach_back(int side, int step_layer, const Workspace& to, Wor
   columns.clear();
   const Workspace::Half& own = to.half(side);
   const Workspace::Half* other =
-      lattice_->may_change_elbow_side(step_layer, half.layer, side, own.layer, 1 - side) ? &to.half(1 - side) : nullptr;
+      lattice_->may_change_elbow_side(step_layer, half.layer, side, own.layer, 1 - side)
+          ? &to.half(1 - side)
+          : nullptr;
   for (int column = 0; column < tile_columns(); ++column) {
     const auto c = static_cast<std::size_t>(column);
     if (own.reached[c] || (other && other->reached[c])) columns.push_back(column);
@@ -49,12 +52,15 @@ void GridCostToGo::reach_back(int side, int step_layer, const Workspace& to, Wor
     for (next = k + 1; next < columns.size() && columns[next] == columns[next - 1] + 1;) ++next;
     solve_columns(from, side, columns[k], columns[next - 1] + 1);
   }
-  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions(); ++solution)
+  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions();
+       ++solution)
     for (const int column : columns) half.tiles.push_back({solution, column});
 }
 
-bool GridCostToGo::out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const {
-  return !lattice_->continuous()[static_cast<std::size_t>(joint)] && a.gap(b) > lattice_->step_bound(step_layer)[joint];
+bool GridCostToGo::out_of_step(int step_layer, int joint, const JointRange& a,
+                               const JointRange& b) const {
+  return !lattice_->continuous()[static_cast<std::size_t>(joint)] &&
+         a.gap(b) > lattice_->step_bound(step_layer)[joint];
 }
 
 bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const {
@@ -63,18 +69,21 @@ bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleR
   return true;
 }
 
-bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int solution, int column, const Workspace& to,
-                               int other) const {
+bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int solution, int column,
+                               const Workspace& to, int other) const {
   const LayerJoints &own_joints = *from.half(lattice_->elbow_side_of(solution)).joints,
                     &other_joints = *to.half(lattice_->elbow_side_of(other)).joints;
   const MiddleRanges& own_ranges = own_joints.of_tile[tile_of_layer(solution, column)];
-  if (!may_meet(step_layer, own_ranges, other_joints.of_layer[static_cast<std::size_t>(other)])) return false;
+  if (!may_meet(step_layer, own_ranges, other_joints.of_layer[static_cast<std::size_t>(other)]))
+    return false;
   const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
-  const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
+  const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) *
+                                                    (lattice_->angles() + 2 * lattice_->window());
   const auto theirs = [&](int joint) {
     return JointRange(other_joints.nodes.q(other, joint), value, windows.first, windows.last + 1);
   };
-  MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->elbow_side_of(solution))];
+  MiddleRanges& ranges =
+      windows.ranges[static_cast<std::size_t>(lattice_->elbow_side_of(solution))];
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
     JointRange& range = ranges.joint[m];
     if (range.empty()) range = theirs(MiddleRanges::kJoints[m]);
@@ -96,8 +105,8 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int soluti
   return true;
 }
 
-void GridCostToGo::relax_run(int step_layer, Workspace& from, int solution, int first, int count, const Workspace& to, int other,
-                             double* best) {
+void GridCostToGo::relax_run(int step_layer, Workspace& from, int solution, int first, int count,
+                             const Workspace& to, int other, double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
   Workspace::Half& half = from.half(lattice_->elbow_side_of(solution));
   const LayerNodes& other_nodes = to.half(lattice_->elbow_side_of(other)).joints->nodes;
@@ -132,8 +141,9 @@ void GridCostToGo::relax(int side, int step_layer, Workspace& from, const Worksp
     const int solution = tiles[first].solution;
     while (last < tiles.size() && tiles[last].solution == solution) ++last;
     const auto relax_with = [&](int other, const LayerJoints& joints) {
-      if (solution != other && !may_meet(step_layer, here.joints->of_layer[static_cast<std::size_t>(solution)],
-                                         joints.of_layer[static_cast<std::size_t>(other)]))
+      if (solution != other &&
+          !may_meet(step_layer, here.joints->of_layer[static_cast<std::size_t>(solution)],
+                    joints.of_layer[static_cast<std::size_t>(other)]))
         return;
       int begin = 0, end = 0;  // a run of columns
       const auto relax_columns = [&] {
@@ -141,7 +151,8 @@ void GridCostToGo::relax(int side, int step_layer, Workspace& from, const Worksp
         const int stop = std::min(n, end * kTileWidth),
                   // whole vectors
             start = std::max(0, std::min(begin * kTileWidth, stop - kTileWidth));
-        relax_run(step_layer, from, solution, start, stop - start, to, other, from.row.data() + solution * n + start);
+        relax_run(step_layer, from, solution, start, stop - start, to, other,
+                  from.row.data() + solution * n + start);
       };
       for (std::size_t k = first; k < last; ++k) {
         Tile& tile = tiles[k];
@@ -159,7 +170,8 @@ void GridCostToGo::relax(int side, int step_layer, Workspace& from, const Worksp
     };
     for (int others = 0; others < SrsLattice::kElbowSides; ++others)
       if (meets[static_cast<std::size_t>(others)])
-        for (const int other : to.half(others).solutions) relax_with(other, *to.half(others).joints);
+        for (const int other : to.half(others).solutions)
+          relax_with(other, *to.half(others).joints);
   }
 }
 
@@ -183,15 +195,19 @@ void GridCostToGo::publish_values(int side, Workspace& workspace) const {
     }
     std::copy(row + first, row + last + 1, value + window + first);
     for (const int turn : {0, n, -n}) {
-      const int low = std::max(0, window + first + turn), high = std::min(length - 1, window + last + turn);
+      const int low = std::max(0, window + first + turn),
+                high = std::min(length - 1, window + last + turn);
       if (low > high) continue;
-      if (turn != 0) std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
+      if (turn != 0)
+        std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
       // The window of column c is at the padded positions c * kTileWidth ... c * kTileWidth +
       // kTileWidth - 1 + 2 * window.
-      const int begin = std::max(0, low - 2 * window) / kTileWidth, end = std::min(tile_columns() - 1, high / kTileWidth);
+      const int begin = std::max(0, low - 2 * window) / kTileWidth,
+                end = std::min(tile_columns() - 1, high / kTileWidth);
       for (int c = begin; c <= end; ++c) {
         windows[c].first = std::min(windows[c].first, std::max(low, c * kTileWidth));
-        windows[c].last = std::max(windows[c].last, std::min(high, c * kTileWidth + kTileWidth - 1 + 2 * window));
+        windows[c].last =
+            std::max(windows[c].last, std::min(high, c * kTileWidth + kTileWidth - 1 + 2 * window));
         half.reached[static_cast<std::size_t>(c)] = 1;
       }
     }

@@ -12,18 +12,21 @@ namespace swivel {
 
 double& GridCostToGo::value_at(int layer, int slot) {
   const int solution = lattice_->solution_of(slot), j = lattice_->angle_of(slot);
-  return tiles_of(solution).hold(tile_index(layer, solution, j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
+  return tiles_of(solution).hold(
+      tile_index(layer, solution, j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
 }
 
 /// Calls visit(b, rest, delta) for the nodes b of the next layer that lie in the window of a node
 /// and whose cost-to-go `rest` passes worth() when it is their turn.
 template <class Worth, class Visit>
-void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit) {
+void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth,
+                                  const Visit& visit) {
   const int n = lattice_->angles();
   const SrsLattice::Run run = lattice_->run_after(layer, slot);
   for (int solution = 0; solution < lattice_->solutions(); ++solution)
     for (int k = 0, next = 0; k < run.count; k = next) {
-      const int angle = (run.first + k) % n, column = angle / kTileWidth, in_tile = angle % kTileWidth;
+      const int angle = (run.first + k) % n, column = angle / kTileWidth,
+                in_tile = angle % kTileWidth;
       next = std::min(run.count, k + std::min(n, (column + 1) * kTileWidth) - angle);
       const std::size_t tile = tile_index(layer + 1, solution, column);
       const TileTable& tiles = tiles_of(solution);
@@ -33,7 +36,8 @@ void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Wo
       for (int j = 0; j < next - k; ++j) {
         if (!worth(rest[j])) continue;
         if (!nodes) nodes = &neighbours(layer + 1, lattice_->elbow_side_of(solution), column);
-        visit(solution * n + angle + j, rest[j], lattice_->delta(q, nodes->config(solution, in_tile + j)));
+        visit(solution * n + angle + j, rest[j],
+              lattice_->delta(q, nodes->config(solution, in_tile + j)));
       }
     }
 }
@@ -47,7 +51,8 @@ double GridCostToGo::relax_one(int layer, int slot) {
       [&](int b, double rest, const Config& delta) {
         ++edges_;
         const double value = lattice_->edge_cost(delta) + rest;
-        if (value < best && lattice_->step_allowed(layer, delta) && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+        if (value < best && lattice_->step_allowed(layer, delta) &&
+            verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
           best = value;
       });
   return verdicts_.cost(layer, slot) + best;
@@ -62,7 +67,8 @@ void GridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& o
       [&](int b, double rest, const Config& delta) {
         if (!lattice_->step_allowed(layer, delta)) return;
         const double cost = lattice_->edge_cost(delta);
-        if (own + (cost + rest) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, own + cost});
+        if (own + (cost + rest) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+          out.push_back({b, own + cost});
       });
 }
 
@@ -74,8 +80,11 @@ void GridCostToGo::relax_removed(int layer) {
     if (!here.find(*lattice_, a)) continue;
     double& value = here.row[static_cast<std::size_t>(a)];
     const double own = verdicts_.cost(layer, a);
-    const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return own + (edge.cost + at(layer + 1, edge.other)) == value; };
-    if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(layer, a);
+    const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
+      return own + (edge.cost + at(layer + 1, edge.other)) == value;
+    };
+    if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value))
+      value = relax_one(layer, a);
   }
 }
 
@@ -86,7 +95,8 @@ void GridCostToGo::add_node_costs(int side, Workspace& workspace) const {
   if (!own) return;
   const int n = lattice_->angles();
   for (const Tile& tile : workspace.half(side).tiles)
-    for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n); ++slot)
+    for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n);
+         ++slot)
       workspace.row[static_cast<std::size_t>(slot)] += own[slot];
 }
 
@@ -101,8 +111,10 @@ void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
   result.assign(angles.size(), 0);
   const auto add = [&](int first, int last) {
     for (int column = first / kTileWidth; column <= last / kTileWidth; ++column) {
-      const int low = std::max(0, first - column * kTileWidth), high = std::min(kTileWidth - 1, last - column * kTileWidth);
-      result[static_cast<std::size_t>(column)] |= static_cast<std::uint8_t>((0xff << low) & (0xff >> (kTileWidth - 1 - high)));
+      const int low = std::max(0, first - column * kTileWidth),
+                high = std::min(kTileWidth - 1, last - column * kTileWidth);
+      result[static_cast<std::size_t>(column)] |=
+          static_cast<std::uint8_t>((0xff << low) & (0xff >> (kTileWidth - 1 - high)));
     }
   };
   for (int column = 0; column < tile_columns(); ++column) {
@@ -142,28 +154,36 @@ void GridCostToGo::propagate_removals() {
   const TraceSpan span("repair");
   forget_joints();
   auto& pending = verdicts_.pending;
-  while (!pending.empty() && pending.rbegin()->first > goal_) pending.erase(std::prev(pending.end()));
+  while (!pending.empty() && pending.rbegin()->first > goal_)
+    pending.erase(std::prev(pending.end()));
   std::array<ChangedAngles, SrsLattice::kElbowSides> changes;
-  for (ChangedAngles& changed : changes) changed.after = changed.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
+  for (ChangedAngles& changed : changes)
+    changed.after = changed.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
   const auto set = [&](int layer, int slot, double value) {
     if (at(layer, slot) == value) return;
     value_at(layer, slot) = value;
-    ChangedAngles& changed = changes[static_cast<std::size_t>(lattice_->elbow_side_of(lattice_->solution_of(slot)))];
+    ChangedAngles& changed =
+        changes[static_cast<std::size_t>(lattice_->elbow_side_of(lattice_->solution_of(slot)))];
     const int angle = lattice_->angle_of(slot);
-    changed.here[static_cast<std::size_t>(angle / kTileWidth)] |= static_cast<std::uint8_t>(1 << angle % kTileWidth);
+    changed.here[static_cast<std::size_t>(angle / kTileWidth)] |=
+        static_cast<std::uint8_t>(1 << angle % kTileWidth);
     changed.any_here = true;
   };
-  const auto on_elbow_side = [&](int side, int slot) { return lattice_->elbow_side_of(lattice_->solution_of(slot)) == side; };
+  const auto on_elbow_side = [&](int side, int slot) {
+    return lattice_->elbow_side_of(lattice_->solution_of(slot)) == side;
+  };
   // Nodes that cost more now are first computed with the layer after as it was; where that changed
   // too, they are relaxed next.
   const auto raise = [&](int side, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.raised)
       if (on_elbow_side(side, slot))
-        if (const double value = at(layer, slot); value != kUnreachable) set(layer, slot, verdicts_.cost(layer, slot) + value);
+        if (const double value = at(layer, slot); value != kUnreachable)
+          set(layer, slot, verdicts_.cost(layer, slot) + value);
   };
   const auto remove = [&](int side, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.nodes)
-      if (on_elbow_side(side, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
+      if (on_elbow_side(side, slot) && at(layer, slot) != kUnreachable)
+        set(layer, slot, kUnreachable);
   };
   // Find what depends on the changes of the layer after, and what of that layer it depends on.
   const auto load_after = [&](int side, int layer, ChangedAngles& changed) {
@@ -179,11 +199,13 @@ void GridCostToGo::propagate_removals() {
   };
   const auto settle = [&](int side, int layer, ChangedAngles& changed) {
     prune_above_limit(side, workspace(layer));
-    if (renew_tiles(side, workspace(layer), changed.dependent, changed.here)) changed.any_here = true;
+    if (renew_tiles(side, workspace(layer), changed.dependent, changed.here))
+      changed.any_here = true;
   };
   const auto goes_alone = [&](int layer) {
     const auto now = pending.find(layer);
-    return (layer > 0 || !lattice_->has_start()) && (now == pending.end() || now->second.tails.empty()) &&
+    return (layer > 0 || !lattice_->has_start()) &&
+           (now == pending.end() || now->second.tails.empty()) &&
            (layer == goal_ || elbow_sides_part(layer));
   };
   for (int layer = pending.empty() ? -1 : pending.rbegin()->first; layer >= 0;) {
@@ -198,7 +220,8 @@ void GridCostToGo::propagate_removals() {
           if (now != pending.end()) raise(side, here, now->second);
           if (changed.any_after) {
             load_after(side, here, changed);
-            load_tiles(side, here, changed.dependent, workspace(here), &workspace(here + 1).half(side).reached);
+            load_tiles(side, here, changed.dependent, workspace(here),
+                       &workspace(here + 1).half(side).reached);
             relax_loaded(side, here);
             settle(side, here, changed);
           }
@@ -213,7 +236,8 @@ void GridCostToGo::propagate_removals() {
       changes[1].add(changes[0]);
       const bool any = changes[0].any_after;
       const auto now = pending.find(layer);
-      for (int side = 0; side < SrsLattice::kElbowSides && now != pending.end(); ++side) raise(side, layer, now->second);
+      for (int side = 0; side < SrsLattice::kElbowSides && now != pending.end(); ++side)
+        raise(side, layer, now->second);
       if (any && layer == 0 && lattice_->has_start()) {
         const int slot = lattice_->start_slot();
         if (at(0, slot) != kUnreachable) set(0, slot, relax_one(0, slot));
@@ -225,13 +249,15 @@ void GridCostToGo::propagate_removals() {
         });
         by_elbow_side([&](int side) { relax_loaded(side, layer); });
         relax_removed(layer);
-        for (int side = 0; side < SrsLattice::kElbowSides; ++side) settle(side, layer, changes[static_cast<std::size_t>(side)]);
+        for (int side = 0; side < SrsLattice::kElbowSides; ++side)
+          settle(side, layer, changes[static_cast<std::size_t>(side)]);
       }
       if (now != pending.end()) {
         for (int side = 0; side < SrsLattice::kElbowSides; ++side) remove(side, layer, now->second);
         for (const int slot : now->second.tails) {
           budget_.poll();
-          if (layer < goal_ && at(layer, slot) != kUnreachable) set(layer, slot, relax_one(layer, slot));
+          if (layer < goal_ && at(layer, slot) != kUnreachable)
+            set(layer, slot, relax_one(layer, slot));
         }
         pending.erase(now);
       }
@@ -256,11 +282,13 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
     for (const int other : half.solutions)
       for (int k = 0; k < run.count; ++k) {
         const int j = (run.first + k) % n, a = other * n + j;
-        const double done = before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
+        const double done =
+            before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
         if (done >= best) continue;
         const Config delta = lattice_->delta(config(layer - 1, a), q);
         const double value = lattice_->edge_cost(delta) + done;
-        if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
+        if (value < best && lattice_->step_allowed(layer - 1, delta) &&
+            verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
           best = value;
       }
   return best;
@@ -269,7 +297,8 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
 /// Makes as many rows as so many layers need, and one more.
 void GridCostToGo::begin_reach_rows(int layers) {
   const auto rows = static_cast<std::size_t>((layers + Reach::kStride - 1) / Reach::kStride) + 1;
-  reach_.rows.resize(rows * static_cast<std::size_t>(lattice_->width()), std::numeric_limits<float>::infinity());
+  reach_.rows.resize(rows * static_cast<std::size_t>(lattice_->width()),
+                     std::numeric_limits<float>::infinity());
 }
 
 /// Keeps the costs of one elbow side's nodes, rounded down; `kept` has all slots.
@@ -280,8 +309,10 @@ void GridCostToGo::keep_reach(int side, int layer, float* kept) {
   const Workspace& here = workspace(layer);
   if (here.half(side).layer != layer) return;  // this elbow side does not come here
   for (const Tile& tile : here.half(side).tiles)
-    for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n); ++slot)
-      kept[slot] = std::nextafter(static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
+    for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n);
+         ++slot)
+      kept[slot] = std::nextafter(
+          static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
 }
 
 int GridCostToGo::deepest_reachable() {
@@ -343,12 +374,15 @@ int GridCostToGo::deepest_reachable() {
       return edge.cost + before.value[static_cast<std::size_t>(place)] == value;
     };
     for (const auto& [b, edges] : removed.heads)
-      if (workspace(layer).find(*lattice_, b) && std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
+      if (workspace(layer).find(*lattice_, b) &&
+          std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
             return gives_value(edge, workspace(layer).row[static_cast<std::size_t>(b)]);
           }))
         step_one(layer, b);
   };
-  const auto goes_alone = [&](int layer) { return (layer > 1 || !lattice_->has_start()) && elbow_sides_part(layer - 1); };
+  const auto goes_alone = [&](int layer) {
+    return (layer > 1 || !lattice_->has_start()) && elbow_sides_part(layer - 1);
+  };
   const auto finish = [&](int side, int layer) {
     publish_values(side, workspace(layer));
     int& last = deepest[static_cast<std::size_t>(side)];
@@ -358,7 +392,8 @@ int GridCostToGo::deepest_reachable() {
       keep_reach(side, last, ended.data());
   };
   begin_reach_rows(0);
-  for (int layer = 1, end = 0; layer < lattice_->layers() && workspace(layer - 1).reaches_any(); layer = end) {
+  for (int layer = 1, end = 0; layer < lattice_->layers() && workspace(layer - 1).reaches_any();
+       layer = end) {
     budget_.poll();
     end = layer + 1;
     const bool alone = goes_alone(layer);

@@ -22,11 +22,12 @@ void each(int count, const F& f) {
 
 }  // namespace
 
-GridCostToGo::GridCostToGo(const SrsLattice& lattice, Pruning pruning, const Budget& budget, GridCostToGo* recycled)
+GridCostToGo::GridCostToGo(const SrsLattice& lattice, Pruning pruning, const Budget& budget,
+                           GridCostToGo* recycled)
     : CostToGo(lattice, budget), lattice_(&lattice), bounded_(pruning == Pruning::kByBound) {
   const std::size_t tiles = tile_of_layer(lattice.solutions(), 0);
-  tiles_[0] =
-      TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, recycled ? std::move(recycled->tiles_[0]) : TileTable());
+  tiles_[0] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles,
+                        recycled ? std::move(recycled->tiles_[0]) : TileTable());
   if (recycled) {
     passing_ = std::move(recycled->passing_);
     neighbours_ = std::move(recycled->neighbours_);
@@ -36,8 +37,9 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Pruning pruning, const Bud
     workspace = std::make_unique<Workspace>();
     workspace->row.resize(static_cast<std::size_t>(lattice.width()));
     workspace->windows.resize(tiles);
-    workspace->value.assign(static_cast<std::size_t>(lattice.solutions() * (lattice.angles() + 2 * lattice.window())),
-                            kUnreachable);
+    workspace->value.assign(
+        static_cast<std::size_t>(lattice.solutions() * (lattice.angles() + 2 * lattice.window())),
+        kUnreachable);
   }
 }
 
@@ -46,7 +48,8 @@ void GridCostToGo::apply_masks(int side, Workspace& workspace) const {
   const Workspace::Half& half = workspace.half(side);
   for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;
-    const int slot = tile.solution * n + tile.begin(), at = window + tile.begin(), count = tile.end(n) - tile.begin();
+    const int slot = tile.solution * n + tile.begin(), at = window + tile.begin(),
+              count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
     const double* one = half.joints->nodes.mask(tile.solution, 0) + at;
     const double* other = half.joints->nodes.mask(tile.solution, 1) + at;
@@ -68,9 +71,12 @@ void GridCostToGo::prune_above_limit(int side, Workspace& workspace) const {
     const int slot = tile.solution * n + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
     if (const float* before = bound ? bound + slot : nullptr)
-      each<kTileWidth>(count, [&](int k) { values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k]; });
+      each<kTileWidth>(count, [&](int k) {
+        values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k];
+      });
     else
-      each<kTileWidth>(count, [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
+      each<kTileWidth>(count,
+                       [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
   }
 }
 
@@ -78,16 +84,20 @@ void GridCostToGo::store_tiles(int side, const Workspace& workspace) {
   const int n = lattice_->angles();
   const Workspace::Half& half = workspace.half(side);
   for (const Tile& tile : half.tiles) {
-    TileTable::Costs& costs = tiles_of(tile.solution).hold(tile_index(half.layer, tile.solution, tile.column));
+    TileTable::Costs& costs =
+        tiles_of(tile.solution).hold(tile_index(half.layer, tile.solution, tile.column));
     const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n;
-    std::fill(std::copy(row + tile.begin(), row + tile.end(n), costs.begin()), costs.end(), kUnreachable);
+    std::fill(std::copy(row + tile.begin(), row + tile.end(n), costs.begin()), costs.end(),
+              kUnreachable);
   }
 }
 
-void GridCostToGo::load_tiles(int side, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached) {
+void GridCostToGo::load_tiles(int side, int layer, const ColumnSet& columns, Workspace& workspace,
+                              const ColumnSet* reached) {
   begin(side, layer, workspace);
   const int n = lattice_->angles();
-  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions(); ++solution)
+  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions();
+       ++solution)
     for (int column = 0; column < tile_columns(); ++column) {
       const std::size_t held = tile_index(layer, solution, column);
       if (!columns[static_cast<std::size_t>(column)] || !tiles_of(solution).holds(held)) continue;
@@ -102,13 +112,17 @@ void GridCostToGo::load_tiles(int side, int layer, const ColumnSet& columns, Wor
     }
 }
 
-bool GridCostToGo::renew_tiles(int side, const Workspace& workspace, const AngleSet& angles, AngleSet& changed) {
+bool GridCostToGo::renew_tiles(int side, const Workspace& workspace, const AngleSet& angles,
+                               AngleSet& changed) {
   const int n = lattice_->angles();
   bool any = false;
   for (const Tile& tile : workspace.half(side).tiles) {
     const auto column = static_cast<std::size_t>(tile.column);
-    const double* const values = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n + tile.begin();
-    TileTable::Costs& known = tiles_of(tile.solution).hold(tile_index(workspace.half(side).layer, tile.solution, tile.column));
+    const double* const values =
+        workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n + tile.begin();
+    TileTable::Costs& known =
+        tiles_of(tile.solution)
+            .hold(tile_index(workspace.half(side).layer, tile.solution, tile.column));
     unsigned differ = 0;
     for (unsigned k = 0; k < static_cast<unsigned>(tile.end(n) - tile.begin()); ++k) {
       if (!(angles[column] >> k & 1) || values[k] == known[k]) continue;
@@ -161,7 +175,8 @@ void GridCostToGo::compute(int goal_layer) {
 
 const float* GridCostToGo::cost_before(int layer) const {
   if (!by_reach_) return chord_bound_ ? chord_bound_->row(layer) : nullptr;
-  if (layer > reach_.deepest || (layer % Reach::kStride != 0 && layer != reach_.deepest)) return nullptr;
+  if (layer > reach_.deepest || (layer % Reach::kStride != 0 && layer != reach_.deepest))
+    return nullptr;
   const int row = (layer + Reach::kStride - 1) / Reach::kStride;
   return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
 }
@@ -181,7 +196,8 @@ void GridCostToGo::limit_by_reach() {
 bool GridCostToGo::raise_limit() {
   if (!by_reach_ && goal_ == lattice_->layers() - 1 && chord_bound_->row(0)) {
     const double least = chord_bound_->best(),
-                 found = limit_ == kUnreachable ? kUnreachable : lattice_->largest_of_same_coarse_cost(best());
+                 found = limit_ == kUnreachable ? kUnreachable
+                                                : lattice_->largest_of_same_coarse_cost(best());
     const double passed = limit_ == kUnreachable ? -1 : limit_;
     // most stop at the first: 2 to 10 % of the lattice
     for (const double share : {0.03, 0.25, 1.5}) {
@@ -206,7 +222,8 @@ void GridCostToGo::clear_values() {
   for (TileTable& tiles : tiles_) tiles.clear();
   apart_ = work_.threads > 1;
   if (apart_ && tiles_[1].tiles() == 0)
-    tiles_[1] = TileTable(static_cast<std::size_t>(lattice_->layers()) * tile_of_layer(lattice_->solutions(), 0));
+    tiles_[1] = TileTable(static_cast<std::size_t>(lattice_->layers()) *
+                          tile_of_layer(lattice_->solutions(), 0));
 }
 
 void GridCostToGo::sweep_once() {
@@ -259,7 +276,8 @@ double GridCostToGo::best() const {
   double best = kUnreachable;
   for (int solution = 0; solution < lattice_->solutions(); ++solution)
     for (int column = 0; column < tile_columns(); ++column)
-      for (const double value : tiles_of(solution)[tile_index(0, solution, column)]) best = std::min(best, value);
+      for (const double value : tiles_of(solution)[tile_index(0, solution, column)])
+        best = std::min(best, value);
   return best;
 }
 

@@ -32,7 +32,9 @@ struct GridCostToGo::JointRange {
     low = std::min(low, other.low);
     high = std::max(high, other.high);
   }
-  [[nodiscard]] double gap(const JointRange& other) const { return std::max(low - other.high, other.low - high); }
+  [[nodiscard]] double gap(const JointRange& other) const {
+    return std::max(low - other.high, other.low - high);
+  }
 };
 
 /// A column, eight angles, of one IK solution.
@@ -42,12 +44,15 @@ struct GridCostToGo::Tile {
   [[nodiscard]] int begin() const { return column * kTileWidth; }
   [[nodiscard]] int end(int angles) const { return std::min(angles, begin() + kTileWidth); }
   bool operator==(const Tile& o) const { return solution == o.solution && column == o.column; }
-  bool operator<(const Tile& o) const { return std::tie(solution, column) < std::tie(o.solution, o.column); }
+  bool operator<(const Tile& o) const {
+    return std::tie(solution, column) < std::tie(o.solution, o.column);
+  }
 };
 
 /// Ranges of the joints that tell the IK solutions of one elbow side apart.
 struct GridCostToGo::MiddleRanges {
-  static constexpr std::array<int, 2> kJoints{SrsLattice::kMiddleJoints[0], SrsLattice::kMiddleJoints[1]};
+  static constexpr std::array<int, 2> kJoints{SrsLattice::kMiddleJoints[0],
+                                              SrsLattice::kMiddleJoints[1]};
   std::array<JointRange, 2> joint;
 };
 
@@ -93,9 +98,12 @@ struct GridCostToGo::Workspace {
   [[nodiscard]] bool find(const SrsLattice& lattice, int slot) const {
     const int solution = lattice.solution_of(slot);
     const std::vector<Tile>& tiles = half(lattice.elbow_side_of(solution)).tiles;
-    return std::binary_search(tiles.begin(), tiles.end(), Tile{solution, lattice.angle_of(slot) / kTileWidth});
+    return std::binary_search(tiles.begin(), tiles.end(),
+                              Tile{solution, lattice.angle_of(slot) / kTileWidth});
   }
-  [[nodiscard]] bool reaches_any() const { return !halves[0].solutions.empty() || !halves[1].solutions.empty(); }
+  [[nodiscard]] bool reaches_any() const {
+    return !halves[0].solutions.empty() || !halves[1].solutions.empty();
+  }
 };
 
 template <class Part>
@@ -104,7 +112,8 @@ void GridCostToGo::by_elbow_side(const Part& part) {
     GridCostToGo* grid;
     ~CollectsCounts() { grid->collect_counts(); }
   } const at_end{this};
-  if (apart_) return work_.for_each(SrsLattice::kElbowSides, [&part](int side, int) { part(side); });
+  if (apart_)
+    return work_.for_each(SrsLattice::kElbowSides, [&part](int side, int) { part(side); });
   for (int side = 0; side < SrsLattice::kElbowSides; ++side) part(side);
 }
 

@@ -21,7 +21,8 @@ class TileTable {
 
   TileTable() = default;
   /// Makes an empty table for tiles 0 ... tiles - 1. Takes over the memory of `recycled`.
-  explicit TileTable(std::size_t tiles, TileTable&& recycled = TileTable()) : held_(std::move(recycled.held_)) {
+  explicit TileTable(std::size_t tiles, TileTable&& recycled = TileTable())
+      : held_(std::move(recycled.held_)) {
     recycled.held_ = {};
     if (recycled.slot_.size() >= tiles) {
       slot_ = std::move(recycled.slot_);
@@ -69,7 +70,8 @@ class TileTable {
   void restore(const Held& held) {
     clear();
     held_ = held;
-    for (std::size_t k = 1; k < held_.tile.size(); ++k) slot_[held_.tile[k]] = static_cast<std::uint32_t>(k);
+    for (std::size_t k = 1; k < held_.tile.size(); ++k)
+      slot_[held_.tile[k]] = static_cast<std::uint32_t>(k);
   }
 
  private:

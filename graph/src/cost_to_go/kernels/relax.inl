@@ -136,7 +136,8 @@ inline V move_about(V from, V to, double turn) {
 /// lane's best are left out before the square root. `sure` is a measure of the move up to which
 /// every joint stays within its bound; negative where there is no such measure.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
-inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V value, V best, T sure) {
+inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V value, V best,
+                      T sure) {
   // far above what the sum may lose
   const T rounding = (kSingle<T> ? T(1e-4) : T(1e-11)) * task.unit;
   const T shift = T(6144) * task.unit;
@@ -153,11 +154,13 @@ inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V va
   for (int j = 0; j < 7; ++j) x[j] = task.scale[j] * step[j];
   V measure, limit;  // a measure that grows with the cost, and its largest allowed value
   if constexpr (kMetric == RelaxMetric::kL2) {
-    measure = ((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6]);
+    measure = ((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] +
+              ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6]);
     limit = room * room;
   } else {
     for (V& part : x) part = magnitude(part);
-    measure = larger(larger(larger(x[0], x[1]), larger(x[2], x[3])), larger(larger(x[4], x[5]), x[6]));
+    measure =
+        larger(larger(larger(x[0], x[1]), larger(x[2], x[3])), larger(larger(x[4], x[5]), x[6]));
     limit = room;
   }
   if (!any_less(measure, limit)) return best;
@@ -182,10 +185,12 @@ inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
   for (int j = 0; j < 7; ++j) from[j] = load<V>(task.from[j] + at);
   V best = load<V>(task.best + at);
   for (int turn = 0; turn < task.offsets; ++turn) {
-    const int offset = task.offsets / 2 + (turn % 2 == 0 ? turn / 2 : -(turn + 1) / 2), partner = at + offset;
+    const int offset = task.offsets / 2 + (turn % 2 == 0 ? turn / 2 : -(turn + 1) / 2),
+              partner = at + offset;
     V to[7];
     for (int j = 0; j < 7; ++j) to[j] = load<V>(task.to[j] + partner);
-    best = with_partner<V, kMetric, kWraps>(task, from, to, load<V>(task.value + partner), best, sure);
+    best =
+        with_partner<V, kMetric, kWraps>(task, from, to, load<V>(task.value + partner), best, sure);
   }
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
@@ -254,7 +259,9 @@ struct Reach {
   template <class V>
   V excess(const RelaxTask<double>& task, int partner) const {
     const auto of = [&](int j) {
-      return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner), task.turn[j])) - radius[j]);
+      return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner),
+                                            task.turn[j])) -
+               radius[j]);
     };
     const V most = larger(larger(of(6), of(5)), larger(of(4), of(3)));
     return none_within(most) ? most : larger(larger(most, of(2)), larger(of(1), of(0)));
@@ -268,14 +275,16 @@ struct Reach {
 
 /// Relaxes as many nodes as V has lanes, from `at` on, with each of the partners listed.
 template <class V, RelaxMetric kMetric, bool kWraps>
-inline void relax_with(const RelaxTask<double>& task, int at, const int* partners, int count, double sure) {
+inline void relax_with(const RelaxTask<double>& task, int at, const int* partners, int count,
+                       double sure) {
   V from[7];
   for (int j = 0; j < 7; ++j) from[j] = load<V>(task.from[j] + at);
   V best = load<V>(task.best + at);
   for (int k = 0; k < count; ++k) {
     V to[7];
     for (int j = 0; j < 7; ++j) to[j] = V{} + task.to[j][partners[k]];
-    best = with_partner<V, kMetric, kWraps>(task, from, to, V(V{} + task.value[partners[k]]), best, sure);
+    best = with_partner<V, kMetric, kWraps>(task, from, to, V(V{} + task.value[partners[k]]), best,
+                                            sure);
   }
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
@@ -309,9 +318,11 @@ void relax_all_run(const RelaxTask<double>& task) {
       }
       if (task.n >= kLanes)
         for (int node = at; node < reach.last; node += kLanes)
-          relax_with<Lanes, kMetric, kWraps>(task, node + kLanes <= task.n ? node : task.n - kLanes, near, count, sure);
+          relax_with<Lanes, kMetric, kWraps>(task, node + kLanes <= task.n ? node : task.n - kLanes,
+                                             near, count, sure);
       else
-        for (int node = at; node < reach.last; ++node) relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
+        for (int node = at; node < reach.last; ++node)
+          relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
     }
     at = reach.last;
   }
@@ -319,9 +330,11 @@ void relax_all_run(const RelaxTask<double>& task) {
 
 void relax_all(const RelaxTask<double>& task) {
   if (task.metric == RelaxMetric::kL2)
-    task.wraps ? relax_all_run<RelaxMetric::kL2, true>(task) : relax_all_run<RelaxMetric::kL2, false>(task);
+    task.wraps ? relax_all_run<RelaxMetric::kL2, true>(task)
+               : relax_all_run<RelaxMetric::kL2, false>(task);
   else
-    task.wraps ? relax_all_run<RelaxMetric::kMax, true>(task) : relax_all_run<RelaxMetric::kMax, false>(task);
+    task.wraps ? relax_all_run<RelaxMetric::kMax, true>(task)
+               : relax_all_run<RelaxMetric::kMax, false>(task);
 }
 
 template <class T>
@@ -329,7 +342,8 @@ void relax(const RelaxTask<T>& task) {
   if (task.metric == RelaxMetric::kL2)
     task.wraps ? relax_run<RelaxMetric::kL2, true>(task) : relax_run<RelaxMetric::kL2, false>(task);
   else
-    task.wraps ? relax_run<RelaxMetric::kMax, true>(task) : relax_run<RelaxMetric::kMax, false>(task);
+    task.wraps ? relax_run<RelaxMetric::kMax, true>(task)
+               : relax_run<RelaxMetric::kMax, false>(task);
 }
 
 /// Returns the least of the lanes, by halves.
@@ -358,7 +372,8 @@ void range(const T* q, const T* value, int n, T& low, T& high) {
   T least = T(__builtin_inf()), minus_most = least;
   if (n >= kLanes) {
     Lanes lows = Lanes{} + least, minus_highs = lows;
-    for (int at = 0; at + kLanes <= n; at += kLanes) add_to_range(q + at, value + at, lows, minus_highs);
+    for (int at = 0; at + kLanes <= n; at += kLanes)
+      add_to_range(q + at, value + at, lows, minus_highs);
     add_to_range(q + n - kLanes, value + n - kLanes, lows, minus_highs);
     least = least_lane<Lanes, T>(lows);
     minus_most = least_lane<Lanes, T>(minus_highs);

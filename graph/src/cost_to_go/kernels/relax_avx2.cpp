@@ -5,8 +5,8 @@
 
 namespace swivel {
 const RelaxKernels& avx2_relax_kernels() {
-  static constexpr RelaxKernels kernels{&avx2::relax<double>, &avx2::relax_all, &avx2::relax<float>, &avx2::range<double>,
-                                        &avx2::range<float>};
+  static constexpr RelaxKernels kernels{&avx2::relax<double>, &avx2::relax_all, &avx2::relax<float>,
+                                        &avx2::range<double>, &avx2::range<float>};
   return kernels;
 }
 }  // namespace swivel

@@ -5,7 +5,8 @@
 
 namespace swivel {
 const RelaxKernels& avx512_relax_kernels() {
-  static constexpr RelaxKernels kernels{&avx512::relax<double>, &avx512::relax_all, &avx512::relax<float>, &avx512::range<double>,
+  static constexpr RelaxKernels kernels{&avx512::relax<double>, &avx512::relax_all,
+                                        &avx512::relax<float>, &avx512::range<double>,
                                         &avx512::range<float>};
   return kernels;
 }

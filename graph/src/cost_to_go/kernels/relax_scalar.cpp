@@ -5,7 +5,8 @@
 
 namespace swivel {
 const RelaxKernels& scalar_relax_kernels() {
-  static constexpr RelaxKernels kernels{&scalar::relax<double>, &scalar::relax_all, &scalar::relax<float>, &scalar::range<double>,
+  static constexpr RelaxKernels kernels{&scalar::relax<double>, &scalar::relax_all,
+                                        &scalar::relax<float>, &scalar::range<double>,
                                         &scalar::range<float>};
   return kernels;
 }

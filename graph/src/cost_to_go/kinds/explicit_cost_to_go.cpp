@@ -20,13 +20,15 @@ ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget)
     for (std::size_t k = 0; k < kDof; ++k) {
       Values& joint = joints_[static_cast<std::size_t>(layer)][k];
       joint.resize(count);
-      for (const Lattice::Node& node : nodes) joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
+      for (const Lattice::Node& node : nodes)
+        joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
     }
     ik_nodes_ += static_cast<std::int64_t>(count);
   }
 }
 
-void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others, Values& out) {
+void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others,
+                             Values& out) {
   const auto& from = joints_[static_cast<std::size_t>(layer)];
   const auto& to = joints_[static_cast<std::size_t>(other_layer)];
   const std::size_t count = from[0].size(), partners = others.size();
@@ -54,7 +56,9 @@ double ExplicitCostToGo::relax_one(int layer, int slot) {
     if (rest >= best) continue;
     const Config delta = lattice_->delta(q, config(layer + 1, b));
     const double value = lattice_->edge_cost(delta) + rest;
-    if (value < best && lattice_->step_allowed(layer, delta) && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) best = value;
+    if (value < best && lattice_->step_allowed(layer, delta) &&
+        verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+      best = value;
   }
   return best;
 }
@@ -67,7 +71,8 @@ double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& be
     if (done >= best) continue;
     const Config delta = lattice_->delta(config(layer - 1, a), q);
     const double value = lattice_->edge_cost(delta) + done;
-    if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
+    if (value < best && lattice_->step_allowed(layer - 1, delta) &&
+        verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
       best = value;
   }
   return best;
@@ -92,7 +97,8 @@ void ExplicitCostToGo::compute_removals() {
 Config ExplicitCostToGo::config(int layer, int slot) {
   Config q;
   for (std::size_t k = 0; k < kDof; ++k)
-    q[static_cast<Eigen::Index>(k)] = joints_[static_cast<std::size_t>(layer)][k][static_cast<std::size_t>(slot)];
+    q[static_cast<Eigen::Index>(k)] =
+        joints_[static_cast<std::size_t>(layer)][k][static_cast<std::size_t>(slot)];
   return q;
 }
 
@@ -106,7 +112,8 @@ void ExplicitCostToGo::steps(int layer, int slot, double bound, std::vector<Step
     const Config delta = lattice_->delta(q, config(layer + 1, b));
     if (!lattice_->step_allowed(layer, delta)) continue;
     const double cost = lattice_->edge_cost(delta);
-    if (own + (cost + rest) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, own + cost});
+    if (own + (cost + rest) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+      out.push_back({b, own + cost});
   }
 }
 

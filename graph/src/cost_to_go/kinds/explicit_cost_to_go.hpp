@@ -20,7 +20,9 @@ class ExplicitCostToGo final : public LayerValues {
 
  private:
   void compute_removals() override;
-  void begin(int layer, Values& out) override { out.assign(static_cast<std::size_t>(lattice_->slots(layer)), 0.0); }
+  void begin(int layer, Values& out) override {
+    out.assign(static_cast<std::size_t>(lattice_->slots(layer)), 0.0);
+  }
   void relax(int step, int layer, int other_layer, const Values& others, Values& out) override;
   /// Computes one node's cost-to-go by plain loops.
   [[nodiscard]] double relax_one(int layer, int slot) override;

@@ -11,7 +11,8 @@ namespace {
 
 /// Returns true if removing one of these edges, to or from nodes with the values `others`, can have
 /// changed a node's value.
-bool gives(const std::vector<Verdicts::HalfEdge>& edges, const std::vector<double>& others, double value) {
+bool gives(const std::vector<Verdicts::HalfEdge>& edges, const std::vector<double>& others,
+           double value) {
   return std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
     return edge.cost + others[static_cast<std::size_t>(edge.other)] == value;
   });
@@ -78,11 +79,13 @@ int LayerValues::deepest_reachable() {
       if (const auto* edges = verdicts_.removed_edges(layer - 1))
         for (const auto& [b, tails] : edges->heads) {
           double& value = here[static_cast<std::size_t>(b)];
-          if (value != kUnreachable && gives(tails, before, value)) value = relax_one_forward(layer, b, before);
+          if (value != kUnreachable && gives(tails, before, value))
+            value = relax_one_forward(layer, b, before);
         }
     }
     leave_out_removed(layer, here);
-    if (std::all_of(here.begin(), here.end(), [](double value) { return value == kUnreachable; })) return layer - 1;
+    if (std::all_of(here.begin(), here.end(), [](double value) { return value == kUnreachable; }))
+      return layer - 1;
     if (layer + 1 == lattice().layers()) return layer;
     before.swap(here);
   }

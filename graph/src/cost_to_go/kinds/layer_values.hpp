@@ -39,7 +39,9 @@ class LayerValues : public CostToGo {
 
   /// Computes the values of a layer from those of the next, over what is not removed.
   void solve_layer(int layer, Values& out);
-  [[nodiscard]] bool removed(int layer, int slot) const { return verdicts_.node(layer, slot) == Verdict::kRemoved; }
+  [[nodiscard]] bool removed(int layer, int slot) const {
+    return verdicts_.node(layer, slot) == Verdict::kRemoved;
+  }
 
   std::vector<Values> value_;  // [layer]
 

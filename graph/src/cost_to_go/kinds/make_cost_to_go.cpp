@@ -6,11 +6,14 @@
 
 namespace swivel {
 
-std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Pruning pruning, const Budget& budget,
+std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Pruning pruning,
+                                          const Budget& budget,
                                           std::unique_ptr<CostToGo> recycled) {
   if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
-    return std::make_unique<GridCostToGo>(*grid, pruning, budget, dynamic_cast<GridCostToGo*>(recycled.get()));
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return std::make_unique<RollCostToGo>(*rolls, budget);
+    return std::make_unique<GridCostToGo>(*grid, pruning, budget,
+                                          dynamic_cast<GridCostToGo*>(recycled.get()));
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice))
+    return std::make_unique<RollCostToGo>(*rolls, budget);
   return std::make_unique<ExplicitCostToGo>(lattice, budget);
 }
 

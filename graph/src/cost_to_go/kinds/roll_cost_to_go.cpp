@@ -57,12 +57,14 @@ void RollCostToGo::forget(int layer) {
 Config RollCostToGo::config(int layer, int slot) {
   if (begins(layer)) return *lattice_->node(0, 0);
   const int inner = lattice_->inner(layer, slot);
-  return nodes(layer, lattice_->rank_of(layer, slot)).config(inner / angles_, pad_ + inner % angles_);
+  return nodes(layer, lattice_->rank_of(layer, slot))
+      .config(inner / angles_, pad_ + inner % angles_);
 }
 
 void RollCostToGo::take_around(const Values& values) {
   const int length = angles_ + 2 * pad_, rows = lattice_->rolls() * solutions_;
-  around_.value.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length), kUnreachable);
+  around_.value.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length),
+                       kUnreachable);
   around_.finite.assign(static_cast<std::size_t>(rows), {});
   for (int row = 0; row < rows; ++row) {
     const double* from = values.data() + static_cast<std::ptrdiff_t>(row) * angles_;
@@ -148,7 +150,8 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
 }
 
 template <class Worth, class Visit>
-void RollCostToGo::each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit) {
+void RollCostToGo::each_near(int step, int layer, int slot, int other, const Worth& worth,
+                             const Visit& visit) {
   if (begins(layer) || begins(other)) {  // the given start
     std::vector<Lattice::SlotRun> runs;
     if (begins(other)) {
@@ -162,7 +165,8 @@ void RollCostToGo::each_near(int step, int layer, int slot, int other, const Wor
     return;
   }
   const int window = lattice_->phi_window(step), windings = lattice_->at_roll(0).windings();
-  const int inner = lattice_->inner(layer, slot), angle = inner % angles_, first = inner / angles_ / windings * windings;
+  const int inner = lattice_->inner(layer, slot), angle = inner % angles_,
+            first = inner / angles_ / windings * windings;
   const int count = std::min(2 * window + 1, angles_);
   for (const int near : lattice_->near(step, lattice_->rank_of(layer, slot), other > layer)) {
     const LayerNodes& theirs = nodes(other, near);
@@ -186,7 +190,8 @@ double RollCostToGo::relax_one(int layer, int slot) {
       [&](int b, const Config& other) {
         const Config delta = lattice_->delta(q, other);
         const double value = lattice_->edge_cost(delta) + at(layer + 1, b);
-        if (value < best && lattice_->step_allowed(layer, delta) && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+        if (value < best && lattice_->step_allowed(layer, delta) &&
+            verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
           best = value;
       });
   return best;
@@ -196,11 +201,13 @@ double RollCostToGo::relax_one_forward(int layer, int slot, const Values& before
   const Config q = config(layer, slot);
   double best = kUnreachable;
   each_near(
-      layer - 1, layer, slot, layer - 1, [&](int a) { return before[static_cast<std::size_t>(a)] < best; },
+      layer - 1, layer, slot, layer - 1,
+      [&](int a) { return before[static_cast<std::size_t>(a)] < best; },
       [&](int a, const Config& other) {
         const Config delta = lattice_->delta(other, q);
         const double value = lattice_->edge_cost(delta) + before[static_cast<std::size_t>(a)];
-        if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
+        if (value < best && lattice_->step_allowed(layer - 1, delta) &&
+            verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
           best = value;
       });
   return best;
@@ -216,7 +223,8 @@ void RollCostToGo::begin(int layer, Values& out) {
     const LayerNodes& own = nodes(layer, rank);
     for (int solution = 0; solution < solutions_; ++solution)
       for (int j = 0; own.alive(solution) && j < angles_; ++j)
-        if (own.valid(solution, pad_ + j)) out[static_cast<std::size_t>(lattice_->slot_of(rank, solution * angles_ + j))] = 0;
+        if (own.valid(solution, pad_ + j))
+          out[static_cast<std::size_t>(lattice_->slot_of(rank, solution * angles_ + j))] = 0;
   }
 }
 
@@ -256,11 +264,13 @@ void RollCostToGo::compute_removals() {
       each_near(
           layer, layer + 1, change.slot, layer,
           [&](int a) {
-            return values[static_cast<std::size_t>(a)] != kUnreachable && values[static_cast<std::size_t>(a)] >= change.before;
+            return values[static_cast<std::size_t>(a)] != kUnreachable &&
+                   values[static_cast<std::size_t>(a)] >= change.before;
           },
           [&](int a, const Config& from) {
             const double rest = lattice_->edge_cost(lattice_->delta(from, to)) + change.before;
-            if (values[static_cast<std::size_t>(a)] == (own ? rest + own[a] : rest)) stale.push_back(a);
+            if (values[static_cast<std::size_t>(a)] == (own ? rest + own[a] : rest))
+              stale.push_back(a);
           });
     }
     std::sort(stale.begin(), stale.end());
@@ -270,7 +280,9 @@ void RollCostToGo::compute_removals() {
       const int slot = stale[k];
       double& value = values[static_cast<std::size_t>(slot)];
       if (value == kUnreachable) continue;
-      double fresh = removed(layer, slot) ? kUnreachable : layer == goal_ ? 0.0 : relax_one(layer, slot);
+      double fresh = removed(layer, slot) ? kUnreachable
+                     : layer == goal_     ? 0.0
+                                          : relax_one(layer, slot);
       if (own) fresh += own[slot];
       if (fresh == value) continue;
       changed.push_back({slot, value});
@@ -285,12 +297,14 @@ void RollCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& o
   const double own = verdicts_.cost(layer, slot);
   out.clear();
   each_near(
-      layer, layer, slot, layer + 1, [&](int b) { return at(layer + 1, b) != kUnreachable && at(layer + 1, b) <= bound; },
+      layer, layer, slot, layer + 1,
+      [&](int b) { return at(layer + 1, b) != kUnreachable && at(layer + 1, b) <= bound; },
       [&](int b, const Config& other) {
         const Config delta = lattice_->delta(q, other);
         if (!lattice_->step_allowed(layer, delta)) return;
         const double cost = lattice_->edge_cost(delta) + own;
-        if (cost + at(layer + 1, b) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, cost});
+        if (cost + at(layer + 1, b) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+          out.push_back({b, cost});
       });
   std::sort(out.begin(), out.end(), [](const Step& a, const Step& b) { return a.slot < b.slot; });
 }

@@ -33,12 +33,13 @@ class Executor {
   /// Runs `work` on the caller's thread and calls body(index, worker) for each index = 0 ... count
   /// - 1 as for_each_short() does: on helpers meanwhile if any are awake, else after `work`. `work`
   /// must not share work itself. Rethrows what `work` threw, else what a body threw.
-  void for_each_overlapped(int count, const std::function<void(int index, int worker)>& body, const std::function<void()>& work);
+  void for_each_overlapped(int count, const std::function<void(int index, int worker)>& body,
+                           const std::function<void()>& work);
   /// Starts the helpers of for_each_short() now, for a caller that expects enough work to share.
   /// Does nothing with one thread.
   void start_helpers();
-  /// Returns how many indices of for_each_short() and for_each_overlapped() ran on helpers; all others
-  /// ran on the caller's thread.
+  /// Returns how many indices of for_each_short() and for_each_overlapped() ran on helpers; all
+  /// others ran on the caller's thread.
   [[nodiscard]] std::int64_t helped() const;
 
  private:

@@ -14,8 +14,8 @@ namespace swivel {
 
 class Lattice;
 
-/// What is known of a node of the (s, phi) lattice. The order is that of importance, least first: a drawn cell that stands for
-/// several nodes shows the last.
+/// What is known of a node of the (s, phi) lattice. The order is that of importance, least first: a
+/// drawn cell that stands for several nodes shows the last.
 enum class NodeState : std::uint8_t {
   kNoIk,         ///< out of reach; in layer 0 also: not the given start
   kSingular,     ///< a singular pose, or less manipulability than asked for
@@ -25,14 +25,16 @@ enum class NodeState : std::uint8_t {
   kBlocked,      ///< cause: index into LatticeMap::blockers
 };
 
-/// The task submanifold of the paper's Fig. 5, node by node. Of arms that have no grid of arm angles (ExplicitLattice): cells of
-/// their redundancy coordinate, over the range in which their nodes lie. A node has its own cell and those up to half the way to
-/// its neighbours on its arc of self-motion; a cell that several have shows the path's, or the most important.
+/// The task submanifold of the paper's Fig. 5, node by node. Of arms that have no grid of arm
+/// angles (ExplicitLattice): cells of their redundancy coordinate, over the range in which their
+/// nodes lie. A node has its own cell and those up to half the way to its neighbours on its arc of
+/// self-motion; a cell that several have shows the path's, or the most important.
 struct LatticeMap {
   struct Node {
     NodeState state = NodeState::kNoIk;
     std::uint8_t cause = 0;
-    bool proved = false;  ///< of free and blocked nodes: a distance proof alone proves it, FCL need not be asked
+    bool proved = false;  ///< of free and blocked nodes: a distance proof alone proves it, FCL need
+                          ///< not be asked
     bool operator==(const Node&) const = default;
   };
   enum class Coordinate : std::uint8_t {
@@ -42,24 +44,29 @@ struct LatticeMap {
   };
   Coordinate coordinate = Coordinate::kArmAngle;
   int layers = 0, angles = 0, windings = 1;
-  double low = -kPi, step = 0;                                ///< rad: cell k of a panel stands for low + k step of the coordinate
-  bool closed = true;                                         ///< the cells go once around: the first is the last one's neighbour
-  std::vector<double> s;                                      ///< m, of each layer
-  std::vector<Node> nodes;                                    ///< [layer][panel][angle], panel = branch * windings + winding
-  std::vector<int> slots;                                     ///< of each of `nodes`: whose it is, -1: none; empty of a grid
-  std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
+  double low = -kPi,
+         step = 0;          ///< rad: cell k of a panel stands for low + k step of the coordinate
+  bool closed = true;       ///< the cells go once around: the first is the last one's neighbour
+  std::vector<double> s;    ///< m, of each layer
+  std::vector<Node> nodes;  ///< [layer][panel][angle], panel = branch * windings + winding
+  std::vector<int> slots;   ///< of each of `nodes`: whose it is, -1: none; empty of a grid
+  std::vector<std::pair<std::string, std::string>>
+      blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
-  std::vector<int>
-      path;  ///< one cell in each layer, IK solution * angles + angle: the answer, or a way to the furthest layer reached
+  std::vector<int> path;  ///< one cell in each layer, IK solution * angles + angle: the answer, or
+                          ///< a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
-  /// Of a tool that may stand turned: the branches are drawn at the path's rolls, and the last panel shows the rolls from -pi to pi
-  /// at the branch and arm angle that the path has in each layer, where there is a path.
+  /// Of a tool that may stand turned: the branches are drawn at the path's rolls, and the last
+  /// panel shows the rolls from -pi to pi at the branch and arm angle that the path has in each
+  /// layer, where there is a path.
   bool turns = false;
   std::vector<int> path_of_rolls;  ///< one cell in each layer
 
-  [[nodiscard]] bool grid() const { return coordinate == Coordinate::kArmAngle; }  ///< a cell is a node
-  /// Where a value of the coordinate lies, in cells: k at the middle of cell k. Of closed cells at least -0.5 and less than
-  /// angles - 0.5.
+  [[nodiscard]] bool grid() const {
+    return coordinate == Coordinate::kArmAngle;
+  }  ///< a cell is a node
+  /// Where a value of the coordinate lies, in cells: k at the middle of cell k. Of closed cells at
+  /// least -0.5 and less than angles - 0.5.
   [[nodiscard]] double place(double value) const;
   /// What cell k stands for, rad, in [-pi, pi].
   [[nodiscard]] double value(double k) const;
@@ -71,9 +78,12 @@ struct LatticeMap {
   [[nodiscard]] int solutions() const;
   [[nodiscard]] int panels() const { return solutions() + (turns ? 1 : 0); }
   [[nodiscard]] bool shows_rolls(int panel) const { return panel == solutions(); }
-  [[nodiscard]] const std::vector<int>& path_in(int panel) const { return shows_rolls(panel) ? path_of_rolls : path; }
+  [[nodiscard]] const std::vector<int>& path_in(int panel) const {
+    return shows_rolls(panel) ? path_of_rolls : path;
+  }
   [[nodiscard]] const Node& at(int layer, int solution, int angle) const {
-    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(panels()) + static_cast<std::size_t>(solution)) *
+    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(panels()) +
+                  static_cast<std::size_t>(solution)) *
                      static_cast<std::size_t>(angles) +
                  static_cast<std::size_t>(angle)];
   }
@@ -85,20 +95,23 @@ struct LatticeMap {
   [[nodiscard]] std::string solution_name(int solution) const;
 };
 
-/// Which of the slots of a layer at the path's branch and arm angle have rolls that the cells from -pi on stand for, -1: none.
-/// `like`: a slot of the layer; of a lattice of rolls.
-[[nodiscard]] std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int cells);
+/// Which of the slots of a layer at the path's branch and arm angle have rolls that the cells from
+/// -pi on stand for, -1: none. `like`: a slot of the layer; of a lattice of rolls.
+[[nodiscard]] std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like,
+                                              int cells);
 
-/// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch and coordinate.
+/// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch
+/// and coordinate.
 [[nodiscard]] int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot);
 
-/// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of clearance for each node that the
-/// search asked about; with `full`, or where the planner was eager, for every node. Throws Stopped.
+/// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of
+/// clearance for each node that the search asked about; with `full`, or where the planner was
+/// eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// The map in text, one panel per inhabited IK solution: s to the right, the coordinate from its largest value at the top, the path
-/// on it. A cell stands for as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`:
-/// ANSI 256 colours.
+/// The map in text, one panel per inhabited IK solution: s to the right, the coordinate from its
+/// largest value at the top, the path on it. A cell stands for as many nodes as it takes to fit
+/// into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 
 /// The same as an SVG drawing for papers, with axes and a legend.

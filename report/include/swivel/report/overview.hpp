@@ -19,9 +19,10 @@ struct CampaignFacts {
   std::vector<std::string> coordinates;  ///< whose offsets the rows have
 };
 
-/// One HTML file that needs nothing else: verdicts, times and costs, where episodes fail and why, and every episode with the
-/// command that plans it again. Made of the rows alone, so a resumed campaign has the page of one that ran through.
-/// page_available() says whether this build can.
-[[nodiscard]] std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts& facts);
+/// One HTML file that needs nothing else: verdicts, times and costs, where episodes fail and why,
+/// and every episode with the command that plans it again. Made of the rows alone, so a resumed
+/// campaign has the page of one that ran through. page_available() says whether this build can.
+[[nodiscard]] std::string to_overview(const std::vector<EpisodeRow>& rows,
+                                      const CampaignFacts& facts);
 
 }  // namespace swivel

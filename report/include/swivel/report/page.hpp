@@ -13,20 +13,23 @@ namespace swivel {
 
 /// What became of the lattice's path; null where it stayed what it was, or has no times.
 struct PageMotion {
-  const std::vector<TrajectoryRow>* refined = nullptr;  ///< a row in each layer: shown in the path's place, the path beside it
-  const TimedPath* motion = nullptr;                    ///< of the rows shown; played in its own time
+  const std::vector<TrajectoryRow>* refined =
+      nullptr;  ///< a row in each layer: shown in the path's place, the path beside it
+  const TimedPath* motion = nullptr;  ///< of the rows shown; played in its own time
 };
 
 /// What the page says besides its data.
 struct PageWords {
-  std::string which;   ///< of the problems that one file describes, for the title
-  std::string answer;  ///< shown with the map where JavaScript is switched off: answer_text, advice_text
+  std::string which;  ///< of the problems that one file describes, for the title
+  std::string
+      answer;  ///< shown with the map where JavaScript is switched off: answer_text, advice_text
 };
 
-/// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi) map, plots over s and over
-/// time, summary. `result_json`: the result in the format of `--json`. Made after planning: clearances along the path are asked for
-/// again. Throws Stopped.
-[[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json,
-                                  const PageMotion& motion = {}, const Budget& budget = {}, const PageWords& words = {});
+/// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi)
+/// map, plots over s and over time, summary. `result_json`: the result in the format of `--json`.
+/// Made after planning: clearances along the path are asked for again. Throws Stopped.
+[[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map,
+                                  const std::string& result_json, const PageMotion& motion = {},
+                                  const Budget& budget = {}, const PageWords& words = {});
 
 }  // namespace swivel

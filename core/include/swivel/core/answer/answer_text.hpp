@@ -20,7 +20,8 @@ namespace swivel {
 
 /// Returns what an infeasibility certificate of a size in bytes holds: its layers, and which causes
 /// remove how many nodes and edges.
-[[nodiscard]] std::string certificate_text(const InfeasibilityCertificate& certificate, std::size_t bytes);
+[[nodiscard]] std::string certificate_text(const InfeasibilityCertificate& certificate,
+                                           std::size_t bytes);
 /// Returns what an infeasibility certificate holds, without its size: its layers, and which causes
 /// remove how many nodes and edges.
 [[nodiscard]] std::string removed_text(const InfeasibilityCertificate& certificate);

@@ -11,8 +11,8 @@ namespace swivel {
 
 /// An infeasibility certificate: it proves that a problem has no path at its resolution. It lists
 /// nodes and edges of some neighbouring layers, each removed by a cause, without which nothing
-/// leads through these layers. verify_certificate() verifies it from the problem alone; docs/theory.md says
-/// why that is a proof.
+/// leads through these layers. verify_certificate() verifies it from the problem alone;
+/// docs/theory.md says why that is a proof.
 ///
 /// In each layer some nodes are marked as *reached*. In the first layer every node is reached or
 /// removed. Every edge from a reached node leads to a reached node, or is removed, or its head is.

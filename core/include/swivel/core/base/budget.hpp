@@ -49,19 +49,25 @@ class Budget {
   /// too large for the clock never passes. `cancel` ends the work once it is true, `stop` once a
   /// stop is requested; `progress` receives reports. `cancel` and `progress` may be null, else they
   /// must outlive the budget and its copies.
-  explicit Budget(std::optional<double> seconds, const std::atomic<bool>* cancel = nullptr, std::stop_token stop = {},
-                  const ProgressFunction* progress = nullptr)
-      : cancel_(cancel), stop_(std::move(stop)), progress_(progress && *progress ? progress : nullptr) {
+  explicit Budget(std::optional<double> seconds, const std::atomic<bool>* cancel = nullptr,
+                  std::stop_token stop = {}, const ProgressFunction* progress = nullptr)
+      : cancel_(cancel),
+        stop_(std::move(stop)),
+        progress_(progress && *progress ? progress : nullptr) {
     constexpr double kFar = 1e9;  // 30 years; the clock counts nanoseconds in 64 bits
     if (seconds && *seconds < kFar)
-      deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds));
+      deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(*seconds));
   }
   /// Returns true if the work was cancelled from outside, whatever the deadline.
   [[nodiscard]] bool cancelled() const {
-    return (cancel_ != nullptr && cancel_->load(std::memory_order_relaxed)) || stop_.stop_requested();
+    return (cancel_ != nullptr && cancel_->load(std::memory_order_relaxed)) ||
+           stop_.stop_requested();
   }
   /// Returns true if the work was cancelled or the deadline has passed.
-  [[nodiscard]] bool spent() const { return cancelled() || (deadline_ && Clock::now() >= *deadline_); }
+  [[nodiscard]] bool spent() const {
+    return cancelled() || (deadline_ && Clock::now() >= *deadline_);
+  }
   /// Throws Stopped if the work was cancelled or the deadline has passed.
   void poll() const {
     if (spent()) throw Stopped();

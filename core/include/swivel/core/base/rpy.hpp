@@ -7,7 +7,8 @@ namespace swivel {
 /// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll) for angles (roll, pitch, yaw), rad: roll, pitch
 /// and yaw about fixed axes, as in a URDF.
 [[nodiscard]] inline Quaterniond from_rpy(const Vector3d& rpy) {
-  return Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
+  return Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
          Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX());
 }
 

@@ -15,8 +15,9 @@ struct SelfTime {
   std::int64_t self_ns = 0;  ///< of all threads together
 };
 
-/// Self time by stage, the longest first. `events` are those of a Timeline, in its order: by thread, inner spans before the outer
-/// one. The sum over all stages is the time that the threads spent in outermost spans.
+/// Self time by stage, the longest first. `events` are those of a Timeline, in its order: by
+/// thread, inner spans before the outer one. The sum over all stages is the time that the threads
+/// spent in outermost spans.
 [[nodiscard]] std::vector<SelfTime> self_times(const std::vector<Timeline::Event>& events);
 
 }  // namespace swivel

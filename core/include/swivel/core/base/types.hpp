@@ -24,7 +24,8 @@ using Eigen::Vector3d;
 inline Pose product(const Pose& A, const Pose& B) {
   const Eigen::Matrix4d &a = A.matrix(), &b = B.matrix();
   Pose C;
-  for (int j = 0; j < 4; ++j) C.matrix().col(j) = b(0, j) * a.col(0) + b(1, j) * a.col(1) + b(2, j) * a.col(2);
+  for (int j = 0; j < 4; ++j)
+    C.matrix().col(j) = b(0, j) * a.col(0) + b(1, j) * a.col(1) + b(2, j) * a.col(2);
   C.matrix().col(3) += a.col(3);
   return C;
 }

@@ -18,7 +18,8 @@ class ZeroedArray {
  public:
   ZeroedArray() = default;
   /// Allocates `size` zeros. Throws std::bad_alloc.
-  explicit ZeroedArray(std::size_t size) : data_(static_cast<T*>(std::calloc(size ? size : 1, sizeof(T)))), size_(size) {
+  explicit ZeroedArray(std::size_t size)
+      : data_(static_cast<T*>(std::calloc(size ? size : 1, sizeof(T)))), size_(size) {
     if (!data_) throw std::bad_alloc();
   }
   [[nodiscard]] std::size_t size() const { return size_; }

@@ -12,8 +12,8 @@ struct LatticeInfo;
 /// Why a node does not exist, before collision is asked.
 enum class NodeStatus : std::uint8_t { kValid, kNoIk, kSingular, kLimit };
 
-/// What a lattice says of itself and of its nodes to those who explain or draw it: answers, diagnosis,
-/// maps. The part of a Lattice that no search needs.
+/// What a lattice says of itself and of its nodes to those who explain or draw it: answers,
+/// diagnosis, maps. The part of a Lattice that no search needs.
 class LatticeDescription {
  public:
   virtual ~LatticeDescription() = default;
@@ -24,12 +24,13 @@ class LatticeDescription {
   [[nodiscard]] virtual LatticeInfo describe() const = 0;
   /// Where a node stands in a grid of arm angles (LatticeInfo::grid).
   struct GridPlace {
-    int cell = 0;     ///< (branch, winding, arm angle) as one number: (branch * windings + winding) * angles + angle
-    int rank = 0;     ///< of its roll; 0 where the tool may not stand turned
+    int cell = 0;  ///< (branch, winding, arm angle) as one number: (branch * windings + winding) *
+                   ///< angles + angle
+    int rank = 0;  ///< of its roll; 0 where the tool may not stand turned
     double roll = 0;  ///< rad
   };
-  /// Slots of such a grid are rank * cells + cell; but a layer that is the given start alone may have
-  /// one slot. Of other lattices {slot, 0, 0}.
+  /// Slots of such a grid are rank * cells + cell; but a layer that is the given start alone may
+  /// have one slot. Of other lattices {slot, 0, 0}.
   [[nodiscard]] virtual GridPlace grid_place(int layer, int slot) const {
     static_cast<void>(layer);
     return {slot, 0, 0};
@@ -41,15 +42,18 @@ class LatticeDescription {
   struct NodeFault {
     NodeStatus status = NodeStatus::kValid;
     std::uint8_t joints = 0;    ///< bit k: joint k is outside its limits
-    Config q = Config::Zero();  ///< of kLimit: the row as it would be, each joint outside on the side that it is nearer to
+    Config q = Config::Zero();  ///< of kLimit: the row as it would be, each joint outside on the
+                                ///< side that it is nearer to
   };
   [[nodiscard]] virtual NodeFault fault(int layer, int slot) const = 0;
-  /// How far from the base's end of the arm a layer's pose is, where the arm cannot be so long or so short whatever its joints.
+  /// How far from the base's end of the arm a layer's pose is, where the arm cannot be so long or
+  /// so short whatever its joints.
   struct Reach {
     double distance = 0, limit = 0;  ///< m
   };
   [[nodiscard]] virtual std::optional<Reach> out_of_reach(int) const { return std::nullopt; }
-  /// True where it is proved that no joints within their limits reach the layer's pose, whatever the redundancy coordinate.
+  /// True where it is proved that no joints within their limits reach the layer's pose, whatever
+  /// the redundancy coordinate.
   [[nodiscard]] virtual bool proved_unreachable(int) const { return false; }
   /// The redundancy coordinate of a node, rad: the carried arm angle of S-R-S arms.
   [[nodiscard]] virtual double phi(int layer, int slot) const = 0;

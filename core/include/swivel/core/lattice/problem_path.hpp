@@ -11,7 +11,8 @@ namespace swivel {
 /// rounded by `problem.smooth`, by `otherwise` where that is unset. Throws InputError as ToolPath
 /// does, and for a start_at beyond the path; InvalidArgument where there are Task::rolls, but not
 /// one for each layer; Stopped.
-[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {},
+[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain,
+                                    const Budget& budget = {},
                                     const std::optional<PathSmoothing>& otherwise = {});
 
 }  // namespace swivel

@@ -10,6 +10,7 @@ namespace swivel {
 /// program, never a user's text.
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 /// Formats like formatted(), from a list of arguments.
-[[nodiscard, gnu::format(printf, 1, 0)]] std::string formatted_list(const char* format, std::va_list arguments);
+[[nodiscard, gnu::format(printf, 1, 0)]] std::string formatted_list(const char* format,
+                                                                    std::va_list arguments);
 
 }  // namespace swivel

@@ -27,10 +27,12 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 /// Returns the known name with the least edit distance from a wrong one, the first of several: the
 /// one that was probably meant, for messages. `known` must not be empty.
-inline const std::string& nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
-  return *std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return edit_distance(wrong, a) < edit_distance(wrong, b);
-  });
+inline const std::string& nearest_name(const std::string& wrong,
+                                       const std::vector<std::string>& known) {
+  return *std::min_element(known.begin(), known.end(),
+                           [&](const std::string& a, const std::string& b) {
+                             return edit_distance(wrong, a) < edit_distance(wrong, b);
+                           });
 }
 
 }  // namespace swivel

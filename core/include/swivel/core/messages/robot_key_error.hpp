@@ -7,11 +7,12 @@
 
 namespace swivel {
 
-/// A robot's file and what a key of `robot` says do not suit each other: "<URDF>: robot.<key>: <fault>". Who reads the key from a
-/// file, or from a command line, says where it stands there.
+/// A robot's file and what a key of `robot` says do not suit each other: "<URDF>: robot.<key>:
+/// <fault>". Who reads the key from a file, or from a command line, says where it stands there.
 class RobotKeyError : public InputError {
  public:
-  RobotKeyError(const std::string& source, std::string key, std::string fault, std::string entry = {})
+  RobotKeyError(const std::string& source, std::string key, std::string fault,
+                std::string entry = {})
       : InputError(source, "robot." + key + ": " + fault),
         key_(std::move(key)),
         entry_(std::move(entry)),

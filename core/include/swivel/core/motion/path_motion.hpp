@@ -52,8 +52,8 @@ class PathMotion {
   [[nodiscard]] virtual std::optional<Singular> nearest_singular(const Config& q) const = 0;
 
  protected:
-  PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
-             const std::vector<BetweenRow>& between);
+  PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+             double apart, const std::vector<BetweenRow>& between);
   /// Returns the path's tool pose at a row.
   [[nodiscard]] Pose pose_of(std::size_t row) const;
   /// A place between two rows: row `from` and the next, and the share t, 0 to 1, of the way between
@@ -100,8 +100,9 @@ class PathMotion {
 /// continuous motion leads over are jumps. Rows with a joint nearer to its limit than `off_limits`
 /// (rad) are moved along the self-motion until it is as far, except the first and the last: nodes
 /// of arcs stand on limits, and a spline through them would leave these.
-[[nodiscard]] std::unique_ptr<PathMotion> make_path_motion(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                                                           const std::vector<TrajectoryRow>& rows, double apart = 0,
-                                                           double off_limits = 0, const std::vector<BetweenRow>& between = {});
+[[nodiscard]] std::unique_ptr<PathMotion> make_path_motion(
+    const Chain& chain, const ArmClass& arm, const ToolPath& path,
+    const std::vector<TrajectoryRow>& rows, double apart = 0, double off_limits = 0,
+    const std::vector<BetweenRow>& between = {});
 
 }  // namespace swivel

@@ -27,7 +27,8 @@ class Redundancy {
   [[nodiscard]] virtual bool has_grid() const = 0;
   /// Sets the phi of rows to the coordinate, and returns a solver about the joints that they have.
   /// The rows must outlive the solver.
-  [[nodiscard]] virtual std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<LayerSolver> solver(
+      std::vector<TrajectoryRow>& rows) const = 0;
   /// Returns the coordinate of joints q at a layer, rad; solver() makes it continuous along the
   /// rows.
   [[nodiscard]] virtual double coordinate(int layer, const Config& q) const = 0;
@@ -45,7 +46,8 @@ class Redundancy {
   [[nodiscard]] virtual bool is_roll() const { return false; }
   /// A range of the coordinate, rad.
   struct Range {
-    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+    double low = -std::numeric_limits<double>::infinity(),
+           high = std::numeric_limits<double>::infinity();
   };
   /// Returns the allowed range of the coordinate at a layer; unbounded by default.
   [[nodiscard]] virtual Range range(int layer) const {
@@ -60,7 +62,8 @@ class Redundancy {
   /// Returns the step error (docs/model.md) of the edge from row a at `layer` to row b at the next,
   /// rad: the larger of those at both ends. Only for arms with which limits.step_error may be
   /// given; others throw std::logic_error.
-  [[nodiscard]] virtual double step_error(int layer, const TrajectoryRow& a, const TrajectoryRow& b) const = 0;
+  [[nodiscard]] virtual double step_error(int layer, const TrajectoryRow& a,
+                                          const TrajectoryRow& b) const = 0;
 
  protected:
   Redundancy() = default;
@@ -68,20 +71,26 @@ class Redundancy {
 
 /// Returns the redundancy of an arm: the arm angle of an S-R-S arm, the length along the
 /// self-motion of another one. All arguments but the problem must outlive it.
-[[nodiscard]] std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                                                                const Problem& problem, const Budget& budget);
+[[nodiscard]] std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain,
+                                                                const ArmClass& arm,
+                                                                const ToolPath& path,
+                                                                const Problem& problem,
+                                                                const Budget& budget);
 
 /// Returns the arm angle of an S-R-S arm whose joint 7 rests at `last_joint`, rad
 /// (last_joint_at_rest()), so that the other joints turn the tool. All arguments but the problem
 /// must outlive it.
-[[nodiscard]] std::unique_ptr<const Redundancy> make_coaxial_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                                                                        const Problem& problem, double last_joint,
-                                                                        const Budget& budget);
+[[nodiscard]] std::unique_ptr<const Redundancy> make_coaxial_redundancy(
+    const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
+    double last_joint, const Budget& budget);
 
 /// Returns the roll of the tool of an S-R-S arm that has a free one (Chain::free_roll), at the arm
 /// angles that rows have. `path` is that of the tool as the waypoints have it, not turned. All
 /// arguments but the problem must outlive it.
-[[nodiscard]] std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                                                                     const Problem& problem, const Budget& budget);
+[[nodiscard]] std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain,
+                                                                     const SrsArm& arm,
+                                                                     const ToolPath& path,
+                                                                     const Problem& problem,
+                                                                     const Budget& budget);
 
 }  // namespace swivel

@@ -25,7 +25,8 @@ struct SmoothObjective {
   bool roll_is_coordinate = false;
 };
 /// Returns the objective at coordinates x, infinite where a layer has no joints.
-[[nodiscard]] double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x);
+[[nodiscard]] double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective,
+                                 const std::vector<double>& x);
 
 /// The range of one layer's coordinate, rad.
 struct CoordinateBox {
@@ -36,8 +37,9 @@ struct CoordinateBox {
 /// central differences, a pentadiagonal Hessian, Levenberg's shift where it is not positive
 /// definite, and bounds by a primal-dual active set (Hintermueller, Ito and Kunisch 2002).
 /// Deterministic. Throws Stopped.
-[[nodiscard]] std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
-                                                 const std::vector<CoordinateBox>& boxes, std::vector<double> x,
-                                                 const Budget& budget = {});
+[[nodiscard]] std::vector<double> smooth_minimum(const LayerSolver& solver,
+                                                 const SmoothObjective& objective,
+                                                 const std::vector<CoordinateBox>& boxes,
+                                                 std::vector<double> x, const Budget& budget = {});
 
 }  // namespace swivel

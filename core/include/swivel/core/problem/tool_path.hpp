@@ -58,8 +58,9 @@ class ToolPath {
   /// that a half turn about that axis is the right-handed one. Throws InputError for fewer than two
   /// distinct waypoints, another turn of 180 deg between neighbours, or more layers than fit in
   /// memory. Throws Stopped.
-  ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
-           const Budget& budget = {}, const std::optional<PathSmoothing>& smooth = {}, bool turns_freely = false);
+  ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
+           const std::string& source, const Budget& budget = {},
+           const std::optional<PathSmoothing>& smooth = {}, bool turns_freely = false);
 
   /// Returns the number of layers.
   [[nodiscard]] int size() const { return static_cast<int>(layers_.size()); }
@@ -80,7 +81,8 @@ class ToolPath {
   /// one is within 1e-6 (m and rad). A tool that is further than that from its pose, but at most
   /// `tolerance` (m and rad), takes its place. Without `start_at` layer 0 stays the path's first.
   /// Throws InputError where nothing is left.
-  void begin_at(std::optional<double> start_at, const Pose& tool, double tolerance, const std::string& source);
+  void begin_at(std::optional<double> start_at, const Pose& tool, double tolerance,
+                const std::string& source);
   /// Cuts off the layers after `layer`, which must not be layer 0.
   void end_at(int layer) { layers_.resize(static_cast<std::size_t>(layer) + 1); }
   /// Returns the poses of the layers that begin_at() has cut off: arm angles are carried along the

@@ -25,7 +25,8 @@ struct DepthFault {
 /// Returns why the depth of `allowed`, an entry of the object's SceneObject::allow, cannot be kept:
 /// a body without a collision shape, a mesh that is not closed, two meshes, or a depth that the two
 /// cannot exceed. Returns none where it can be kept, or where no depth is given.
-[[nodiscard]] std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object, const Allowed& allowed);
+[[nodiscard]] std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object,
+                                                    const Allowed& allowed);
 
 /// Returns true if a cost weight is allowed: 0 (moving costs nothing), or 1e-6 to 1e6.
 [[nodiscard]] bool weight_allowed(double weight);

@@ -25,13 +25,15 @@ struct Shard {
 /// Returns the problem of an episode under a seed: the objects named in `vary` are moved. Offsets d
 /// (m) and angles (rad) are drawn by SplitMix64 seeded by (seed, episode) alone, in the order of
 /// `vary`, x y z roll pitch yaw: p' = p + d, R' = Rz Ry Rx R, about the object's origin.
-[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode);
+[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed,
+                                      std::uint64_t episode);
 
 /// Returns the names of the coordinates in which episodes differ, such as "door.x", in the order of
 /// `vary` and x y z roll pitch yaw.
 [[nodiscard]] std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary);
 /// Returns by how much episode_problem() moves objects along the varied_coordinates(), m and rad.
-[[nodiscard]] std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode);
+[[nodiscard]] std::vector<double> episode_offsets(const std::vector<Variation>& vary,
+                                                  std::uint64_t seed, std::uint64_t episode);
 
 /// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards.
 /// Counts depend on what was planned before, the others do not.
@@ -75,6 +77,7 @@ struct CampaignSummary {
   [[nodiscard]] std::uint64_t answered() const { return solved + infeasible; }
 };
 /// Summarises the rows of a campaign of so many episodes.
-[[nodiscard]] CampaignSummary summarize(const std::vector<EpisodeRow>& rows, std::uint64_t episodes);
+[[nodiscard]] CampaignSummary summarize(const std::vector<EpisodeRow>& rows,
+                                        std::uint64_t episodes);
 
 }  // namespace swivel

@@ -28,7 +28,8 @@ class GridRefinement {
   [[nodiscard]] std::vector<std::uint64_t> coarse_cells() const;
   [[nodiscard]] std::vector<std::uint64_t> beside_the_best() const;
   [[nodiscard]] std::vector<std::uint64_t> along_the_border() const;
-  [[nodiscard]] std::vector<std::uint64_t> at_most(std::vector<std::uint64_t> cells, std::size_t most);
+  [[nodiscard]] std::vector<std::uint64_t> at_most(std::vector<std::uint64_t> cells,
+                                                   std::size_t most);
 
   PlacementGrid grid_;
   std::vector<PlacementCriterion> criteria_;

@@ -32,7 +32,8 @@ struct Movable {
 /// Returns the problem with one thing moved. Coordinates that do not change keep their bits. Those
 /// of objects that do are multiples of 1e-12 m, and of 1e-12 rad as roll, pitch and yaw, so that a
 /// file can state them exactly. Throws InvalidArgument for an unknown object.
-[[nodiscard]] Problem placed_problem(const Problem& problem, const Movable& thing, const Offset& offset);
+[[nodiscard]] Problem placed_problem(const Problem& problem, const Movable& thing,
+                                     const Offset& offset);
 
 /// Returns roll, pitch and yaw of a rotation as multiples of 1e-12 rad. For an object that
 /// placed_problem() has turned, a problem file with these angles gives its rotation bit for bit.
@@ -76,7 +77,8 @@ class PlacementGrid {
 
 /// Returns the k-th random placement, uniform between the ends of the axes, whatever their steps
 /// are. It depends on the seed and k alone.
-[[nodiscard]] Offset sampled_offset(const std::vector<PlacementAxis>& axes, std::uint64_t seed, std::uint64_t k);
+[[nodiscard]] Offset sampled_offset(const std::vector<PlacementAxis>& axes, std::uint64_t seed,
+                                    std::uint64_t k);
 
 /// The result of planning one placement: a row of docs/formats.md "Placements, CSV".
 struct PlacementRow {
@@ -117,9 +119,11 @@ enum class PlacementCriterion { kClearance, kCost, kMargin, kSpeed };
 [[nodiscard]] std::optional<double> merit(const PlacementRow& row, PlacementCriterion criterion);
 /// Returns true if placement a comes before b: by the first criterion that tells them apart, else
 /// by the order of cells.
-[[nodiscard]] bool better(const PlacementRow& a, const PlacementRow& b, const std::vector<PlacementCriterion>& criteria);
+[[nodiscard]] bool better(const PlacementRow& a, const PlacementRow& b,
+                          const std::vector<PlacementCriterion>& criteria);
 /// Returns the best placements that have a path, at most so many, the best first.
-[[nodiscard]] std::vector<PlacementRow> best_placements(const std::vector<PlacementRow>& rows,
-                                                        const std::vector<PlacementCriterion>& criteria, std::size_t most);
+[[nodiscard]] std::vector<PlacementRow> best_placements(
+    const std::vector<PlacementRow>& rows, const std::vector<PlacementCriterion>& criteria,
+    std::size_t most);
 
 }  // namespace swivel

@@ -75,7 +75,9 @@ class CostToGo {
   [[nodiscard]] virtual Config config(int layer, int slot) = 0;
   /// Returns the joints of a node, rad, none where there is no such node. Allowed before the first
   /// sweep too.
-  [[nodiscard]] virtual std::optional<Config> node(int layer, int slot) { return lattice().node(layer, slot); }
+  [[nodiscard]] virtual std::optional<Config> node(int layer, int slot) {
+    return lattice().node(layer, slot);
+  }
   /// An edge to the next layer.
   struct Step {
     int slot = 0;
@@ -120,7 +122,8 @@ enum class Pruning { kNone, kByBound };
 /// RollLattice layer by layer over rolls and arm angles, of an ExplicitLattice over all pairs of
 /// nodes, always whole. The memory of `recycled`, of any lattice, is used again: pages fresh from
 /// the system take a quarter of a plan that meets obstacles.
-[[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Pruning pruning = Pruning::kNone,
-                                                        const Budget& budget = {}, std::unique_ptr<CostToGo> recycled = nullptr);
+[[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(
+    const Lattice& lattice, Pruning pruning = Pruning::kNone, const Budget& budget = {},
+    std::unique_ptr<CostToGo> recycled = nullptr);
 
 }  // namespace swivel

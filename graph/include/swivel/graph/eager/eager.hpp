@@ -19,11 +19,13 @@ struct EagerOutcome : SearchOutcome {
 /// Validates every node and edge, stores the edges as an explicit graph, and searches it with
 /// Boost.Graph. Sets `outcome`. Throws std::bad_alloc where the graph exceeds the machine's memory,
 /// and Stopped: the counts are then those of what was done.
-void eager_search(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome);
+void eager_search(const Lattice& lattice, Validity& validity, const Budget& budget,
+                  EagerOutcome& outcome);
 
 /// Finds the best path by a layered dynamic program over the window, without stored edges: the
 /// strong baseline. It asks about an edge only when it would be its tail's best so far. Sets
 /// `outcome`. Throws Stopped: the counts are then those of what was done.
-void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome);
+void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget,
+              EagerOutcome& outcome);
 
 }  // namespace swivel

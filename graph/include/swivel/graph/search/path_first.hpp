@@ -37,7 +37,8 @@ class PathCache {
     // followed
     int deepest_changed_layer = -1;
   };
-  [[nodiscard]] static bool still_optimal_from(int layer, Earlier& earlier, const CostToGo& cost_to_go);
+  [[nodiscard]] static bool still_optimal_from(int layer, Earlier& earlier,
+                                               const CostToGo& cost_to_go);
   static constexpr std::size_t kMost = 4;
   std::deque<Earlier> earlier_;  // the last one first
 };
@@ -46,7 +47,8 @@ class PathCache {
 /// from CostToGo::first_slot() on the least cost, the smallest slots first among equals; empty when
 /// there is none. It is Boost.Graph's A* with the perfect heuristic, which expands one vertex a
 /// layer until it meets an earlier path, where such are given. Adds to `expansions`.
-[[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, PathCache* earlier = nullptr);
+[[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions,
+                                 PathCache* earlier = nullptr);
 
 /// What a search found.
 struct SearchOutcome {
@@ -61,8 +63,8 @@ struct PathFirstOptions {
   /// which take about as long as a repair and the next path.
   int min_questions_per_iteration = 64;
   /// Most questions in a round about the neighbours of failed nodes: `grow`, and one more for every
-  /// `nodes_per_region_question` nodes of the lattice, since an obstacle blocks more nodes of a finer lattice,
-  /// and a round costs more.
+  /// `nodes_per_region_question` nodes of the lattice, since an obstacle blocks more nodes of a
+  /// finer lattice, and a round costs more.
   int region_questions = 64, nodes_per_region_question = 64;
   /// True: neighbours are asked about on other threads while the caller takes the answers about
   /// those before them.
@@ -95,19 +97,21 @@ struct FailureHint {
 /// layer has no node left: what is removed then proves that none exists, though the cost-to-go may
 /// not have followed yet. `first` is asked about before the first path, all at once; it changes the
 /// work, never the answer. Throws Stopped.
-[[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
-                                       SearchCounters& counters, const PriorFailures& first = {});
+[[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity,
+                                       const PathFirstOptions& options, SearchCounters& counters,
+                                       const PriorFailures& first = {});
 
 /// Asks about nodes before the first sweep and removes those that fail, so that neither sweep nor
 /// search begins with what failed a moment ago. It ends where fewer than half fail. Changes the
 /// work, never the answer. Throws Stopped.
-void check_failure_hints(CostToGo& cost_to_go, Validity& validity, std::span<const FailureHint> failure_hints);
+void check_failure_hints(CostToGo& cost_to_go, Validity& validity,
+                         std::span<const FailureHint> failure_hints);
 
 /// Returns the deepest layer that a valid path from layer 0 reaches, once path_first() has found
 /// none; -1 when layer 0 has no valid node. The cost-to-go then has that layer as its goal, and
 /// `counters` the best valid path there, in the order of answers, as its candidate: whatever was
 /// asked before. Throws Stopped.
-[[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
-                                      SearchCounters& counters);
+[[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity,
+                                      const PathFirstOptions& options, SearchCounters& counters);
 
 }  // namespace swivel

@@ -19,8 +19,8 @@ struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
   FailureId suspected = kNoFailure;
-  /// True: it is only asked whether the node fails by `suspected`, or by the scene as far as that is
-  /// soon seen. An answer of valid then says nothing.
+  /// True: it is only asked whether the node fails by `suspected`, or by the scene as far as that
+  /// is soon seen. An answer of valid then says nothing.
   bool only_scene = false;
 };
 /// A question whether an edge is valid.
@@ -36,7 +36,8 @@ struct EdgeQuestion {
 struct NodeAnswer {
   bool valid = false;
   /// Of a failure: true if every node of the layer fails at which the bodies of `groups` stand as
-  /// they do at this one, see Lattice::slots_with_same_body_poses(). So one failure may remove many nodes.
+  /// they do at this one, see Lattice::slots_with_same_body_poses(). So one failure may remove many
+  /// nodes.
   bool shared = false;
   unsigned groups = 0;             ///< bit g: the bodies that move with joint g of 1..7
   FailureId failure = kNoFailure;  ///< the cause of a failure
@@ -56,8 +57,8 @@ class Validity {
   /// Answers like nodes(), on other threads if there are any while the caller does `work`; without
   /// threads `work` comes first. `work` must ask nothing and touch neither span. If it throws, this
   /// function throws the same, and answers may be missing.
-  virtual void nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                                const std::function<void()>& work) {
+  virtual void nodes_overlapped(std::span<const NodeQuestion> questions,
+                                std::span<NodeAnswer> answers, const std::function<void()>& work) {
     work();
     nodes(questions, answers);
   }

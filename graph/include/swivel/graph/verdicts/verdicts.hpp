@@ -27,7 +27,9 @@ class Verdicts {
   /// Returns what is known of a node.
   [[nodiscard]] Verdict node(int layer, int slot) const { return node_[index(layer, slot)]; }
   /// Returns the verdicts of a layer's slots, from `slot` on.
-  [[nodiscard]] const Verdict* nodes(int layer, int slot) const { return node_.data() + index(layer, slot); }
+  [[nodiscard]] const Verdict* nodes(int layer, int slot) const {
+    return node_.data() + index(layer, slot);
+  }
   /// Returns the verdicts of all nodes, layer by layer in slot order.
   [[nodiscard]] std::span<const Verdict> nodes() const { return {node_.data(), node_.size()}; }
   /// Notes that a node is valid.
@@ -55,11 +57,14 @@ class Verdicts {
   }
   /// Returns the costs of all slots of a layer, null where all are 0.
   [[nodiscard]] const double* costs(int layer) const {
-    return costs_.empty() || costs_[static_cast<std::size_t>(layer)].empty() ? nullptr
-                                                                             : costs_[static_cast<std::size_t>(layer)].data();
+    return costs_.empty() || costs_[static_cast<std::size_t>(layer)].empty()
+               ? nullptr
+               : costs_[static_cast<std::size_t>(layer)].data();
   }
   /// Returns true if set_cost() has been called for the node.
-  [[nodiscard]] bool knows_cost(int layer, int slot) const { return !cost_known_.empty() && cost_known_[index(layer, slot)] != 0; }
+  [[nodiscard]] bool knows_cost(int layer, int slot) const {
+    return !cost_known_.empty() && cost_known_[index(layer, slot)] != 0;
+  }
   /// Sets what a node costs, at most once for each node. It must not be less than by the lattice
   /// alone.
   void set_cost(int layer, int slot, double cost);

@@ -60,7 +60,10 @@ class InputFiles {
 /// then ends silently.
 class ReaderLeft : public InputError {
  public:
-  ReaderLeft() : InputError("standard output: nobody reads it any more: allowed is one that takes what is printed") {}
+  ReaderLeft()
+      : InputError(
+            "standard output: nobody reads it any more: allowed is one that takes what is "
+            "printed") {}
 };
 /// Returns true if standard output is a pipe or socket whose reader has closed it.
 [[nodiscard]] bool reader_has_left();

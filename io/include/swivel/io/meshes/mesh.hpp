@@ -15,6 +15,7 @@ using MeshCache = std::map<std::string, MeshPtr>;
 /// Vertices are as stored (no up-axis rotation, as ROS reads them), node transforms and units are
 /// applied, and all meshes of the file are merged. `scale` has a factor for each axis; a negative
 /// one mirrors. If `cache` has this file with this scale, that mesh is returned. Throws InputError.
-[[nodiscard]] MeshPtr load_mesh(const std::filesystem::path& file, const Vector3d& scale, MeshCache& cache);
+[[nodiscard]] MeshPtr load_mesh(const std::filesystem::path& file, const Vector3d& scale,
+                                MeshCache& cache);
 
 }  // namespace swivel::io

@@ -19,19 +19,23 @@ using JointNames = std::array<std::string, kDof>;
 [[nodiscard]] std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names);
 /// Returns a timed motion as ROS 2's trajectory_msgs/msg/JointTrajectory in JSON. It holds the
 /// joints alone, without the roll of the tool. `frame_id` is the arm's base link.
-[[nodiscard]] std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+[[nodiscard]] std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_names,
+                                             const std::string& frame_id);
 /// Returns a timed motion as ROS 2's trajectory_msgs/msg/JointTrajectory in YAML. It holds the
 /// joints alone, without the roll of the tool. `frame_id` is the arm's base link.
-[[nodiscard]] std::string to_trajectory_yaml(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+[[nodiscard]] std::string to_trajectory_yaml(const TimedPath& motion, const JointNames& joint_names,
+                                             const std::string& frame_id);
 /// Returns a timed motion as a log of ROS 2's sensor_msgs/msg/JointState on the topic
 /// /joint_states, without the roll of the tool, with log time = t: MCAP, profile ros2, CDR, one
 /// uncompressed chunk, with index and summary. `frame_id` is the arm's base link.
 /// https://mcap.dev/spec
-[[nodiscard]] std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+[[nodiscard]] std::string to_mcap(const TimedPath& motion, const JointNames& joint_names,
+                                  const std::string& frame_id);
 
 /// Returns the motion in the format of the file name's ending: .csv, .json, .yaml or .mcap. Throws
 /// InputError for any other.
-[[nodiscard]] std::string motion_text(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id,
+[[nodiscard]] std::string motion_text(const TimedPath& motion, const JointNames& joint_names,
+                                      const std::string& frame_id,
                                       const std::filesystem::path& file);
 /// Throws InputError unless the file name ends in .csv, .json, .yaml or .mcap.
 void require_motion_format(const std::filesystem::path& file);
@@ -44,13 +48,16 @@ struct TrajectoryFile {
 };
 /// Describes the files that load_trajectory_file() reads, for the help of commands.
 inline constexpr const char* kTrajectoryFile =
-    "any trajectory or motion of the arm: CSV with columns by name (the joints are enough; t, s, phi, roll, branch, and joints "
+    "any trajectory or motion of the arm: CSV with columns by name (the joints are enough; t, s, "
+    "phi, roll, branch, and joints "
     "with "
-    "_v and _a may be there), JSON or YAML (JointTrajectory), MCAP (JointState); the contents tell which";
+    "_v and _a may be there), JSON or YAML (JointTrajectory), MCAP (JointState); the contents tell "
+    "which";
 /// Loads a trajectory of the arm, docs/formats.md "Trajectories that are read": all that Swivel
 /// writes, and CSV files, JointTrajectory messages and JointState logs of other programs. The
 /// file's contents tell the format. Throws InputError unless every joint of the arm is there and no
 /// other (a joint named "roll" may be missing), and times ascend.
-[[nodiscard]] TrajectoryFile load_trajectory_file(const std::filesystem::path& file, const JointNames& joint_names);
+[[nodiscard]] TrajectoryFile load_trajectory_file(const std::filesystem::path& file,
+                                                  const JointNames& joint_names);
 
 }  // namespace swivel::io

@@ -22,6 +22,7 @@ namespace swivel::io {
 /// of `placed` bit for bit. `text` is the text that `problem` was loaded from. Throws InputError,
 /// in the name of `problem.source`, if the text states a pose in a way that cannot be edited in
 /// place, and if waypoints in the base frame have moved.
-[[nodiscard]] std::string with_poses(const std::string& text, const Problem& problem, const Problem& placed);
+[[nodiscard]] std::string with_poses(const std::string& text, const Problem& problem,
+                                     const Problem& placed);
 
 }  // namespace swivel::io

@@ -19,8 +19,8 @@ namespace swivel::io {
 [[nodiscard]] std::string to_json(const PlanResult& result);
 /// Returns CERTIFICATE.json as text, docs/formats.md, with a line for each layer.
 [[nodiscard]] std::string to_json(const InfeasibilityCertificate& certificate);
-/// Loads CERTIFICATE.json. Throws InputError for a file that is none. verify_certificate() verifies what it
-/// says.
+/// Loads CERTIFICATE.json. Throws InputError for a file that is none. verify_certificate() verifies
+/// what it says.
 [[nodiscard]] InfeasibilityCertificate load_certificate(const std::filesystem::path& json);
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
@@ -31,8 +31,8 @@ namespace swivel::io {
 struct PlanExtras {
   const Refined* refinement = nullptr;
   const TimingResult* motion = nullptr;
-  TimingOptions timing;                                   ///< the options that the motion was timed with
-  const std::vector<Advice>* advice = nullptr;            ///< for a problem that has no path
+  TimingOptions timing;                         ///< the options that the motion was timed with
+  const std::vector<Advice>* advice = nullptr;  ///< for a problem that has no path
   const InfeasibilityCertificate* certificate = nullptr;  ///< the certificate that there is no path
   std::size_t certificate_bytes = 0;                      ///< size of the certificate's file
 };

@@ -24,16 +24,17 @@ struct RobotOptions {
 /// refused; elsewhere names that the formats do not have give a warning (RobotModel::warnings).
 /// Visuals, materials, inertias and the data of simulators and drivers are not read, and may be
 /// wrong. Throws InputError.
-[[nodiscard]] std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,
-                                                           const std::filesystem::path& srdf = {},
-                                                           const std::map<std::string, std::filesystem::path>& packages = {},
-                                                           const RobotOptions& options = {});
+[[nodiscard]] std::shared_ptr<const RobotModel> load_robot(
+    const std::filesystem::path& urdf, const std::filesystem::path& srdf = {},
+    const std::map<std::string, std::filesystem::path>& packages = {},
+    const RobotOptions& options = {});
 
 /// Loads a robot from the text of a URDF, and of an SRDF if not empty, as load_robot() does from
 /// files. Relative names of meshes are relative to the current folder. Throws InputError.
-[[nodiscard]] std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf = {},
-                                                            const std::map<std::string, std::filesystem::path>& packages = {},
-                                                            const RobotOptions& options = {});
+[[nodiscard]] std::shared_ptr<const RobotModel> parse_robot(
+    const std::string& urdf, const std::string& srdf = {},
+    const std::map<std::string, std::filesystem::path>& packages = {},
+    const RobotOptions& options = {});
 
 /// Counts the shapes of a URDF.
 struct ShapeSurvey {
@@ -45,9 +46,9 @@ struct ShapeSurvey {
 
 /// Loads links and joints of a URDF, and an SRDF if not empty, without shapes: meshes are not read.
 /// Fills in `shapes`. Throws InputError.
-[[nodiscard]] std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
-                                                                const std::filesystem::path& srdf,
-                                                                const std::map<std::string, std::filesystem::path>& packages,
-                                                                const RobotOptions& options, ShapeSurvey& shapes);
+[[nodiscard]] std::shared_ptr<const RobotModel> load_kinematics(
+    const std::filesystem::path& urdf, const std::filesystem::path& srdf,
+    const std::map<std::string, std::filesystem::path>& packages, const RobotOptions& options,
+    ShapeSurvey& shapes);
 
 }  // namespace swivel::io

@@ -22,12 +22,15 @@ enum class ShapesOf { kCollision, kVisual };
 /// these. A capsule is written as a cylinder between two spheres, which readers of URDF 1.0 know;
 /// robot_bodies() joins them again. Relative names of meshes are rewritten for `folder`, where the
 /// text is to be stored. Throws InputError.
-[[nodiscard]] std::string urdf_with_shapes(const std::filesystem::path& urdf, const ShapesInstead& instead,
-                                           const std::filesystem::path& folder, ShapesOf of = ShapesOf::kCollision);
+[[nodiscard]] std::string urdf_with_shapes(const std::filesystem::path& urdf,
+                                           const ShapesInstead& instead,
+                                           const std::filesystem::path& folder,
+                                           ShapesOf of = ShapesOf::kCollision);
 
 /// Loads the robot of a URDF with the visual shapes of those links that have no collision shape, as
 /// if they were collision shapes, and with no other shapes. Throws InputError.
-[[nodiscard]] std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf,
-                                                                   const std::map<std::string, std::filesystem::path>& packages);
+[[nodiscard]] std::shared_ptr<const RobotModel> load_visual_shapes(
+    const std::filesystem::path& urdf,
+    const std::map<std::string, std::filesystem::path>& packages);
 
 }  // namespace swivel::io

@@ -29,7 +29,8 @@ class CampaignFile {
   /// Opens or creates the .part file of `csv` and locks it against a second process. A torn last
   /// line is dropped. Throws InputError if the file belongs to other settings, and says what
   /// differs, or if its rows are not the first ones of the shard.
-  CampaignFile(const std::filesystem::path& csv, const RunSettings& settings, const Shard& shard, std::uint64_t episodes);
+  CampaignFile(const std::filesystem::path& csv, const RunSettings& settings, const Shard& shard,
+               std::uint64_t episodes);
   /// Closes the .part file; removes it if it has no row.
   ~CampaignFile();
   CampaignFile(const CampaignFile&) = delete;
@@ -69,10 +70,12 @@ struct EpisodeTable {
 
 /// Returns the text of RESULTS.csv. `coordinates` names the coordinates whose offsets the rows
 /// have.
-[[nodiscard]] std::string to_csv(const std::vector<EpisodeRow>& rows, const std::vector<std::string>& coordinates);
+[[nodiscard]] std::string to_csv(const std::vector<EpisodeRow>& rows,
+                                 const std::vector<std::string>& coordinates);
 
 /// Returns the summary of a campaign as JSON, as `campaign --json` writes it. `held` are the joints
 /// that stood still.
-[[nodiscard]] std::string to_json(const CampaignSummary& summary, const std::vector<HeldJoint>& held);
+[[nodiscard]] std::string to_json(const CampaignSummary& summary,
+                                  const std::vector<HeldJoint>& held);
 
 }  // namespace swivel::io

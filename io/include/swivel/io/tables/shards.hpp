@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The shards of a campaign, or of placements, and how they become one again. docs/formats.md "Shards".
+// The shards of a campaign, or of placements, and how they become one again. docs/formats.md
+// "Shards".
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -18,9 +19,10 @@ struct ShardRecord {
   std::string command;  ///< "campaign" or "place"
   RunSettings settings;
   Shard shard;
-  std::uint64_t total = 0;            ///< rows of all shards together
-  std::string problem, plan_command;  ///< as the page of the run has them: CampaignFacts, PlacementFacts
-  std::vector<HeldJoint> held = {};   ///< joints between base and tip that stand still in all rows
+  std::uint64_t total = 0;  ///< rows of all shards together
+  std::string problem,
+      plan_command;  ///< as the page of the run has them: CampaignFacts, PlacementFacts
+  std::vector<HeldJoint> held = {};  ///< joints between base and tip that stand still in all rows
   /// Of the settings; "" where there is none.
   [[nodiscard]] std::string setting(const std::string& name) const;
 };
@@ -38,8 +40,8 @@ struct ShardResults {
 };
 /// Throws InputError for anything but a finished shard: one with all its rows, in order.
 [[nodiscard]] ShardResults load_shard(const std::filesystem::path& csv);
-/// The results of the whole run, with the names that shard 0 has. Throws InputError where one of its shards is missing or there
-/// twice, or is of other settings.
+/// The results of the whole run, with the names that shard 0 has. Throws InputError where one of
+/// its shards is missing or there twice, or is of other settings.
 [[nodiscard]] ShardResults join_shards(std::vector<ShardResults> shards);
 
 }  // namespace swivel::io

@@ -14,12 +14,13 @@ class PreparedRobot;
 struct Problem;
 struct PlanView;
 
-/// Returns a certificate that the last plan's problem has no path, which verify_certificate() verifies: a
-/// band of layers that no path crosses, as near to the path's end as possible. `check` must be the
-/// StateCheck that the plan used, or null. Throws InvalidArgument if the last plan found a path,
-/// and Stopped.
-[[nodiscard]] InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget = {},
-                                                        const std::shared_ptr<StateCheck>& check = nullptr);
+/// Returns a certificate that the last plan's problem has no path, which verify_certificate()
+/// verifies: a band of layers that no path crosses, as near to the path's end as possible. `check`
+/// must be the StateCheck that the plan used, or null. Throws InvalidArgument if the last plan
+/// found a path, and Stopped.
+[[nodiscard]] InfeasibilityCertificate prove_infeasible(
+    const PlanView& view, const Budget& budget = {},
+    const std::shared_ptr<StateCheck>& check = nullptr);
 
 /// The verdict on a certificate of infeasibility: what it proves, or what is wrong with it.
 struct CertificateCheck {
@@ -38,8 +39,8 @@ struct CertificateCheck {
 /// Uses no planner. `check` must be the StateCheck that was planned with, or null. Throws
 /// InputError if the problem's lattice differs from the certificate's (resolution, edges, layers),
 /// InvalidArgument as check_trajectory() does, and Stopped.
-[[nodiscard]] CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem,
-                                                  const InfeasibilityCertificate& certificate, const Budget& budget = {},
-                                                  const std::shared_ptr<StateCheck>& check = nullptr);
+[[nodiscard]] CertificateCheck verify_certificate(
+    const PreparedRobot& robot, const Problem& problem, const InfeasibilityCertificate& certificate,
+    const Budget& budget = {}, const std::shared_ptr<StateCheck>& check = nullptr);
 
 }  // namespace swivel

@@ -15,7 +15,8 @@ class PreparedRobot;
 /// of the problem's path, in order, valid or not (check_trajectory() judges). `wanted` selects what
 /// is computed. Throws InvalidArgument for another number of rows or a robot that was not prepared
 /// for the problem, InputError as plan() does, and Stopped.
-[[nodiscard]] Measures measure(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+[[nodiscard]] Measures measure(const PreparedRobot& robot, const Problem& problem,
+                               const std::vector<TrajectoryRow>& rows,
                                const Evidence& wanted = Evidence::all(), const Budget& budget = {});
 
 }  // namespace swivel

@@ -23,8 +23,8 @@ struct MotionResult : TimingResult {
 /// InvalidArgument and InputError as plan() does, InvalidArgument for rows that are not at layers,
 /// and Stopped.
 [[nodiscard]] MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
-                                           const std::vector<TrajectoryRow>& rows, const TimingOptions& options,
-                                           const Budget& budget = {});
+                                           const std::vector<TrajectoryRow>& rows,
+                                           const TimingOptions& options, const Budget& budget = {});
 
 /// The result of plan_motion(): a path, and if asked for, its refinement and its timed motion.
 struct MotionPlan {
@@ -51,7 +51,8 @@ struct MotionPlan {
 /// differs from the one that was planned because problem.smooth has changed. Throws InputError if
 /// an arm angle has no solution there, and InvalidArgument if the robot was not prepared for the
 /// problem.
-[[nodiscard]] std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot,
+                                                      const Problem& problem,
                                                       const std::vector<TrajectoryRow>& rows);
 
 }  // namespace swivel

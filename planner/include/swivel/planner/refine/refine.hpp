@@ -36,7 +36,8 @@ struct RefineOptions {
 /// The result is valid and never dearer by the problem's metric; otherwise it is the given path,
 /// with the reason. A given start stays. `rows` is a trajectory of this problem that plan() found.
 /// Throws InputError and InvalidArgument as plan() does, and Stopped.
-[[nodiscard]] Refined refine(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+[[nodiscard]] Refined refine(const PreparedRobot& robot, const Problem& problem,
+                             const std::vector<TrajectoryRow>& rows,
                              const RefineOptions& options = {}, const Budget& budget = {});
 
 }  // namespace swivel

@@ -27,7 +27,8 @@ struct CampaignOptions {
 /// of `planned`. Exceptions of the callbacks end the campaign and reach the caller. Throws
 /// InvalidArgument as plan() does; InputError for an episode whose problem is invalid, and for a
 /// problem without `vary` if there is more than one episode.
-void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
+void run_campaign(const PreparedRobot& robot, const Problem& problem,
+                  const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 
 }  // namespace swivel

@@ -33,7 +33,8 @@ class PlacementPlanner {
   /// planned at once; evidence, hooks and progress are ignored; the time-out covers all calls
   /// together, from now on. Throws as the Planner of a prepared robot does, and InvalidArgument for
   /// an unknown object.
-  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing, PlanOptions options);
+  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing,
+                   PlanOptions options);
   ~PlacementPlanner();
 
   /// Plans the cells and returns their rows in the order of `cells`, without those that were not

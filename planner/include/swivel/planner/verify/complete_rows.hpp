@@ -25,16 +25,21 @@ struct Problem;
 ///
 /// Throws InvalidArgument and InputError as check_trajectory() does, InputError if the last joint
 /// is not stated and is not the roll, and Stopped.
-[[nodiscard]] std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const Problem& problem,
-                                                       std::vector<TrajectoryRow> rows, const Stated& stated,
+[[nodiscard]] std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot,
+                                                       const Problem& problem,
+                                                       std::vector<TrajectoryRow> rows,
+                                                       const Stated& stated,
                                                        const Budget& budget = {});
 
 /// Computes what the file of a timed motion does not state about its rows, for check_motion(), and
 /// returns the rows. The tool follows the rounded path of with_motion_defaults(problem); speeds and
 /// accelerations follow from the joints and times, with rest before the first row and after the
 /// last. Times must ascend. Throws InvalidArgument, InputError and Stopped as complete_rows() does.
-[[nodiscard]] std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem& problem, std::vector<TimedRow> rows,
-                                                    const Stated& stated, const Budget& budget = {});
+[[nodiscard]] std::vector<TimedRow> complete_motion(const PreparedRobot& robot,
+                                                    const Problem& problem,
+                                                    std::vector<TimedRow> rows,
+                                                    const Stated& stated,
+                                                    const Budget& budget = {});
 
 /// Returns rows at the layers of the path, which refine() and time_trajectory() need, from rows at
 /// any places of it. A row at a layer stays as it is. At a layer between two rows, Newton steps of
@@ -42,8 +47,10 @@ struct Problem;
 /// stand at layers are returned unchanged. Throws InvalidArgument, InputError and Stopped as
 /// complete_rows() does, and InputError for a row whose tool is further than 1e-6 m or rad from the
 /// path or that goes back, and for rows that do not reach from the path's beginning to its end.
-[[nodiscard]] std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot, const Problem& problem,
-                                                        const std::vector<TrajectoryRow>& rows, const Stated& stated,
+[[nodiscard]] std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot,
+                                                        const Problem& problem,
+                                                        const std::vector<TrajectoryRow>& rows,
+                                                        const Stated& stated,
                                                         const Budget& budget = {});
 
 }  // namespace swivel

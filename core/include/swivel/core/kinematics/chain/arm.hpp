@@ -73,7 +73,8 @@ struct Chain {
 
   /// Returns the displacement of a group from q = 0, in the base frame, for joints q, rad. `G` must
   /// hold G_0 ... up to the root_of() the group.
-  [[nodiscard]] Pose displacement(int group, const Config& q, const std::array<Pose, kDof + 1>& G) const;
+  [[nodiscard]] Pose displacement(int group, const Config& q,
+                                  const std::array<Pose, kDof + 1>& G) const;
   /// Returns the displacements of all groups from q = 0, by group number: G_0 ... G_7, then those
   /// of the followers. Joints q in rad.
   [[nodiscard]] std::vector<Pose> all_displacements(const Config& q) const;
@@ -143,8 +144,10 @@ struct ArmModel {
 /// or planar joint between base and tip, a joint between base and tip that mimics one of the arm's,
 /// and a joint that mimics one whose range is a turn or more, unless a whole turn of that one
 /// leaves it in place.
-[[nodiscard]] ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
-                                 const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll = {});
+[[nodiscard]] ArmModel build_arm(const RobotModel& robot, const std::string& base_link,
+                                 const std::string& tip_link,
+                                 const std::map<std::string, double>& hold, const Pose& tool,
+                                 const std::optional<Roll>& roll = {});
 
 /// One collision body of the robot: a shape of a link, or an attached body.
 struct RobotBody {
@@ -173,12 +176,14 @@ struct FollowerMotion {
 };
 /// Returns bounds on the motions that a chain's followers add; zero where the chain has none.
 /// `bodies` are those of robot_bodies().
-[[nodiscard]] FollowerMotion follower_motion(const Chain& chain, const std::vector<RobotBody>& bodies);
+[[nodiscard]] FollowerMotion follower_motion(const Chain& chain,
+                                             const std::vector<RobotBody>& bodies);
 
 /// Returns for each joint j a bound on the distance from its axis of any point of a body that it
 /// moves, over all configurations, m; FollowerMotion::reach of the joint is added. The bound adds
 /// up spheres about the points where neighbouring axes come closest, so it is tight where shoulder
 /// and wrist are spherical. docs/model.md "Motions".
-[[nodiscard]] std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<RobotBody>& bodies);
+[[nodiscard]] std::array<double, kDof> motion_radii(const Chain& chain,
+                                                    const std::vector<RobotBody>& bodies);
 
 }  // namespace swivel

@@ -16,7 +16,9 @@ struct PoseErrorBound {
   /// `about`.
   [[nodiscard]] double of(double radius) const { return shift + turn * radius; }
   /// Returns the bound that says nothing, about a point (base frame, q = 0, m).
-  [[nodiscard]] static PoseErrorBound unknown(const Vector3d& about) { return {about, 0, std::numeric_limits<double>::infinity()}; }
+  [[nodiscard]] static PoseErrorBound unknown(const Vector3d& about) {
+    return {about, 0, std::numeric_limits<double>::infinity()};
+  }
 };
 
 }  // namespace swivel

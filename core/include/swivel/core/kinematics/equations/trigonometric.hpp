@@ -32,7 +32,9 @@ struct Angle {
 /// The function constant + cosine cos(x) + sine sin(x).
 struct Wave {
   double constant = 0, cosine = 0, sine = 0;
-  [[nodiscard]] double operator()(const Angle& x) const { return constant + cosine * x.cosine + sine * x.sine; }
+  [[nodiscard]] double operator()(const Angle& x) const {
+    return constant + cosine * x.cosine + sine * x.sine;
+  }
 };
 
 /// The function constant + cosine cos(x) + sine sin(x) + cosine2 cos(2x) + sine2 sin(2x).

@@ -11,7 +11,8 @@ namespace swivel {
 /// allowed, else the first that is found on either side, in growing steps, until `farthest` (rad,
 /// Euclidean length in joint space) has been passed. Returns none if none is allowed or q is
 /// singular.
-[[nodiscard]] std::optional<Config> nearest_allowed_posture(const Chain& chain, const Config& q, double farthest,
-                                                            const std::function<bool(const Config&)>& allowed);
+[[nodiscard]] std::optional<Config> nearest_allowed_posture(
+    const Chain& chain, const Config& q, double farthest,
+    const std::function<bool(const Config&)>& allowed);
 
 }  // namespace swivel

@@ -63,7 +63,8 @@ class SelfMotion {
   /// Returns the arcs at a tool pose, in the order of their first points; deterministic. `known`
   /// are configurations at this pose that may lie on curves of which the closed form shows nothing.
   /// With Twins::kOne, where twins() is true, arcs that are twins of others are left out.
-  [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool, std::span<const Config> known = {},
+  [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool,
+                                                std::span<const Config> known = {},
                                                 Flipped flipped = Flipped::kBoth) const;
   /// Returns true if curves come in pairs that the joint limits cut alike, as those of a wrist
   /// whose outer joints turn all round.
@@ -86,14 +87,17 @@ class SelfMotion {
   /// Returns the image() of each configuration at the pose `tool`, in vector code. With
   /// Least::kNorm they are those of image() bit for bit; with kLargest they drift along the
   /// self-motion by up to 0.2 rad, to where the largest weighted joint moves least.
-  [[nodiscard]] std::vector<std::optional<Config>> images(std::span<const Config> q, const Pose& tool,
+  [[nodiscard]] std::vector<std::optional<Config>> images(std::span<const Config> q,
+                                                          const Pose& tool,
                                                           Least least = Least::kNorm) const;
   /// Returns the point of an arc at piece `chord` and u in [0, 1], exactly on the curve of the pose
   /// `tool` and within the limits. Returns none where Newton fails.
-  [[nodiscard]] std::optional<Config> point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const;
+  [[nodiscard]] std::optional<Config> point(const SelfMotionArc& arc, int chord, double u,
+                                            const Pose& tool) const;
   /// Returns the configuration near q at the pose `tool` at which a joint (0-based) has a value,
   /// rad, bit for bit. Returns none where Newton fails, or outside the limits.
-  [[nodiscard]] std::optional<Config> with_joint_at(const Config& q, const Pose& tool, int joint, double value) const;
+  [[nodiscard]] std::optional<Config> with_joint_at(const Config& q, const Pose& tool, int joint,
+                                                    double value) const;
   /// Brings every joint of q to the whole turns that arcs have. Returns true if q is then inside
   /// the limits.
   [[nodiscard]] bool canonical(Config& q) const;

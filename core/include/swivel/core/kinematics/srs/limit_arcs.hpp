@@ -55,6 +55,7 @@ class TripleLimits {
 };
 
 /// Replaces `out` by the arcs that lie in both a and b, in the order of their begins.
-void common_arcs(const std::vector<AngleArc>& a, const std::vector<AngleArc>& b, std::vector<AngleArc>& out);
+void common_arcs(const std::vector<AngleArc>& a, const std::vector<AngleArc>& b,
+                 std::vector<AngleArc>& out);
 
 }  // namespace swivel

@@ -51,8 +51,8 @@ struct SrsArm {
   bool exact = false;  ///< the fitted arm equals the chain, to rounding
   /// How far the fitted arm's joints are from the chain's at the same pose, arm angle and branch,
   /// each joint, rad: 0 where exact, else the most over seeded postures within the limits at which
-  /// no |sin| of shoulder, elbow and wrist is below 0.1 and no joint differs by more than solve_exact_chain()
-  /// may move it.
+  /// no |sin| of shoulder, elbow and wrist is below 0.1 and no joint differs by more than
+  /// solve_exact_chain() may move it.
   Config fit_error = Config::Zero();
 
   /// Returns the shoulder angle (joint 2 from its singular pose, where its sine is 0), rad.
@@ -120,11 +120,13 @@ enum class ReachStatus { kReachable, kSingular, kOutOfReach };
 [[nodiscard]] ReachStatus reach_status(const SrsArm& arm, double reach);
 /// Returns the circles of arm angles at a tool pose for a positive [0] and a negative [1] elbow
 /// angle. reach_status() must be kReachable.
-[[nodiscard]] std::array<ElbowCircle, 2> elbow_circles(const SrsArm& arm, const ArmPlane& plane, const Pose& tool);
+[[nodiscard]] std::array<ElbowCircle, 2> elbow_circles(const SrsArm& arm, const ArmPlane& plane,
+                                                       const Pose& tool);
 
 /// Returns the fitted arm's joints at one arm angle phi (rad) and branch (BranchBit), in closed
 /// form: rad, whole turns ignored, limits not applied.
-[[nodiscard]] Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, double phi, int branch);
+[[nodiscard]] Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles,
+                            double phi, int branch);
 
 /// Most that solve_exact_chain() may move a joint, rad.
 inline constexpr double kMostCorrection = 0.05;
@@ -132,8 +134,9 @@ inline constexpr double kMostCorrection = 0.05;
 /// chain's tool pose, and the arm angle phi in `plane`, rad, of the fitted arm), at most 5 steps to
 /// a residual of 1e-10. Returns none where it does not get there or would move a joint by more than
 /// kMostCorrection in all. Returns the seed unchanged for an exact arm.
-[[nodiscard]] std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
-                                                      const Pose& tool, double phi, const Config& seed);
+[[nodiscard]] std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm,
+                                                      const ArmPlane& plane, const Pose& tool,
+                                                      double phi, const Config& seed);
 /// Measures SrsArm::fit_error of an arm fitted to a chain, rad.
 [[nodiscard]] Config measure_fit_error(const Chain& chain, const SrsArm& arm);
 

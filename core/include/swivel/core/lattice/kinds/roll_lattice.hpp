@@ -10,31 +10,38 @@
 
 namespace swivel {
 
-/// Lattice of an S-R-S arm whose tool may stand turned about its own z axis: at each layer the arm angle and the *roll* are chosen
-/// together. docs/model.md.
+/// Lattice of an S-R-S arm whose tool may stand turned about its own z axis: at each layer the arm
+/// angle and the *roll* are chosen together. docs/model.md.
 ///
-/// Its layers are *knots*, every few layers of the tool's path (`resolution.knot`): a step of the roll moves the joints by far more
-/// than a layer does, so that between neighbouring layers a change would never pay. Between two knots roll and arm angle change
-/// linearly along the path, each the short way, and the joints of these layers are solved exactly. What nodes and moves
-/// must keep holds in all of them (Lattice::between). The branch stays the same along an edge: no joint flips while the tool turns.
+/// Its layers are *knots*, every few layers of the tool's path (`resolution.knot`): a step of the
+/// roll moves the joints by far more than a layer does, so that between neighbouring layers a
+/// change would never pay. Between two knots roll and arm angle change linearly along the path,
+/// each the short way, and the joints of these layers are solved exactly. What nodes and moves must
+/// keep holds in all of them (Lattice::between). The branch stays the same along an edge: no joint
+/// flips while the tool turns.
 ///
-/// Nodes of one roll are those of an SrsLattice for a tool turned by it: arm angles are measured from the plane that the path's
-/// carried one becomes under the smallest rotation onto that of the turned tool. A slot is (rank of the roll, branch, winding, j);
-/// ranks begin with the roll nearest to none (to that of a given start), so that of equally good paths that wins which turns least.
-/// Edges lead to rolls and arm angles within roll_slope and arm_slope times the way between the knots, rounded down to whole cells
-/// (of arm angles one at least). Immutable once made.
+/// Nodes of one roll are those of an SrsLattice for a tool turned by it: arm angles are measured
+/// from the plane that the path's carried one becomes under the smallest rotation onto that of the
+/// turned tool. A slot is (rank of the roll, branch, winding, j); ranks begin with the roll nearest
+/// to none (to that of a given start), so that of equally good paths that wins which turns least.
+/// Edges lead to rolls and arm angles within roll_slope and arm_slope times the way between the
+/// knots, rounded down to whole cells (of arm angles one at least). Immutable once made.
 class RollLattice final : public Lattice {
  public:
-  /// Of the whole path, which must outlive it, as arm and chain must. Throws as SrsLattice does, and InputError for a start whose
-  /// roll is outside the range, a roll_slope of less than a cell from knot to knot, and step_error. Throws Stopped.
-  /// `last_joint`: where joint 7 stays (last_joint_at_rest). There is no roll to choose then: joint 7 would only undo it.
-  [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                                                         const Problem& problem, const Budget& budget = {},
+  /// Of the whole path, which must outlive it, as arm and chain must. Throws as SrsLattice does,
+  /// and InputError for a start whose roll is outside the range, a roll_slope of less than a cell
+  /// from knot to knot, and step_error. Throws Stopped. `last_joint`: where joint 7 stays
+  /// (last_joint_at_rest). There is no roll to choose then: joint 7 would only undo it.
+  [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm,
+                                                         const ToolPath& path,
+                                                         const Problem& problem,
+                                                         const Budget& budget = {},
                                                          std::optional<double> last_joint = {});
 
   // --- rolls
   [[nodiscard]] int rolls() const { return static_cast<int>(turned_.size()); }
-  /// rad. Where waypoints have windows (Waypoint::roll), each rank is a part of every layer's; otherwise the same at all layers.
+  /// rad. Where waypoints have windows (Waypoint::roll), each rank is a part of every layer's;
+  /// otherwise the same at all layers.
   [[nodiscard]] double roll(int layer, int slot) const {
     return layer == 0 && start_ ? start_roll_ : roll_of_rank(layer, slot / width_);
   }
@@ -42,31 +49,44 @@ class RollLattice final : public Lattice {
     return turned_[static_cast<std::size_t>(rank)]->rolls[static_cast<std::size_t>(layer)];
   }
   /// By rank: the nodes for a tool that stands turned so. Knots are its layers.
-  [[nodiscard]] const SrsLattice& at_roll(int rank) const { return turned_[static_cast<std::size_t>(rank)]->lattice; }
-  [[nodiscard]] int rank_of(int layer, int slot) const { return layer == 0 && start_ ? 0 : slot / width_; }
+  [[nodiscard]] const SrsLattice& at_roll(int rank) const {
+    return turned_[static_cast<std::size_t>(rank)]->lattice;
+  }
+  [[nodiscard]] int rank_of(int layer, int slot) const {
+    return layer == 0 && start_ ? 0 : slot / width_;
+  }
   /// Of the lattice at_roll().
-  [[nodiscard]] int inner(int layer, int slot) const { return layer == 0 && start_ ? start_->start_slot() : slot % width_; }
+  [[nodiscard]] int inner(int layer, int slot) const {
+    return layer == 0 && start_ ? start_->start_slot() : slot % width_;
+  }
   [[nodiscard]] int slot_of(int rank, int inner) const { return rank * width_ + inner; }
   /// Slots of one roll.
   [[nodiscard]] int width() const { return width_; }
-  /// Ranks of the rolls that an edge of a step may join to this one, in order: of the layer after the step to one of the layer
-  /// before it, or the other way round.
+  /// Ranks of the rolls that an edge of a step may join to this one, in order: of the layer after
+  /// the step to one of the layer before it, or the other way round.
   [[nodiscard]] const std::vector<int>& near(int step, int rank, bool forward) const {
-    const Near& lists = near_[static_cast<std::size_t>(windows_[static_cast<std::size_t>(step)].near)];
+    const Near& lists =
+        near_[static_cast<std::size_t>(windows_[static_cast<std::size_t>(step)].near)];
     return (forward ? lists.after : lists.before)[static_cast<std::size_t>(rank)];
   }
   /// Cells by which the arm angle may change on a step; the most of all steps.
-  [[nodiscard]] int phi_window(int step) const { return windows_[static_cast<std::size_t>(step)].phi; }
+  [[nodiscard]] int phi_window(int step) const {
+    return windows_[static_cast<std::size_t>(step)].phi;
+  }
   [[nodiscard]] int widest_phi_window() const { return widest_; }
   [[nodiscard]] bool has_start() const { return start_ != nullptr; }
-  /// Layer 0 of a problem with a start is one slot, whose nodes are those of this lattice's start_slot().
+  /// Layer 0 of a problem with a start is one slot, whose nodes are those of this lattice's
+  /// start_slot().
   [[nodiscard]] const SrsLattice* start() const { return start_.get(); }
 
   [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
   /// Of the whole path: those that are layers of the lattice.
   [[nodiscard]] const std::vector<int>& knots() const { return knots_; }
-  [[nodiscard]] int layer_of_rows(int layer) const override { return knots_[static_cast<std::size_t>(layer)]; }
-  /// The rows at all layers of the whole path, along a path of the lattice: from layer 0 on, as far as it goes.
+  [[nodiscard]] int layer_of_rows(int layer) const override {
+    return knots_[static_cast<std::size_t>(layer)];
+  }
+  /// The rows at all layers of the whole path, along a path of the lattice: from layer 0 on, as far
+  /// as it goes.
   [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
 
   [[nodiscard]] LatticeInfo describe() const override;
@@ -74,54 +94,76 @@ class RollLattice final : public Lattice {
     return {inner(layer, slot), rank_of(layer, slot), roll(layer, slot)};
   }
 
-  [[nodiscard]] int slots(int layer) const override { return layer == 0 && start_ ? 1 : rolls() * width_; }
+  [[nodiscard]] int slots(int layer) const override {
+    return layer == 0 && start_ ? 1 : rolls() * width_;
+  }
   [[nodiscard]] std::int64_t nodes() const override;
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override {
     return at(layer, slot).node(layer, inner(layer, slot));
   }
   using Lattice::exact_config;
-  [[nodiscard]] std::optional<Config> exact_config(int layer, int slot, const Config& q) const override {
+  [[nodiscard]] std::optional<Config> exact_config(int layer, int slot,
+                                                   const Config& q) const override {
     return at(layer, slot).exact_config(layer, inner(layer, slot), q);
   }
   [[nodiscard]] bool is_approximate() const override { return at_roll(0).is_approximate(); }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
-  [[nodiscard]] NodeFault fault(int layer, int slot) const override { return at(layer, slot).fault(layer, inner(layer, slot)); }
+  [[nodiscard]] NodeFault fault(int layer, int slot) const override {
+    return at(layer, slot).fault(layer, inner(layer, slot));
+  }
   /// Where no roll is within reach: of the one that misses least.
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
-  [[nodiscard]] double phi(int layer, int slot) const override { return at(layer, slot).phi(layer, inner(layer, slot)); }
-  [[nodiscard]] int branch(int layer, int slot) const override { return at(layer, slot).branch(layer, inner(layer, slot)); }
+  [[nodiscard]] double phi(int layer, int slot) const override {
+    return at(layer, slot).phi(layer, inner(layer, slot));
+  }
+  [[nodiscard]] int branch(int layer, int slot) const override {
+    return at(layer, slot).branch(layer, inner(layer, slot));
+  }
   [[nodiscard]] bool has_node_costs() const override { return roll_costs(); }
-  [[nodiscard]] double node_cost(int layer, int slot) const override { return roll_cost(layer, roll(layer, slot)); }
+  [[nodiscard]] double node_cost(int layer, int slot) const override {
+    return roll_cost(layer, roll(layer, slot));
+  }
   [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
   [[nodiscard]] int neighbour_in_roll(int layer, int slot, int by) const override;
   [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override;
   /// As in an SrsLattice, among nodes of one roll.
-  [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return !is_approximate() && (groups & kFollowers) == 0; }
-  void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
-  [[nodiscard]] unsigned manipulability_groups() const override { return at_roll(0).manipulability_groups(); }
+  [[nodiscard]] bool shares_body_poses(unsigned groups) const override {
+    return !is_approximate() && (groups & kFollowers) == 0;
+  }
+  void slots_with_same_body_poses(int layer, int slot, unsigned groups,
+                                  std::vector<int>& out) const override;
+  [[nodiscard]] unsigned manipulability_groups() const override {
+    return at_roll(0).manipulability_groups();
+  }
   [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override {
     return !is_approximate() && at_roll(0).all_below_manipulability(layer, q);
   }
-  [[nodiscard]] PoseErrorBound pose_error_of_node(int layer, int group, const Config& q) const override;
-  [[nodiscard]] PoseErrorBound pose_error_between(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseErrorBound pose_error_of_node(int layer, int group,
+                                                  const Config& q) const override;
+  [[nodiscard]] PoseErrorBound pose_error_between(int layer, int group,
+                                                  const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
   [[nodiscard]] bool in_arm_window(int layer, int a, int b) const override;
   /// From knot to knot; what the rows between turn is a matter of interpolate_edge().
-  [[nodiscard]] std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b, const Config& q1) const override;
+  [[nodiscard]] std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b,
+                                                  const Config& q1) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
   [[nodiscard]] bool has_layers_between() const override { return true; }
-  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b, const Config& qb) const override;
+  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
+                                                  const Config& qb) const override;
 
  private:
   struct Knots {
     std::vector<int> layers;
     std::unique_ptr<const ToolPath> path;
   };
-  RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
-              Knots knots, std::optional<double> last_joint);
+  RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
+              const Budget& budget, Knots knots, std::optional<double> last_joint);
   static Knots knots_along(const ToolPath& path, const Resolution& resolution);
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
-  [[nodiscard]] const SrsLattice& at(int layer, int slot) const { return layer == 0 && start_ ? *start_ : at_roll(slot / width_); }
+  [[nodiscard]] const SrsLattice& at(int layer, int slot) const {
+    return layer == 0 && start_ ? *start_ : at_roll(slot / width_);
+  }
   void choose_rolls(double nominal, double droll);
   /// Of a value, at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
@@ -129,17 +171,23 @@ class RollLattice final : public Lattice {
   void find_near(const Problem& problem);
   /// `visit(i, row)` for the layers i of the whole path between those of an edge.
   template <class Visit>
-  InterpolatedEdge walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const;
-  /// The roll at a layer of the whole path: the one that was chosen, or what joint 7's rest makes it.
+  InterpolatedEdge walk(int layer, int a, const Config& qa, int b, const Config& qb,
+                        const Visit& visit) const;
+  /// The roll at a layer of the whole path: the one that was chosen, or what joint 7's rest makes
+  /// it.
   [[nodiscard]] double roll_at(int i, const Config& q, double chosen) const;
-  /// The joints at a layer of the whole path, near those of the layer before; or why there are none.
-  [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch, const Config& near,
-                                            InterpolatedEdge& fault) const;
+  /// The joints at a layer of the whole path, near those of the layer before; or why there are
+  /// none.
+  [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch,
+                                            const Config& near, InterpolatedEdge& fault) const;
 
   struct Turned {
-    Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm, const Problem& problem,
-           const Budget& budget, std::vector<ArmPlane> planes, const std::optional<double>& last_joint)
-        : rolls(std::move(by)), path(std::move(knots)), lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
+    Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm,
+           const Problem& problem, const Budget& budget, std::vector<ArmPlane> planes,
+           const std::optional<double>& last_joint)
+        : rolls(std::move(by)),
+          path(std::move(knots)),
+          lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
     std::vector<double> rolls;  // by layer
     ToolPath path;
     SrsLattice lattice;
@@ -160,7 +208,7 @@ class RollLattice final : public Lattice {
   std::vector<Config> whole_step_bounds_;  // of its steps; one entry where all are the same
   bool circle_ = false;                    // rolls go once around
   bool windows_of_roll_ = false;           // waypoints have some
-  std::vector<double> values_;             // rolls in their order; with windows, parts of them from 0 to 1
+  std::vector<double> values_;  // rolls in their order; with windows, parts of them from 0 to 1
   double start_roll_ = 0;
   std::vector<int> rank_, value_of_;             // of each value; of each rank
   std::vector<std::unique_ptr<Turned>> turned_;  // by rank

@@ -39,7 +39,9 @@ class ImplicitLattice {
   /// Returns the most slots that a layer has.
   [[nodiscard]] std::int64_t width() const { return width_; }
   /// Returns the cost-to-go of a vertex.
-  [[nodiscard]] double cost_to_go(Vertex v) const { return cost_to_go_->at(layer_of(v), slot_of(v)); }
+  [[nodiscard]] double cost_to_go(Vertex v) const {
+    return cost_to_go_->at(layer_of(v), slot_of(v));
+  }
   /// Returns the number of vertices, those without a node included.
   [[nodiscard]] std::int64_t vertices() const { return cost_to_go_->lattice().layers() * width_; }
   /// Returns the cost-to-go.
@@ -65,8 +67,9 @@ inline ImplicitLattice::Vertex source(const ImplicitLattice::Edge& e, const Impl
 inline ImplicitLattice::Vertex target(const ImplicitLattice::Edge& e, const ImplicitLattice&) {
   return e.target;
 }
-inline std::pair<std::vector<ImplicitLattice::Edge>::const_iterator, std::vector<ImplicitLattice::Edge>::const_iterator> out_edges(
-    ImplicitLattice::Vertex v, const ImplicitLattice& g) {
+inline std::pair<std::vector<ImplicitLattice::Edge>::const_iterator,
+                 std::vector<ImplicitLattice::Edge>::const_iterator>
+out_edges(ImplicitLattice::Vertex v, const ImplicitLattice& g) {
   const auto& edges = g.expand(v);
   return {edges.begin(), edges.end()};
 }
@@ -76,9 +79,11 @@ inline std::size_t out_degree(ImplicitLattice::Vertex v, const ImplicitLattice& 
 inline std::size_t num_vertices(const ImplicitLattice& g) {
   return static_cast<std::size_t>(g.vertices());
 }
-inline std::pair<boost::counting_iterator<ImplicitLattice::Vertex>, boost::counting_iterator<ImplicitLattice::Vertex>> vertices(
-    const ImplicitLattice& g) {
-  return {boost::counting_iterator<ImplicitLattice::Vertex>(0), boost::counting_iterator<ImplicitLattice::Vertex>(g.vertices())};
+inline std::pair<boost::counting_iterator<ImplicitLattice::Vertex>,
+                 boost::counting_iterator<ImplicitLattice::Vertex>>
+vertices(const ImplicitLattice& g) {
+  return {boost::counting_iterator<ImplicitLattice::Vertex>(0),
+          boost::counting_iterator<ImplicitLattice::Vertex>(g.vertices())};
 }
 
 /// Edge costs as a readable property map.
