@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -103,6 +104,26 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   say("\n");
 }
 
+bool within_limits(const Chain& chain, const Config& q) {
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    const double value = q[static_cast<Eigen::Index>(j)];
+    if (!limit.continuous && (value < limit.lower || value > limit.upper)) return false;
+  }
+  return true;
+}
+
+/// Returns true if the joints of all rows are within their limits when read as degrees, while those
+/// of some row are not as radians, the unit of every file of joints.
+bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
+  const auto as_radians = [&](const TrajectoryRow& row) { return within_limits(chain, row.q); };
+  const auto as_degrees = [&](const TrajectoryRow& row) {
+    return within_limits(chain, row.q * (kPi / 180));
+  };
+  return !std::all_of(rows.begin(), rows.end(), as_radians) &&
+         std::all_of(rows.begin(), rows.end(), as_degrees);
+}
+
 int run_on_certificate(const Problem& problem, const std::string& file) {
   const InfeasibilityCertificate certificate = io::load_certificate(file);
   catch_interrupts();
@@ -163,7 +184,15 @@ int run(const CheckArguments& arguments) {
   if (result.rounded) say(", on the path as motions follow it, its corners rounded");
   if (!held.empty()) say(", held: %s", words(held).c_str());
   say("; ");
-  print_margins(problem, chain, result);
+  const bool all = result.rows_examined == static_cast<std::int64_t>(rows.size());
+  if (result.rows_examined == 0 && result.worst_position == 0) {
+    say("no row could be measured\n");
+  } else {
+    if (!all) say("of the rows that could be measured: ");
+    print_margins(problem, chain, result);
+  }
+  if (look_like_degrees(chain, rows))
+    say("  joints would be within their limits as degrees: allowed are radians\n");
   print_failures(result);
   return result.passed ? kOk : kNo;
 }
