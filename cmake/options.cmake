@@ -21,7 +21,11 @@ if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(SWIVEL_CCACHE ccache)
   mark_as_advanced(SWIVEL_CCACHE)
   if(SWIVEL_CCACHE)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${SWIVEL_CCACHE}")
+    # ccache passes over sources with precompiled headers unless it is told that their macros and
+    # times of files do not matter here (ccache's manual, "Precompiled headers").
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+        ${SWIVEL_CCACHE})
   endif()
 endif()
 
@@ -31,6 +35,9 @@ add_library(swivel_settings INTERFACE)
 # No errno, no trapping: neither changes a value, both are needed to vectorise sqrt and selects.
 # GCC 12 warns of overlaps inside std::string that are not there (-Wrestrict).
 target_compile_options(swivel_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
+  target_compile_options(swivel_settings INTERFACE -fpch-preprocess)
+endif()
 if(SWIVEL_WERROR)
   target_compile_options(swivel_settings INTERFACE -Werror)
 endif()
