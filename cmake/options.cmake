@@ -5,6 +5,7 @@ option(SWIVEL_WERROR "Treat warnings as errors" OFF)
 option(SWIVEL_DEB "Make Debian packages by CPack: needs dpkg-dev and help2man" OFF)
 option(SWIVEL_FRAME_POINTERS "Keep frame pointers, for profilers" OFF)
 option(SWIVEL_PRECOMPILE "Precompile the headers that most sources include" ON)
+option(SWIVEL_ROOMS_AT_ONCE "Compile the sources of a folder in one go: sooner from scratch, later after a change of one source" ON)
 set(SWIVEL_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -68,6 +69,23 @@ function(swivel_precompiled_as target other)
   endif()
 endfunction()
 
+# swivel_compile_rooms_at_once(TARGET SOURCE...): compiles those of these sources of the target that lie
+# in the same folder as one source, so that their templates are instantiated once. Folders of kernels,
+# which include the same text several times, are compiled one by one.
+function(swivel_compile_rooms_at_once target)
+  if(NOT SWIVEL_ROOMS_AT_ONCE)
+    return()
+  endif()
+  foreach(source IN LISTS ARGN)
+    get_filename_component(folder ${source} DIRECTORY)
+    if(NOT folder MATCHES "kernels$")
+      string(MAKE_C_IDENTIFIER "${target}_${folder}" room)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${room})
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PRECOMPILE <header> ... PKG_CONFIG -lflag ...): one library, one
 # include root, one layer, installed with those of its headers that SWIVEL_PUBLIC_HEADERS names. PRECOMPILE: headers to compile once. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
 function(swivel_component name)
@@ -80,6 +98,7 @@ function(swivel_component name)
     set(scope PUBLIC)
     add_library(${library} ${arg_SOURCES})
     swivel_precompile(${library} ${arg_PRECOMPILE})
+    swivel_compile_rooms_at_once(${library} ${arg_SOURCES})
     target_include_directories(${library} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)  # headers of its own: "room/name.hpp"
     target_link_libraries(${library} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
     # Position-independent, so that plugins and modules of other languages may hold static libraries. What a library calls of its own is
