@@ -16,14 +16,14 @@ namespace swivel {
 
 namespace {
 
-/// Rounds to a multiple of 2^-40 units (for |x| < 2048 units): sums of costs are then exact in any
-/// order.
+/// Rounds x to a multiple of 2^-40 `unit`, for |x| < 2048 `unit`. Sums of such costs are exact in
+/// any order.
 double rounded(double x, double unit) {
   const double shift = 6144.0 * unit;  // 1.5 * 2^12, whose last place is 2^-40
   return (x + shift) - shift;
 }
 
-/// The least power of two >= x > 0; 1 for x = 0.
+/// Returns the least power of two >= x for x > 0; 1 for x = 0.
 double power_of_two_from(double x) {
   int exponent = 0;
   return x > 0 ? std::ldexp(1.0, std::frexp(x, &exponent) > 0.5 ? exponent : exponent - 1) : 1.0;
@@ -35,7 +35,7 @@ bool within(const Config& delta, const Config& bound) {
   return true;
 }
 
-/// The tool's straight line from a layer to the next; a point where they coincide.
+/// The straight line of the tool's origin from a layer to the next; a point if the two coincide.
 class Step {
  public:
   Step(const ToolPath& path, int layer) : start_(path.layer(layer).tool.translation()) {
@@ -43,12 +43,12 @@ class Step {
     length_ = along.norm();
     if (length_ >= kShortest) direction_ = along / length_;
   }
-  /// Distance of a point from the line, m.
+  /// Returns the distance of a point from the line, m.
   [[nodiscard]] double aside(const Vector3d& p) const {
     const Vector3d d = p - start_;
     return (d - d.dot(direction_) * direction_).norm();
   }
-  /// Where on the step the foot of a point lies, 0 to 1; none on a point.
+  /// Returns where on the step the foot of a point lies, 0 to 1; nothing if the step has no length.
   [[nodiscard]] std::optional<double> fraction(const Vector3d& p) const {
     if (length_ < kShortest) return std::nullopt;
     return std::clamp((p - start_).dot(direction_) / length_, 0.0, 1.0);
@@ -119,7 +119,7 @@ std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPat
     double dt = 0;
     if (limits.tool_speed) dt = std::max(dt, layer.step_length / *limits.tool_speed);
     if (limits.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits.tool_turn_speed);
-    if (dt <= 0) continue;  // a step that the given speed does not time
+    if (dt <= 0) continue;  // the given speed says nothing of the duration of this step
     for (int k = 0; k < kDof; ++k) {
       double& most = bounds[static_cast<std::size_t>(i)][k];
       if (!chain.roll || k + 1 < kDof)
@@ -207,7 +207,7 @@ double Lattice::edge_cost(const Config& delta) const {
   for (std::size_t k = 0; k < kDof; ++k)
     x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];
   if (cost_.metric == CostMetric::kL2)
-    // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
+    // The vector sweep adds in this order (shoulder, elbow, wrist); the bits must agree.
     return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] +
                              ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])),
                    cost_unit_);
@@ -240,7 +240,8 @@ double roll_step_bound(const ToolPath& path, int step, const Limits& limits,
 std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer,
                                      const Config& q0, const Config& delta) {
   const Step step(path, layer);
-  // t = 1/2 as it is; 1/4 and 3/4 are a quarter of the move, h, before and after it.
+  // Sines and cosines at t = 1/2 are computed; those at t = 1/4 and 3/4 follow by the addition
+  // theorem for a quarter of the move, h.
   Config c, s, c_before, s_before, c_after, s_after;
   for (int k = 0; k < kDof; ++k) {
     const double middle = q0[k] + 0.5 * delta[k], h = 0.25 * delta[k];
@@ -261,7 +262,7 @@ std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, 
     const double t = 0.25 * static_cast<double>(k + 1);
     const Pose tool = chain.tool(q0 + t * delta);
     const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
-    // Of a tool that may turn about its z axis, the angle between the axes counts.
+    // For a tool that may turn about its z axis, only the angle between the z axes counts.
     deviation[k] = chain.tool_may_turn()
                        ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
                                     asked.linear().col(2).dot(tool.linear().col(2)))

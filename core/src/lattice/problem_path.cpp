@@ -15,7 +15,7 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
                 problem.roll && problem.roll->circle());
   if (problem.start) {
     Pose tool = chain.tool(*problem.start);
-    if (chain.free_roll) {  // compare poses without the roll, which may be any
+    if (chain.free_roll) {  // the roll is free: compare poses without it
       const double s = problem.start_at.value_or(0);
       int i = 0;
       while (i + 2 < path.size() && path.layer(i + 1).s < s) ++i;

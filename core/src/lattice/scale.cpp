@@ -12,17 +12,19 @@ namespace swivel {
 
 namespace {
 
-/// How far the arm reaches without the tool, m: the sum of the distances from axis to axis.
+/// Returns how far the arm reaches without `tool`, m: the sum of the distances from axis to axis
+/// and on to the flange.
 double reach_of_arm(const Chain& chain, const Pose& tool) {
   const std::size_t joints =
-      chain.roll ? kDof - 1 : kDof;  // the roll is no joint: its axis is the tool's
+      chain.roll ? kDof - 1 : kDof;  // the roll is no joint of the arm; its axis is the tool's
   double reach = ((chain.home * tool.inverse()).translation() - chain.point[joints - 1]).norm();
   for (std::size_t j = 1; j < joints; ++j) reach += (chain.point[j] - chain.point[j - 1]).norm();
   return reach;
 }
 
 struct Size {
-  double least = 0, most = 0;  ///< of the edges of a box about it, m
+  /// The shortest and longest edge of a box about the shape, m.
+  double least = 0, most = 0;
 };
 Size size_of(const Shape& shape) {
   const auto of = [](double a, double b) { return Size{std::min(a, b), std::max(a, b)}; };
@@ -53,7 +55,7 @@ class Scale {
   void distance(const std::string& what, double metres) {
     if (metres > kFar * reach_) tell(what, formatted(" is %.4g m from the arm", metres), "");
   }
-  /// Floors and walls are large as well, but thin.
+  /// A box or another plain shape must also be thick: floors and walls are large, but thin.
   void size(const std::string& what, const Shape& shape) {
     const Size size = size_of(shape);
     const bool mesh = std::holds_alternative<MeshPtr>(shape);

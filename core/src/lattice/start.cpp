@@ -43,7 +43,7 @@ void validate_start(const Problem& problem, const Chain& chain, const ToolPath& 
 
 double roll_of_start(const Problem& problem, const Chain& chain, const ToolPath& path,
                      const Roll& range) {
-  constexpr double kRoll = 1e-6;  // rad, as joints are written
+  constexpr double kRoll = 1e-6;  // rad: the precision to which joints are usually written
   double roll = chain.roll ? (*problem.start)[kDof - 1]
                            : roll_between(path.layer(0).tool, chain.tool(*problem.start));
   if (!range.circle())

@@ -5,12 +5,13 @@
 
 namespace swivel {
 
-/// Throws InputError where Problem::start leaves the limits of its joints, or is not at the path's
-/// first layer within Problem::start_tolerance.
+/// Throws InputError if Problem::start, which must be set, is outside the limits of its joints, or
+/// if its tool pose is further than Problem::start_tolerance (m and rad) from the path's first
+/// layer.
 void validate_start(const Problem& problem, const Chain& chain, const ToolPath& path);
 
-/// The roll of the start at the path's first layer, rad, within `range` where that is less than a
-/// turn. Throws InputError where the range or the waypoints do not allow it.
+/// Returns the roll of the start's tool at the path's first layer, rad, taken into `range` if that
+/// is less than a turn. Throws InputError if the range or the waypoints' windows do not allow it.
 [[nodiscard]] double roll_of_start(const Problem& problem, const Chain& chain, const ToolPath& path,
                                    const Roll& range);
 

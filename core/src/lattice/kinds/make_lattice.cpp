@@ -13,7 +13,8 @@ namespace swivel {
 
 namespace {
 
-/// The tool's z axis is that of the last joint, and the tool may turn about it as it likes.
+/// Returns whether the tool's z axis is the axis of the last joint and the tool may turn about it
+/// by any angle.
 bool turns_about_last_joint(const Chain& chain) {
   constexpr double kApart = 1e-9;  // m and rad
   if (!chain.free_roll || !chain.free_roll->circle()) return false;
@@ -41,7 +42,7 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
 
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                          const Problem& problem) {
-  // Where the roll costs something joint 7 had better turn.
+  // If the roll has a cost, turning joint 7 may be cheaper than resting it.
   if (!arm.srs || problem.start || !problem.rolls.empty() || problem.cost.roll > 0 ||
       !turns_about_last_joint(chain))
     return std::nullopt;

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The arcs of arm angles within the joint limits, and the cells that are moved onto them.
+// Finds the arcs of arm angles within the joint limits, and moves nodes of cells onto them.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +10,7 @@ namespace swivel {
 
 namespace {
 
-constexpr double kHair = 1e-6;  // rad of arm angle that moved nodes keep from the ends of arcs
+constexpr double kHair = 1e-6;  // rad: distance in arm angle of moved nodes from the ends of arcs
 
 }  // namespace
 
@@ -38,8 +37,8 @@ void SrsLattice::prepare_arcs() {
           ranges[j] = {begin, end};
           continue;
         }
-        // Of an arm that is not exact, images reach beyond the limits by the fit error; its rows
-        // are surely within them as far inside.
+        // For an arm that is not exact, images reach beyond the limits by the fit error. Where
+        // nodes are inside the limits by as much, their rows surely are within them.
         const double inside = limits_.joint_margin - kLimitTolerance +
                               fit_error()[static_cast<Eigen::Index>(first + j)];
         ranges[j] = {std::max(begin, limit.lower + inside), std::min(end, limit.upper - inside)};
@@ -98,7 +97,7 @@ void SrsLattice::place_off_grid_nodes(const Budget& budget) {
   const TraceSpan span("arcs");
   off_grid_begin_.assign(1, 0);
   off_grid_branches_.assign(static_cast<std::size_t>(layers()), 0);
-  // Branches and windings share what their triples allow.
+  // Arcs of each triple, computed once for the branches and windings that share them.
   std::array<std::vector<std::vector<AngleArc>>, 2> of_triple;  // [triple][sign, winding]
   std::array<std::vector<char>, 2> known;
   std::vector<AngleArc> arcs;
@@ -135,7 +134,7 @@ void SrsLattice::place_off_grid_nodes_of(int layer, int solution,
                                          const std::vector<AngleArc>& arcs) {
   struct Move {
     int cell;
-    double phi, away;  // away: from the cell's own angle
+    double phi, away;  // away: distance from the cell's grid angle, rad
   };
   std::vector<Move> moves;
   const double step = kTwoPi / angles_;
@@ -174,11 +173,11 @@ void SrsLattice::place_off_grid_nodes_of(int layer, int solution,
       return std::abs(wrap_angle(phi - (arc.begin + arc.end) / 2)) <=
              (arc.end - arc.begin) / 2 + 10 * kHair;
     });
-    // Another arc may lead through the cell's own angle, or one may end there: the node itself
-    // tells. Bounds of an arm that is not exact are wider than the arcs.
+    // Another arc may contain the cell's grid angle, or end near it. Solving the node there
+    // decides, and for an arm that is not exact always, because its bounds are wider than the arcs.
     if ((near || !arm_->exact) && solved(layer, slot, sine_[own], cosine_[own])) continue;
     const auto q = solved(layer, slot, std::sin(move.phi), std::cos(move.phi));
-    if (!q) continue;  // beside a singular pose
+    if (!q) continue;  // the pose is near a singularity
     off_grid_.push_back({slot, move.phi, *q});
     off_grid_branches_[static_cast<std::size_t>(layer)] |=
         static_cast<std::uint8_t>(1 << branch_of(slot));

@@ -8,8 +8,9 @@ namespace swivel {
 
 double step_error(const SrsLattice& lattice, int layer, int end, int branch, double phi,
                   double dphi) {
-  constexpr double kStep =
-      1e-3;  // of the step parameter; truncation and rounding both stay below 1e-6 of the value
+  // Step of the finite differences, of the step parameter; truncation and rounding both stay below
+  // 1e-6 of the value.
+  constexpr double kStep = 1e-3;
   const SrsArm& arm = lattice.arm();
   const ArmPlane& plane = lattice.plane(layer + end);
   const auto joints = [&](double t, double angle) -> std::optional<Config> {

@@ -6,8 +6,9 @@
 
 namespace swivel {
 
-/// A lattice whose nodes are listed, any number a layer: of arms whose self-motion is no circle of
-/// arm angles. Any node may follow any node of the layer before, as far as the joints' steps allow.
+/// A lattice whose nodes are given as a list for each layer, of any length. It serves arms whose
+/// self-motion is no circle of arm angles. Any node may follow any node of the layer before, as far
+/// as the bounds on joint steps allow.
 class ExplicitLattice : public Lattice {
  public:
   struct Point {
@@ -15,14 +16,17 @@ class ExplicitLattice : public Lattice {
     double phi = 0;  ///< redundancy coordinate, rad
     int branch = 0;  ///< 0..7, for reports
     std::array<int, 2> beside{
-        -1, -1};  ///< slots before and after it along its curve of self-motion, -1: none
+        /// The slots before and after the node along its curve of self-motion; -1: none.
+        -1, -1};
     std::array<int, 2> along{
-        -1, -1};  ///< slots that continue it in the layer before and after, -1: none
+        /// The slots that continue the node in the layers before and after; -1: none.
+        -1, -1};
   };
-  /// Nodes by layer, in the order that settles ties; all must reach the layer's tool pose within
-  /// the limits. Throws InputError for limits.step_error, which needs a closed form, and
-  /// std::invalid_argument where the layers are not those of the path. `circles`: joints whose
-  /// moves are taken on the circle besides the continuous ones.
+  /// Takes the nodes of each layer, in the order that settles ties. Each must reach the layer's
+  /// tool pose within the limits; this is not checked. `circles`: joints whose moves are taken on
+  /// the circle, as those of continuous joints are. Throws InputError for limits.step_error, which
+  /// needs a closed form, and std::invalid_argument if the number of layers is not that of the
+  /// path.
   ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem,
                   std::vector<std::vector<Point>> layers,
                   const std::array<bool, kDof>& circles = {});
@@ -38,7 +42,7 @@ class ExplicitLattice : public Lattice {
     return point(layer, slot).q;
   }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
-  /// Those of the roll, where it is the last joint.
+  /// Nodes cost something if the chain's last joint is the roll and the roll has a cost.
   [[nodiscard]] bool has_node_costs() const override { return chain_->roll && cost_.roll > 0; }
   [[nodiscard]] double node_cost(int layer, int slot) const override {
     return has_node_costs() ? roll_cost(layer, point(layer, slot).q[kDof - 1]) : 0;
@@ -52,7 +56,8 @@ class ExplicitLattice : public Lattice {
   [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override {
     return point(layer, slot).along[by < 0 ? 0 : 1];
   }
-  /// The last link and the tool stand where the layer puts them; any other body stands alone.
+  /// All nodes of a layer place the last link and the tool alike. Of any other body they share no
+  /// pose.
   [[nodiscard]] bool shares_body_poses(unsigned groups) const override {
     return (groups & ~(1u << kDof)) == 0;
   }

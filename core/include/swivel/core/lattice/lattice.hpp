@@ -18,25 +18,31 @@ namespace swivel {
 
 struct TrajectoryRow;
 
-inline constexpr double kLimitTolerance = 1e-9;  // rad: joint limits are inclusive within this
+// rad: a joint may be outside its limits by so much
+inline constexpr double kLimitTolerance = 1e-9;
 
-/// Layers of nodes along a tool path, and the joint-linear moves that may join neighbouring layers:
-/// all that searches, verdicts and diagnosis know of an arm. This class is nodes and edges, which
-/// searches need; its bases are what collision questions (BodyPoseClasses) and descriptions
-/// (LatticeDescription) need besides. How a layer's nodes come about is the business of the classes
-/// derived from it (srs_lattice.hpp: a grid of arm angles; explicit_lattice.hpp: a list of nodes).
-/// docs/model.md. A slot numbers a layer's nodes in the order that settles ties; a slot may stand
-/// for no node. Immutable once made, so safe to share between threads; the same node has the same
-/// bits however asked.
+/// A layered graph along a tool path: each layer has nodes (postures at which the tool is where the
+/// path wants it), and joint-linear moves may join nodes of neighbouring layers. Searches, verdicts
+/// and diagnosis know an arm only through this class. The class itself has the nodes and edges that
+/// searches need; its base BodyPoseClasses answers what collision questions need, and its base
+/// LatticeDescription describes nodes to reports. Derived classes decide which nodes a layer has:
+/// srs_lattice.hpp has a grid of arm angles, explicit_lattice.hpp a list of nodes. docs/model.md
+/// defines all of this.
+///
+/// A slot is the number of a node within its layer, in the order that settles ties; a slot may
+/// stand for no node. Configurations are in rad, by joint; lengths are in m. A lattice is immutable
+/// once made, except by take_clearances(), so that threads may share it. A node has the same bits
+/// however it is asked for.
 class Lattice : public BodyPoseClasses, public LatticeDescription {
  public:
   [[nodiscard]] const Chain& chain() const { return *chain_; }
   [[nodiscard]] const ToolPath& path() const { return *path_; }
   [[nodiscard]] const Limits& limits() const { return limits_; }
-  /// Takes over clearances and edge mode of other limits, on which no node and no edge of the
-  /// lattice depends.
+  /// Replaces the clearances and the edge mode by those of `limits`. No node and no edge of the
+  /// lattice depends on them.
   void take_clearances(const Limits& limits) { limits_ = with_clearances(limits_, limits); }
-  /// `kinematics` but for these.
+  /// Returns the limits `kinematics` with clearances and edge mode replaced by those of
+  /// `clearances`.
   [[nodiscard]] static Limits with_clearances(Limits kinematics, const Limits& clearances) {
     kinematics.clearance = clearances.clearance;
     kinematics.self_clearance = clearances.self_clearance;
@@ -49,52 +55,54 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] int layers() const { return path_->size(); }
 
   // --- nodes
-  /// Slots of a layer: 0 ... slots - 1.
+  /// Returns the number of slots of a layer, which are 0 ... slots - 1.
   [[nodiscard]] virtual int slots(int layer) const = 0;
-  /// Of all layers.
+  /// Returns the number of nodes of all layers together.
   [[nodiscard]] virtual std::int64_t nodes() const = 0;
-  /// One node; none where it does not exist.
+  /// Returns the joints of a node; nothing if the slot has no node.
   [[nodiscard]] virtual std::optional<Config> node(int layer, int slot) const = 0;
-  /// The joints that a trajectory has at a node, whose own joints are q: on the exact chain, within
-  /// the limits. Nodes of arms with an exact closed form are exact themselves. Other arms have the
-  /// nodes of the ideal arm fitted to them, and rows that Newton finds near those; none where it
-  /// does not, or where that row is outside the limits: the node is then invalid.
+  /// Returns the joints that a trajectory has at the node with joints `q`: joints that reach the
+  /// tool pose on the exact chain and keep the limits. For an arm with an exact closed form this is
+  /// `q` itself. Any other arm has the nodes of the ideal S-R-S arm fitted to it, and Newton's
+  /// method finds the exact joints near each. Returns nothing if Newton does not converge or its
+  /// result is outside the limits; the node is then invalid.
   [[nodiscard]] virtual std::optional<Config> exact_config(int layer, int slot,
                                                            const Config& q) const;
-  /// Of a slot; none where the node does not exist, too.
+  /// Returns the exact joints of the node of a slot; nothing if it has no node or no exact joints.
   [[nodiscard]] std::optional<Config> exact_config(int layer, int slot) const;
-  /// False where every node is exact.
+  /// Returns whether nodes are only near their exact joints, so that exact_config() differs from
+  /// node().
   [[nodiscard]] virtual bool is_approximate() const { return false; }
   struct Node {
     int slot = 0;
     Config q;
   };
-  /// Replaces `out` by all nodes of a layer that exist, in the order of slots.
+  /// Replaces `out` by all nodes of a layer that exist, in the order of their slots.
   virtual void layer_nodes(int layer, std::vector<Node>& out) const = 0;
-  /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is
-  /// in node() and exact_config().
+  /// Returns whether joints `q` keep limits().manipulability. Every other condition on a node is
+  /// part of node() and exact_config().
   [[nodiscard]] bool manipulable(const Config& q) const;
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
 
-  // --- layers of the tool's path that lie between two of the lattice
-  /// Whether there are any: of lattices that choose a node every so many layers of the path
-  /// (roll_lattice.hpp). What nodes and moves must keep then holds in all of these as well, and is
-  /// part of an edge's validity.
+  // --- layers of the tool's path between two layers of the lattice
+  /// Returns whether the lattice has nodes only at every few layers of the tool's path
+  /// (roll_lattice.hpp). What nodes and moves must keep then also holds at the layers between, and
+  /// is part of an edge's validity.
   [[nodiscard]] virtual bool has_layers_between() const { return false; }
-  /// The path whose layers are the rows of a trajectory: path(), and where has_layers_between() the
-  /// one with those as well.
+  /// Returns the path that has a layer for each row of a trajectory: path(), or the finer path that
+  /// includes the layers between if has_layers_between().
   [[nodiscard]] virtual const ToolPath& path_of_rows() const { return *path_; }
-  /// The layer of path_of_rows() that is a layer of the lattice.
+  /// Returns the layer of path_of_rows() at which `layer` of the lattice is.
   [[nodiscard]] virtual int layer_of_rows(int layer) const { return layer; }
-  /// How far a move turns the tool about its z axis, and what limits.roll_slope allows over its
-  /// travel.
+  /// How far a move turns the tool about its own z axis, compared with what limits.roll_slope
+  /// allows for the distance that the tool travels meanwhile.
   struct RollStep {
     double change = 0, most = 0;  ///< rad
     double over = 0;              ///< m
     bool allowed = true;
   };
-  /// The rows between row qa (slot a) and row qb (slot b of the next layer), as far as they exist
-  /// and keep all but clearance; and what the next row, or the move to it, does not keep.
+  /// The trajectory rows between row qa (slot a of a layer) and row qb (slot b of the next), up to
+  /// the first requirement that fails, if any; clearances are not looked at.
   struct InterpolatedEdge {
     enum class Fault : std::uint8_t {
       kNone,
@@ -109,34 +117,38 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
     };
     std::vector<Config> rows;
     Fault fault = Fault::kNone;
-    std::uint8_t joints = 0;  ///< of kLimit: bit k: joint k is outside its limits
-    Config q =
-        Config::Zero();  ///< of the row at fault, where it has joints; of a move, where it leads to
-    RollStep roll;       ///< of kRollSlope
+    /// For kLimit: bit k is set if joint k is outside its limits.
+    std::uint8_t joints = 0;
+    /// The row at fault, if it has joints; for a move, the row that it leads to.
+    Config q = Config::Zero();
+    RollStep roll;  ///< for kRollSlope
   };
   [[nodiscard]] virtual InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
                                                           const Config& qb) const;
 
-  // --- paths: one slot in each layer, from the first on
-  /// The joints of the rows of a path: continuous joints go on without jumps. Empty where the
-  /// lattice takes bounded joints of more than a turn as circles and their values leave the limits
-  /// along this path.
+  // --- paths, each given by one slot for each layer from layer 0 on
+  /// Returns the joints of each row of a path; continuous joints are unwrapped so that they do not
+  /// jump. Returns an empty list if the lattice treats bounded joints of more than a turn as
+  /// circles and their unwrapped values leave the limits along this path.
   [[nodiscard]] virtual std::vector<Config> path_joints(const std::vector<int>& slots) const;
-  /// What path_joints() returns, with what a trajectory says of each row; and with the rows at the
-  /// layers of the tool's path that lie between those of the lattice.
+  /// Returns the trajectory rows of a path: the joints of path_joints() with path length, arm angle
+  /// and branch of each row. Includes the rows at the layers between if has_layers_between().
   [[nodiscard]] virtual std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const;
   using Joints = std::array<bool, kDof>;
-  /// The joints that the lattice takes as circles and that leave their limits along a path where
-  /// their first row is turned nearest to the middle of their range, whether another turn keeps the
-  /// limits or not. The best path of a lattice on which there is none is the answer.
+  /// Returns which joints, among those that the lattice treats as circles, leave their limits along
+  /// a path whose first row has each of them in the turn nearest to the middle of its range,
+  /// whether or not another turn would keep the limits. If the best path of a lattice has no such
+  /// joint, it is the answer.
   [[nodiscard]] virtual Joints off_nearest(const std::vector<int>& slots) const {
     static_cast<void>(slots);
     return {};
   }
-  /// The same nodes with each value of these joints that lies within the limits as a node of its
-  /// own: they are circles no more. Null for lattices that take no bounded joint as a circle.
+  /// Returns a lattice in which the given joints are no longer circles: for each node, every
+  /// combination of their values within the limits that differ by whole turns is a node of its own.
+  /// Returns null for a lattice that treats no bounded joint as a circle.
   [[nodiscard]] virtual std::unique_ptr<Lattice> with_windings(const Joints& joints) const;
-  /// What with_windings() was called with, from the lattice without on.
+  /// Returns the arguments of the with_windings() calls that led to this lattice, the first one
+  /// first.
   [[nodiscard]] virtual std::vector<Joints> joints_with_windings() const { return {}; }
 
   // --- description, see LatticeDescription
@@ -146,62 +158,67 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   }
 
   // --- nodes near a node
-  /// The slot before (by -1) or after (+1) it along the redundancy coordinate; -1 where there is
-  /// none.
+  /// Returns the slot before (`by` = -1) or after (+1) a node along the redundancy coordinate; -1
+  /// if there is none.
   [[nodiscard]] virtual int neighbour_in_redundancy(int layer, int slot, int by) const = 0;
-  /// The same along a second redundancy coordinate, where there is one.
+  /// Returns the slot before (`by` = -1) or after (+1) a node along the roll, the second redundancy
+  /// coordinate; -1 if there is none, or if the lattice has no such coordinate.
   [[nodiscard]] virtual int neighbour_in_roll(int layer, int slot, int by) const {
     static_cast<void>(layer), static_cast<void>(slot), static_cast<void>(by);
     return -1;
   }
-  /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
+  /// Returns the slot in the layer before (`by` = -1) or after (+1) that continues a node; -1 if
+  /// there is none.
   [[nodiscard]] virtual int neighbour_along_path(int layer, int slot, int by) const = 0;
 
-  // --- edges between slot a of `layer` and slot b of the next; joints as node() gives them, where
-  // not said otherwise
-  /// Slots first ... last - 1.
+  // --- edges from slot a of `layer` to slot b of layer + 1; joints are those of node() unless the
+  // comment says otherwise
+  /// The slots first ... last - 1 of a layer.
   struct SlotRun {
     int first = 0, last = 0;
   };
-  /// Whether the two may be joined as far as slots tell.
+  /// Returns whether an edge may join the two slots, judged by their slots alone.
   [[nodiscard]] virtual bool in_window(int layer, int a, int b) const = 0;
-  /// The same as far as anything but the roll tells.
+  /// Returns whether an edge may join the two slots, judged by their slots and without regard to
+  /// rolls.
   [[nodiscard]] virtual bool in_arm_window(int layer, int a, int b) const {
     return in_window(layer, a, b);
   }
-  /// By how much the move from row q0 (slot a) to row q1 (slot b) turns a tool that may stand
-  /// turned; none for other tools.
+  /// Returns by how much the move from row q0 (slot a) to row q1 (slot b) turns the tool about its
+  /// own z axis; nothing if the tool is not free to turn.
   [[nodiscard]] virtual std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b,
                                                           const Config& q1) const;
-  /// Replaces `out` by the runs of slots b for which in_window(layer, a, b).
+  /// Replaces `out` by the runs of slots b for which in_window(layer, a, b) holds.
   virtual void successors(int layer, int a, std::vector<SlotRun>& out) const = 0;
-  /// q1 - q0, on the circle for continuous joints.
+  /// Returns q1 - q0, rad, wrapped into one turn for continuous joints.
   [[nodiscard]] Config delta(const Config& q0, const Config& q1) const;
-  /// Every |delta| within step_bound().
+  /// Returns whether every |delta_j| is within step_bound(layer).
   [[nodiscard]] bool step_allowed(int layer, const Config& delta) const;
-  /// Largest |delta_j| allowed on the step from `layer`: joint_step, speed limits and, of the roll
-  /// of an arm of six joints, what roll_slope allows (roll_step_bound()); widened by twice the fit
+  /// Returns the largest |delta_j| between nodes on the step from `layer`, rad, by joint: the least
+  /// of joint_step and what the speed limits allow; for the roll of an arm of six joints, what
+  /// roll_slope allows (roll_step_bound()). It is wider than row_step_bound() by twice the fit
   /// error.
   [[nodiscard]] const Config& step_bound(int layer) const {
     return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
-  /// The same of a move between rows, by joint_step and speed limits as they are: part of an edge's
-  /// validity where is_approximate().
+  /// Returns whether a move between rows keeps row_step_bound(). Where is_approximate(), this is
+  /// part of an edge's validity.
   [[nodiscard]] bool row_step_allowed(int layer, const Config& delta) const;
   [[nodiscard]] const Config& row_step_bound(int layer) const {
     return row_step_bounds_[row_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
-  /// By how much a row's joints differ from their node's on this arm, as measured
-  /// (SrsArm::fit_error), rad: 0 where every node is exact. Limits and steps of nodes are wider by
-  /// it, so that few rows are missed.
+  /// Returns by how much the joints of a row differ from those of their node on this arm, as
+  /// measured (SrsArm::fit_error), rad, by joint; 0 if every node is exact. Limits and steps of
+  /// nodes are wider by this, so that few rows are missed.
   [[nodiscard]] const Config& fit_error() const { return fit_error_; }
-  /// Cost of a move, a multiple of 2^-40 units.
+  /// Returns the cost of a move by `delta`, rad, in the cost metric: a multiple of 2^-40
+  /// cost_unit().
   [[nodiscard]] double edge_cost(const Config& delta) const;
-  /// Tool-path, tool-angle and step-error bounds of the joint-linear move from row q0 (slot a) to
-  /// row q1 (slot b).
+  /// Returns whether the joint-linear move from row q0 (slot a) to row q1 (slot b) keeps the limits
+  /// on tool path error, tool angle error and step error that are set.
   [[nodiscard]] bool follows_path(int layer, int a, const Config& q0, int b,
                                   const Config& q1) const;
-  /// The step error of that move alone is allowed.
+  /// Returns whether the move from slot a to slot b keeps the limit on step error, if that is set.
   [[nodiscard]] bool keeps_step_error(int layer, int a, int b) const {
     return !limits_.step_error || step_error_allowed(layer, a, b);
   }
@@ -210,101 +227,109 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   }
 
   [[nodiscard]] const std::array<bool, kDof>& continuous() const { return continuous_; }
-  /// What each joint's move is multiplied by before the metric: the weights, or 1/speed for
-  /// CostMetric::kTime.
+  /// Returns by what the cost metric multiplies the move of each joint: the weights, or 1/speed,
+  /// s/rad, for CostMetric::kTime.
   [[nodiscard]] const std::array<double, kDof>& cost_scale() const { return cost_scale_; }
-  /// The least power of two that no cost_scale() and no roll_cost() exceeds; 1 where all are 0.
-  /// Costs are rounded in this unit, so sums of a path's costs are exact whatever the size of the
-  /// weights.
+  /// Returns the least power of two that no cost_scale() exceeds, nor the cost of half a turn of
+  /// roll at any layer; 1 where all are 0. Costs are rounded to 2^-40 of this unit, so that sums of
+  /// a path's costs are exact whatever the size of the weights.
   [[nodiscard]] double cost_unit() const { return cost_unit_; }
-  /// A cost of up to 2048 units, rounded as edge_cost() is.
+  /// Returns a cost of up to 2048 cost_unit(), rounded as edge_cost() rounds.
   [[nodiscard]] double rounded_cost(double cost) const;
-  // --- the order of answers: coarse cost, off_middle() and slot of the first node; then cost, then
-  // slots (docs/model.md)
-  /// The cost of a path in whole steps of 2^-24 units, rounded to the nearest. Costs of mirrored
-  /// branches differ by rounding errors far below such a step, so that their coarse costs are
-  /// equal.
+  // --- the order of answers: by coarse cost, off_middle() and slot of the first node; then by
+  // cost, then by slots (docs/model.md)
+  /// Returns the cost of a path in whole steps of 2^-24 cost_unit(), rounded to the nearest. Costs
+  /// of mirrored branches differ by rounding errors far below such a step, so that their coarse
+  /// costs are equal.
   [[nodiscard]] double coarse_cost(double cost) const { return std::round(cost * steps_); }
-  /// No cost with the same coarse cost is larger.
+  /// Returns a bound that no cost with the coarse cost of `cost` exceeds.
   [[nodiscard]] double largest_of_same_coarse_cost(double cost) const {
     return (coarse_cost(cost) + 0.5) / steps_;
   }
-  /// How far joints are from the middles of their ranges: the sum over the joints of distance times
-  /// weight, in the same steps, each rounded. The weight is cost_scale(), but at least a hundredth
-  /// of the largest, and 1 where all are 0. A joint without a range (continuous, or of over 64
-  /// turns) counts nothing. A bounded joint that is taken as a circle counts at the image within
-  /// its limits that is nearest to the middle.
+  /// Returns how far joints are from the middles of their ranges: the sum over the joints of
+  /// distance times weight in steps of 2^-24 cost_unit(), each term rounded. The weight is
+  /// cost_scale(), but at least a hundredth of the largest, and 1 where all are 0. A joint without
+  /// a range (continuous, or of over 64 turns) counts nothing. A bounded joint that is treated as a
+  /// circle counts at the image within its limits that is nearest to the middle.
   [[nodiscard]] double off_middle(const Config& q) const;
-  /// Whether nodes cost something by themselves, besides the edges to and from them.
+  /// Returns whether nodes have a cost of their own besides the costs of edges.
   [[nodiscard]] virtual bool has_node_costs() const { return false; }
-  /// What one costs, >= 0 and rounded.
+  /// Returns the cost of a node, >= 0, rounded as edge_cost() rounds.
   [[nodiscard]] virtual double node_cost(int layer, int slot) const {
     static_cast<void>(layer), static_cast<void>(slot);
     return 0;
   }
-  /// What it costs that the tool stands turned by so much (rad) at a layer: Cost::roll, for the
-  /// length of path that is the layer's, half of the step before it and half of the one after.
+  /// Returns the cost of a tool that stands turned by `roll` (rad) at a layer: Cost::roll times
+  /// |roll| times the layer's share of the path, which is half of the step before it and half of
+  /// the one after.
   [[nodiscard]] double roll_cost(int layer, double roll) const;
-  /// That cost per rad; 0 where the roll costs nothing.
+  /// Returns roll_cost() per rad at a layer; 0 where the roll costs nothing.
   [[nodiscard]] double roll_weight(int layer) const;
   [[nodiscard]] bool roll_costs() const { return !roll_weights_.empty(); }
 
  protected:
-  Lattice(const Lattice&) = default;  // copied whole, as what it is
-  /// Throws InputError where a speed limit or the metric asks for joint speeds that the robot does
-  /// not state.
+  Lattice(const Lattice&) = default;  // derived classes copy themselves
+  /// Builds what all lattices share. `fit_error`: rad, by joint. Throws InputError if a speed limit
+  /// of the tool or the time metric needs joint speeds that the robot does not state, if such a
+  /// speed is outside of 1e-6 ... 1e6 rad/s, or if limits.joint_margin leaves a joint no range.
   Lattice(const Chain& chain, const ToolPath& path, const Problem& problem,
           const Config& fit_error = Config::Zero());
-  /// Largest move of each joint on each step of a path; one entry where all are the same.
+  /// Returns the largest move of each joint, rad, on each step of a path; one entry if all steps
+  /// are alike.
   [[nodiscard]] static std::vector<Config> step_bounds_along(const Chain& chain,
                                                              const ToolPath& path,
                                                              const Limits& limits,
                                                              const Resolution& resolution);
   /// Calls visit(x) for the values of bounded joint j that differ from q by whole turns and lie
-  /// within its limits, lowest first.
+  /// within its limits less limits().joint_margin, lowest first.
   template <class Visit>
   void each_image(std::size_t j, double q, const Visit& visit) const {
     const double lower = chain_->limit[j].lower + limits_.joint_margin,
                  upper = chain_->limit[j].upper - limits_.joint_margin;
     for (double x = q + kTwoPi * std::ceil((lower - q) / kTwoPi); x <= upper; x += kTwoPi) visit(x);
   }
-  /// What a bounded joint's value counts in off_middle().
+  /// Returns the term of off_middle() for bounded joint j at value x, rad.
   [[nodiscard]] double off_middle(std::size_t j, double x) const {
     return std::round(middle_weight_[j] *
                       std::abs(x - (chain_->limit[j].lower + chain_->limit[j].upper) / 2) * steps_);
   }
-  /// Of every step.
+  /// Sets row_step_bound() of every step (one entry if all are alike), and step_bound() from it.
   void set_row_step_bounds(std::vector<Config> bounds);
-  /// The larger of the second-order estimates at both ends of an edge is within
-  /// limits().step_error. Asked only where that is set.
+  /// Returns whether the larger of the second-order estimates of step error at both ends of an edge
+  /// is within limits().step_error. Asked only if that is set.
   [[nodiscard]] virtual bool step_error_allowed(int layer, int a, int b) const = 0;
 
   const Chain* chain_;
   const ToolPath* path_;
   Limits limits_;
   Cost cost_;
-  std::array<bool, kDof> continuous_{};  // wide joints, too
+  std::array<bool, kDof> continuous_{};  // wide joints and joints treated as circles too
 
  private:
   std::array<double, kDof> cost_scale_{};
-  double cost_unit_ = 1, steps_ = 1;  // of coarse costs, in 1: 2^24 / unit
+  double cost_unit_ = 1, steps_ = 1;  // steps_: coarse steps in a cost of 1, 2^24 / cost_unit_
   std::array<double, kDof> middle_weight_{};
   std::vector<double> roll_weights_;  // by layer; empty where the roll costs nothing
   Config fit_error_;
-  std::vector<Config> step_bounds_, row_step_bounds_;  // one for all steps, or one each
+  std::vector<Config> step_bounds_, row_step_bounds_;  // one entry for all steps, or one for each
 };
 
-/// By how much limits.roll_slope lets the roll of an arm of six joints change on a step, rad: over
-/// the step's travel, and over half of resolution.ds where a stretch of the path is shorter than
-/// that, since nodes that lie `arc` apart express no less.
+/// Returns by how much limits.roll_slope lets the roll of an arm of six joints change on a step,
+/// rad: roll_slope times the step's travel or half of resolution.ds, whichever is longer, and half
+/// a turn at most. Nodes that lie resolution.arc apart cannot express less.
 [[nodiscard]] double roll_step_bound(const ToolPath& path, int step, const Limits& limits,
                                      const Resolution& resolution);
 
-/// Distance of the tool from its straight step, at t = 1/4, 1/2, 3/4 of a joint-linear move, m.
+/// Returns the distance of the tool from its straight step at t = 1/4, 1/2 and 3/4 of a
+/// joint-linear move from q0 by `delta` (rad), m. The step leads from `layer` of the path to the
+/// next.
 [[nodiscard]] std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path,
                                                    int layer, const Config& q0,
                                                    const Config& delta);
-/// Angle between the tool and the path at the foot of that distance, rad.
+/// Returns the angle between the tool and the path at t = 1/4, 1/2 and 3/4 of a joint-linear move
+/// from q0 by `delta`, rad. The path is taken at the foot of the tool's origin on the straight
+/// step, or at t if the step has no length. For a tool that may turn about its z axis only the
+/// angle between the z axes counts.
 [[nodiscard]] std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path,
                                                     int layer, const Config& q0,
                                                     const Config& delta);

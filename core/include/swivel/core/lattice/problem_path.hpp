@@ -7,10 +7,10 @@
 
 namespace swivel {
 
-/// Returns the tool path of a problem in layers: its whole path, or from its start on. Corners are
-/// rounded by `problem.smooth`, by `otherwise` where that is unset. Throws InputError as ToolPath
-/// does, and for a start_at beyond the path; InvalidArgument where there are Task::rolls, but not
-/// one for each layer; Stopped.
+/// Returns the tool path of a problem in layers: the whole path, or the part from the problem's
+/// start on. Corners are rounded by `problem.smooth`, or by `otherwise` if that is unset. Throws
+/// InputError for what ToolPath refuses and for a start_at beyond the path; InvalidArgument if
+/// Task::rolls is given and does not have one entry for each layer; Stopped.
 [[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain,
                                     const Budget& budget = {},
                                     const std::optional<PathSmoothing>& otherwise = {});

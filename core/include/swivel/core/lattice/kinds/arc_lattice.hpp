@@ -11,48 +11,52 @@
 
 namespace swivel {
 
-/// Two bits, for reports: sign of the determinant of the triple, and of that of the other three
-/// joints. Without a lock the sign of the determinant without joint 3.
+/// Returns two bits that name a solution in reports: the sign of the determinant of the three axes
+/// on which `method`'s closed form is built, and that of the other three joints. For a method
+/// without a lock, returns the sign of the determinant without joint 3.
 [[nodiscard]] int arc_branch(const Chain& chain, const LockMethod& method, const Config& q);
-/// The generalised arm angle: of the foot on axis 4 nearest axis 3, about the line from the foot on
-/// axis 2 nearest axis 1 to the foot on axis 6 nearest axis 7, measured from the base's vertical,
-/// rad. Of an arm of six joints, the roll.
+/// Returns the generalised arm angle, rad: the angle of a point on axis 4, the foot nearest axis 3,
+/// about the line from the foot on axis 2 nearest axis 1 to the foot on axis 6 nearest axis 7,
+/// measured from the base's vertical. For an arm of six joints, returns the roll.
 [[nodiscard]] double arc_angle(const Chain& chain, const Config& q);
 
 /// Lattice of an arm that has no circle of arm angles: the nodes of a layer are points on its arcs
-/// of self-motion (self_motion.hpp). Transported nodes. Layer 0: the ends of arcs, and points
-/// between them at most 1.5 `resolution.arc` apart. Every other layer: the ends; the images of the
-/// nodes of the layer before, by Newton steps of least weighted norm, unless nearer than half of
-/// `resolution.arc` to a node kept before or to the end; gaps of more than 1.5 `resolution.arc` are
-/// filled evenly. So a motion that drifts along with the arm meets nodes, which a grid of any
-/// coordinate does not give. The nodes depend on geometry, weights and limits of the joints alone:
-/// obstacles never change them. A bounded joint with a range of more than a turn is a circle here:
-/// unwrap() finds the values.
+/// of self-motion (self_motion.hpp), transported from layer to layer. Layer 0 has the ends of arcs,
+/// and points between them at most 1.5 `resolution.arc` apart. Every other layer has the ends of
+/// its arcs and the images of the nodes of the layer before, found by Newton steps of least
+/// weighted norm, except images nearer than half of `resolution.arc` to a node kept before or to
+/// the end; gaps of more than 1.5 `resolution.arc` are filled evenly. A motion along which the arm
+/// drifts therefore meets nodes, which no grid of a coordinate ensures. The nodes depend on
+/// geometry, weights and limits of the joints alone; obstacles never change them. A bounded joint
+/// with a range of more than a turn is treated as a circle, and unwrap() finds its values.
 class ArcLattice final : public ExplicitLattice {
  public:
-  /// A method without a lock gives the arcs that turn up (self_motion.hpp), and those of the layer
-  /// before: "no path" then means none found. Throws Stopped.
+  /// Builds the nodes of every layer. `chain` and `path` must outlive the lattice. If `method` has
+  /// no lock, the arcs of a layer are those that a search finds (self_motion.hpp) and those that
+  /// continue the layer before; "no path" then means that none was found. Throws InputError and
+  /// Stopped.
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
              const Problem& problem, const Budget& budget = {});
 
-  /// arc_branch() and arc_angle() of the node.
+  /// Returns arc_branch() of the node; phi() returns its arc_angle(), rad.
   [[nodiscard]] int branch(int layer, int slot) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
 
-  /// That of neighbour_in_redundancy(), which nodes of a lattice with_windings() lack.
+  /// Returns the next slot on the node's arc, also in a lattice made by with_windings(), whose
+  /// nodes have no neighbour_in_redundancy().
   [[nodiscard]] int next_on_arc(int layer, int slot) const override;
   [[nodiscard]] LatticeInfo describe() const override;
-  /// Arcs of all layers.
+  /// Returns the number of arcs of all layers together.
   [[nodiscard]] std::int64_t arcs() const { return layers_.arcs; }
-  /// Joints taken as circles although they are bounded.
+  /// Returns which joints are treated as circles although they are bounded.
   [[nodiscard]] const std::array<bool, kDof>& circles() const { return layers_.circles; }
 
   using Rows = std::vector<Config>;
-  /// The rows of a path: each circle turned as a whole so that all rows are inside its limits, the
-  /// first one as near to the middle of its range as can be, the lower of two as near. Or the
-  /// joints of which no turn keeps the limits.
+  /// Returns the rows of a path, with each circle turned as a whole so that all rows are inside its
+  /// limits and the first one is as near to the middle of its range as possible, the lower of two
+  /// equally near. If no turn keeps the limits for some joints, returns those joints instead.
   [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
-  /// What unwrap() finds.
+  /// Returns the rows that unwrap() finds; empty if it finds none.
   [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
   [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
@@ -65,7 +69,8 @@ class ArcLattice final : public ExplicitLattice {
     std::vector<std::vector<Point>> points;
     std::array<bool, kDof> circles{};
     std::vector<std::array<bool, kDof>> windings{};
-    std::vector<std::vector<int>> next{};  // with_windings: next_on_arc, by layer and slot
+    // next_on_arc() of a lattice by with_windings(), by layer and slot
+    std::vector<std::vector<int>> next{};
     std::int64_t arcs = 0;
   };
   static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path,
@@ -73,20 +78,22 @@ class ArcLattice final : public ExplicitLattice {
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
              const Problem& problem, Layers&& layers);
 
-  /// A path's rows as they follow from the first, without jumps; from the given start, where there
-  /// is one.
+  /// Returns the rows of a path, unwrapped without jumps from the first one, or from the given
+  /// start if there is one.
   [[nodiscard]] Rows followed(const std::vector<int>& slots) const;
   struct Fit {
-    std::optional<double> turn;  // rad, by which all rows stay inside the limits, the first as near
-                                 // to the middle as can be
-    bool nearest = false;        // they do in the turn in which the first is nearest to the middle
+    // The turn, rad, by which all rows stay inside the limits, with the first as near to the middle
+    // as possible.
+    std::optional<double> turn;
+    // Whether all rows stay inside in the turn in which the first is nearest to the middle.
+    bool nearest = false;
   };
-  /// How the rows of a path fit into the limits of circle j.
+  /// Returns how the rows of a path fit into the limits of circle j.
   [[nodiscard]] Fit fit(std::size_t j, const Rows& rows) const;
 
   LockMethod method_;
   Problem problem_;  // for with_windings
-  Layers layers_;    // without the points, which the base has
+  Layers layers_;    // without the points, which the base class keeps
 };
 
 }  // namespace swivel

@@ -12,31 +12,33 @@ namespace swivel {
 
 struct ArmClass;
 
-/// The lattice of a problem's path for an arm of this class: a grid of arm angles (SrsLattice), of
-/// rolls and arm angles where the tool may turn (RollLattice), or arcs of self-motion (ArcLattice).
-/// Throws as the lattices do; Stopped. The arguments but the problem and the budget must outlive
-/// it.
+/// Returns the lattice of a problem's path for an arm of class `arm`: a grid of arm angles
+/// (SrsLattice), of rolls and arm angles if the tool may turn (RollLattice), or arcs of self-motion
+/// (ArcLattice). Throws InputError where the lattice does, also for limits.arm_slope with an arm
+/// that has no arm angle; Stopped. `chain`, `arm` and `path` must outlive the lattice.
 [[nodiscard]] std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm,
                                                     const ToolPath& path, const Problem& problem,
                                                     const Budget& budget = {});
 
-/// Where joint 7 stays, rad, of an S-R-S arm whose tool may turn by any roll about that joint's own
-/// axis, without a start: as far from its limits as it can. The other six joints alone put the tool
-/// where it has to be, so that a path along which joint 7 moves costs no less than the same with
-/// joint 7 at rest.
+/// Returns where joint 7 may rest, rad, if the tool of an S-R-S arm may turn freely about the axis
+/// of that joint: as far from its limits as possible. The other six joints alone then put the tool
+/// where it has to be, so that a path along which joint 7 moves costs no less than the same path
+/// with joint 7 at rest. Returns nothing for other arms and tools, and for a problem with a start,
+/// given rolls or a cost of the roll.
 [[nodiscard]] std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                                        const Problem& problem);
 
-/// The lattice of such an arm with joint 7 at rest, of arm angles alone; else null. No path of
-/// make_lattice() is cheaper than its cheapest one by the joints; but what the tool's bodies meet
-/// hangs on where joint 7 rests: where there is no path here, there may be one there. Arguments and
-/// what is thrown as there.
+/// Returns a lattice of arm angles alone with joint 7 at last_joint_at_rest(); null if that returns
+/// nothing. No path of make_lattice() costs less, by its joints, than the cheapest path of this
+/// lattice. But what the bodies of the tool collide with depends on where joint 7 rests: if there
+/// is no path here, make_lattice() may still have one. Arguments and exceptions as for
+/// make_lattice().
 [[nodiscard]] std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm,
                                                             const ToolPath& path,
                                                             const Problem& problem,
                                                             const Budget& budget = {});
 
-/// By how much the tool stands turned at a row, rad.
+/// Returns by how much the tool stands turned about its own z axis at a row, rad.
 [[nodiscard]] inline double roll_of(const Chain& chain, const TrajectoryRow& row) {
   return chain.roll ? row.q[kDof - 1] : row.roll;
 }

@@ -11,27 +11,30 @@
 namespace swivel {
 
 /// Lattice of an S-R-S arm whose tool may stand turned about its own z axis: at each layer the arm
-/// angle and the *roll* are chosen together. docs/model.md.
+/// angle and the *roll* are chosen together. docs/model.md defines it.
 ///
-/// Its layers are *knots*, every few layers of the tool's path (`resolution.knot`): a step of the
-/// roll moves the joints by far more than a layer does, so that between neighbouring layers a
-/// change would never pay. Between two knots roll and arm angle change linearly along the path,
-/// each the short way, and the joints of these layers are solved exactly. What nodes and moves must
-/// keep holds in all of them (Lattice::between). The branch stays the same along an edge: no joint
-/// flips while the tool turns.
+/// Its layers are *knots*, every few layers of the tool's path (`resolution.knot`). One step of the
+/// roll grid moves the joints by far more than a layer of the path does, so that a change of roll
+/// between neighbouring layers would never pay. Between two knots roll and arm angle change
+/// linearly along the path, each the short way, and the joints of the layers between are solved
+/// exactly. What nodes and moves must keep holds at all of these layers
+/// (Lattice::has_layers_between). The branch stays the same along an edge: no joint flips while the
+/// tool turns.
 ///
-/// Nodes of one roll are those of an SrsLattice for a tool turned by it: arm angles are measured
-/// from the plane that the path's carried one becomes under the smallest rotation onto that of the
-/// turned tool. A slot is (rank of the roll, branch, winding, j); ranks begin with the roll nearest
-/// to none (to that of a given start), so that of equally good paths that wins which turns least.
-/// Edges lead to rolls and arm angles within roll_slope and arm_slope times the way between the
-/// knots, rounded down to whole cells (of arm angles one at least). Immutable once made.
+/// Nodes of one roll are those of an SrsLattice for a tool turned by that roll. Their arm angles
+/// are measured from the path's carried plane, turned by the smallest rotation that takes the tool
+/// as the path has it to the turned tool. A slot is (rank of the roll, branch, winding, j). Rank 0
+/// is the roll nearest to none, or to that of a given start, so that among equally good paths the
+/// one that turns least wins. Edges lead to rolls and arm angles within roll_slope and arm_slope
+/// times the path length between the knots. Both are rounded down to whole cells, with at least one
+/// cell of arm angles; rolls are not rounded if waypoints have windows. Immutable once made.
 class RollLattice final : public Lattice {
  public:
-  /// Of the whole path, which must outlive it, as arm and chain must. Throws as SrsLattice does,
-  /// and InputError for a start whose roll is outside the range, a roll_slope of less than a cell
-  /// from knot to knot, and step_error. Throws Stopped. `last_joint`: where joint 7 stays
-  /// (last_joint_at_rest). There is no roll to choose then: joint 7 would only undo it.
+  /// Returns the lattice of the whole path. `chain`, `arm` and `path` must outlive it.
+  /// `last_joint`: where joint 7 rests, rad (last_joint_at_rest()); there is no roll to choose
+  /// then, because joint 7 would only undo it. Throws InputError as SrsLattice does, and for a
+  /// start whose roll is outside the range, a roll_slope of less than a cell from knot to knot, and
+  /// limits.step_error; Stopped.
   [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm,
                                                          const ToolPath& path,
                                                          const Problem& problem,
@@ -40,53 +43,56 @@ class RollLattice final : public Lattice {
 
   // --- rolls
   [[nodiscard]] int rolls() const { return static_cast<int>(turned_.size()); }
-  /// rad. Where waypoints have windows (Waypoint::roll), each rank is a part of every layer's;
-  /// otherwise the same at all layers.
+  /// Returns the roll of a slot, rad. If waypoints have windows (Waypoint::roll), a rank stands for
+  /// a fraction of each layer's window; otherwise it stands for one roll at all layers.
   [[nodiscard]] double roll(int layer, int slot) const {
     return layer == 0 && start_ ? start_roll_ : roll_of_rank(layer, slot / width_);
   }
   [[nodiscard]] double roll_of_rank(int layer, int rank) const {
     return turned_[static_cast<std::size_t>(rank)]->rolls[static_cast<std::size_t>(layer)];
   }
-  /// By rank: the nodes for a tool that stands turned so. Knots are its layers.
+  /// Returns the nodes for a tool that stands turned by the roll of a rank. The layers of the
+  /// returned lattice are the knots.
   [[nodiscard]] const SrsLattice& at_roll(int rank) const {
     return turned_[static_cast<std::size_t>(rank)]->lattice;
   }
   [[nodiscard]] int rank_of(int layer, int slot) const {
     return layer == 0 && start_ ? 0 : slot / width_;
   }
-  /// Of the lattice at_roll().
+  /// Returns the slot within the lattice at_roll(rank_of(layer, slot)).
   [[nodiscard]] int inner(int layer, int slot) const {
     return layer == 0 && start_ ? start_->start_slot() : slot % width_;
   }
   [[nodiscard]] int slot_of(int rank, int inner) const { return rank * width_ + inner; }
-  /// Slots of one roll.
+  /// Returns the number of slots of one roll.
   [[nodiscard]] int width() const { return width_; }
-  /// Ranks of the rolls that an edge of a step may join to this one, in order: of the layer after
-  /// the step to one of the layer before it, or the other way round.
+  /// Returns the ranks, in order, of the rolls that an edge of `step` may join to the roll `rank`:
+  /// if `forward`, rolls of the layer after the step for a roll of the layer before it; otherwise
+  /// the other way round.
   [[nodiscard]] const std::vector<int>& near(int step, int rank, bool forward) const {
     const Near& lists =
         near_[static_cast<std::size_t>(windows_[static_cast<std::size_t>(step)].near)];
     return (forward ? lists.after : lists.before)[static_cast<std::size_t>(rank)];
   }
-  /// Cells by which the arm angle may change on a step; the most of all steps.
+  /// Returns by how many cells the arm angle may change on a step; widest_phi_window() returns the
+  /// largest value of all steps.
   [[nodiscard]] int phi_window(int step) const {
     return windows_[static_cast<std::size_t>(step)].phi;
   }
   [[nodiscard]] int widest_phi_window() const { return widest_; }
   [[nodiscard]] bool has_start() const { return start_ != nullptr; }
-  /// Layer 0 of a problem with a start is one slot, whose nodes are those of this lattice's
-  /// start_slot().
+  /// Returns the lattice of the start; null without one. If there is a start, layer 0 has one slot,
+  /// whose node is that of this lattice's start_slot().
   [[nodiscard]] const SrsLattice* start() const { return start_.get(); }
 
   [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
-  /// Of the whole path: those that are layers of the lattice.
+  /// Returns the layers of the whole path that are layers of the lattice.
   [[nodiscard]] const std::vector<int>& knots() const { return knots_; }
   [[nodiscard]] int layer_of_rows(int layer) const override {
     return knots_[static_cast<std::size_t>(layer)];
   }
-  /// The rows at all layers of the whole path, along a path of the lattice: from layer 0 on, as far
-  /// as it goes.
+  /// Returns the rows at all layers of the whole path along a path of the lattice, from layer 0 to
+  /// the path's last slot.
   [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
 
   [[nodiscard]] LatticeInfo describe() const override;
@@ -111,7 +117,7 @@ class RollLattice final : public Lattice {
   [[nodiscard]] NodeFault fault(int layer, int slot) const override {
     return at(layer, slot).fault(layer, inner(layer, slot));
   }
-  /// Where no roll is within reach: of the one that misses least.
+  /// If no roll is within reach, returns the values of the roll that misses least.
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override {
     return at(layer, slot).phi(layer, inner(layer, slot));
@@ -126,7 +132,7 @@ class RollLattice final : public Lattice {
   [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
   [[nodiscard]] int neighbour_in_roll(int layer, int slot, int by) const override;
   [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override;
-  /// As in an SrsLattice, among nodes of one roll.
+  /// Nodes of one roll share poses as the nodes of an SrsLattice do, if they are exact.
   [[nodiscard]] bool shares_body_poses(unsigned groups) const override {
     return !is_approximate() && (groups & kFollowers) == 0;
   }
@@ -144,7 +150,8 @@ class RollLattice final : public Lattice {
                                                   const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
   [[nodiscard]] bool in_arm_window(int layer, int a, int b) const override;
-  /// From knot to knot; what the rows between turn is a matter of interpolate_edge().
+  /// Returns the change of roll from knot to knot. interpolate_edge() finds that of the rows
+  /// between.
   [[nodiscard]] std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b,
                                                   const Config& q1) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
@@ -165,19 +172,19 @@ class RollLattice final : public Lattice {
     return layer == 0 && start_ ? *start_ : at_roll(slot / width_);
   }
   void choose_rolls(double nominal, double droll);
-  /// Of a value, at each layer.
+  /// Returns the roll, rad, that an entry of values_ stands for at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
   [[nodiscard]] double way(int step) const;
   void find_near(const Problem& problem);
-  /// `visit(i, row)` for the layers i of the whole path between those of an edge.
+  /// Calls `visit(i, row)` for the layers i of the whole path between those of an edge.
   template <class Visit>
   InterpolatedEdge walk(int layer, int a, const Config& qa, int b, const Config& qb,
                         const Visit& visit) const;
-  /// The roll at a layer of the whole path: the one that was chosen, or what joint 7's rest makes
-  /// it.
+  /// Returns the roll at layer i of the whole path, rad: the chosen one, or what it becomes with
+  /// joint 7 at rest.
   [[nodiscard]] double roll_at(int i, const Config& q, double chosen) const;
-  /// The joints at a layer of the whole path, near those of the layer before; or why there are
-  /// none.
+  /// Returns the joints at layer i of the whole path, near those of the layer before; if there are
+  /// none, writes the reason to `fault`.
   [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch,
                                             const Config& near, InterpolatedEdge& fault) const;
 
@@ -188,12 +195,12 @@ class RollLattice final : public Lattice {
         : rolls(std::move(by)),
           path(std::move(knots)),
           lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
-    std::vector<double> rolls;  // by layer
+    std::vector<double> rolls;  // rad, by layer
     ToolPath path;
     SrsLattice lattice;
   };
   struct Window {
-    int phi = 1, near = 0;  // cells; of near_
+    int phi = 1, near = 0;  // phi: cells; near: index into near_
   };
   struct Near {
     std::vector<std::vector<int>> after, before;  // by rank
@@ -204,13 +211,16 @@ class RollLattice final : public Lattice {
   const ToolPath* whole_;
   std::vector<int> knots_;
   std::unique_ptr<const ToolPath> knot_path_;
-  std::vector<ArmPlane> planes_;           // of the whole path, for a tool that is not turned
-  std::vector<Config> whole_step_bounds_;  // of its steps; one entry where all are the same
-  bool circle_ = false;                    // rolls go once around
-  bool windows_of_roll_ = false;           // waypoints have some
-  std::vector<double> values_;  // rolls in their order; with windows, parts of them from 0 to 1
+  std::vector<ArmPlane> planes_;  // by layer of the whole path, for a tool that is not turned
+  // Step bounds of the whole path, by step; one entry if all are alike.
+  std::vector<Config> whole_step_bounds_;
+  bool circle_ = false;           // rolls cover a whole turn
+  bool windows_of_roll_ = false;  // some waypoint has a window of rolls
+  // Rolls in the order of their grid, rad; with windows, fractions of a window from 0 to 1.
+  std::vector<double> values_;
   double start_roll_ = 0;
-  std::vector<int> rank_, value_of_;             // of each value; of each rank
+  // The rank of each entry of values_, and the entry of each rank.
+  std::vector<int> rank_, value_of_;
   std::vector<std::unique_ptr<Turned>> turned_;  // by rank
   std::unique_ptr<const ToolPath> start_path_;
   std::unique_ptr<const SrsLattice> start_;

@@ -16,32 +16,32 @@ namespace swivel {
 
 struct TripleTask;
 
-/// The joints of all IK solutions of one layer over a run of arm angles. Reused from layer to
-/// layer; nothing is stored per lattice node. IK solutions share the arrays of what they have in
-/// common: four branches have a triple's solution each. Branches with a moved cell in the layer
-/// have arrays of their own.
+/// The joints of all IK solutions of one layer over a run of arm angles; a buffer to be reused from
+/// layer to layer, since a lattice does not store its nodes. IK solutions share the arrays of what
+/// they have in common: the solution of one triple (shoulder or wrist) belongs to four branches.
+/// Branches with a moved cell in the layer have arrays of their own.
 class LayerNodes {
  public:
-  /// Joint k (0..6) of IK solution, an array over the run.
+  /// Returns joint k (0..6) of an IK solution, rad: an array over the run.
   [[nodiscard]] const double* q(int solution, int k) const {
     return data_.data() + at(solution).q[static_cast<std::size_t>(k)];
   }
-  /// Two arrays over the run, of zeros and infinities: a node exists (IK, singularity, limits)
-  /// where both are 0.
+  /// Returns one of two arrays over the run (`which` is 0 or 1) whose entries are 0 or infinite. A
+  /// node exists, as far as IK, singularity and limits tell, where both are 0.
   [[nodiscard]] const double* mask(int solution, std::size_t which) const {
     return data_.data() + at(solution).mask[which];
   }
   [[nodiscard]] bool valid(int solution, int k) const {
     return mask(solution, 0)[k] + mask(solution, 1)[k] == 0;
   }
-  /// False where no node of the IK solution exists, whatever the arm angle.
+  /// Returns false if no node of the IK solution exists, whatever the arm angle.
   [[nodiscard]] bool alive(int solution) const { return at(solution).alive; }
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] std::size_t bytes() const {
     return static_cast<std::size_t>(data_.size()) * sizeof(double);
   }
-  /// Copies `count` entries of every array of an elbow's IK solutions from one place of the run to
-  /// another.
+  /// Copies `count` entries of every array of an elbow's IK solutions from index `from` of the run
+  /// to index `to`.
   void repeat(int elbow, int from, int to, int count);
   [[nodiscard]] Config config(int solution, int k) const {
     Config c;
@@ -70,42 +70,44 @@ class LayerNodes {
   int layer_ = -1, first_ = 0, count_ = 0;
   Eigen::ArrayXd data_;
   std::vector<Offsets> offsets_;  // [solution]
-  std::array<std::array<Offsets, 2>, 2>
-      shared_;  // [elbow][sign of the triples]: what is solved, of the first winding
+  // [elbow][sign of the triples]: what is solved for the first winding.
+  std::array<std::array<Offsets, 2>, 2> shared_;
   struct Span {
     std::size_t begin = 0, end = 0;
   };
-  std::array<std::array<Span, 2>, 2>
-      arrays_;  // [elbow]: into data_; the IK solutions' own and those of branches with their own
+  // [elbow], indices into data_: arrays of the IK solutions, and those of branches with their own.
+  std::array<std::array<Span, 2>, 2> arrays_;
 };
 
-/// The images of a bounded joint, an angle plus whole turns, are told apart as windings: as many as
-/// the range has turns, begun ones counted. A begun turn of up to 1e-3 rad, as limits
-/// written 3.1416 have it, is cut off at the upper end, or at the lower where a given start lies in
-/// it: no pose is lost by that, but joints do not move through the part that was cut off. A joint
-/// with a range of over 64 turns is treated as a continuous one (JointLimit::wide): its angles
-/// begin in the turn about 0, or in the nearest that leaves 31 turns to both limits.
+/// The (s, phi) lattice of an S-R-S arm: layers along the path, and in each layer a circle of
+/// `angles` arm angles with `solutions` = 8 branches x windings of nodes at each angle.
+/// docs/model.md defines it. A slot numbers a layer's nodes in the order that settles ties:
+/// solution * angles + j, where the solution is branch * windings + winding. The lattice is
+/// immutable, so that threads may share it. Nodes are computed when asked for; a node has the same
+/// bits however it is asked for.
+///
+/// Windings tell apart the images of a bounded joint, which are one angle plus whole turns. A joint
+/// has as many as its range has turns, a begun turn counted as one. A begun turn of up to 1e-3 rad,
+/// as in limits written 3.1416, is cut off at the upper end, or at the lower one if a given start
+/// lies in it. No pose is lost by that, but joints do not move through the part that was cut off. A
+/// joint with a range of over 64 turns is treated as continuous (JointLimit::wide): its angles
+/// begin in the turn about 0, or in the nearest turn that leaves 31 turns to both limits.
 ///
 /// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider
-/// by the arm's fit error; exact configurations are solved from them by Newton.
+/// by the arm's fit error. Newton's method finds exact configurations from them.
 ///
-/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each,
-/// `solutions` = 8 branches x windings of nodes at each angle. docs/model.md. A slot numbers a
-/// layer's nodes in the order of ties: (branch, winding, j) = solution * angles + j. Immutable, so
-/// safe to share between threads. Nodes are computed when asked for; the same node has the same
-/// bits however asked.
-///
-/// With `resolution.arcs` a cell, the arm angles nearest to grid angle j, has a node wherever it
-/// meets an arc: if there is none at its own angle, it is *moved* to the nearest angle of the IK
-/// solution's arcs, or to the middle of an arc that lies in the cell as a whole. Moved cells are
-/// few, found when the lattice is made, and kept: 80 bytes each. The window counts cells, moved or
-/// not.
+/// A cell is the set of arm angles nearest to grid angle j. With `resolution.arcs` a cell has a
+/// node wherever it meets an arc: if there is none at the grid angle itself, the node is *moved* to
+/// the nearest angle on the arcs of its IK solution, or to the middle of an arc that lies in the
+/// cell as a whole. Moved cells are few; they are found when the lattice is made and stored in 80
+/// bytes each. The window counts cells, moved or not.
 class SrsLattice final : public Lattice {
  public:
-  /// Throws InputError when the start does not fit, for more than 1024 windings, and when the
-  /// lattice is too large for the memory of the machine. Throws Stopped. `planes`: of the path's
-  /// layers, where they are not carried_planes(). `last_joint`: where joint 7 stays, rad, of an arm
-  /// whose tool turns freely about that joint's axis; without a start.
+  /// Builds the lattice of `path`, which must outlive it, as must `chain` and `arm`. `planes`: the
+  /// planes of the path's layers from which arm angles are measured; carried_planes() if empty.
+  /// `last_joint`: where joint 7 rests, rad, for an arm whose tool turns freely about that joint's
+  /// axis, in a problem without a start. Throws InputError if the start does not fit, for more than
+  /// 1024 windings, and if the lattice is too large for the machine's memory; Stopped.
   SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
              const Budget& budget = {}, std::vector<ArmPlane> planes = {},
              std::optional<double> last_joint = {});
@@ -114,7 +116,7 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int solutions() const { return kBranches * windings_; }
   [[nodiscard]] int windings() const { return windings_; }
   [[nodiscard]] int window() const { return window_; }
-  /// Slots of every layer.
+  /// Returns the number of slots of every layer.
   [[nodiscard]] int width() const { return solutions() * angles_; }
   [[nodiscard]] int solution_of(int slot) const { return slot / angles_; }
   [[nodiscard]] int angle_of(int slot) const { return slot % angles_; }
@@ -123,10 +125,10 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] const ArmPlane& plane(int layer) const {
     return planes_[static_cast<std::size_t>(layer)];
   }
-  /// True where layer 0 is the given start alone.
+  /// Returns whether layer 0 is the given start alone.
   [[nodiscard]] bool has_start() const { return start_.has_value(); }
-  /// Slot that stands for the given start in layer 0 (its IK solution, the grid angle nearest to
-  /// its own).
+  /// Returns the slot that stands for the given start in layer 0: the start's IK solution at the
+  /// grid angle nearest to its arm angle.
   [[nodiscard]] int start_slot() const { return start_->slot; }
 
   [[nodiscard]] LatticeInfo describe() const override;
@@ -141,31 +143,34 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] bool is_approximate() const override { return !arm_->exact; }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
   [[nodiscard]] NodeFault fault(int layer, int slot) const override;
-  /// The wrist centre from the shoulder.
+  /// Returns the distance of the wrist centre from the shoulder, m, if the arm cannot have it.
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
-  /// Of exact arms: out of reach, or no IK solution has an arc.
+  /// Returns true for an exact arm if the pose is out of reach, or if no IK solution has an arc
+  /// within the limits.
   [[nodiscard]] bool proved_unreachable(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
-  /// The most that phi may change along an edge, rad.
+  /// Returns by how much the arm angle may change along an edge, rad.
   [[nodiscard]] double most_turn() const {
-    return (window_ + (off_grid_.empty() ? 0 : 1)) * kTwoPi / angles_ +
-           1e-9;  // both ends half a cell from the grid
+    // with off-grid nodes, both ends may be half a cell from the grid
+    return (window_ + (off_grid_.empty() ? 0 : 1)) * kTwoPi / angles_ + 1e-9;
   }
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
   [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
   [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override;
-  /// Where joint 7 stays, rad: the tool turns about its axis as the other joints make it.
+  /// Returns where joint 7 rests, rad, with the tool turned as the other joints make it; nothing if
+  /// joint 7 moves.
   [[nodiscard]] const std::optional<double>& last_joint() const { return last_joint_; }
-  /// The last link and the tool stand where the layer puts them, with links 5 and 6 where joint 7
-  /// stays; links 3 and 4 where arm angle and sign of the elbow do; links 1 and 2 depend on the
-  /// shoulder's sign too, 5 and 6 on the wrist's.
+  /// All groups but followers share poses. The last link and the tool have one pose in a layer,
+  /// with links 5 and 6 where joint 7 rests. Links 3 and 4 share theirs for an arm angle and a sign
+  /// of the elbow. Links 1 and 2 depend on the shoulder's sign too, links 5 and 6 on the wrist's.
   [[nodiscard]] bool shares_body_poses(unsigned groups) const override {
     return (groups & kFollowers) == 0;
   }
   void slots_with_same_body_poses(int layer, int slot, unsigned groups,
                                   std::vector<int>& out) const override;
-  /// The elbow's: the other shoulder and the other wrist leave each joint's axis where it is, or
-  /// turn it round, which turns a column of J round and leaves J J^T as it is.
+  /// The groups that determine manipulability are those of the elbow. The other branch of the
+  /// shoulder or of the wrist leaves the axis of each joint where it is or reverses it, which
+  /// reverses a column of the Jacobian J and leaves J J^T as it is.
   [[nodiscard]] unsigned manipulability_groups() const override;
   [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override;
   [[nodiscard]] PoseErrorBound pose_error_of_node(int layer, int group,
@@ -176,18 +181,18 @@ class SrsLattice final : public Lattice {
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
 
   // --- arcs
-  /// Replaces `out` by the arcs of arm angles at which an IK solution's joints are within their
-  /// limits, found in closed form, whether nodes are there or not; a given start counts as any
-  /// pose. Of an arm that is not exactly S-R-S those at which rows are as well: within limits
-  /// narrowed by the fit error.
+  /// Replaces `out` by the arcs of arm angles, rad, at which the joints of an IK solution are
+  /// within their limits. They are found in closed form, whether nodes are there or not. In layer 0
+  /// a given start counts as any other pose. For an arm that is not exactly S-R-S, the limits are
+  /// narrowed by the fit error, so that the rows are within their limits as well.
   void arcs(int layer, int solution, std::vector<AngleArc>& out) const;
-  /// A cell whose node does not stand at its own angle.
+  /// The node of a cell that does not stand at the grid angle; phi is its arm angle, rad.
   struct OffGridNode {
     int slot = 0;
     double phi = 0;
     Config q;
   };
-  /// Of a layer, in order of slots.
+  /// Returns the off-grid nodes of a layer, in the order of slots.
   [[nodiscard]] std::span<const OffGridNode> off_grid_nodes(int layer) const {
     if (off_grid_.empty()) return {};
     const std::size_t begin = off_grid_begin_[static_cast<std::size_t>(layer)];
@@ -195,46 +200,45 @@ class SrsLattice final : public Lattice {
   }
 
   // --- nodes of whole runs, in vector code
-  /// Nodes j = first ... first + count - 1 of every IK solution, taken around the circle; first <
-  /// angles, count <= 2 angles.
+  /// Computes the nodes j = first ... first + count - 1 of every IK solution, taken around the
+  /// circle; first < angles and count <= 2 angles.
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
-  /// IK solutions fall into two elbow sides, the signs of the elbow, each a half of them in order;
-  /// an elbow side is solved together.
+  /// Number of elbow sides: the sign of the elbow divides the IK solutions into two halves in their
+  /// order. One elbow side is solved at a time.
   static constexpr int kElbowSides = 2;
   [[nodiscard]] int elbow_side_of(int solution) const {
     return solution / windings_ & kElbowBit ? 1 : 0;
   }
-  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for
-  /// the IK solutions of one elbow side.
+  /// solve() in two steps, with the same bits: lay_out() makes room for the run, and solve_part()
+  /// computes its entries begin ... end - 1 for the IK solutions of one elbow side.
   void lay_out(int layer, int first, int count, LayerNodes& out) const;
   void solve_part(int side, int begin, int end, LayerNodes& out) const;
-  /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot
-  /// bend as it asks.
+  /// Returns false if no node of the layer exists, because its pose is out of reach or joint 4
+  /// cannot bend as it asks.
   [[nodiscard]] bool alive(int layer) const { return alive(layer, 0) || alive(layer, 1); }
-  /// Whether an elbow side has nodes in a layer at all.
+  /// Returns whether an elbow side can have nodes in a layer.
   [[nodiscard]] bool alive(int layer, int side) const {
     return layer == 0 && start_ ? elbow_side_of(solution_of(start_->slot)) == side
                                 : elbow_alive(layer, side);
   }
-  /// False where no edge leads from an elbow side of `layer` to another of a neighbouring layer;
-  /// the step's number is `step_layer`.
+  /// Returns false if no edge leads from elbow side `side` of `layer` to side `other` of the
+  /// neighbouring layer `other_layer`. `step_layer`: the first layer of the step between them.
   [[nodiscard]] bool may_change_elbow_side(int step_layer, int layer, int side, int other_layer,
                                            int other) const;
-  /// The same of either elbow side of a step's first layer and the other one of the next.
+  /// Returns false if no edge of a step changes the elbow side.
   [[nodiscard]] bool may_change_elbow_side(int step_layer) const {
     return may_change_elbow_side(step_layer, step_layer, 0, step_layer + 1, 1) ||
            may_change_elbow_side(step_layer, step_layer, 1, step_layer + 1, 0);
   }
-  /// A branch flips only through the zero of a middle joint: these tell IK solutions apart, the
-  /// first two those of one elbow side.
+  /// The joints whose sign is the branch: a branch flips only through the zero of one of them. The
+  /// first two tell apart the IK solutions of one elbow side.
   static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
-  /// Near such a zero the outer joints must meet as well. Joints of several turns tell windings
-  /// apart.
+  /// Joints that must also agree near such a zero. Joints of several turns tell windings apart.
   static constexpr std::array<int, 5> kOuterJoints{0, 2, 4, 6, 3};
 
-  /// First angle index and count of the run of angles of a neighbouring layer that lie in the
-  /// window, around the circle, each once.
+  /// A run of arm angles in a layer, around the circle: the index of the first one and their
+  /// number.
   struct Run {
     int first = 0, count = 0;
   };
@@ -243,90 +247,96 @@ class SrsLattice final : public Lattice {
 
  private:
   struct Images {
-    double base = 0, upper = 0;  // image 0 lies in [base, base + 2 pi); valid up to upper
+    // Image 0 lies in [base, base + 2 pi); values are valid up to upper, rad.
+    double base = 0, upper = 0;
     int count = 1;
   };
   static Images images_between(double lower, double upper, double start, double fit_error);
   struct Start {
     int slot = 0;
     double phi = 0;
-    Config node, row;  // the fitted arm's solution there, or the given joints where it has none;
-                       // the given joints
+    // node: the fitted arm's solution at the start, or the given joints if it has none; row: the
+    // given joints
+    Config node, row;
   };
   void lay_out_start(LayerNodes& out) const;
-  /// Entries begin ... end - 1 of what an IK solution with arrays of its own has in common with
-  /// others.
+  /// Copies the entries begin ... end - 1 that an IK solution with arrays of its own has in common
+  /// with others.
   void copy_shared(int solution, int begin, int end, LayerNodes& out) const;
-  /// The grid angle of a slot's cell, rad.
+  /// Returns the grid angle of a slot's cell, rad.
   [[nodiscard]] double cell_angle(int slot) const {
     return -kPi + kTwoPi * angle_of(slot) / angles_;
   }
   [[nodiscard]] const OffGridNode* find_off_grid(int layer, int slot) const;
-  /// The node of a slot at an arm angle.
+  /// Returns the node of a slot's IK solution at the arm angle with this sine and cosine.
   [[nodiscard]] std::optional<Config> solved(int layer, int slot, double sine, double cosine) const;
   void prepare_arcs();
   void triple_arcs(int layer, int solution, int triple, std::vector<AngleArc>& out) const;
   [[nodiscard]] bool elbow_within(int layer, int solution) const;
   void place_off_grid_nodes(const Budget& budget);
-  /// Of an IK solution, among the windings of a triple.
+  /// Returns the index of an IK solution's winding among the windings of a triple (0: shoulder, 1:
+  /// wrist).
   [[nodiscard]] int triple_winding(int solution, int triple) const;
   [[nodiscard]] int triple_windings(int triple) const {
     return static_cast<int>(triple_limits_[static_cast<std::size_t>(triple)].size());
   }
   void place_off_grid_nodes_of(int layer, int solution, const std::vector<AngleArc>& arcs);
-  /// What a layer's shoulder (0) or wrist (1) triple asks of the kernel; the run and where its
-  /// results go are the caller's.
+  /// Returns what the vector kernel has to solve for a layer's shoulder (triple 0) or wrist (1).
+  /// The caller adds the run and where the results go.
   [[nodiscard]] TripleTask triple_task(const ElbowCircle& circle, int triple) const;
   [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
-  /// Joint 4 of a layer's nodes by the sign of the elbow, which the arm angle does not move: layers
-  /// without a start.
+  /// Returns joint 4, rad, of a layer's nodes with a sign of the elbow; the arm angle does not
+  /// change it. Only for layers without a start.
   [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
   [[nodiscard]] bool elbow_alive(int layer, int elbow) const {
     return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)];
   }
   void place_start(const Problem& problem);
-  /// The fitted arm's solution at the start's arm angle and branch, at the images near the start;
-  /// none where there is none near it.
+  /// Returns the solution of the fitted arm at the start's arm angle and branch, at the images near
+  /// the start `q`; nothing if there is none near it.
   [[nodiscard]] std::optional<Config> fitted_start(const Config& q, double phi) const;
   [[nodiscard]] bool singular(const Config& q) const;
-  /// Bit k: joint k of a row is outside its limits.
+  /// Returns a set of bits: bit k is set if joint k of a row is outside its limits.
   [[nodiscard]] std::uint8_t joints_outside(const Config& row) const;
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
 
-  /// The exact configuration of a node on the exact chain, limits aside; for the tool as the node
-  /// turns it where joint 7 stays.
+  /// Returns the exact configuration of a node on the exact chain, whatever its limits. Where joint
+  /// 7 rests, the tool may turn as in the node.
   [[nodiscard]] std::optional<Config> on_exact_chain(int layer, int slot, const Config& q) const;
 
-  std::uint64_t id_;  // of a lattice and its copies; so that layouts outlive lattices safely
+  // Identifies a lattice and its copies, so that a Layout may outlive its lattice.
+  std::uint64_t id_;
   const SrsArm* arm_;
   std::optional<double> last_joint_;
   int angles_ = 0, windings_ = 1, window_ = 1;
   std::array<Images, kDof> images_;
-  std::size_t tracks_ = 0;             // arrays in a LayerNodes
+  std::size_t tracks_ = 0;             // number of arrays in a LayerNodes
   std::vector<double> sine_, cosine_;  // of the grid angles, three times around
   std::vector<ArmPlane> planes_;
   std::vector<ReachStatus> reach_;
   std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
   std::vector<std::uint8_t> elbow_alive_;  // [layer][elbow]: its angle lies within the limits
   std::optional<Start> start_;
-  std::optional<PoseErrorModel> pose_error_model_;          // of an arm that is not exact
+  std::optional<PoseErrorModel> pose_error_model_;          // for an arm that is not exact
   std::array<std::vector<TripleLimits>, 2> triple_limits_;  // [triple][its winding]
-  std::vector<OffGridNode> off_grid_;            // empty too where resolution.arcs is off
-  std::vector<std::size_t> off_grid_begin_;      // [layer], and the end
-  std::vector<std::uint8_t> off_grid_branches_;  // [layer], bits
+  std::vector<OffGridNode> off_grid_;                       // also empty if resolution.arcs is off
+  std::vector<std::size_t> off_grid_begin_;                 // [layer], and the end
+  std::vector<std::uint8_t> off_grid_branches_;             // [layer], bits
 };
 
-/// The planes of a path's layers, carried from the beginning of the whole path: where it begins at
-/// a start between two layers, that start changes no other plane. Where the tool stands turned:
-/// those of the path without, each under the smallest rotation onto the turned tool.
+/// Returns the planes of a path's layers, from which arm angles are measured. They are carried
+/// along the whole path from its beginning, so that a start between two layers changes no plane of
+/// another layer. For a tool that stands turned, returns the planes of the path without the turn,
+/// each under the smallest rotation onto the turned tool. Throws Stopped.
 [[nodiscard]] std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
                                                    const Budget& budget = {});
 
-/// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15)
-/// with the cross product of Eq. (12) replaced by the part normal to the tangent plane: 1/2 |(I -
-/// P_T) d^2 theta / dt^2| along (1, dphi). end 0: at layer; end 1: at layer + 1 by the same step's
-/// motion. Infinite where a neighbouring solution does not exist.
+/// Returns the second-order estimate of the step error in joint space at one end of a step, rad:
+/// paper Eq. (15), with the cross product of Eq. (12) replaced by the part normal to the tangent
+/// plane, 1/2 |(I - P_T) d^2 theta / dt^2| along (1, dphi). `end` 0 is the end at `layer`, 1 the
+/// one at layer + 1, with the motion of the same step. `phi`: arm angle at that end, rad; `dphi`:
+/// its change over the step, rad. Returns infinity if a neighbouring solution does not exist.
 [[nodiscard]] double step_error(const SrsLattice& lattice, int layer, int end, int branch,
                                 double phi, double dphi);
 
