@@ -40,14 +40,15 @@ bool is_eager(const PlanOptions& options) {
   return options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp;
 }
 
-/// The eager planners are the baseline: FCL used well, without distance proofs. The verdicts are
-/// the same.
+/// The eager planners are the baseline, FCL used well, so that they do without distance proofs. The
+/// verdicts are the same.
 DistanceProofs distance_proofs_of(const PlanOptions& options) {
   return is_eager(options) || options.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
 }
 
-/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
-/// Each chunk finds its own bounds of distances, which takes a few per cent of a short plan.
+/// Returns the number of chunks of a batch. It is independent of the number of threads, so that
+/// what is asked is too. The eager planners have none: their nodes are shared out one by one. Each
+/// chunk finds its own bounds of distances, which takes a few per cent of a short plan.
 int chunks_of(const PlanOptions& options, const Lattice& lattice) {
   constexpr std::int64_t kNodesPerChunk = 50'000, kFewest = 2, kMost = 8;
   if (options.planner == PlannerKind::kLazy) return 1;
@@ -60,13 +61,14 @@ ParallelFor shared_with(Executor& threads) {
           [&threads](int parts, const auto& body) { threads.for_each_short(parts, body); }};
 }
 
-/// The explicit graph keeps about 64 bytes a node and 56 an edge.
+/// Throws InputError if the explicit graph of the eager planner does not fit in memory: it takes
+/// about 64 bytes a node and 56 an edge.
 void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   std::vector<Lattice::SlotRun> runs;
   double edges = 0;
   for (int layer = 0; layer + 1 < lattice.layers(); ++layer) {
     if (lattice.slots(layer) == 0) continue;
-    lattice.successors(layer, 0, runs);  // as many as of any other slot
+    lattice.successors(layer, 0, runs);  // every slot of the layer has as many
     for (const Lattice::SlotRun& run : runs)
       edges += static_cast<double>(lattice.slots(layer)) * (run.last - run.first);
   }
@@ -79,7 +81,8 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
             " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 
-/// Of a path that may end anywhere: as far as its joints stay within their limits.
+/// Returns the rows of a path that may end at any layer, as far as its joints stay within their
+/// limits.
 std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
   for (; !path.empty() && rows.empty(); path.pop_back()) rows = lattice.path_rows(path);
@@ -105,7 +108,7 @@ void add_counters(const Counters& more, Counters& sum) {
   sum.iterations += more.iterations;
 }
 
-/// The cost of a path's rows, where its nodes cost `cost`.
+/// Returns the cost of the rows of a path whose nodes and edges cost `cost` in the lattice.
 double cost_of_rows(const Lattice& lattice, const SlotPath& path,
                     const std::vector<TrajectoryRow>& rows, double cost) {
   for (std::size_t i = 1; i < path.size(); ++i) {
@@ -157,20 +160,21 @@ PlannerKind planner_from_string(const std::string& name) {
   throw InputError("unknown planner '" + name + "': allowed are eager, eager_dp, lazy, parallel");
 }
 
-/// What is kept between plans, by what it depends on; a change clears what depends on it.
+/// The state kept between plans, each part with what it depends on; a change clears what depends on
+/// it.
 struct Planner::Impl {
   Problem problem;
 
-  std::optional<PlanningArm> arm;                   // until it is prepared
-  std::shared_ptr<const PreparedRobot> robot;       // shared: clones; depends on the robot
-  std::shared_ptr<const PreparedRobot> last_robot;  // with other attached bodies
+  std::optional<PlanningArm> arm;                   // until the robot is prepared
+  std::shared_ptr<const PreparedRobot> robot;       // shared with clones; depends on the robot
+  std::shared_ptr<const PreparedRobot> last_robot;  // prepared with other attached bodies
   std::optional<World> world;                       // depends on robot, scene and limits
-  bool world_is_old = true;                         // it serves as a model for the next
+  bool world_is_old = true;                         // `world` only serves to make the next one from
   struct Searched {
     std::unique_ptr<Lattice> lattice;
     std::unique_ptr<CostToGo> cost_to_go;
   };
-  /// Of the task and the pose of the path's frame.
+  /// What depends on the task and on the pose of the path's frame.
   struct Layout {
     Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
         : path(path_within_scale(problem, robot.arm().chain, budget)),
@@ -181,26 +185,32 @@ struct Planner::Impl {
         first.lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
     }
     ToolPath path;
-    Searched first;  // by every plan
-    bool coaxial;    // first, whose having no path is not the last word
-    /// After it by the last plan: where its path left the limits of joints taken as circles in
-    /// their nearest turns, or a coaxial one had none.
+    Searched first;  // searched by every plan
+    // Whether joint 7 rests in `first` (make_coaxial_lattice()), so that another lattice may have a
+    // path even if `first` has none.
+    bool coaxial;
+    /// The lattice that the last plan searched after `first`, because the path there left the
+    /// limits of joints that are treated as circles, each in its nearest turn, or because joint 7
+    /// at rest had no path.
     std::optional<Searched> second;
     [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
   std::unique_ptr<Layout> layout;
-  std::optional<std::vector<std::string>> scale_of_robot;  // warnings: a robot does not change
-  std::unique_ptr<CostToGo> recycled;                      // of another lattice
-  ClearanceMemory memory;  // of this lattice, the robot and the limits
-  std::vector<FailureHint>
-      failure_hints;               // what failed on the lattice before this one; of these bodies
-  std::uint64_t plans = 0;         // that the memory knows of
-  std::vector<std::uint64_t> met;  // by object: the first of them that meets it as it is
+  // warnings; kept, as a robot does not change
+  std::optional<std::vector<std::string>> scale_of_robot;
+  std::unique_ptr<CostToGo> recycled;  // of a lattice before this one, for its memory
+  ClearanceMemory memory;              // depends on the lattice, the robot and the limits
+  // What failed on the lattice before this one, with the same bodies.
+  std::vector<FailureHint> failure_hints;
+  std::uint64_t plans = 0;  // number of plans in `memory`
+  // By object: the first plan in which it stands as it does now.
+  std::vector<std::uint64_t> met;
   std::optional<Executor> executor;
-  int executor_threads = 0;  // that it was asked for
+  int executor_threads = 0;  // number of threads that `executor` was made with
 
-  bool single_use = false;  // no plan follows: nothing is remembered
-  SlotPath path;            // of the last plan
+  bool single_use = false;  // no plan follows, so that nothing is remembered
+  // The path of the last plan, see PlanView::path.
+  SlotPath path;
   bool viewable = false, was_eager = false;
 
   explicit Impl(Problem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
@@ -235,7 +245,8 @@ struct Planner::Impl {
     met[object] = plans + 1;
     if (problem.scene[object].name == problem.path_frame) path_changed();
   }
-  /// Puts `next` in the problem's place where it is a valid one.
+  /// Replaces the problem by `next`. Throws InvalidArgument, and changes nothing, if that is not
+  /// valid.
   void replace(Problem next) {
     validate(next);
     problem = std::move(next);
@@ -320,12 +331,13 @@ struct Planner::Impl {
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());
   }
-  /// A path on which a joint taken as a circle cannot begin in the turn nearest to the middle of
-  /// its range is no answer yet: the values of such joints are told apart then.
+  /// Searches the lattices of the task one after the other until one answers. A path on which a
+  /// joint that is treated as a circle cannot begin in the turn nearest to the middle of its range
+  /// is not the answer yet: the next lattice tells the values of such joints apart.
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
                PlanResult& result) {
     was_eager = is_eager(options);
-    // What a caller's states cost may hang on joint 7.
+    // The cost of a state by the caller's hook may depend on joint 7, which must then be free.
     const bool rests = layout->coaxial && !options.hooks.cost;
     Found found;
     if (rests || !layout->coaxial)
@@ -347,13 +359,13 @@ struct Planner::Impl {
       found = search(*layout->second, false, rule, options, budget, result);
     }
   }
-  /// `remembered`: what the plans before came to know serves, and what this one does is kept.
+  /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
+  /// does.
   Found search(Searched& searched, bool remembered, const EdgeRule& rule,
                const PlanOptions& options, const Budget& budget, PlanResult& result) {
     const Lattice& lattice = *searched.lattice;
-    remembered =
-        remembered &&
-        !lattice.has_layers_between();  // of edges one clearance is kept, not one of each row
+    // the memory keeps one clearance of an edge, not one of each row
+    remembered = remembered && !lattice.has_layers_between();
     Executor& threads = threads_of(options);
     Counters counters;
     Found found;
@@ -375,7 +387,7 @@ struct Planner::Impl {
       count(validity);
       return found;
     }
-    constexpr int kFewLayers = 64;  // where chords are too long to bound much
+    constexpr int kFewLayers = 64;  // with fewer layers, chords are too long to give good bounds
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
       cost_to_go = make_cost_to_go(
@@ -404,19 +416,19 @@ struct Planner::Impl {
     count(validity);
     return found;
   }
-  /// Where a second thread may run, it makes heavy meshes ready while the first one finds paths
-  /// without obstacles.
+  /// If a second thread may run, it builds the trees of heavy meshes while the first thread finds
+  /// paths without obstacles.
   std::jthread meshes_ahead(const PlanOptions& options) {
-    constexpr std::size_t kHeavy = 5000;  // triangles: some milliseconds
+    constexpr std::size_t kHeavy = 5000;  // triangles, which take some milliseconds
     if (threads_of(options).threads() == 1 || world->triangles_to_make_ready() < kHeavy) return {};
     try {
       return std::jthread([world = &*world](const std::stop_token& stop) {
         try {
           world->make_ready([&] { return stop.stop_requested(); });
-        } catch (...) {  // who needs it comes to the same end
+        } catch (...) {  // the query that needs the tree will meet the same error
         }
       });
-    } catch (const std::system_error&) {  // the system has no more threads
+    } catch (const std::system_error&) {  // the system has no thread to spare
       return {};
     }
   }
@@ -454,7 +466,8 @@ struct Planner::Impl {
     explain(rule, found, options, budget, result);
     result.time_ms["report"] = watch.lap();
   }
-  /// A path that is not proved in time is no answer.
+  /// Proves the trajectory. If that does not end in time, the trajectory is moved to `partial`,
+  /// since an unproved path is no answer; throws Stopped then.
   void check(const Budget& budget, PlanResult& result) {
     try {
       check_answer(*world, *robot, problem, result.trajectory, budget);
@@ -464,7 +477,7 @@ struct Planner::Impl {
       throw;
     }
   }
-  /// What the options ask for, as far as the budget goes.
+  /// Computes the evidence and the diagnosis that the options ask for, as far as the budget allows.
   void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options,
                const Budget& budget, PlanResult& result) {
     const TraceSpan span("report");
@@ -476,7 +489,7 @@ struct Planner::Impl {
                      result);
         return;
       }
-      result.diagnosis.complete = false;  // until diagnose() has done
+      result.diagnosis.complete = false;  // until diagnose() has finished
       if (found.deepest) budget.tell(Stage::kDiagnosis);
       if (was_eager && found.deepest.value_or(-1) >= 0)
         path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
@@ -565,8 +578,8 @@ void Planner::set_problem(Problem problem) {
   impl_->problem.vary = problem.vary;
   impl_->set_scene(std::move(problem.scene));
   impl_->set_task(problem);
-  impl_->failure_hints.clear();  // problems have little in common; and what one takes must not hang
-                                 // on the one before
+  // Problems have little in common, and what one of them takes must not depend on the one before.
+  impl_->failure_hints.clear();
 }
 
 void Planner::add(SceneObject object) {
@@ -637,7 +650,7 @@ PlanResult plan(const Problem& problem, const PlanOptions& options) {
 }
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
-  // Not owned: it outlives this call.
+  // The pointer does not own the robot, which outlives this call.
   Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
   planner.impl_->single_use = true;
   return planner.plan(options);

@@ -50,9 +50,9 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
   Found found;
   SearchCounters searched;
   // Batch sizes are fixed, so that what is asked (and counted) does not depend on the number of
-  // threads. Threads share the questions, and hardly anything of the work between two paths. A
-  // caller's check is asked about many states at once, because calling it may cost more than its
-  // answers.
+  // threads. Threads share the questions of a batch, and hardly anything of the work between two
+  // paths. A caller's check is asked about many states at once, because a call may cost more than
+  // the answers.
   PathFirstOptions path_first_options{.batch = 8};
   if (options.hooks.check)
     path_first_options.batch = 32;
@@ -73,7 +73,7 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
     if (found.outcome.path.empty()) {
       cost_to_go.budget().tell(Stage::kReach);
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
-      // the path tried last, which is valid
+      // the path tried last is valid
       if (*found.deepest >= 0) found.valid_path = searched.candidate;
       time_ms["reach"] = watch.lap();
     }

@@ -16,18 +16,20 @@ namespace swivel {
 /// Returns true if the lattice is so large that lower bounds, sweeps and the work between two
 /// batches of questions are worth sharing between threads.
 [[nodiscard]] inline bool shares_work(const Lattice& lattice) {
-  return lattice.nodes() >= 150'000;  // each takes some milliseconds then
+  // from this size on, each of these takes some milliseconds
+  return lattice.nodes() >= 150'000;
 }
 
 /// The result of a search by any of the planners.
 struct Found {
-  bool decided = false;  ///< false: stopped before it was known whether there is a path
+  /// False if the search was stopped before it was known whether there is a path.
+  bool decided = false;
   SearchOutcome outcome;
-  /// if there is no path: the last layer that a valid path reaches; unset if it was not found in
-  /// time
+  /// If there is no path: the last layer that a valid path reaches; unset if it was not found in
+  /// time.
   std::optional<int> deepest;
   /// A valid path from layer 0: the whole path; if there is none, the one to the deepest layer; if
-  /// the search was stopped, the part that was proved.
+  /// the lazy search was stopped, the part that was proved.
   SlotPath valid_path;
 };
 
@@ -36,10 +38,10 @@ struct Found {
 [[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity,
                                    const PlanOptions& options, const Budget& budget,
                                    Counters& counters);
-/// Searches with the lazy planner or the parallel one (options.planner). `swept`: cost_to_go holds
-/// the values of the lattice without removals; otherwise `failure_hints` are validated before it is
-/// swept. `first` are failures of earlier searches, which are tested first. Fills `counters` and
-/// the times of the stages, ms.
+/// Searches with the lazy or the parallel planner (options.planner). `swept`: whether cost_to_go
+/// already holds the values of the lattice without removals; otherwise `failure_hints` are
+/// validated before it is swept. `first`: failures of earlier searches, which are tested first.
+/// Fills `counters` and the times of the stages, ms, in `time_ms`.
 [[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
                                   const PriorFailures& first,
                                   std::span<const FailureHint> failure_hints,

@@ -11,12 +11,12 @@
 
 namespace swivel {
 
-/// The same question, answered four ways; all give the same trajectory, bit for bit.
+/// The four planners. All return the same trajectory, bit for bit; they differ in time and memory.
 enum class PlannerKind {
-  kEager,     ///< the paper: everything validated, explicit graph
-  kEagerDp,   ///< the same without stored edges
-  kLazy,      ///< path-first over the implicit lattice
-  kParallel,  ///< lazy with collision work in batches over threads
+  kEager,     ///< the paper's: validates everything and searches an explicit graph
+  kEagerDp,   ///< validates everything, but stores no edges
+  kLazy,      ///< searches paths of the implicit lattice and validates only those
+  kParallel,  ///< as kLazy, with collision questions in batches over threads
 };
 [[nodiscard]] const char* to_string(PlannerKind kind);
 /// Throws InputError for an unknown name.
@@ -25,25 +25,26 @@ enum class PlannerKind {
 struct PlanOptions {
   PlannerKind planner = PlannerKind::kParallel;
   int threads = 0;  ///< 0: all cores; kLazy always uses one
-  /// s, any positive number, for everything from the call on. Where it passes after the verdict is
-  /// known, the verdict stays, and what was asked for besides may be missing (PlanResult::evidence,
-  /// Diagnosis::complete).
+  /// The time allowed for everything from the call on, s, > 0. If it passes after the verdict is
+  /// known, the verdict stays, and the evidence and explanations asked for may be missing
+  /// (PlanResult::evidence, Diagnosis::complete).
   std::optional<double> timeout_s;
-  std::stop_token stop;                       ///< asked from elsewhere to stop, as a time-out does
-  const std::atomic<bool>* cancel = nullptr;  ///< the same, for signal handlers
-  /// Prove every trajectory (and motion) as check_trajectory() does before it is returned, within
-  /// the time-out: one that fails is a bug and std::logic_error, never an answer; one that is not
-  /// proved in time is none.
+  std::stop_token stop;                       ///< lets another thread stop the plan
+  const std::atomic<bool>* cancel = nullptr;  ///< for signal handlers: stops the plan once true
+  /// Whether every trajectory (and motion) is proved as check_trajectory() does, within the
+  /// time-out, before it is returned. One that fails is a bug and throws std::logic_error; one that
+  /// is not proved in time is not returned as an answer.
   bool check = false;
-  /// FCL decides every clearance that the search asks about, behind bounding volumes, as it always
-  /// does for the eager planners: no closed forms, no triangle trees of our own, and nothing is
-  /// kept from one posture to the next. Depths of contact (AllowedPair::depth), which FCL does not
-  /// measure, stay ours. The answer is the same; it takes longer.
+  /// Whether FCL, behind bounding volumes, decides every clearance that the search asks about, as
+  /// it always does for the eager planners: without closed forms, without Swivel's own triangle
+  /// trees, and with nothing kept from one posture to the next. Depths of contact
+  /// (AllowedPair::depth), which FCL does not measure, are still Swivel's. The answer is the same;
+  /// it takes longer.
   bool fcl_alone = false;
-  Evidence evidence;          ///< what to find besides the verdict
-  Hooks hooks;                ///< rules and costs of the caller's own, of any planner
+  Evidence evidence;          ///< what to compute besides the verdict
+  Hooks hooks;                ///< the caller's own rules and costs; every planner honours them
   ProgressFunction progress;  ///< called now and then from the planning thread; must be quick
-  /// The budget of a plan that begins now. The options must outlive it.
+  /// Returns the budget of a plan that begins now. The options must outlive it.
   [[nodiscard]] Budget budget() const { return Budget(timeout_s, cancel, stop, &progress); }
 };
 

@@ -10,16 +10,17 @@ class Verdicts;
 class World;
 struct Problem;
 
-/// What the last plan of a planner came to know, for those who draw or measure it. Valid until the
-/// planner plans again, changes or ends.
+/// What the last plan of a planner found out, for those who draw or measure it. Valid until the
+/// planner plans again, changes or is destroyed.
 struct PlanView {
   const PreparedRobot& robot;
   const Problem& problem;
   const Lattice& lattice;
   const World& world;
-  const Verdicts* verdicts;  ///< null where the planner was eager: it asked about every node
-  /// One slot in each layer: the answer; where there is none, a valid path to the furthest layer,
-  /// where one was found.
+  const Verdicts* verdicts;  ///< null after an eager planner, which asks about every node
+  /// One slot for each layer from layer 0 on: the answer. If there is none, a valid path to the
+  /// deepest layer that was found to be reachable; after a search that was stopped, the part that
+  /// was proved.
   const std::vector<int>& path;
 };
 
