@@ -6,8 +6,8 @@
 namespace swivel {
 
 /// Half width of the band of clearances about a threshold, m, within which no distance proof
-/// answers, and by which FCL may err. Within the band FCL decides, except for two bodies of
-/// triangles, about which our own trees of triangles decide down to 1 um. docs/model.md.
+/// answers and by which FCL may err. Within the band FCL decides, except about two bodies of
+/// triangles, about which Swivel's own trees of triangles decide down to 1 um. docs/model.md.
 inline constexpr double kVerdictBand = 0.05e-3;
 
 /// Bounds of the penetration depth of two bodies, m. The depth is the greatest sum, over all points
@@ -18,7 +18,7 @@ inline constexpr double kVerdictBand = 0.05e-3;
 /// another is at least as deep as that one. A mesh that is not closed has no inside.
 struct Depth {
   double at_least = 0;  ///< minus infinity where nothing is known
-  /// infinity where nothing is known: of two meshes, and of meshes that are not closed
+  /// Infinity where nothing is known: for two meshes, and for meshes that are not closed.
   double at_most = 0;
 };
 
