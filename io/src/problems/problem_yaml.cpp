@@ -28,14 +28,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostBodies = 10'000;  // in the scene, attached
+constexpr std::size_t kMostBodies = 10'000;  // of objects in the scene, and of attached bodies
 
 Vector3d vector3_or_zero(const YamlSection& section, const std::string& key) {
   const auto value = section.find_filled(key);
   return value ? value->vector3() : Vector3d::Zero();
 }
 
-/// As written: not zero, but not yet of unit length.
+/// Returns the orientation of a section by its `quat` or `rpy`; the identity if it has neither. A
+/// quaternion is returned as written: not zero, but perhaps not of unit length.
 Quaterniond orientation(const YamlSection& section) {
   const auto given = section.chosen("quat");
   if (!given) return Quaterniond::Identity();
@@ -84,13 +85,13 @@ Sphere sphere(const YamlValue& value) {
   return {value.section().require("radius").number()};
 }
 
-/// Calls `read` with another file; what it finds wrong there is reported with the key that named
-/// the file.
+/// Calls `read` with another file. An InputError about that file is thrown again with the place of
+/// `key`, which names the file.
 template <class Read>
 auto with_key(const YamlValue& key, const fs::path& file, const Read& read) {
   try {
     return read(file);
-  } catch (const RobotKeyError&) {  // of another key
+  } catch (const RobotKeyError&) {  // already tells the key that is wrong
     throw;
   } catch (const InputError& error) {
     throw InputError(key.where() + ": " + error.what());
@@ -141,7 +142,8 @@ class ProblemReader {
                        [&](const auto& object) { return object.name == name; });
   }
 
-  /// Calls `work`; what a key of `robot` says wrong is reported where the key stands.
+  /// Calls `work`. A RobotKeyError is thrown again as an InputError at the line of that key of
+  /// `robot`.
   template <class Work>
   auto at_their_keys(const Work& work) const {
     try {
@@ -327,13 +329,15 @@ class ProblemReader {
     if (problem_.waypoints.front().roll) narrow_roll(poses);
   }
 
-  /// What waypoints allow lies within the range of path.roll, and the range is what they allow in
-  /// all.
+  /// Limits the window of rolls of each waypoint to the range of path.roll, and that range to what
+  /// all windows cover together. Throws InputError if a window becomes empty, if the roll is not
+  /// free, or if the windows cover only one roll or a whole turn.
   void narrow_roll(const YamlValue& poses) {
     if (!problem_.roll)
       poses.fail("says how far the tool may stand turned, but the roll is not free",
                  "path.roll beside it");
-    constexpr double kHalf = kPi - 1e-6;  // so that what allows a whole turn is no circle
+    // A window of a whole turn has ends, so that it is no circle.
+    constexpr double kHalf = kPi - 1e-6;
     Roll all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (std::size_t k = 0; k < problem_.waypoints.size(); ++k) {
       Roll& window = *problem_.waypoints[k].roll;
@@ -369,7 +373,8 @@ class ProblemReader {
     if (!(ends[0] < ends[1])) value.fail("is empty", "[lower, upper] with lower < upper");
   }
 
-  /// null: the polyline, whatever the default of the command is.
+  /// Reads path.smooth. null stands for the polyline itself, whatever the command smooths by
+  /// default.
   void read_smooth(const YamlValue& value) {
     problem_.smooth = value.is_null() ? PathSmoothing{0, 0} : PathSmoothing{};
     if (value.is_null()) return;
@@ -421,8 +426,8 @@ class ProblemReader {
       limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
   }
 
-  /// One number for each joint of the arm, base to tip. An arm of six joints has a seventh number,
-  /// for the roll of the tool.
+  /// Returns one number for each joint of the arm, base to tip. An arm of six joints has a seventh
+  /// number, for the roll of the tool.
   [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const {
     if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 &&
         arm().chain.roll)
@@ -437,8 +442,8 @@ class ProblemReader {
                      problem_.tool, problem_.roll);
   }
 
-  /// Refuses what does not suit the robot's file, or an arm of this kind and size, where it stands
-  /// in the problem's.
+  /// Throws InputError, at the key in the problem file, for values that do not suit the robot's
+  /// file or an arm of this kind and size.
   void require_suitable_arm() const {
     const ArmModel model = at_their_keys([&] { return arm(); });
     for (const LargeLength& found : large_lengths(model.chain, problem_)) {
@@ -451,7 +456,7 @@ class ProblemReader {
     require_arm_angle(model);
   }
 
-  /// For the limit of an arm angle, where that is given.
+  /// Throws InputError if limits.arm_slope is given for an arm that has no arm angle.
   void require_arm_angle(const ArmModel& model) const {
     const auto limits = root_.find_filled("limits");
     const auto slope = limits ? limits->section().find("arm_slope") : std::nullopt;
@@ -509,17 +514,17 @@ class ProblemReader {
     }
   }
 
-  /// Keeps the default where the key is absent.
+  /// Sets a number if its key is present; otherwise keeps the default.
   static void set(const YamlSection& section, const char* key, double& target) {
     if (const auto value = section.find(key)) target = value->number();
   }
-  /// The same; an explicit null means "no such limit".
+  /// Sets a limit if its key is present; an explicit null means that there is no such limit.
   static void set(const YamlSection& section, const char* key, std::optional<double>& target) {
     if (const auto value = section.find(key))
       target = value->is_null() ? std::nullopt : std::optional(value->number());
   }
 
-  /// A number for all joints, or one each.
+  /// Sets a limit that is given as one number for all joints or as one for each.
   void set(const YamlSection& section, const char* key,
            std::optional<std::array<double, kDof>>& target) const {
     const auto value = section.find(key);
@@ -532,7 +537,7 @@ class ProblemReader {
     std::copy(values.begin(), values.end(), target->begin());
   }
 
-  /// What the word stands for; `values` in the order of the schema's words.
+  /// Returns what a word stands for. `values` are in the order of the schema's words.
   template <class Enum>
   static Enum word(const YamlValue& value, std::initializer_list<Enum> values) {
     return std::vector<Enum>(values).at(value.word());

@@ -23,16 +23,15 @@ namespace swivel::io {
 
 namespace {
 
-constexpr std::size_t kMostLinks = 10'000;  // the largest real ones have hundreds
+constexpr std::size_t kMostLinks = 10'000;  // the largest real robots have hundreds
 constexpr std::size_t kMostShapes = 10'000;
 
-/// URDF 1.0 to 1.2, https://wiki.ros.org/urdf/XML and
-/// https://github.com/ros/urdfdom/tree/master/xsd: what states geometry, limits and moving joints.
-/// `unread` elements are those of the same pages, of Gazebo
-/// (https://classic.gazebosim.org/tutorials?tut=ros_urdf), ros2_control (https://control.ros.org),
-/// Bullet (<contact>), MuJoCo
-/// (<mujoco>), and of the PR2's time (<verbose>, <contact_coefficients>, <map>), which describe
-/// looks, dynamics, drives and simulators.
+/// The elements of URDF 1.0 to 1.2 (https://wiki.ros.org/urdf/XML and
+/// https://github.com/ros/urdfdom/tree/master/xsd) that state geometry, limits and moving joints.
+/// Elements listed as `unread` describe looks, dynamics, drives and simulators; they come from the
+/// same pages, from Gazebo (https://classic.gazebosim.org/tutorials?tut=ros_urdf), ros2_control
+/// (https://control.ros.org), Bullet (<contact>), MuJoCo (<mujoco>), and from the time of the PR2
+/// robot (<verbose>, <contact_coefficients>, <map>).
 const XmlElement& urdf_format() {
   static const XmlElement origin{"origin", {"xyz", "rpy", "quat_xyzw"}};
   static const XmlElement geometry{"geometry",
@@ -76,7 +75,8 @@ const XmlElement& urdf_format() {
   return robot;
 }
 
-/// The same element where a link's looks are read as its body.
+/// Returns the format of a <visual> element that is read as a link's body: that of <collision>,
+/// with its own unread elements.
 XmlElement visual_format() {
   XmlElement visual = urdf_format().children.front().children.front();
   visual.name = "visual";
@@ -84,7 +84,7 @@ XmlElement visual_format() {
   return visual;
 }
 
-/// Calls `visit` for every child element of that name.
+/// Calls `visit` for every child element of this name.
 template <class Visit>
 void for_each_child(const tinyxml2::XMLElement& element, const char* name, const Visit& visit) {
   for (const auto* child = element.FirstChildElement(name); child != nullptr;
@@ -92,7 +92,8 @@ void for_each_child(const tinyxml2::XMLElement& element, const char* name, const
     visit(*child);
 }
 
-/// Rz(yaw) Ry(pitch) Rx(roll) by half angles, as urdfdom has it to the last bit.
+/// Returns Rz(yaw) Ry(pitch) Rx(roll) for rpy in rad, computed by half angles so that it equals
+/// urdfdom's result to the last bit.
 Quaterniond from_urdf_rpy(const Vector3d& rpy) {
   const double phi = rpy.x() / 2, the = rpy.y() / 2, psi = rpy.z() / 2;
   const double x =
@@ -107,8 +108,8 @@ Quaterniond from_urdf_rpy(const Vector3d& rpy) {
   return {w / length, x / length, y / length, z / length};
 }
 
-/// An element of a link or joint: its attributes as what they mean. Messages name file, line, and
-/// the link or joint.
+/// An XML element of a link or joint, which reads its attributes as numbers, names and poses.
+/// Messages name the file, the line, and the link or joint.
 class Element {
  public:
   Element(const tinyxml2::XMLElement& xml, const std::string& file, const std::string& owner)
@@ -134,7 +135,8 @@ class Element {
       fail(label(attribute) + (value == nullptr ? " is missing" : " is empty"), allowed);
     return value;
   }
-  /// Finite, save where `infinite` is said to be allowed.
+  /// Returns the number that an attribute states. It must be finite unless `infinite` allows
+  /// otherwise.
   [[nodiscard]] double number(const char* attribute, bool infinite = false) const {
     const std::string allowed = "a number", all = text(attribute, allowed);
     Words words(all);
@@ -171,7 +173,7 @@ class Element {
     return result;
   }
 
-  /// The pose that a child <origin> states; without one none but the identity.
+  /// Returns the pose that a child <origin> states; the identity if there is none.
   [[nodiscard]] Pose origin() const {
     const auto* const child = xml_.FirstChildElement("origin");
     return child == nullptr ? Pose::Identity() : with(*child).pose();
@@ -181,7 +183,8 @@ class Element {
   [[nodiscard]] std::string label(const char* attribute) const {
     return std::string(xml_.Name()) + " " + attribute;
   }
-  /// "${...}" is what xacro leaves where it did not run.
+  /// Returns what a message says is allowed, with a hint at xacro if the attribute has a "${...}"
+  /// that xacro would have expanded.
   [[nodiscard]] std::string expanded(const char* attribute, const std::string& allowed) const {
     return text(attribute).find("${") == std::string::npos ? allowed : allowed + ", xacro expanded";
   }
@@ -213,10 +216,10 @@ class Element {
   const std::string& owner_;
 };
 
-/// Whose shapes a link gets, and whether meshes are read.
+/// Which elements give a link its shapes; with kNone no meshes are read.
 enum class Shapes { kCollision, kVisualWhereNoCollision, kNone };
 
-/// Makes a model of a URDF, in the order of the file.
+/// Builds the model of a URDF; links and joints stay in the order of the file.
 class ModelBuilder {
  public:
   ModelBuilder(const XmlSource& source, const Packages& packages, const RobotOptions& options,
@@ -305,7 +308,8 @@ class ModelBuilder {
                 "a robot of at least one; of a .xacro what `xacro FILE` prints");
   }
 
-  /// The link that a joint's <parent> or <child> names.
+  /// Returns the name of the link that a joint's <parent> or <child> names. Throws InputError for
+  /// an unknown one.
   [[nodiscard]] std::string end_of(const tinyxml2::XMLElement& joint, const char* kind) const {
     const auto* const end = joint.FirstChildElement(kind);
     const char* const name = end == nullptr ? nullptr : end->Attribute("link");
@@ -324,7 +328,8 @@ class ModelBuilder {
     return nearest_name(name.substr(0, 200), known);
   }
 
-  /// One root, above every link; one parent joint for all others.
+  /// Checks that the links are a tree: one root is above every link, and every other link has one
+  /// parent joint.
   void check_tree(const tinyxml2::XMLElement& robot) {
     for_each_child(robot, "joint", [&](const tinyxml2::XMLElement& element) {
       const std::string parent = end_of(element, "parent"), child = end_of(element, "child");
@@ -355,8 +360,8 @@ class ModelBuilder {
     });
   }
 
-  /// Takes the links of RobotOptions::without and what hangs from them, with the joints above each,
-  /// out of `links_` and `joints_`.
+  /// Removes the links of RobotOptions::without and all links below them, with the joints above
+  /// each, from `links_` and `joints_`.
   void leave_out(const tinyxml2::XMLElement& robot) {
     if (options_.without.empty()) return;
     std::map<std::string, std::vector<std::string>, std::less<>> below;
@@ -421,7 +426,8 @@ class ModelBuilder {
     model_->links.push_back(std::move(link));
   }
 
-  /// All but meshes is read, whether it is `wanted` or not; the names of meshes are looked up.
+  /// Reads a shape, and adds it to the link if it is `wanted`. An unwanted shape is checked too,
+  /// except that of a mesh only the name is looked up.
   void add_shape(const Element& element, const tinyxml2::XMLElement& xml, bool wanted, Link& link) {
     if (++shape_count_ > kMostShapes)
       element.fail("too many collision shapes",
@@ -450,7 +456,7 @@ class ModelBuilder {
     if (wanted) link.collision.push_back(std::move(placed));
   }
 
-  /// Whether there is a mesh to place.
+  /// Reads a mesh. Returns whether there is one to place.
   bool read_mesh(const Element& element, bool wanted, Shape& shape) {
     const Vector3d scale =
         element.has("scale") ? Vector3d(element.numbers<3>("scale")) : Vector3d::Ones();
@@ -515,9 +521,10 @@ class ModelBuilder {
                  "fixed, revolute, continuous, prismatic, floating or planar");
   }
 
-  /// Rates of URDF 1.2 as well, whatever version the file says it is. What slows down a joint is
-  /// not told from what speeds it up: the smaller of acceleration and deceleration holds for both.
-  /// 0 and infinite are none.
+  /// Reads the limits of a joint. The rates of URDF 1.2 (acceleration, deceleration, jerk) count
+  /// whatever version the file states. Swivel does not distinguish speeding up from slowing down,
+  /// so that the smaller of acceleration and deceleration holds for both. A rate of 0 or infinity
+  /// is no limit.
   void read_limits(const Element& limit, Joint& joint) {
     const auto rate = [&](const char* name, bool zero) {
       if (!limit.has(name)) return 0.0;
@@ -544,8 +551,8 @@ class ModelBuilder {
     }
   }
 
-  /// Those of a <safety_controller> that states none, as where it bounds the velocity alone, do not
-  /// bound the joint; one that states one of them has 0 for the other.
+  /// Reads the soft limits of a <safety_controller>. If it states neither, as where it bounds the
+  /// velocity alone, they do not bound the joint; if it states one, the other is 0.
   void read_soft_limits(const Element& safety, Joint& joint) {
     if (!safety.has("soft_lower_limit") && !safety.has("soft_upper_limit")) return;
     const double lower = safety.number_or("soft_lower_limit", 0),
@@ -581,7 +588,8 @@ class ModelBuilder {
                      : "mimics unknown joint '" + name + "'",
                  "the name of another joint");
     const int leader = found->second;
-    // Leaders come before or after in the file, so follow the chain as far as it is known.
+    // A leader may come later in the file than its follower, so follow the chain as far as it is
+    // known.
     for (int k = leader; k >= 0;) {
       const Joint& next = model_->joints[static_cast<std::size_t>(k)];
       if (&next == &joint) mimic.fail("mimics itself", "the name of another joint");
@@ -593,7 +601,7 @@ class ModelBuilder {
   struct Up {
     std::string parent;
     const tinyxml2::XMLElement* joint;
-    int walk = -1;  ///< which walk towards the root came here first
+    int walk = -1;  ///< number of the walk towards the root that came here first
   };
 
   const XmlSource& source_;
@@ -604,8 +612,8 @@ class ModelBuilder {
   std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
   MeshCache meshes_;
   std::size_t shape_count_ = 0;
-  Index links_, joints_;                          ///< where each stands in the model
-  std::map<std::string, Up, std::less<>> up_of_;  ///< what is above each link but the root
+  Index links_, joints_;                          ///< index of each in the model
+  std::map<std::string, Up, std::less<>> up_of_;  ///< parent of each link but the root
   std::string root_;
   std::set<std::string> left_out_;
   XmlWarnings warnings_;
