@@ -33,7 +33,8 @@ struct CheckArguments {
   EpisodeChoice episode;
 };
 
-/// The text without what failures of one kind differ in, its numbers. Those of quoted names stay.
+/// Returns the text of a failure without its numbers, in which failures of one kind differ. Numbers
+/// within quoted names stay.
 std::string kind_of(const std::string& failure) {
   std::string kind;
   bool quoted = false, number = false;
@@ -45,9 +46,9 @@ std::string kind_of(const std::string& failure) {
   return kind;
 }
 
-/// One line for each kind of failure, with how many more there are of it.
+/// Prints one line for each kind of failure, with the number of further failures of that kind.
 void print_failures(const CheckResult& result) {
-  std::vector<std::pair<std::string, std::size_t>> kinds;  // and how many
+  std::vector<std::pair<std::string, std::size_t>> kinds;  // and how many there are
   std::vector<const std::string*> first;
   for (const std::string& failure : result.failures) {
     const std::string kind = kind_of(failure);
@@ -70,7 +71,7 @@ void print_failures(const CheckResult& result) {
     say("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
 }
 
-/// What was proved, and how near to failing.
+/// Prints what was proved, and how near it is to failing.
 void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
   say("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position,
       result.worst_angle, 1e3 * result.worst_path_error);
@@ -202,8 +203,8 @@ int run(const CheckArguments& arguments) {
 void add_check(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "check", "Verify a trajectory, or that there is none, independently of the planners");
-  auto arguments =
-      std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
+  // shared, so that it lives as long as the callback that reads it
+  auto arguments = std::make_shared<CheckArguments>();
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile);
   command->add_option(

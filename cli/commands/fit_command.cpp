@@ -25,7 +25,7 @@ struct FitArguments {
   bool visual = false;
 };
 
-/// m^3 inside a closed mesh; none of another.
+/// Returns the volume inside a closed mesh, m^3; nothing for an open one.
 std::optional<double> volume_inside(const TriangleMesh& mesh) {
   if (!mesh.closed) return std::nullopt;
   double volume = 0;
@@ -38,7 +38,7 @@ std::optional<double> volume_inside(const TriangleMesh& mesh) {
   return std::abs(volume);
 }
 
-/// In the frame of what carries it.
+/// Returns a mesh at `pose`, in the frame of the link that carries it.
 TriangleMesh placed(const TriangleMesh& mesh, const Pose& pose) {
   TriangleMesh result = mesh;
   for (Vector3d& vertex : result.vertices) vertex = pose * vertex;
@@ -122,8 +122,8 @@ int run(const FitArguments& arguments) {
 void add_fit(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "fit", "Fit capsules about the collision meshes of a robot, a URDF that plans sooner");
-  auto arguments =
-      std::make_shared<FitArguments>();  // shared: lives as long as the callback that reads it
+  // shared, so that it lives as long as the callback that reads it
+  auto arguments = std::make_shared<FitArguments>();
   command->add_option("robot", arguments->urdf, "URDF file")->required();
   command->add_option(
       "--out", arguments->out,

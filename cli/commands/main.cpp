@@ -25,16 +25,17 @@ namespace swivel::cli {
 
 namespace {
 
-/// A closed standard stream would lend its number to the next file that is opened, and what is
-/// printed would end up in it. Opened the wrong way round, so that printing fails as it should.
+/// Opens standard streams that are closed, since the next file to be opened would get the number of
+/// one, and what is printed would end up in that file. Each is opened in the wrong direction, so
+/// that printing fails as it should.
 void occupy_standard_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) < 0)
       static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-/// What is wrong with the first word that was not expected, an option before all others; none where
-/// each one was.
+/// Returns a message about the first word that was not expected, options before other words;
+/// nothing if there is none.
 std::optional<std::string> unexpected_word(const CLI::App& app) {
   const std::vector<const CLI::App*> parsed =
       app.get_subcommands([](const CLI::App* command) { return command->parsed(); });
@@ -66,9 +67,9 @@ std::optional<std::string> unexpected_word(const CLI::App& app) {
          "`)";
 }
 
-/// Makes all commands refuse values that CLI11 takes and nobody means: an empty one (a variable of
-/// a shell that is not set), which would be passed over, and a negative one of a count or a seed,
-/// which would wrap around.
+/// Makes all commands refuse values that CLI11 accepts and nobody means: an empty value (of a shell
+/// variable that is not set), which CLI11 would skip, and a negative count or seed, which would
+/// wrap around.
 void refuse_odd_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
     for (CLI::Option* option : command->get_options()) {
@@ -106,7 +107,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) throw InputError(unexpected_word(app).value_or(error.what()));
-    exit_code = app.exit(error);  // --help, --version
+    exit_code = app.exit(error);  // only --help and --version
   }
   flush_standard_output();
   return exit_code;
@@ -144,13 +145,14 @@ int main(int argc, char** argv) {
   use_large_pages();
   occupy_standard_streams();
   wrap_standard_output();
-  // A reader that has left, or a file that may not grow, is an error of the write and not the end
-  // of the program.
+  // A reader that has left, or a file that may not grow, must make the write fail rather than end
+  // the program.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(argc, argv);
-  } catch (const swivel::io::ReaderLeft&) {  // as programs end that leave SIGPIPE as it is
+  } catch (const swivel::io::ReaderLeft&) {
+    // End as a program does that leaves SIGPIPE at its default.
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
     return kBadInput;

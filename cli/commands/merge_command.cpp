@@ -69,8 +69,8 @@ void add_merge(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("merge",
                                          "Join the shards of a campaign, or of placements, into "
                                          "the results of one that was not split");
-  auto arguments =
-      std::make_shared<MergeArguments>();  // shared: lives as long as the callback that reads it
+  // shared, so that it lives as long as the callback that reads it
+  auto arguments = std::make_shared<MergeArguments>();
   command->add_option("out", arguments->out, "results file (CSV), - for standard output")
       ->required();
   command

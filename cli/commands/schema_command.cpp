@@ -20,8 +20,8 @@ void add_schema(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "schema",
       "Print what a problem file, a result or the summary of a campaign may hold, as JSON Schema");
-  auto file =
-      std::make_shared<std::string>();  // shared: lives as long as the callback that reads it
+  // shared, so that it lives as long as the callback that reads it
+  auto file = std::make_shared<std::string>();
   command
       ->add_option("file", *file,
                    "problem, result, campaign; or tables: all keys as tables in Markdown")

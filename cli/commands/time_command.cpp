@@ -26,7 +26,8 @@ struct TimeArguments {
   bool quiet = false, refine = false, no_check = false;
 };
 
-/// Rows off the nodes of the lattice, on the path that the motion follows.
+/// Returns a path's rows after refinement, which moves them off the nodes of the lattice, on the
+/// path that the motion follows.
 std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem,
                                    const std::vector<TrajectoryRow>& rows, bool quiet) {
   const Problem smoothed = with_motion_defaults(problem);
@@ -56,7 +57,7 @@ int run(const TimeArguments& arguments) {
   try {
     timed = in_the_name_of(arguments.trajectory, [&] {
       const Budget budget(std::nullopt, &interrupted);
-      // The rows of a motion stand on the rounded path.
+      // The rows of a motion are at points of the path with rounded corners.
       const Problem of_rows = file.timed.empty() ? problem : with_motion_defaults(problem);
       std::vector<TrajectoryRow> rows =
           rows_at_layers(robot, of_rows, file.rows, file.stated, budget);
@@ -100,8 +101,8 @@ int run(const TimeArguments& arguments) {
 void add_time(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
-  auto arguments =
-      std::make_shared<TimeArguments>();  // shared: lives as long as the callback that reads it
+  // shared, so that it lives as long as the callback that reads it
+  auto arguments = std::make_shared<TimeArguments>();
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile)->required();
   arguments->motion.add_to(*command);

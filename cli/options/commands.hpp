@@ -14,10 +14,10 @@
 
 namespace swivel::cli {
 
-/// Exit codes, as the README lists them.
+/// Exit codes; the README lists them.
 enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kInternalError = 5 };
 
-/// Each adds a subcommand; its callback sets `exit_code`.
+/// Each function adds a subcommand to `app`. The callback of the subcommand sets `exit_code`.
 void add_plan(CLI::App& app, int& exit_code);
 void add_campaign(CLI::App& app, int& exit_code);
 void add_place(CLI::App& app, int& exit_code);
@@ -28,33 +28,34 @@ void add_info(CLI::App& app, int& exit_code);
 void add_fit(CLI::App& app, int& exit_code);
 void add_schema(CLI::App& app, int& exit_code);
 
-/// The episode of a campaign, and the placement, that plan, check and time can be asked for.
+/// The options by which plan, check and time can be asked for one episode of a campaign or for one
+/// placement.
 struct EpisodeChoice {
   std::optional<std::uint64_t> seed, episode;
   PlacementOptions placement;
   void add_to(CLI::App& command);
   [[nodiscard]] Problem apply(const Problem& problem) const;
-  /// "episode 33 of seed 1"; "" of none.
+  /// Returns words such as "episode 33 of seed 1"; "" if no episode is chosen.
   [[nodiscard]] std::string words() const;
 };
 
-/// Throws InputError where the text printed so far has not reached standard output: it is full or
-/// closed.
+/// Flushes standard output. Throws InputError if it does not take the text, because it is full or
+/// closed, and io::ReaderLeft if its reader has left.
 void flush_standard_output();
 
-/// Says on standard error which joints between base and tip stand still though `hold` does not say
-/// where.
+/// Warns on standard error of joints between base and tip that stand still although `hold` does not
+/// say where.
 void warn_of_held(const std::vector<HeldJoint>& held);
 
-/// Says on standard error that earlier files are gone, and why.
+/// Tells on standard error that earlier files were removed, and why.
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason);
 
-/// Throws InputError where the name of a file that holds CSV ends as another format of Swivel's
-/// does. `what` is in it, `instead` is what else is allowed.
+/// Throws InputError if the name of a file that is to hold CSV has the extension of another format
+/// of Swivel's. `option` names the option, `what` the contents, and `instead` what else is allowed.
 void require_table_name(const std::string& option, const std::string& file, const std::string& what,
                         const std::string& instead);
 
-/// Calls `work`; what the library finds wrong there is said in the name of the option.
+/// Calls `work`, and puts the name of the option before the message of an InputError.
 template <class Work>
 auto in_the_name_of(const std::string& option, const Work& work) {
   try {

@@ -9,7 +9,8 @@
 
 namespace swivel::cli {
 
-/// Throws InputError in the name of the option where there is no such link or joint.
+/// Throws InputError, which names the option and the nearest name, unless `name` is the name of one
+/// of `items`. `kind` says what they are, as "link" or "joint", and `source` which file has them.
 template <class Item>
 void require_known(const char* option, const std::string& name, const std::vector<Item>& items,
                    const char* kind, const std::string& source) {

@@ -9,7 +9,8 @@ namespace swivel::cli {
 
 inline constexpr const char* kPackagesHelp = "NAME=FOLDER, where meshes of package://NAME/... lie";
 
-/// What --packages says: name -> folder. Throws InputError.
+/// Returns what --packages says, as a map from package name to folder. Throws InputError for an
+/// item that is not NAME=FOLDER.
 [[nodiscard]] std::map<std::string, std::filesystem::path> parse_packages(
     const std::vector<std::string>& items);
 

@@ -30,7 +30,7 @@ double number(std::size_t coordinate, const std::string& text, const std::string
   const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !(std::abs(value) <= kMostMetres))
     refuse(coordinate, text, "", kValues);
-  return value + 0.0;  // never -0
+  return value + 0.0;  // turns -0 into 0
 }
 
 PlacementAxis axis_from(std::size_t coordinate, const std::string& text) {

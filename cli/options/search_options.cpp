@@ -25,7 +25,7 @@ void SearchOptions::add_to(CLI::App& command) {
 void LatticeOptions::add_to(CLI::App& command) {
   command.add_option("--ds", ds, "resolution along the path, m");
   command.add_option("--dphi", dphi, "resolution of the arm angle, rad");
-  // A flag bound to an optional would be "not" where it is not given.
+  // A flag bound to an optional would be false, not unset, if it is not given.
   command.add_flag_callback(
       "--arcs", [this] { arcs = true; }, "nodes on arcs of arm angles that the grid misses, too");
   command.add_flag_callback(

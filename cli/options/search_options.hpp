@@ -10,44 +10,46 @@
 
 namespace swivel::cli {
 
-/// Which lattice, the same words for `plan`, `campaign` and `check`.
+/// The options of `plan`, `campaign` and `check` that choose the lattice.
 struct LatticeOptions {
   std::string edges;
   std::optional<double> ds, dphi;
   std::optional<bool> arcs;
   void add_to(CLI::App& command);
-  /// What the command line says instead of the problem file.
+  /// Replaces values of the problem file by those that the command line gives.
   void apply(Problem& problem) const;
 };
 
-/// How to search, the same words for `plan` and `campaign`.
+/// The options of `plan` and `campaign` that say how to search.
 struct SearchOptions : LatticeOptions {
   std::string planner = "parallel";
   int threads = 0;
   void add_to(CLI::App& command);
-  /// Planner and threads, and Ctrl-C as the cancel flag.
+  /// Returns plan options with the planner and the threads, and with Ctrl-C as the cancel flag.
+  /// Throws InputError.
   [[nodiscard]] PlanOptions plan_options() const;
-  /// The options that change answers, as words of a command line, with a space before each; the
-  /// planner always.
+  /// Returns the options that change answers as words of a command line, with a space before each;
+  /// the planner is always among them.
   [[nodiscard]] std::string words() const;
 };
 
-/// The shortest digits that read back as the same number.
+/// Returns the shortest digits that read back as the same number.
 [[nodiscard]] std::string shortest(double value);
 
-/// A share in words, as "37 %" or "0.042 %": never 0 of what is more.
+/// Returns a share as text such as "37 %" or "0.042 %"; it is never 0 for a share above 0.
 [[nodiscard]] std::string percent(double share);
 
-/// A word as a POSIX shell reads it back.
+/// Returns a word quoted so that a POSIX shell reads it back.
 [[nodiscard]] std::string quoted(const std::string& word);
 
-/// Throws InputError where this program was built without the pages of --report.
+/// Throws InputError if this program was built without the pages of --report.
 void require_pages();
 
-/// Throws InputError in the name of the option.
+/// Returns `value`. Throws InputError, which names the option, unless it is finite and above 0.
 double positive(double value, const char* option);
 
-/// Set by Ctrl-C (SIGINT) and SIGTERM, once they are caught; a second one ends the program at once.
+/// Set by Ctrl-C (SIGINT) and SIGTERM after catch_interrupts(). A second signal ends the program at
+/// once.
 extern std::atomic<bool> interrupted;
 void catch_interrupts();
 

@@ -14,7 +14,7 @@ namespace swivel::cli {
 
 namespace {
 
-/// The share of this task of a Slurm job array.
+/// Returns the share of this task of a Slurm job array. Throws InputError outside of one.
 Shard shard_from_slurm() {
   const auto value = [](const char* name, std::optional<std::uint64_t> otherwise = {}) {
     const char* const text = std::getenv(name);
@@ -66,8 +66,8 @@ io::RunSettings run_settings(const std::string& problem_file, const Problem& pro
                      {"dphi", shortest(problem.resolution.dphi)},
                      {"arcs", problem.resolution.arcs ? "true" : "false"},
                      {"edges", problem.limits.edges == EdgeMode::kNodes ? "nodes" : "continuous"}};
-  // The problem file is the first, and may be called otherwise, or come through a pipe. The others
-  // by their place beside it.
+  // The problem file is the first. It is not known by its name, since that may differ or it may
+  // come through a pipe; the others are known by their place relative to it.
   const fs::path folder = fs::absolute(problem_file).parent_path();
   for (const io::InputFiles::File& file : inputs)
     settings.files.emplace_back(

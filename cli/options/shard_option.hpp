@@ -10,12 +10,13 @@
 
 namespace swivel::cli {
 
-/// What --shard says: I/N, or auto for the share of this task of a Slurm job array. Throws
-/// InputError.
+/// Returns the shard that --shard asks for: I/N, or `auto` for the share of this task of a Slurm
+/// job array. Throws InputError.
 [[nodiscard]] Shard shard_from_string(const std::string& text);
 
-/// What rows hang on in every command: version, how is planned, and the contents of all files that
-/// were read. Neither threads nor names of outputs.
+/// Returns what the rows of every command depend on: the version, how paths are planned, and the
+/// contents of all files that were read. Threads and names of outputs are left out, since rows do
+/// not depend on them.
 [[nodiscard]] io::RunSettings run_settings(const std::string& problem_file, const Problem& problem,
                                            const SearchOptions& search,
                                            const std::vector<io::InputFiles::File>& inputs);

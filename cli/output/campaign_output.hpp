@@ -8,13 +8,13 @@
 
 namespace swivel::cli {
 
-/// Writes summary (--json) and page (--report) of a campaign's rows, and prints the summary where
-/// standard output is free. `record`: which campaign, and which share of it, was asked for. What
-/// else is to be written must have been.
+/// Writes the summary (--json) and the page (--report) of a campaign's rows, and prints the summary
+/// if no output goes to standard output. All other outputs must have been written before. `record`:
+/// which campaign, and which share of it, was asked for.
 void show_campaign(io::OutputFiles& outputs, const std::vector<EpisodeRow>& rows,
                    const io::ShardRecord& record);
 
-/// The exit code that the rows deserve; internal errors are told.
+/// Returns the exit code for these rows. Prints internal errors that they report.
 [[nodiscard]] int campaign_exit_code(const std::vector<EpisodeRow>& rows,
                                      const io::ShardRecord& record);
 

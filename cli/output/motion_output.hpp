@@ -10,25 +10,28 @@
 
 namespace swivel::cli {
 
-/// How fast, and how a motion is written: the same words for `time` and `plan`.
+/// The options of `time` and `plan` that say how fast a motion is and how it is written.
 struct MotionOptions {
   std::optional<double> speed, turn_speed;
   std::optional<double> rate, chord;
   void add_to(CLI::App& command);
-  /// What is asked for where --speed is given; the others are bad input without it.
+  /// Returns the timing that is asked for by --speed; nothing without it. Throws InputError if one
+  /// of the other options is given without --speed.
   [[nodiscard]] std::optional<TimingOptions> asked_timing(const Problem& problem) const;
-  /// The problem's tool speeds where none are given. Throws InputError where there is no speed.
+  /// Returns the timing that the options ask for, with the problem's tool speeds where none are
+  /// given. Throws InputError if there is no speed.
   [[nodiscard]] TimingOptions timing(const Problem& problem) const;
 };
 
-/// Throws InputError where io::motion_text() knows no format of that name; nothing is said of an
-/// empty name.
+/// Throws InputError if the name of a file has no extension that io::motion_text() knows. An empty
+/// name is accepted.
 void require_motion_format(const std::string& file);
 
-/// What became of a plan's path, in a line each, on standard output; warnings on standard error.
+/// Prints what became of a plan's path, one line for each extra, on standard output, and warnings
+/// on standard error.
 void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint_names);
 
-/// What is worth knowing of a motion, on standard output; warnings on standard error.
+/// Prints the main figures of a motion on standard output, and warnings on standard error.
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names);
 
 }  // namespace swivel::cli

@@ -38,7 +38,7 @@ void print_pairs(const std::string& file) {
   say("%-*s %-*s %-8s %9s %12s %13s %12s\n", static_cast<int>(width), "body",
       static_cast<int>(width), "body", "", "median mm", "on layers mm", "on motions mm",
       "tolerance mm");
-  // Those that people look for come first.
+  // Dropped and reduced pairs come first, as people look for these.
   std::stable_sort(pairs.begin(), pairs.end(), [](const RobotPair& x, const RobotPair& y) {
     return std::pair(!x.dropped, !x.reduced) < std::pair(!y.dropped, !y.reduced);
   });

@@ -4,9 +4,9 @@
 
 namespace swivel::cli {
 
-/// Prints the stages of a timeline on standard error, the longest first: calls, their own time
-/// without that of stages within them, its share of all threads' time. Stages beyond the first
-/// eleven are one line.
+/// Prints the stages of a timeline on standard error, the longest first: number of calls, their own
+/// time without that of stages within them, and its share of the time of all threads. Stages after
+/// the first eleven are summed up in one line.
 void print_self_times(const Timeline& timeline);
 
 }  // namespace swivel::cli

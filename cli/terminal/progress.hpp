@@ -11,8 +11,9 @@
 
 namespace swivel::cli {
 
-/// One line on a terminal for work that takes more than half a second, redrawn five times a second
-/// from a thread of its own, so that stages which report nothing are seen to run too.
+/// Shows the progress of work that takes more than half a second as one line on the terminal
+/// (standard error). A thread of its own redraws the line five times a second, so that stages which
+/// report nothing are seen to run too.
 class ProgressLine {
  public:
   explicit ProgressLine(bool enabled) {
@@ -27,7 +28,7 @@ class ProgressLine {
     progress_ = progress;
     phrase_.clear();
   }
-  /// Ends the line; nothing is shown afterwards.
+  /// Erases the line; nothing is shown afterwards.
   void clear() { painter_ = {}; }
 
  private:

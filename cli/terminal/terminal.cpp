@@ -12,7 +12,7 @@ namespace swivel::cli {
 
 namespace {
 
-/// Text with '?' for what a terminal would obey or hide, line by line.
+/// Returns a text, line by line, with '?' for characters that a terminal would obey or hide.
 std::string shown(std::string_view text) {
   std::string result;
   for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {

@@ -13,7 +13,7 @@ namespace swivel::cli {
 
 namespace {
 
-/// Columns that a word takes.
+/// Returns the number of columns that a word takes.
 std::size_t width_of(std::string_view word) {
   std::size_t width = 0;
   bool escape = false;
@@ -23,13 +23,13 @@ std::size_t width_of(std::string_view word) {
       continue;
     }
     escape = c == '\033';
-    width +=
-        !escape && (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // not a later byte of a letter
+    // Bytes of a letter after its first one, and escape sequences, take no column.
+    width += !escape && (static_cast<unsigned char>(c) & 0xc0) != 0x80;
   }
   return width;
 }
 
-/// False, and errno, where it is not taken.
+/// Writes a text to standard output. Returns false, and sets errno, if it is not taken.
 bool write_out(std::string_view text) {
   while (!text.empty()) {
     const ssize_t count = write(STDOUT_FILENO, text.data(), text.size());
@@ -39,7 +39,7 @@ bool write_out(std::string_view text) {
   return true;
 }
 
-/// Whole lines, as a line-buffered stream has them.
+/// Writes whole lines, which a line-buffered stream passes on, wrapped. Returns 0 on failure.
 ssize_t write_wrapped(void*, const char* bytes, std::size_t count) {
   return write_out(wrapped_lines({bytes, count}, static_cast<std::size_t>(terminal_columns())))
              ? static_cast<ssize_t>(count)
@@ -49,8 +49,8 @@ ssize_t write_wrapped(void*, const char* bytes, std::size_t count) {
 }  // namespace
 
 std::string wrapped(std::string_view line, std::size_t columns) {
-  constexpr std::size_t kNarrow =
-      40;  // where that much is left beside the indent, or not broken at all
+  // A line is broken only if that many columns are left beside its indent.
+  constexpr std::size_t kNarrow = 40;
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size()) + 4;
   if (width_of(line) <= columns || columns < indent + kNarrow) return std::string(line);
   std::string text;
