@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finds the arcs of arm angles within the joint limits, and moves nodes of cells onto them.
 #include <algorithm>
 #include <cmath>

@@ -46,17 +46,17 @@ struct RequiredClearance {
   double tolerance = 0;
 };
 
-/// A pair of robot bodies that must keep clear, unless the model excludes it (by its SRDF, as one
-/// rigid group, or as parent and child).
+/// A pair of robot bodies that must keep clear. Pairs that the model excludes (by its SRDF, as one
+/// rigid group, or as parent and child) are not among them.
 ///
 /// An SRDF says which pairs can never meet. Where it says nothing of a pair (there is no SRDF, or a
 /// body is attached), many seeded postures inside the joint limits decide. A pair that touches in
 /// all of them touches by design and is dropped. A pair that is near by design could not keep the
-/// clearance asked for: it keeps at most half of its median clearance at layers and a quarter
-/// between them, and its tolerance is half of the latter where that is below 2 h. All other pairs
-/// keep self_clearance at layers, and edge_clearance (or half of self_clearance) between them. What
-/// a pair keeps never shrinks as a limit grows, so that no path exists only because a clearance is
-/// larger.
+/// clearance asked for: it keeps at most half of its median clearance at layers and a quarter of it
+/// between them, and its tolerance is at most half of the median, but at least kVerdictBand. All
+/// other pairs keep self_clearance at layers, edge_clearance (or half of self_clearance) between
+/// them, and the tolerance h. What a pair keeps never shrinks as a limit grows, so that no path
+/// exists only because a clearance is larger.
 struct RobotPair {
   BodyPair pair;
   bool dropped = false;

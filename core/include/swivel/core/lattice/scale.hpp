@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finds lengths that were probably given in millimetres although they are read as metres, because
 // they are out of all proportion to the arm.
 #pragma once
