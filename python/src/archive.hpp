@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems and answers as bytes, for pickle. A struct is taken apart by a structured binding, which
-// does not compile where a member was added and not listed. What is shared within an object, as the
-// mesh of many links, is written once.
+// Problems and answers as bytes, for pickle. A structured binding takes each struct apart; it does
+// not compile if a member was added to the struct and not listed here. An object that is shared
+// within another, as the mesh of many links, is written once.
 #pragma once
 #include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/array.hpp>
@@ -27,7 +27,7 @@
 
 namespace cereal {
 
-// Coefficients one by one: Eigen's own conversions would lead to other overloads.
+// Writes coefficients one by one, since Eigen's own conversions would select other overloads.
 template <class Archive, int Rows, int Columns>
 void serialize(Archive& archive, Eigen::Matrix<double, Rows, Columns>& x) {
   static_assert(Rows > 0 && Columns > 0);
@@ -46,7 +46,7 @@ void serialize(Archive& archive, Eigen::Isometry3d& x) {
 
 namespace swivel {
 
-// --- what goes in
+// --- problems
 
 template <class A>
 void serialize(A& archive, Sphere& x) {
@@ -176,7 +176,8 @@ void serialize(A& archive, Task& x) {
   archive(path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at,
           start_tolerance, cost, refinement);
 }
-/// Members of three classes, which no binding takes apart together.
+/// Lists the members of a Problem and of its two bases, which no structured binding takes apart
+/// together.
 template <class A>
 void serialize(A& archive, Problem& x) {
   struct Listed : Robot, Task {
@@ -188,7 +189,7 @@ void serialize(A& archive, Problem& x) {
   archive(static_cast<Robot&>(x), static_cast<Task&>(x), x.source, x.scene, x.vary);
 }
 
-// --- what comes out
+// --- answers
 
 template <class A>
 void serialize(A& archive, TrajectoryRow& x) {
@@ -293,7 +294,8 @@ void serialize(A& archive, HeldJoint& x) {
   auto& [name, position, slides, given, leader] = x;
   archive(name, position, slides, given, leader);
 }
-/// Members of two classes, as Problem.
+/// Lists the members of a PlanResult and of its base, which no structured binding takes apart
+/// together.
 template <class A>
 void serialize(A& archive, PlanResult& x) {
   struct Listed : Measures {
@@ -453,15 +455,16 @@ void serialize(A& archive, Table<Row>& x) {
   archive(rows, coordinates);
 }
 
-/// Of bytes that stand for a T: those of another class have another one.
+/// Returns the checksum of bytes that stand for a T. The name of the class is part of it, so that
+/// the same bytes of another class have another checksum.
 template <class T>
 std::uint64_t checksum_of(const std::string& bytes) {
   return fnv1a(bytes, fnv1a(typeid(T).name()));
 }
 
-/// For `def` of a class: Python's module pickle, to other processes, and to machines with the same
-/// version of this package. The state is (version, checksum, bytes): damaged bytes would be read as
-/// lengths of lists that fill the memory.
+/// Returns what `def` of a class takes to support Python's module pickle, between processes and
+/// machines with the same version of this package. The state is (version, checksum, bytes). The
+/// checksum matters because damaged bytes could be read as lengths of lists that fill the memory.
 template <class T>
 auto pickling() {
   return py::pickle(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the files of the Python module share: poses, waypoints, arrays and enums as Python has them.
+// Conversions that the files of the Python module share: poses, waypoints, arrays and enums.
 #pragma once
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
@@ -16,29 +16,30 @@
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/core/problem/problem.hpp"
 
-// A scene is changed in place: never a copy in a list.
+// Python changes a scene in place, so it must never be copied into a list.
 PYBIND11_MAKE_OPAQUE(std::vector<swivel::SceneObject>)
 
 namespace swivel::python {
 
 namespace py = pybind11;
 
-/// A mesh is shared by all who use it.
+/// A mesh, shared by all that use it.
 struct Mesh {
   MeshPtr mesh;
 };
 
-/// Throws ValueError unless it is one of: 4x4, [x y z qw qx qy qz], and where `position_alone` [x y
-/// z].
+/// Converts a pose: a (4, 4) array or [x y z qw qx qy qz], m, and if `position_alone` also [x y z].
+/// Throws ValueError for anything else.
 [[nodiscard]] Waypoint to_waypoint(py::handle source, bool position_alone);
 [[nodiscard]] Pose to_pose(py::handle source);
 [[nodiscard]] std::vector<Waypoint> to_waypoints(py::handle source);
 [[nodiscard]] py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints);
-/// (n, 7) float64, contiguous; (7,) reads as one row. Throws ValueError.
+/// Returns joints as a contiguous (n, 7) float64 array, rad; (7,) is read as one row. Throws
+/// ValueError, with `what` as the name of the argument, for other shapes.
 [[nodiscard]] py::array_t<double> to_joints(py::handle source, const char* what);
 
-/// Read-only numpy array of one member of all rows, without a copy: `first` lies in the first row.
-/// Shape (n,), or (n, width).
+/// Returns a read-only numpy array of one member of all rows, without a copy. `first` points at the
+/// member in the first row. Shape (n,), or (n, width) if width > 0.
 template <class Row, class Number>
 py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Number* first,
                  py::ssize_t width = 0) {
@@ -52,8 +53,8 @@ py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Numb
   return array;
 }
 
-/// A Python enum whose members may be given by name wherever the module takes one, and are equal to
-/// it: Status.SOLVED, "solved".
+/// A Python enum whose members equal their names, and may be given by name wherever the module
+/// takes one: Status.SOLVED and "solved".
 template <class E>
 struct EnumNames {
   static inline std::vector<std::pair<std::string, E>> names;
@@ -77,8 +78,8 @@ void bind_enum(py::module_& m, const char* type, const char* doc,
       letter = static_cast<char>(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
     bound.value(upper.c_str(), value);
   }
-  // Set in place of pybind11's own, which calls itself "name": an overload of that one would take
-  // the place of the property `name`.
+  // Replaces pybind11's own __str__, which calls itself "name"; an overload of that would replace
+  // the property `name`.
   bound.attr("__str__") =
       py::cpp_function(&EnumNames<E>::name_of, py::name("__str__"), py::is_method(bound));
   const auto same = [](E value, const py::object& other) {
@@ -112,7 +113,7 @@ E to_enum(py::handle source) {
 template <class T>
 auto pickling();  // archive.hpp
 
-/// For Python's module copy. Meshes and robot models stay shared: they do not change.
+/// Supports Python's module copy. Meshes and robot models stay shared, since they do not change.
 template <class T, class... Bases>
 void make_copyable(py::class_<T, Bases...>& type) {
   type.def("__copy__", [](const T& self) { return T(self); });
@@ -120,8 +121,8 @@ void make_copyable(py::class_<T, Bases...>& type) {
       "__deepcopy__", [](const T& self, const py::dict&) { return T(self); }, py::arg("memo"));
 }
 
-/// A plain struct: made from keywords, its members are attributes, and its repr names those that
-/// are not the default.
+/// Binds a plain struct: it is made from keywords, its members are attributes, and its repr names
+/// the members that do not have their default value.
 template <class T>
 class PlainStruct {
  public:
@@ -176,8 +177,8 @@ class PlainStruct {
  private:
   py::class_<T> class_;
   std::string type_;
-  std::shared_ptr<std::vector<std::string>> names_ =
-      std::make_shared<std::vector<std::string>>();  // shared: with the functions
+  // Shared with the functions that are bound.
+  std::shared_ptr<std::vector<std::string>> names_ = std::make_shared<std::vector<std::string>>();
 };
 
 void bind_problem(py::module_& m);

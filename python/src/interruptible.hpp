@@ -16,11 +16,11 @@
 
 namespace swivel::python {
 
-/// Work under way. Threads that Python leaves behind at its end could not take up an answer, so
-/// that work is stopped and waited for before; then there is no more.
+/// One piece of work under way. A thread that Python leaves behind when it ends could not take up
+/// an answer; therefore end_all() stops all work and waits for it, and no work begins afterwards.
 class UnderWay {
  public:
-  /// Throws RuntimeError at Python's end.
+  /// Registers work that `stop` stops. Throws RuntimeError if Python is ending.
   explicit UnderWay(std::stop_source stop) {
     All& all = UnderWay::all();
     const std::lock_guard lock(all.mutex);
@@ -53,13 +53,13 @@ class UnderWay {
     bool closed = false;
   };
   static All& all() {
-    static auto* const all = new All;  // for threads that are there till the last moment
+    static auto* const all = new All;  // never destroyed, as threads may use it to the end
     return *all;
   }
   std::list<std::stop_source>::iterator place_;
 };
 
-/// Whether this is Python's main thread, which alone handles its signals.
+/// Returns whether this is Python's main thread, which alone handles signals.
 inline bool handles_signals() {
   return py::module_::import("threading")
              .attr("main_thread")()
@@ -67,9 +67,9 @@ inline bool handles_signals() {
              .cast<unsigned long>() == PyThread_get_thread_ident();
 }
 
-/// work() on a thread of its own, while this one lets Python handle its signals: where a handler
-/// raises, as that of Ctrl-C does, `stop` is told, and what was raised goes on once the work has
-/// ended. Begins and ends with the interpreter's lock.
+/// Calls work() on a thread of its own while this thread lets Python handle its signals. If a
+/// signal handler raises, as that of Ctrl-C does, requests `stop` and raises the same exception
+/// once the work has ended. The caller holds the interpreter's lock before and after.
 template <class Work>
 void with_signals(const Work& work, std::stop_source& stop) {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
@@ -94,7 +94,7 @@ void with_signals(const Work& work, std::stop_source& stop) {
     lock.unlock();
     released.reset();
     if (PyErr_CheckSignals() != 0) {
-      interrupt.emplace();  // takes what was raised
+      interrupt.emplace();  // takes the exception that was raised
       stop.request_stop();
     }
     released.emplace();
@@ -106,9 +106,9 @@ void with_signals(const Work& work, std::stop_source& stop) {
   if (error) std::rethrow_exception(std::exchange(error, nullptr));
 }
 
-/// work(stop) without the interpreter's lock, interrupted by Python's signals where this thread
-/// handles them. What the work throws is thrown here; Stopped as TimeoutError, since nothing else
-/// stops it.
+/// Returns work(stop), called without the interpreter's lock, and interrupted by Python's signals
+/// if this thread handles them. Throws what the work throws; Stopped becomes TimeoutError, since
+/// only a timeout stops the work.
 template <class Work>
 auto interruptible(const Work& work) {
   std::optional<std::invoke_result_t<Work, std::stop_token>> result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planner, with the caller's own checks and costs.
+// Bindings of the planner, with the caller's own checks and costs.
 #include "swivel/planner/plan/planner.hpp"
 
 #include <atomic>
@@ -29,7 +29,8 @@ std::string name_of(const py::object& function) {
              : py::type::of(function).attr("__name__").cast<std::string>();
 }
 
-/// What a Python function answered, one for each state. Throws ValueError.
+/// Returns the answers of a Python function as an array with one number for each of `count` states.
+/// Throws ValueError for another shape or type.
 template <class Number>
 py::array_t<Number> answers_of(const py::object& answer, std::size_t count,
                                const std::string& what) {
@@ -49,7 +50,7 @@ py::array_t<Number> answers_of(const py::object& answer, std::size_t count,
   return py::array_t<Number, py::array::c_style | py::array::forcecast>::ensure(array);
 }
 
-/// A copy: a function may keep what it was given.
+/// Returns a copy of states as an array, since a function may keep its argument.
 template <class Item>
 py::array_t<double> states_of(std::span<const Item> items, const Config& (*joints)(const Item&)) {
   py::array_t<double> states(
@@ -62,7 +63,8 @@ const Config& itself(const Config& q) {
   return q;
 }
 
-/// Python functions of arrays. Made and destroyed with the interpreter's lock.
+/// A check by Python functions of arrays. The interpreter's lock must be held when it is made and
+/// destroyed.
 class ArrayCheck : public StateCheck {
  public:
   ArrayCheck(py::object check, py::object motions)
@@ -111,7 +113,7 @@ class ArrayCost : public StateCost {
   std::string name_;
 };
 
-/// Options of a plan as keywords.
+/// The options of a plan as Python keywords.
 struct PlanKeywords {
   py::object planner;
   int threads = 0;
@@ -143,7 +145,8 @@ struct PlanKeywords {
   }
 
  private:
-  /// So often that it looks smooth, so seldom that it costs nothing.
+  /// Returns a function that passes progress on to Python every 20 ms at most: often enough to look
+  /// smooth, and seldom enough to cost nothing.
   static ProgressFunction told(const py::object& progress) {
     using Clock = std::chrono::steady_clock;
     return [tell = progress.ptr(), last = Clock::time_point()](const Progress& now) mutable {
@@ -185,8 +188,8 @@ Problem problem_of(const Robot& robot, const std::optional<Task>& task, const py
   return problem;
 }
 
-/// A planner for one thread at a time: another one that comes meanwhile is told so. The task that
-/// it holds is the user's, or that with the defaults of motions while one is planned.
+/// A planner for one thread at a time; a second thread gets a RuntimeError meanwhile. The planner's
+/// task is the user's, or that task with the defaults of motions while a motion is planned.
 class SharedPlanner {
   class Use {
    public:
@@ -203,7 +206,7 @@ class SharedPlanner {
    private:
     SharedPlanner& planner_;
   };
-  /// work(robot, problem, budget) with the robot prepared.
+  /// Returns work(robot, problem, budget), called with the prepared robot. `timeout`: s.
   template <class Work>
   auto prepared(const Work& work, std::optional<double> timeout = {}) {
     const Use use(*this);
@@ -237,7 +240,7 @@ class SharedPlanner {
     planner_.set_task(task);
     task_ = planner_.problem();
   }
-  /// A change of robot or scene.
+  /// Applies a change of robot or scene.
   template <class Change>
   void change(const Change& change) {
     const Use use(*this);

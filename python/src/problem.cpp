@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Robot, scene, task, problem: what goes in.
+// Bindings of robot, scene, task and problem.
 #include <algorithm>
 #include <optional>
 #include <variant>
@@ -107,7 +107,7 @@ std::string number(double value) {
   return py::repr(py::float_(value)).cast<std::string>();
 }
 
-/// 4x4 from position and rpy or quaternion.
+/// Returns a pose from a position, m, and rpy, rad, or a quaternion [w x y z].
 Pose make_pose(const Vector3d& xyz, const std::optional<Vector3d>& rpy,
                const std::optional<Eigen::Vector4d>& quat) {
   if (rpy && quat) throw py::value_error("pose: rpy and quat: allowed is one of the two");
@@ -146,8 +146,8 @@ void choose_links(Robot& robot, const std::optional<std::string>& base,
     return;
   }
   const std::vector<ArmGuess> arms = guess_arms(model).arms;
-  // Of six joints where the tool may turn, else of seven; an arm of six without a roll is refused
-  // later, which says what to add.
+  // Chooses an arm of six joints if the tool may turn, else one of seven. An arm of six without a
+  // roll is refused later with a message that says what to add.
   const auto fits = [&](const ArmGuess& arm) { return (arm.joints == 6) == roll; };
   const auto found = std::find_if(arms.begin(), arms.end(), fits);
   if (arms.empty() || (roll && found == arms.end()))
@@ -172,7 +172,7 @@ Robot make_robot(std::shared_ptr<const RobotModel> model, const RobotKeywords& k
   if (keywords.tool) robot.tool = *keywords.tool;
   robot.hold = keywords.hold;
   robot.roll = keywords.roll;
-  static_cast<void>(planning_arm(robot));  // what is wrong with it is said here
+  static_cast<void>(planning_arm(robot));  // throws for an unsuitable arm
   return robot;
 }
 
@@ -181,7 +181,7 @@ ArmModel arm_of(const Robot& robot) {
                    robot.roll);
 }
 
-/// (4, 4) of (7,), (n, 4, 4) of (n, 7).
+/// Returns the tool poses of joints, rad: (4, 4) for (7,), and (n, 4, 4) for (n, 7).
 py::array_t<double> tool_poses(const Robot& robot, py::handle joints) {
   const py::array_t<double> states = to_joints(joints, "joints");
   const Chain chain = arm_of(robot).chain;
@@ -431,7 +431,7 @@ void bind_robot(py::module_& m) {
       .def("__repr__", [](const Robot& robot) { return "<Robot " + robot_words(robot) + ">"; });
 }
 
-/// Names, or how deep each may be, m.
+/// Names of bodies that may touch, or a dict from name to the depth to which each may, m.
 using AllowedBodies =
     std::variant<std::vector<std::string>, std::map<std::string, std::optional<double>>>;
 std::vector<Allowed> to_allowed(const AllowedBodies& bodies) {
@@ -535,7 +535,7 @@ void bind_scene(py::module_& m) {
       .def("__len__", [](const Scene& scene) { return scene.size(); })
       .def("__iter__",
            [](const Scene& scene) {
-             py::list objects;  // copies: the scene may change meanwhile
+             py::list objects;  // copies, as the scene may change meanwhile
              for (const SceneObject& object : scene) objects.append(py::cast(object));
              return py::iter(objects);
            })

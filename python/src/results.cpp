@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories, plans, motions, verdicts: what comes out.
+// Bindings of trajectories, plans, motions and verdicts.
 #include "results.hpp"
 
 #include "archive.hpp"
@@ -179,7 +179,7 @@ std::vector<std::pair<std::string, E>> names_from(E first, E last) {
   return names;
 }
 
-/// A pair of names, or None.
+/// Returns a pair of names; None if both are empty.
 py::object bodies_of(const std::array<std::string, 2>& bodies) {
   if (bodies[0].empty() && bodies[1].empty()) return py::none();
   return py::make_tuple(bodies[0], bodies[1]);

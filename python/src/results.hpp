@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Answers as Python holds them: shared, so that arrays are views which outlive the object that they
-// were read from.
+// Answers as Python holds them. They are shared, so that arrays are views which outlive the object
+// from which they were read.
 #pragma once
 #include <memory>
 #include <optional>
@@ -16,16 +16,16 @@
 namespace swivel::python {
 
 struct Trajectory {
-  std::shared_ptr<const std::vector<TrajectoryRow>> rows;  // shared: with arrays and other answers
+  std::shared_ptr<const std::vector<TrajectoryRow>> rows;  // shared with arrays and other answers
   io::JointNames joint_names;
 };
 
 struct Motion {
   std::shared_ptr<const TimingResult> timing;
   io::JointNames joint_names;
-  std::string frame;  ///< base link
+  std::string frame;  ///< name of the base link
   [[nodiscard]] std::shared_ptr<const std::vector<TimedRow>> rows() const;
-  [[nodiscard]] const TimedPath& path() const;  ///< Throws ValueError where it is not executable.
+  [[nodiscard]] const TimedPath& path() const;  ///< throws ValueError if not executable
 };
 
 struct RefinedPath {

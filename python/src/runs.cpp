@@ -42,7 +42,7 @@ std::string to_csv(const Episodes& table) {
   return io::to_csv(*table.rows, table.coordinates);
 }
 
-/// One number a row, NaN where there is none.
+/// Returns an array with one number for each row, NaN for a row that has none.
 template <class Row>
 py::array_t<double> numbers(const Table<Row>& table, std::optional<double> Row::*member) {
   py::array_t<double> array(static_cast<py::ssize_t>(table.rows->size()));
@@ -73,7 +73,7 @@ Table<Row> joined(const std::vector<Table<Row>>& parts) {
                   parts.empty() ? std::vector<std::string>() : parts[0].coordinates);
 }
 
-/// "12, of which 7 have a path; cost 1.9 to 2.4"
+/// Returns words such as "12, of which 7 have a path; cost 1.9 to 2.4".
 template <class Row>
 std::string table_words(const Table<Row>& table) {
   std::size_t solved = 0;
@@ -89,7 +89,7 @@ std::string table_words(const Table<Row>& table) {
   return text;
 }
 
-/// What every table has.
+/// Binds what every table has.
 template <class Row>
 py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* doc) {
   using Rows = Table<Row>;
@@ -136,7 +136,7 @@ py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* 
           "save",
           [](const Rows& t, const std::filesystem::path& file) { io::write_file(file, to_csv(t)); },
           py::arg("file"), "As CSV, docs/formats.md: what the program writes.")
-      .def_static("_joined", &joined<Row>)  // for place() and campaign() of the package
+      .def_static("_joined", &joined<Row>)  // used by place() and campaign() of the package
       .def("__repr__", [name = std::string(type)](const Rows& t) {
         return "<" + name + ": " + table_words(t) + ">";
       });
@@ -289,12 +289,13 @@ void bind_tables(py::module_& m) {
           "(n,), mm; as cost.");
 }
 
-// --- what place() and campaign() of the package are made of
+// --- parts of place() and campaign() of the package
 
-/// A coordinate as Python says it: a number, (from, to) of samples, or (from, to, step).
+/// A coordinate as given in Python: a number, (from, to) of samples, or (from, to, step).
 using Range = std::variant<double, std::array<double, 2>, std::array<double, 3>>;
 
-/// The cells that are asked for: a grid, or a sample of places between the ends of its axes.
+/// The cells that are asked for: those of a grid, or a sample of places between the ends of its
+/// axes.
 class Cells {
  public:
   Cells(const std::array<std::optional<Range>, 6>& ranges, std::optional<std::uint64_t> sample,
@@ -368,7 +369,7 @@ PlanOptions plan_options(const py::object& planner, int threads, std::optional<d
   return options;
 }
 
-/// Placements of one thing, planned by planners that remember those before.
+/// Plans placements of one thing with a planner that remembers earlier plans.
 class Placer {
  public:
   Placer(Problem problem, Movable thing, const py::object& planner, int threads,
@@ -411,11 +412,12 @@ class Placer {
   Problem problem_;
   Movable thing_;
   PlanOptions options_;
-  std::stop_source stop_;  // of all its plans: the planner keeps the options that it was made with
+  // Stops all plans, because the planner keeps the options with which it was made.
+  std::stop_source stop_;
   std::optional<PlacementPlanner> planner_;
 };
 
-/// Episodes of one campaign.
+/// Plans episodes of one campaign.
 class Campaigner {
  public:
   Campaigner(Problem problem, std::uint64_t episodes, std::uint64_t seed, const py::object& planner,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many plans of one problem: the tables of placements and campaigns.
+// Tables of many plans of one problem: placements and campaigns.
 #pragma once
 #include <memory>
 #include <string>
@@ -13,13 +13,14 @@ namespace swivel::python {
 
 template <class Row>
 struct Table {
-  std::shared_ptr<const std::vector<Row>> rows;  // shared: with arrays
-  std::vector<std::string> coordinates;          // of episodes: whose offsets the rows have
+  std::shared_ptr<const std::vector<Row>> rows;  // shared with arrays
+  std::vector<std::string> coordinates;          // for episodes: names of the offsets in the rows
 };
 using Placements = Table<PlacementRow>;
 using Episodes = Table<EpisodeRow>;
 
-/// What place() and `Problem.placed` move: exactly one of the three. Throws InvalidArgument.
+/// Returns what place() and `Problem.placed` move: exactly one of the three. Throws InvalidArgument
+/// otherwise.
 [[nodiscard]] Movable to_movable(const std::optional<std::string>& object, bool path, bool base);
 
 }  // namespace swivel::python

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Types of the package, for editors and mypy. Docstrings are those of the module: help(swivel.Planner.plan).
+# Types of the package, for editors and mypy. The module itself has the docstrings, as in
+# help(swivel.Planner.plan).
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Literal, TypeAlias, overload
@@ -13,15 +14,17 @@ __all__: list[str]
 _Array: TypeAlias = NDArray[np.float64]
 _File: TypeAlias = str | os.PathLike[str]
 _Shape: TypeAlias = Sphere | Box | Cylinder | Capsule | Mesh
-# (4, 4), or [x y z qw qx qy qz]; where a pose of a body is asked for also [x y z].
+# A pose, m: a (4, 4) array or [x y z qw qx qy qz]; for the pose of a body also [x y z].
 _Pose: TypeAlias = ArrayLike
 _Check: TypeAlias = Callable[[_Array], ArrayLike]
 _MotionCheck: TypeAlias = Callable[[_Array, _Array], ArrayLike]
 _Progress: TypeAlias = Callable[[str, int, int], Any]
 _PlannerKind: TypeAlias = PlannerKind | Literal["eager", "eager_dp", "lazy", "parallel"]
 _Criterion: TypeAlias = Literal["clearance", "cost", "margin", "speed"]
-# Members of enums are equal to their names as str() gives them, and may be given by these: plan.status == "solved".
-# A number, (from, to, step), or of samples (from, to).
+# Members of enums equal their names as str() gives them, and may be given by these names:
+# plan.status == "solved".
+
+# A coordinate of placements: a number, (from, to, step), or (from, to) for samples.
 _Range: TypeAlias = float | tuple[float, float] | tuple[float, float, float]
 
 class InputError(ValueError): ...
@@ -29,7 +32,7 @@ class InvalidArgument(ValueError): ...
 
 def pose(xyz: ArrayLike = ..., rpy: ArrayLike | None = None, quat: ArrayLike | None = None) -> _Array: ...
 
-# --- what goes in
+# --- problems
 
 class Sphere:
     def __init__(self, radius: float) -> None: ...
@@ -305,7 +308,7 @@ class Problem(Robot, Task):
 
 def load_problem(file: _File) -> Problem: ...
 
-# --- what comes out
+# --- answers
 
 class LeastMargin:
     @property
@@ -665,7 +668,8 @@ class LatticeInfo:
     @property
     def cost(self) -> float: ...
 
-# `| Any`: None only where it was not asked for, or where the status says that there is none.
+# Members of type `... | Any` are None only if they were not asked for, or if the status says that
+# there is none.
 class Plan:
     @property
     def status(self) -> Status: ...
@@ -927,7 +931,7 @@ class Episodes:
     def __len__(self) -> int: ...
     def __getitem__(self, k: int) -> Episode: ...
 
-# client: a dask.distributed.Client.
+# `client` is a dask.distributed.Client.
 def place(
     problem: Problem | _File,
     *,
@@ -961,7 +965,7 @@ def campaign(
     client: Any = None,
 ) -> Episodes: ...
 
-# --- in one call
+# --- functions that plan in one call
 
 def plan(problem: Problem | _File, **options: Any) -> Plan: ...
 def check(problem: Problem | _File, trajectory: Trajectory | Motion) -> Check: ...
