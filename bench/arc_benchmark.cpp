@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the time of a plan goes on arms without an arm angle: random straight paths of 0.5 m at 5
-// mm, without obstacles, one thread, planner `lazy`.
-//   arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...    default 20 paths that are
-//   solved, seed 1, 3 rounds
+// Measures where the time of a plan goes on arms without an arm angle. It plans random straight
+// paths of 0.5 m at 5 mm, without obstacles, on one thread with the planner `lazy`.
+//
+//   arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...
+//       default: 20 paths that are solved, seed 1, 3 rounds
+//
 // A problem gives robot, roll, limits and cost. A path begins at random joints within the limits
-// and turns by at most 0.5 rad. Of each path the round with the least whole time; medians over
-// paths, ms of the processor: `arcs` is the making of nodes, `sweep` every node against those of
-// the next layer, first and where nodes fell out, `questions` validity, `rest` what is left of the
-// plan. Parts are shares of the wall's time. A hash of all rows tells whether answers changed.
+// and turns by at most 0.5 rad. For each path the round with the least whole time counts. Printed
+// are medians over the paths, in ms of processor time: `arcs` is the time to make nodes, `sweep`
+// that to compare every node with those of the next layer, at first and again where nodes were
+// removed, `questions` that of validity, and `rest` what remains of the plan. The parts are shares
+// of wall time. A hash of all rows shows whether answers changed.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -105,7 +108,7 @@ Times timed(const PreparedRobot& robot, const Problem& problem, PlanResult& resu
     rest -= ms;
   }
   times.ms["rest"] = rest;
-  const double busy = processor / times.whole();  // beside other programs less than 1
+  const double busy = processor / times.whole();  // less than 1 if other programs run
   for (auto& [part, ms] : times.ms) ms *= busy;
   return times;
 }
@@ -121,7 +124,7 @@ struct Options {
 };
 
 void run(const Options& options, const std::string& file) {
-  constexpr std::uint64_t kMostTries = 1000;  // of each path asked for
+  constexpr std::uint64_t kMostTries = 1000;  // for each path asked for
   const Problem base = io::load_problem(file);
   const PreparedRobot robot(base);
   Random random(options.seed);

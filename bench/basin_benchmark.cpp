@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How near refined paths come to the optimum of their basin, on random poses: their cost over that
-// of a fine lattice about them (basin_lattice.hpp).
-//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time] [--about]
-//   [--margins]
-// Episodes of seed 1, default 100; a problem without `vary` is planned once. --about: lattices that
-// have the refined path in them;
-// --margins: nodes keep what refinement keeps besides. A second a pose, up to a minute near
-// obstacles. One line for each pose, median and percentiles below.
+// Measures how near refined paths come to the optimum of their basin, on random poses: their cost
+// divided by that of a fine lattice about them (basin_lattice.hpp).
+//
+//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time]
+//                   [--about] [--margins]
+//       --about      use lattices that have the refined path among their nodes
+//       --margins    nodes also keep the margins that refinement keeps
+//
+// Episodes are those of seed 1, by default 100; a problem without `vary` is planned once. A pose
+// takes a second, and up to a minute near obstacles. Prints one line for each pose, then median and
+// percentiles.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -43,7 +43,7 @@ BasinLattice::BasinLattice(const PreparedRobot& robot, const Problem& problem,
     first_.push_back((rules.about_path ? here : kCell * std::round(here / kCell)) - kReach * kCell);
     for (int m = 0; m < kPoints; ++m) points_[at(i)].push_back(solved_point(i, m));
   }
-  if (problem.start) {  // the only node there
+  if (problem.start) {  // the start is the only node of its layer
     for (Point& point : points_[0]) point.state = State::kBad;
     points_[0][kParts * kReach] = {State::kUnknown, rows_[0].q};
   }

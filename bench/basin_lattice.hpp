@@ -13,34 +13,37 @@
 
 namespace swivel::bench {
 
-/// What a refined path is held against: a fine lattice about it, over the same layers, with its
-/// labels. Arm angles (or lengths along the self-motion) up to 0.5 rad from the path's, 0.0025 rad
-/// apart; edges to the next layer, and straight over two and four, so that there are directions
-/// between those of the grid. Its cheapest path is valid by docs/model.md.
+/// A fine lattice about a refined path, with which the path is compared. It has the layers and
+/// branches of the path, and arm angles (or lengths along the self-motion) up to 0.5 rad from the
+/// path's, 0.0025 rad apart. Edges lead to the next layer, and straight over two and four, which
+/// gives directions between those of the grid. The cheapest path that solve() finds is valid by
+/// docs/model.md.
 ///
-/// A dynamic program over all edges, that knows limits alone. Collisions and errors between layers
-/// are asked of its path; what fails is taken out, with what fails beside it, and the program run
-/// again: the answer is that of asking all first.
+/// A dynamic program over all edges knows limits alone. Collisions and errors between layers are
+/// then asked about its path only; what fails is removed, together with what fails beside it, and
+/// the program runs again. The answer is the same as if all had been asked first.
 class BasinLattice {
  public:
   struct Rules {
-    /// The coordinates are the path's own and multiples of the cell from there, so that the path is
-    /// in the lattice; else multiples of the cell.
+    /// Whether the coordinates of a layer are the path's own and multiples of the cell from there,
+    /// so that the path is in the lattice; otherwise they are multiples of the cell.
     bool about_path = false;
-    /// Nodes keep what refinement keeps besides: RefineOptions::extra_clearance, what midpoints
-    /// keep, Refinement's margins.
+    /// Whether nodes also keep what refinement keeps: RefineOptions::extra_clearance, what
+    /// midpoints keep, and Refinement's margins.
     bool margins = false;
   };
-  /// `rows`: the path refined. All but these must outlive it.
+  /// Builds the lattice about `rows`, the refined path. The other arguments must outlive it.
   BasinLattice(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy,
                std::vector<TrajectoryRow> rows, const Rules& rules);
 
   struct Optimum {
-    double cost = std::numeric_limits<double>::infinity();  ///< infinite where no path is left
-    bool valid = false;   ///< of a path found valid; else a bound below it, after too many rounds
-    int rounds = 0;       ///< of the dynamic program
-    double farthest = 0;  ///< rad, from the path refined
-    double singular_sine = 1;  ///< the least on the way
+    double cost = std::numeric_limits<double>::infinity();  ///< infinite if no path is left
+    /// Whether the cost is that of a valid path; otherwise it is a bound below it, after too many
+    /// rounds.
+    bool valid = false;
+    int rounds = 0;            ///< runs of the dynamic program
+    double farthest = 0;       ///< rad, from the refined path
+    double singular_sine = 1;  ///< least singular_sine() of the arm's redundancy on the path
   };
   [[nodiscard]] Optimum solve();
 
@@ -60,7 +63,7 @@ class BasinLattice {
     State state = State::kBad;
     Config q = Config::Zero();
   };
-  /// From cell a of the layer that is kStrides[stride] before `layer` to its cell b.
+  /// An edge from cell a of the layer that is kStrides[stride] before `layer` to its cell b.
   struct Edge {
     std::size_t stride = 0;
     int layer = 0, a = 0, b = 0;
@@ -71,7 +74,7 @@ class BasinLattice {
   };
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  /// The point of the j-th layer that an edge over `stride` layers meets.
+  /// Returns the point of the j-th layer that an edge over `stride` layers meets.
   static int crossing(int a, int b, int j, int stride) {
     return kParts * a + kParts * (b - a) * j / stride;
   }
@@ -83,16 +86,17 @@ class BasinLattice {
     return costs_[e.stride][at(e.layer)]
                  [at(e.b) * at(2 * width(e.stride) + 1) + at(e.a - e.b + width(e.stride))];
   }
-  /// Calls each(edge) for those that end in a layer.
+  /// Calls each(edge) for the edges that end in a layer.
   template <class Each>
   void for_edges(std::size_t stride, int layer, const Each& each) const;
 
   [[nodiscard]] Point solved_point(int layer, int point) const;
   void price(std::size_t stride, int layer);
   void sweep(int first);
-  /// Points by layer, and the edges, of the cheapest path now.
+  /// Finds the cheapest path of the lattice as it is now: its points by layer, and its edges.
   void trace(std::vector<int>& points, std::vector<Edge>& edges) const;
-  /// Asks about a path. Returns the first layer at which something was taken out; none: layers().
+  /// Asks whether a path is valid, and removes what fails. Returns the first layer at which
+  /// something was removed; layers() if nothing was.
   int take_out(const std::vector<int>& points, const std::vector<Edge>& edges);
   bool node_good(int layer, int point);
   bool step_good(int layer, int a, int b);

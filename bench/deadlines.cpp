@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late a plan ends whose time is over, in time of its thread's processor: experiments of
-// several sizes, solved and infeasible.
-//   deadlines [TIMES]    default 100, of each size and deadline
+// Measures how late a plan ends after its time-out, in processor time of its thread, on experiments
+// of several sizes, solved and infeasible.
+//
+//   deadlines [TIMES]    default 100, for each size and deadline
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given
-// problems have: paths of two to five waypoints, up to four obstacles, meshes among them, with and
-// without a start, with random limits; feasible and not.
+// Measures how much sooner `lazy` answers than `eager_dp` on random problems for the robots of the
+// given problems: paths of two to five waypoints, up to four obstacles, some of them meshes, with
+// and without a start, with random limits; feasible and not.
+//
 //   eager_ratios [--count N] [--first N] [--seed N] [--rounds N] PROBLEM.yaml...
-// Default: 500 problems from the first on, robots in turn, three rounds. Prepared robots, one
-// thread, medians of the rounds, in which the planners take turns: until the verdict, and the whole
-// call, which explains why there is no path, the same way for both. Prints each problem on which
-// the verdict of `lazy` comes later, and percentiles.
+//       default: 500 problems from the first on, three rounds
+//
+// Problems go through the robots one after the other. Robots are prepared before and one thread
+// plans; the two planners alternate within a round, and medians of the rounds count. Measured are
+// the time until the verdict, and that of the whole call, which for both planners explains in the
+// same way why there is no path. Prints each problem on which the verdict of `lazy` comes later,
+// and percentiles.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -46,7 +50,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A ball of 1,200 triangles, dented so that it is not convex.
+/// Returns a ball of 1,200 triangles, dented so that it is not convex.
 MeshPtr dented_ball(double radius) {
   constexpr int kRings = 25, kSides = 25;
   auto mesh = std::make_shared<TriangleMesh>();
@@ -135,7 +139,7 @@ Problem random_problem(const Problem& robot, const Chain& chain, Random& random)
   return problem;
 }
 
-/// Of one planner, by round.
+/// Times of one planner, by round.
 struct Times {
   std::vector<double> verdict, whole;  // ms
 };

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kinematic floor: how fast one thread can (1) solve the closed-form IK and joint limits of
-// every node of an (s, phi, branch) lattice and (2) sweep a backward layered dynamic program over
-// it with a window of +-W arm angles. No collision, no singularity, no edges across branches: a
-// planner cannot be expected to go below this while it still looks at every node, so it is the
-// stick to hold a planner's kinematic part against, in the same run.
+// Measures the kinematic floor: how fast one thread can (1) solve the closed-form IK and joint
+// limits of every node of an (s, phi, branch) lattice and (2) sweep a backward layered dynamic
+// program over it with a window of +-W arm angles. There is no collision, no singularity and no
+// edge across branches. No planner that looks at every node can be expected to be faster, so that
+// the kinematic part of a planner is compared with this in the same run.
 //
-//   build/release/bench/floor 201 126 4      LAYERS ANGLES WINDOW; built for this machine alone
-//   (-march=native -ffast-math)
+//   floor LAYERS ANGLES WINDOW    such as 201 126 4
 //
-// Prints one line: layers, arm angles, nodes, valid nodes, IK ms, DP ms (medians of 9), worst FK
-// residual.
+// The program is built for this machine alone (-march=native -ffast-math). It prints one line:
+// layers, arm angles, nodes, valid nodes, IK ms, DP ms (medians of 9), worst FK residual.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
@@ -24,7 +23,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// S-R-S arm with z-y-z triples and the lengths of a 14 kg class arm, metres.
+// An S-R-S arm with z-y-z triples and the lengths of a 14 kg class arm, m.
 constexpr double kBaseShoulder = 0.36, kShoulderElbow = 0.42, kElbowWrist = 0.40,
                  kWristTool = 0.126;
 constexpr double kLimit[7] = {2.967, 2.094, 2.967, 2.094, 2.967, 2.094, 3.054};

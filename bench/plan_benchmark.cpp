@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole plans on a prepared robot: scene / planner / resolution / edge mode / threads. Scenes are
-// the paper's experiments, an arm without an arm angle (`arcs`), an arm that chooses the roll of
-// its tool as well (`roll`), and an arm whose links are meshes
-// (`meshes`). The planner lazy_fcl_alone is lazy without proofs of our own
-// (PlanOptions::fcl_alone). Report stages are not timed. Rows have counters eager_ms, eager_dp_ms
-// and the speed-ups over both: the eager planners are run on the same problem before and after each
-// repetition, in the same process; a plan of more than a second once for all rows of its problem.
-//   plan_benchmark --benchmark_filter=^c/lazy    every argument of google-benchmark applies
-//   plan_benchmark --plan_limit=60               s: rows of which a plan takes longer are not run,
-//   and say so
+// Measures whole plans on a prepared robot, by scene / planner / resolution / edge mode / threads.
+// Scenes are the paper's experiments, an arm without an arm angle (`arcs`), an arm that also
+// chooses the roll of its tool (`roll`), and an arm whose links are meshes (`meshes`). The planner
+// lazy_fcl_alone is lazy without Swivel's own proofs (PlanOptions::fcl_alone). Report stages are
+// not timed. Rows have counters eager_ms, eager_dp_ms and the speed-ups over both: the eager
+// planners run on the same problem before and after each repetition, in the same process; a plan of
+// more than a second runs once for all rows of its problem.
+//
+//   plan_benchmark [--benchmark_filter=^c/lazy] [--plan_limit=60]
+//       --plan_limit=S    do not run rows of which a plan takes longer than S seconds; they say so
+//
+// Every argument of google-benchmark applies.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -37,16 +39,17 @@ namespace {
 
 using namespace swivel;
 
-constexpr double kOncePerProcess = 1;  // s: an eager plan of more serves all rows of its problem
-constexpr double kOnce = 5;            // s: a row whose plans take more has one repetition
+constexpr double kOncePerProcess = 1;  // s: a slower eager plan serves all rows of its problem
+constexpr double kOnce = 5;            // s: a row with slower plans has one repetition
 double plan_limit = 60;                // s
 
 struct Scene {
   const char* name;
   const char* file;
-  bool of_the_paper;  ///< with every planner and edge mode; else what is needed to compare eager
-                      ///< with lazy and parallel
-  int settings;       ///< how many of bench::kSettings
+  /// Whether it runs with every planner and edge mode; otherwise with those that compare eager with
+  /// lazy and parallel.
+  bool of_the_paper;
+  int settings;  ///< number of bench::kSettings to run
   bool mesh_bodies = false;
 };
 constexpr int kAllSettings = static_cast<int>(std::size(bench::kSettings));
@@ -58,12 +61,13 @@ constexpr Scene kScenes[] = {{"a", "experiment_a", true, bench::kPaperSettings},
                              {"roll", "torch_door", false, bench::kPaperSettings},
                              {"meshes", "iiwa14_bench", false, bench::kPaperSettings, true}};
 
-/// A problem, and its robot with all that questions about meshes need.
+/// A problem, and its robot prepared with everything that questions about meshes need.
 struct Prepared {
   Problem problem;
   PreparedRobot robot;
   explicit Prepared(Problem of) : problem(std::move(of)), robot(problem) {
-    constexpr double kFar = 100;  // m, so that bounds prove nothing and FCL's trees, too, are built
+    // m, so that bounds prove nothing and FCL's trees are built as well
+    constexpr double kFar = 100;
     const World& world = robot.world();
     world.make_ready([] { return false; });
     World::Query query(world);
@@ -89,7 +93,7 @@ struct Case {
   EdgeMode edges;
   int threads;
   bool fcl_alone = false;
-  bool over_eager = false, over_eager_dp = false;  ///< compared with them
+  bool over_eager = false, over_eager_dp = false;  ///< the planners it is compared with
 };
 
 std::string label_of(const Scene& scene, const Case& what, const bench::Setting& setting) {
@@ -113,11 +117,12 @@ bool in_time(const PlanResult& result) {
   return result.status != PlanStatus::kTimeout;
 }
 
-/// Of plans that take longer than a second, by label: they are not repeated for every row that is
-/// compared with them.
+/// Times of plans that take longer than a second, by label; they are not repeated for every row
+/// that is compared with them.
 struct SlowPlan {
-  double s = 0;          ///< the limit where it took more
-  bool has_row = false;  ///< it has been measured for its own row
+  /// s; the limit if the plan took more.
+  double s = 0;
+  bool has_row = false;  ///< whether its own row was measured
 };
 std::map<std::string, SlowPlan> slow_plans;
 
@@ -126,13 +131,13 @@ SlowPlan slow_plan(const std::string& label) {
   return found == slow_plans.end() ? SlowPlan() : found->second;
 }
 
-/// Notes how long a plan took, if that was long.
+/// Notes how long a plan took, if that was more than a second.
 void note_time(const std::string& label, const PlanResult& result, bool for_its_row) {
   const double s = in_time(result) ? result.time_ms.at("plan") / 1e3 : plan_limit;
   if (s > kOncePerProcess) slow_plans[label] = {s, for_its_row || slow_plan(label).has_row};
 }
 
-/// The milliseconds of one eager plan; none where it takes more than the limit.
+/// Returns the time of one eager plan, ms; nothing if it takes more than the limit.
 std::optional<double> eager_ms(const std::string& label, const Scene& scene, const Problem& problem,
                                PlannerKind planner) {
   if (const SlowPlan slow = slow_plan(label); slow.s > 0)
@@ -142,12 +147,12 @@ std::optional<double> eager_ms(const std::string& label, const Scene& scene, con
   return in_time(result) ? std::optional(result.time_ms.at("plan")) : std::nullopt;
 }
 
-/// Before and after what is compared with it.
+/// Times of an eager plan before and after the row that is compared with it.
 struct EagerTimes {
   const Scene& scene;
   const Problem& problem;
   PlannerKind planner;
-  std::string label;  ///< of its row
+  std::string label;  ///< label of the eager planner's row
   bool asked;
   std::optional<double> sum = 0.0;
   void measure() {
@@ -227,8 +232,8 @@ std::vector<Case> cases(const Scene& scene, int setting) {
   const bool paper = setting < bench::kPaperSettings;
   const int most_threads = std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
   std::vector<Case> all;
-  // Eager planners with continuous edges take minutes: every edge of the lattice is swept through
-  // FCL.
+  // Eager planners with continuous edges take minutes, because every edge of the lattice is swept
+  // through FCL.
   if (setting <= bench::kPaperSettings) {
     all.push_back({.planner = PlannerKind::kEager, .edges = EdgeMode::kNodes, .threads = 1});
     if (scene.of_the_paper)
@@ -263,7 +268,7 @@ std::vector<Case> cases(const Scene& scene, int setting) {
   return all;
 }
 
-/// Takes --plan_limit=S out of the arguments; false where S is no number of seconds.
+/// Removes --plan_limit=S from the arguments. Returns false if S is no number of seconds.
 bool take_plan_limit(int& argc, char** argv) {
   constexpr std::string_view kFlag = "--plan_limit=";
   char** const last = std::remove_if(argv + 1, argv + argc, [&](const char* word) {

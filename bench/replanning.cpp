@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside fresh
-// plans on a prepared robot.
+// Measures re-planning of experiment C while an object walks 1 mm a step: a planner that remembers,
+// compared with fresh plans on a prepared robot.
+//
 //   replanning [STEPS]    default 1000
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Experiments A and B of the paper: what the two local methods and the planner do from the same
-// start.
-//   baseline_runs [--rows FOLDER]    FOLDER gets joints and clearance along the path as CSV, for
-//   plots
+// Runs the paper's experiments A and B: the two local methods and the planner from the same start.
+//
+//   baseline_runs [--rows FOLDER]    write joints and clearance along the path to FOLDER, as CSV
+//   for plots
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -52,7 +52,7 @@ void write_rows(const std::filesystem::path& file, const PreparedRobot& robot,
   io::write_file(file, text.str() + "\n");
 }
 
-/// Rows of a tracker are equal steps up to result.s.
+/// The rows of a tracker are in equal steps up to result.s.
 std::vector<std::pair<double, Config>> rows_of(const baselines::TrackResult& result) {
   std::vector<std::pair<double, Config>> rows;
   const auto steps = static_cast<double>(std::max<std::size_t>(2, result.rows.size()) - 1);

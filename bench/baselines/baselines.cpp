@@ -18,13 +18,13 @@ namespace {
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Svd = Eigen::JacobiSVD<Eigen::Matrix<double, 6, kDof>>;
 
-/// Below this least singular value of J the arm counts as singular: the pseudo-inverse would move
-/// the joints a thousand times the tool.
+/// Least singular value of J below which the arm counts as singular: the pseudo-inverse would then
+/// move the joints a thousand times as far as the tool.
 constexpr double kSingular = 1e-3;
 constexpr double kLimitTolerance = 1e-9;
 constexpr int kNewtonSteps = 20;
 
-/// Motion that takes the tool from `from` to `to`, base frame.
+/// Returns the motion that takes the tool from `from` to `to`, in the base frame.
 Twist tool_error(const Pose& from, const Pose& to) {
   const Eigen::AngleAxisd turn(to.linear() * from.linear().transpose());
   Twist error;
@@ -78,7 +78,7 @@ class Tracker {
     return std::move(result_);
   }
 
-  /// Newton steps J^+ error from q; none where they do not get there.
+  /// Returns the end of Newton steps J^+ error from q; nothing if they do not converge.
   std::optional<Config> on_tool(const Pose& tool, Config q) const {
     for (int k = 0; k < kNewtonSteps; ++k) {
       const Twist error = tool_error(chain_.tool(q), tool);
@@ -90,7 +90,7 @@ class Tracker {
     return std::nullopt;
   }
 
-  /// First joint out of its limits, or -1.
+  /// Returns the first joint that is outside its limits, or -1.
   int outside(const Config& q) const {
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_.limit[static_cast<std::size_t>(j)];
@@ -102,7 +102,7 @@ class Tracker {
     return -1;
   }
 
-  /// Least clearance, and remembers the pair.
+  /// Returns the least clearance, m, and remembers its pair.
   double clearance(const Config& q) {
     const auto least = query_.clearance(q);
     if (!least) return std::numeric_limits<double>::infinity();
@@ -115,9 +115,10 @@ class Tracker {
            world_.body_names()[static_cast<std::size_t>(nearest_.b)];
   }
 
-  /// Self-motion up the clearance. The null space has one direction n, so (I - J^+ J) grad c = n
-  /// (dc/dn), and one difference quotient to each side says all: where both fall, no self-motion
-  /// helps. A reason where that leaves q short of the safe clearance.
+  /// Moves q along the self-motion in the direction of rising clearance. The null space has one
+  /// direction n, so that (I - J^+ J) grad c = n (dc/dn), and one difference quotient to each side
+  /// suffices: if both fall, no self-motion helps. Returns a reason if that leaves q short of the
+  /// safe clearance.
   std::optional<StopReason> push_away(const Pose& tool, Config& q) {
     double here = clearance(q);
     for (int k = 0; k < options_.most_pushes && here < options_.influence && here > 0; ++k) {
@@ -135,8 +136,8 @@ class Tracker {
       std::optional<Config> better;
       int held_by = -1;  // joint whose limit ended the push
       if (ascent > options_.vanishing) {
-        // Half the push where it would overshoot the ridge or a limit; the probe itself is known to
-        // be higher.
+        // Halve the push if it would overshoot the ridge or a limit; the clearance at the probe
+        // itself is known to be higher.
         for (double push = wanted; !better && push > options_.probe / 4; push /= 2) {
           const auto pushed = on_tool(tool, q + sign * push * n);
           if (!pushed) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's two local methods, to compare with. Both follow the path from Problem::start in small
-// steps and see only where they are.
+// The paper's two local methods, for comparison. Both follow the path from Problem::start in small
+// steps and know only the arm's present posture.
 #pragma once
 #include <array>
 #include <optional>
@@ -17,7 +17,7 @@ enum class StopReason {
   kFinished,
   kJointLimit,    ///< the next step leaves the limits
   kCollision,     ///< clearance below Limits::clearance
-  kLocalMinimum,  ///< the same, and no self-motion raises the clearance
+  kLocalMinimum,  ///< as kCollision, and no self-motion raises the clearance
   kDiverged,      ///< the tool cannot be held on the path: out of reach or singular
 };
 [[nodiscard]] const char* to_string(StopReason reason);
@@ -25,10 +25,10 @@ enum class StopReason {
 struct TrackOptions {
   double step = 0.001;       ///< m of path between rows
   double turn_step = 0.01;   ///< rad of tool rotation between rows
-  double tool_error = 1e-9;  ///< m and rad, where the Newton steps of a row end
-  double largest_move =
-      0.2;  ///< rad of any joint between rows, beyond which the tracker counts as diverged
-  // The rest is for track_null_space.
+  double tool_error = 1e-9;  ///< m and rad, at which the Newton steps of a row end
+  /// rad of any joint between rows; the tracker counts as diverged beyond that.
+  double largest_move = 0.2;
+  // The members below are for track_null_space() alone.
   double influence = 0.03;  ///< m of clearance below which the arm is pushed away; an SDA5F is
                             ///< often within 0.04 of itself
   double gain =
@@ -52,22 +52,23 @@ struct TrackResult {
   std::optional<double>
       clearance;         ///< m, the last one asked: at `end` unless a joint limit was in the way
   std::string blocking;  ///< "body - body" or the joint; empty when finished or diverged
-  /// m/rad, track_null_space where it stopped for clearance: norm of the least element of the
-  /// clearance's generalised gradient along the self-motion, so 0 where the clearance falls both
-  /// ways, even across a ridge between two obstacles.
+  /// For a track_null_space() that stopped for clearance, m/rad: the norm of the least element of
+  /// the clearance's generalised gradient along the self-motion. It is 0 if the clearance falls
+  /// both ways, even across a ridge between two obstacles.
   std::optional<double> projected_gradient;
-  std::array<double, 2>
-      slopes{};  ///< m/rad, clearance gained per self-motion forth and back, with the same proviso
+  /// Clearance gained by self-motion forth and back, m/rad; set only under the same condition.
+  std::array<double, 2> slopes{};
 };
 
-/// dq = J^+ dx. Least joint motion, blind to limits and obstacles. Throws InputError without a
-/// start or with one off the path.
+/// Follows the path by dq = J^+ dx, which is least joint motion, without regard to limits and
+/// obstacles. Throws InputError without a start or with one off the path.
 [[nodiscard]] TrackResult track_jacobian(const PreparedRobot& robot, const Problem& problem,
                                          const TrackOptions& options = {});
 
-/// dq = J^+ dx + gain (I - J^+ J) grad(clearance), pushed until the clearance reaches `influence`,
-/// the pushes of a row are used up or the projected gradient vanishes. A push never lowers the
-/// clearance nor leaves the limits. Throws as track_jacobian does.
+/// Follows the path by dq = J^+ dx + gain (I - J^+ J) grad(clearance). The arm is pushed until the
+/// clearance reaches `influence`, the pushes of a row are used up, or the projected gradient
+/// vanishes. A push never lowers the clearance nor leaves the limits. Throws as track_jacobian()
+/// does.
 [[nodiscard]] TrackResult track_null_space(const PreparedRobot& robot, const Problem& problem,
                                            const TrackOptions& options = {});
 

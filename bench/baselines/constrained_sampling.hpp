@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's sampling-based relatives, through OMPL. They plan between two configurations on a
-// constraint manifold; to follow a tool path they are given the path parameter as an eighth
-// coordinate: F(q, t) = pose of the tool at q against the path at t = 0, from the start at t = 0 to
-// valid nodes of the last layer at t = 1. They know no order along the path; motions that go back
-// along it are refused to them, and what they find is checked afterwards.
+// constraint manifold. To follow a tool path, they are given the path parameter t as an eighth
+// coordinate: F(q, t) compares the pose of the tool at q with that of the path at t, from the start
+// at t = 0 to valid nodes of the last layer at t = 1. They know no order along the path; motions
+// that go back along it are refused, and what they find is checked afterwards.
 #pragma once
 #include <string>
 
@@ -27,7 +27,8 @@ struct ConstrainedResult {
   double error_mm = 0, error_max_mm = 0;  ///< when finished; mean and largest, as for the planners
 };
 
-/// Bidirectional RRT (OMPL's RRTConnect), at most `seconds`. Problem::start must be set and valid.
+/// Plans with a bidirectional RRT (OMPL's RRTConnect) for at most `seconds`. Problem::start must be
+/// set and valid.
 [[nodiscard]] ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& problem,
                                                  Manifold manifold, double seconds);
 

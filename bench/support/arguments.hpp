@@ -5,9 +5,9 @@
 
 namespace swivel::bench {
 
-/// Reads the command line of a benchmark. Returns the exit code of a program that is to end here: 0
-/// after --help, 2 after a word that the program does not know or a value that is not allowed,
-/// which CLI11 has told on stderr.
+/// Reads the command line of a benchmark. Returns the exit code with which the program must end
+/// now: 0 after --help, 2 after an unknown word or a value that is not allowed, which CLI11 has
+/// reported on stderr.
 inline std::optional<int> read_arguments(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

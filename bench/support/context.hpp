@@ -6,8 +6,8 @@
 
 namespace swivel::bench {
 
-/// What a measured number depends on besides the source: commit, compiler, flags, build type,
-/// vector unit, processor, its threads.
+/// Returns what a measured number depends on besides the source: commit, compiler, flags, build
+/// type, vector unit, processor and its threads.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> context();
 
 }  // namespace swivel::bench

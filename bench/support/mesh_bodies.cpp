@@ -9,7 +9,7 @@ namespace swivel::bench {
 
 namespace {
 
-/// Rings of corners from pole to pole.
+/// Returns the rings of corners of a capsule, from pole to pole.
 MeshPtr mesh_of(const Capsule& capsule) {
   constexpr int kSides = 20, kRingsOfCap = 10, kRings = 2 * kRingsOfCap;
   auto mesh = std::make_shared<TriangleMesh>();

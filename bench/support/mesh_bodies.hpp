@@ -6,8 +6,8 @@
 
 namespace swivel::bench {
 
-/// The problem with a robot whose capsules are meshes: each is replaced by a closed mesh of some
-/// 800 triangles with corners on its surface, as links of vendors' files are meshes.
+/// Returns the problem with a robot whose capsules are meshes: each is replaced by a closed mesh of
+/// some 800 triangles with corners on its surface, similar to link meshes in vendors' files.
 [[nodiscard]] Problem with_mesh_bodies(Problem problem);
 
 }  // namespace swivel::bench

@@ -7,7 +7,8 @@ namespace swivel::bench {
 struct Setting {
   const char* name;
   double ds,
-      dphi;  ///< m; rad, of arm angles and rolls, or of self-motion where the arm has no arm angle
+      /// ds: m; dphi: rad, of arm angles and rolls, or of self-motion if the arm has no arm angle.
+      dphi;
 };
 /// The four resolutions of the paper's Table I, and two finer ones.
 inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},     {"#2", 0.005, 0.2},
