@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plans joint trajectories of arms with a degree of freedom to spare along tool paths.
+"""Plans joint trajectories along tool paths for arms with a degree of freedom to spare.
 
-Metres, radians, seconds. Poses go in as (4, 4) arrays or as [x y z qw qx qy qz], w first, and come out as (4, 4) arrays; joints
-as (n, 7) float64, base to tip. Arrays that come out are read-only views, which keep alive what they show.
+Units are metres, radians and seconds. Arguments that are poses may be (4, 4) arrays or
+[x y z qw qx qy qz], w first; results are (4, 4) arrays. Joints are (n, 7) float64 arrays, base to
+tip. Arrays in results are read-only views, which keep alive what they show.
 
     problem = swivel.load_problem("problem.yaml")
     plan = swivel.plan(problem)
@@ -24,7 +25,10 @@ __all__ = [name for name in vars(_swivel) if not name.startswith("_")]
 
 
 def _restore(kind, state):
-    """What was pickled, whole, or an exception: pickle's own way leaves an object without contents where its last step is damaged."""
+    """Returns an unpickled object, or raises.
+
+    pickle's own way leaves an object without contents if its last step is damaged.
+    """
     thing = kind.__new__(kind)
     thing.__setstate__(state)
     return thing
@@ -48,44 +52,68 @@ def _planner(problem):
 
 
 def plan(problem, **options):
-    """Plans one problem, once. problem: a Problem, or the name of its file. options: those of Planner.plan()."""
+    """Plans one problem, once.
+
+    problem: a Problem, or the name of its file. options: those of Planner.plan().
+
+    Returns a Plan. Raises InputError and InvalidArgument for a problem that makes no sense.
+    """
     return _planner(problem).plan(**options)
 
 
 def check(problem, trajectory):
-    """Proves a Trajectory or a Motion from the problem alone: Planner.check()."""
+    """Proves a Trajectory or a Motion from the problem alone, as Planner.check() does.
+
+    problem: a Problem, or the name of its file.
+    """
     return _planner(problem).check(trajectory)
 
 
 def measure(problem, trajectory):
-    """What a trajectory comes near to, and how well it follows its path: Planner.measure()."""
+    """Measures what a trajectory comes near to and how well it follows its path.
+
+    Arguments and result are those of Planner.measure(). problem: a Problem, or the name of its file.
+    """
     return _planner(problem).measure(trajectory)
 
 
 def refine(problem, trajectory, *, timeout=None):
-    """Moves the arm angles of a trajectory off the grid: Planner.refine()."""
+    """Moves the arm angles of a trajectory off the grid, as Planner.refine() does.
+
+    problem: a Problem, or the name of its file. timeout: s, or None.
+    """
     return _planner(problem).refine(trajectory, timeout=timeout)
 
 
 def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, chord=None, timeout=None):
-    """Makes a trajectory a motion in time: Planner.time()."""
+    """Makes a trajectory a motion in time, as Planner.time() does.
+
+    problem: a Problem, or the name of its file. speed: of the tool, m/s; turn_speed: rad/s; without
+    them those of the problem's limits hold. rate: samples a second. chord: m. timeout: s, or None.
+    """
     return _planner(problem).time(trajectory, speed=speed, turn_speed=turn_speed, rate=rate, chord=chord, timeout=timeout)
 
 
 def advise(problem, plan, *, timeout=1.0):
-    """What would help a problem that has no path: Planner.advise()."""
+    """Finds changes that would help a problem that has no path, as Planner.advise() does.
+
+    problem: a Problem, or the name of its file. plan: its Plan. timeout: s.
+    """
     return _planner(problem).advise(plan, timeout=timeout)
 
 
 def compute_cartesian_path(robot, scene, waypoints, start, *, max_step=0.005, limits=None, **options):
-    """Follows straight lines through waypoints from a given posture, as far as that can be done.
+    """Follows straight lines through waypoints from a given posture, as far as possible.
 
-    robot: Robot. scene: Scene, or any sequence of SceneObjects. waypoints: poses of the tool in the base frame, after that of the
-    start: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of either. start: (7,) joints, rad; None: the path begins at the
-    first waypoint, in the posture that suits it best. max_step: m between rows. limits: Limits. options: those of Planner.plan().
+    robot: Robot. scene: Scene, or any sequence of SceneObjects. waypoints: poses of the tool in the
+    base frame, which follow that of the start: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of
+    either; m. start: (7,) joints, rad; if None, the path begins at the first waypoint, in the posture
+    that suits it best. max_step: largest distance between rows, m. limits: Limits, or None for the
+    defaults. options: those of Planner.plan().
 
-    Returns (fraction, trajectory): 1.0 and the whole Trajectory, or the share of the rows that can be reached, and those.
-    Raises InputError and InvalidArgument for what no problem may have; a start that is in collision gives 0.0.
+    Returns (fraction, trajectory). If there is a path, these are 1.0 and the whole Trajectory;
+    otherwise the share of the rows that can be reached, and these rows. A start in collision gives
+    0.0. Raises InputError and InvalidArgument for values that no problem may have.
     """
     task = Task(  # noqa: F405
         waypoints,

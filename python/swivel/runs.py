@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Many plans of one problem: placements and campaigns, here or on the workers of a Dask cluster."""
+"""Makes many plans of one problem (placements, campaigns), here or on workers of a Dask cluster."""
 import functools
 import os
 import threading
@@ -31,20 +31,24 @@ def place(
     progress=None,
     client=None,
 ):
-    """Plans many placements of one thing: where should the part, the path or the robot stand? What `swivel place` does.
+    """Plans many placements of one thing: where should the part, the path or the robot stand?
 
-    problem: a Problem, or the name of its file. object (a name of the scene), path, base: what is moved, exactly one of the three.
-    x, y, z (m), roll, pitch, yaw (rad): by how much, in the base frame, the turn about the thing's own origin: a number, or
-    (from, to, step). sample: so many placements drawn between from and to instead of a grid, from seed.
-    refine_grid: a coarse grid first, then between neighbours of unlike verdict and beside the best: a third of the cells at most.
-    best: 'cost', 'clearance', 'margin' or 'speed', or several: what it climbs. planner: PlannerKind or its name. threads: 0 for all
-    cores. timeout: s; what is known then is returned. progress(placements, done, of): rows as they come, how many there are now,
-    and of how many, or with refine_grid at least of how many.
-    client: a dask.distributed.Client, whose workers plan, each of their threads a placement at a time; `threads` means nothing
-    then. Workers that end meanwhile are made up for by others.
+    Does what `swivel place` does.
 
-    Returns Placements in the order of their numbers: the same rows at any number of threads, workers and batches. Raises
-    InvalidArgument and InputError.
+    problem: a Problem, or the name of its file. object (a name of the scene), path, base: what is
+    moved; exactly one of the three. x, y, z (m), roll, pitch, yaw (rad): by how much it is moved, in
+    the base frame, where turns are about the thing's own origin: a number, or (from, to, step).
+    sample: number of placements drawn at random, by seed, between from and to instead of a grid.
+    refine_grid: plan a coarse grid first, then cells between neighbours of unlike verdict and beside
+    the best: a third of the cells at most. best: one or several of 'cost', 'clearance', 'margin' and
+    'speed', by which refine_grid finds the best. planner: a PlannerKind or its name. threads: 0 for
+    all cores. timeout: s, after which the rows known so far are returned. progress(placements, done,
+    of): called with new rows, the number of rows so far, and the number of all rows, which with
+    refine_grid may still grow. client: a dask.distributed.Client; each thread of its workers plans
+    one placement at a time, and `threads` has no effect. Other workers replace those that end.
+
+    Returns Placements in the order of their numbers; the rows are the same at any number of threads,
+    workers and batches. Raises InvalidArgument and InputError.
     """
     problem = _loaded(problem)
     cells = _swivel._Cells([x, y, z, roll, pitch, yaw], sample, seed)
@@ -83,14 +87,17 @@ def place(
 
 
 def campaign(problem, *, episodes=100, seed=1, planner="parallel", threads=0, progress=None, client=None):
-    """Plans many episodes: the problem with the objects of its `vary` at random poses. What `swivel campaign` does.
+    """Plans many episodes: the problem with the objects of its `vary` at random poses.
 
-    problem: a Problem, or the name of its file. seed: what the poses are drawn from; Problem.episode(seed, k) is the k-th. planner:
-    PlannerKind or its name. threads: 0 for all cores. progress(episodes, done, of): rows as they come, how many there are now, and
-    of how many. client: a dask.distributed.Client, as of place().
+    Does what `swivel campaign` does.
 
-    Returns Episodes in the order of their numbers, of which all but plan_ms are the same at any number of threads and workers.
-    Raises InvalidArgument and InputError.
+    problem: a Problem, or the name of its file. episodes: how many. seed: of the random poses;
+    Problem.episode(seed, k) is the k-th episode. planner: a PlannerKind or its name. threads: 0 for
+    all cores. progress(episodes, done, of): called with new rows, the number of rows so far, and the
+    number of all rows. client: a dask.distributed.Client, as for place().
+
+    Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any number
+    of threads and workers. Raises InvalidArgument and InputError.
     """
     here = client is None
     make = functools.partial(_swivel._Campaigner, _loaded(problem), episodes, seed, planner, threads if here else 1)
@@ -113,7 +120,7 @@ def _loaded(problem):
 
 
 def _plan_cells(planner, batch, arrived):
-    """Whether all of the batch came."""
+    """Plans a batch of placements; returns whether all of it was planned."""
     planner.plan(*batch, arrived)
     return not planner.stopped
 
@@ -140,7 +147,10 @@ class _Here:
 
 
 class _Planners:
-    """What batches are planned by, on its way to a worker, where each thread makes one of its own that remembers."""
+    """The planners of a worker, sent to it as a recipe.
+
+    Each thread of the worker makes a planner of its own, which remembers earlier plans.
+    """
 
     def __init__(self, make):
         self._make = make
@@ -165,7 +175,7 @@ class _Workers:
 
     def __init__(self, client, make, plan, deadline):
         self._client, self._plan, self._deadline = client, plan, deadline
-        # A task, not data that is scattered: it is made again where all workers that had it are gone.
+        # A task rather than scattered data: it runs again if all workers that had its result are gone.
         self._planners = client.submit(_Planners, make, pure=False)
         self._under_way = []
 
@@ -179,7 +189,11 @@ class _Workers:
         return max(1, sum(self._client.nthreads().values()))
 
     def batch(self, count):
-        """Several batches for each thread, so that all end together; not so many that sending them shows."""
+        """Returns how many of `count` cells a batch has.
+
+        Each thread gets several batches, so that all threads end at about the same time, but not so
+        many that sending them takes noticeable time.
+        """
         return max(1, min(64, count // (8 * self._threads())))
 
     def plan(self, batches, arrived):
@@ -189,7 +203,10 @@ class _Workers:
         late = threading.Event()
 
         def send():
-            """As many as keep all workers busy; the rest waits here, where nothing has to take it back."""
+            """Sends as many batches as keep all workers busy, and returns their futures.
+
+            The other batches wait here, where nothing has to cancel them.
+            """
             free = 0 if late.is_set() else 4 * self._threads() - len(self._under_way)
             sent = [self._client.submit(_Planners.plan, self._planners, self._plan, batch, pure=False) for batch in islice(batches, max(0, free))]
             self._under_way += sent
