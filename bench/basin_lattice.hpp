@@ -13,11 +13,10 @@
 
 namespace swivel::bench {
 
-/// A fine lattice about a refined path, with which the path is compared. It has the layers and
-/// branches of the path, and arm angles (or lengths along the self-motion) up to 0.5 rad from the
-/// path's, 0.0025 rad apart. Edges lead to the next layer, and straight over two and four, which
-/// gives directions between those of the grid. The cheapest path that solve() finds is valid by
-/// docs/model.md.
+/// A fine lattice about a refined path, with which the path is compared. It has the layers of the
+/// path, and arm angles (or lengths along the self-motion) up to 0.5 rad from the path's, 0.0025
+/// rad apart. Edges lead to the next layer, and straight over two and four, which gives directions
+/// between those of the grid. The cheapest path found is valid by docs/model.md.
 ///
 /// A dynamic program over all edges knows limits alone. Collisions and errors between layers are
 /// then asked about its path only; what fails is removed, together with what fails beside it, and
