@@ -72,7 +72,8 @@ def check(problem, trajectory):
 def measure(problem, trajectory):
     """Measures what a trajectory comes near to and how well it follows its path.
 
-    Arguments and result are those of Planner.measure(). problem: a Problem, or the name of its file.
+    Arguments and result are those of Planner.measure(). problem: a Problem, or the name of its
+    file.
     """
     return _planner(problem).measure(trajectory)
 
@@ -106,10 +107,10 @@ def compute_cartesian_path(robot, scene, waypoints, start, *, max_step=0.005, li
     """Follows straight lines through waypoints from a given posture, as far as possible.
 
     robot: Robot. scene: Scene, or any sequence of SceneObjects. waypoints: poses of the tool in the
-    base frame, which follow that of the start: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of
-    either; m. start: (7,) joints, rad; if None, the path begins at the first waypoint, in the posture
-    that suits it best. max_step: largest distance between rows, m. limits: Limits, or None for the
-    defaults. options: those of Planner.plan().
+    base frame, which follow that of the start: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list
+    of either; m. start: (7,) joints, rad; if None, the path begins at the first waypoint, in the
+    posture that suits it best. max_step: largest distance between rows, m. limits: Limits, or None
+    for the defaults. options: those of Planner.plan().
 
     Returns (fraction, trajectory). If there is a path, these are 1.0 and the whole Trajectory;
     otherwise the share of the rows that can be reached, and these rows. A start in collision gives

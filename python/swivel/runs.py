@@ -36,19 +36,20 @@ def place(
     Does what `swivel place` does.
 
     problem: a Problem, or the name of its file. object (a name of the scene), path, base: what is
-    moved; exactly one of the three. x, y, z (m), roll, pitch, yaw (rad): by how much it is moved, in
-    the base frame, where turns are about the thing's own origin: a number, or (from, to, step).
+    moved; exactly one of the three. x, y, z (m), roll, pitch, yaw (rad): by how much it is moved,
+    in the base frame, where turns are about the thing's own origin: a number, or (from, to, step).
     sample: number of placements drawn at random, by seed, between from and to instead of a grid.
-    refine_grid: plan a coarse grid first, then cells between neighbours of unlike verdict and beside
-    the best: a third of the cells at most. best: one or several of 'cost', 'clearance', 'margin' and
-    'speed', by which refine_grid finds the best. planner: a PlannerKind or its name. threads: 0 for
-    all cores. timeout: s, after which the rows known so far are returned. progress(placements, done,
-    of): called with new rows, the number of rows so far, and the number of all rows, which with
-    refine_grid may still grow. client: a dask.distributed.Client; each thread of its workers plans
-    one placement at a time, and `threads` has no effect. Other workers replace those that end.
+    refine_grid: plan a coarse grid first, then cells between neighbours of unlike verdict and
+    beside the best: a third of the cells at most. best: one or several of 'cost', 'clearance',
+    'margin' and 'speed', by which refine_grid finds the best. planner: a PlannerKind or its name.
+    threads: 0 for all cores. timeout: s, after which the rows known so far are returned.
+    progress(placements, done, of): called with new rows, the number of rows so far, and the number
+    of all rows, which with refine_grid may still grow. client: a dask.distributed.Client; each
+    thread of its workers plans one placement at a time, and `threads` has no effect. Other workers
+    replace those that end.
 
-    Returns Placements in the order of their numbers; the rows are the same at any number of threads,
-    workers and batches. Raises InvalidArgument and InputError.
+    Returns Placements in the order of their numbers; the rows are the same at any number of
+    threads, workers and batches. Raises InvalidArgument and InputError.
     """
     problem = _loaded(problem)
     cells = _swivel._Cells([x, y, z, roll, pitch, yaw], sample, seed)
@@ -93,11 +94,11 @@ def campaign(problem, *, episodes=100, seed=1, planner="parallel", threads=0, pr
 
     problem: a Problem, or the name of its file. episodes: how many. seed: of the random poses;
     Problem.episode(seed, k) is the k-th episode. planner: a PlannerKind or its name. threads: 0 for
-    all cores. progress(episodes, done, of): called with new rows, the number of rows so far, and the
-    number of all rows. client: a dask.distributed.Client, as for place().
+    all cores. progress(episodes, done, of): called with new rows, the number of rows so far, and
+    the number of all rows. client: a dask.distributed.Client, as for place().
 
-    Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any number
-    of threads and workers. Raises InvalidArgument and InputError.
+    Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any
+    number of threads and workers. Raises InvalidArgument and InputError.
     """
     here = client is None
     make = functools.partial(_swivel._Campaigner, _loaded(problem), episodes, seed, planner, threads if here else 1)
@@ -175,7 +176,7 @@ class _Workers:
 
     def __init__(self, client, make, plan, deadline):
         self._client, self._plan, self._deadline = client, plan, deadline
-        # A task rather than scattered data: it runs again if all workers that had its result are gone.
+        # A task rather than scattered data: it runs again if all workers with its result are gone.
         self._planners = client.submit(_Planners, make, pure=False)
         self._under_way = []
 
