@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""bench/evidence/motions.py finds nothing wrong with motions of the program, and what is made wrong it finds; its distances are right."""
+"""bench/evidence/motions.py finds nothing wrong with motions of the program, and what is made wrong
+it finds; its distances are right."""
 import importlib.util
 import os
 import pathlib
@@ -26,7 +27,9 @@ def along(distance, a, b):
 
 
 def to_segment(c, d):
-    return lambda p: np.linalg.norm(p - c - np.clip((p - c) @ (d - c) / ((d - c) @ (d - c)), 0, 1)[:, None] * (d - c), axis=-1)
+    return lambda p: np.linalg.norm(
+        p - c - np.clip((p - c) @ (d - c) / ((d - c) @ (d - c)), 0, 1)[:, None] * (d - c), axis=-1
+    )
 
 
 def to_triangle(triangle):
@@ -52,13 +55,23 @@ class Distances(unittest.TestCase):
             if trial % 5 == 0:
                 d = c + (b - a) * random.normal()  # parallel
             triangle, half = random.normal(size=(3, 3)), np.abs(random.normal(size=3))
-            box, cylinder = (lambda p: distances.point_box(p, half)), (lambda p: distances.point_cylinder(p, half[0], half[1]))
+            box, cylinder = (lambda p: distances.point_box(p, half)), (
+                lambda p: distances.point_cylinder(p, half[0], half[1])
+            )
             for found, expected in (
-                    (distances.segment_segment(a[None], b[None], c[None], d[None]), along(to_segment(c, d), a, b)),
-                    (distances.segment_triangle(a[None], b[None], triangle[None]), along(to_triangle(triangle), a, b)),
-                    (distances.segment_convex(a[None], b[None], box), along(box, a, b)),
-                    (distances.segment_convex(a[None], b[None], cylinder), along(cylinder, a, b))):
-                self.assertAlmostEqual(found[0], expected, delta=1e-3)  # of a segment of some units, where it passes through
+                (
+                    distances.segment_segment(a[None], b[None], c[None], d[None]),
+                    along(to_segment(c, d), a, b),
+                ),
+                (
+                    distances.segment_triangle(a[None], b[None], triangle[None]),
+                    along(to_triangle(triangle), a, b),
+                ),
+                (distances.segment_convex(a[None], b[None], box), along(box, a, b)),
+                (distances.segment_convex(a[None], b[None], cylinder), along(cylinder, a, b)),
+            ):
+                # Of a segment of some units, where it passes through.
+                self.assertAlmostEqual(found[0], expected, delta=1e-3)
                 self.assertLessEqual(found[0], expected + 1e-9)
 
     def test_of_meshes(self):
@@ -66,7 +79,9 @@ class Distances(unittest.TestCase):
         random = np.random.default_rng(2)
         a, b = 0.5 * random.normal(size=(2, 15, 3))
         for p, q, found in zip(a, b, mesh.distance(a, b)):
-            each = distances.segment_triangle(*(np.broadcast_to(end, (len(mesh.triangles), 3)) for end in (p, q)), mesh.triangles)
+            each = distances.segment_triangle(
+                *(np.broadcast_to(end, (len(mesh.triangles), 3)) for end in (p, q)), mesh.triangles
+            )
             self.assertEqual(found, each.min())
         middle = np.array([0.0, 0.0, -0.3])
         ray = mesh.distance((middle - (0, 1, 0))[None], middle[None])[0]
@@ -87,8 +102,12 @@ class Motions(unittest.TestCase):
     def planned(self, name, episode, moved, speed=0.25):
         file = SOURCE / f"data/problems/{name}.yaml"
         problem = problem_files.load_problem(file)
-        fast, slow = (motions.planned(self.swivel, file, 1, episode, speed, rate, pathlib.Path(self.folder.name))[0]
-                      for rate in (1000, 250))
+        fast, slow = (
+            motions.planned(
+                self.swivel, file, 1, episode, speed, rate, pathlib.Path(self.folder.name)
+            )[0]
+            for rate in (1000, 250)
+        )
         return problem, Cell(problem, moved), fast, slow, speed, 10
 
     def test_hold(self):
@@ -103,7 +122,8 @@ class Motions(unittest.TestCase):
         problem, cell, fast, slow, speed, between = self.planned("experiment_b", None, {})
         right = motions.examine(problem, cell, fast, slow, speed, between)
         self.assertTrue(all(right["holds"].values()), right)
-        self.assertLess(abs(right["off_position"] - right["chord"]), 1e-8)  # the path is straight: the cubic is the path
+        # The path is straight: the cubic is the path.
+        self.assertLess(abs(right["off_position"] - right["chord"]), 1e-8)
 
         def wrong(problem=problem, fast=fast, slow=slow):
             found = motions.examine(problem, cell, fast, slow, speed, between)
@@ -111,9 +131,19 @@ class Motions(unittest.TestCase):
 
         self.assertEqual(wrong(fast={**fast, "t": 0.97 * fast["t"]}), {"rates"})
         joint = cell.robot.arm[1]
-        self.assertEqual(wrong(slow={**slow, joint: slow[joint] + 1e-3 * np.sin(np.linspace(0, np.pi, len(slow["t"])))}), {"path"})
+        self.assertEqual(
+            wrong(
+                slow={
+                    **slow,
+                    joint: slow[joint] + 1e-3 * np.sin(np.linspace(0, np.pi, len(slow["t"]))),
+                }
+            ),
+            {"path"},
+        )
         asked = right["clearance"] + motions.BAND
-        self.assertEqual(wrong(problem={**problem, "limits": {"clearance": asked + 1e-6}}), {"clearance"})
+        self.assertEqual(
+            wrong(problem={**problem, "limits": {"clearance": asked + 1e-6}}), {"clearance"}
+        )
         self.assertEqual(wrong(problem={**problem, "limits": {"clearance": asked - 1e-6}}), set())
         # One row that is off by half a millimetre between good ones is seen at once.
         bent = slow[joint].copy()
@@ -122,15 +152,19 @@ class Motions(unittest.TestCase):
 
     @unittest.skipIf(importlib.util.find_spec("scipy") is None, "scipy is missing")
     def test_yardstick(self):
-        """Joints along a straight line, bounded by jerk alone: the shortest time is 4 (d / 2 J)^(1/3)."""
+        """Joints along a straight line, bounded by jerk alone: the shortest time is 4 (d / 2
+        J)^(1/3)."""
         import yardstick
+
         direction, jerk, length = np.array([3.0, 1, 2, 0.5, 0, 1, 2]), 100.0, 0.4
         shortest = 4 * (direction[0] * length / (2 * jerk)) ** (1 / 3)
         t = np.linspace(0, 2 * shortest, 2001)
         z = t / t[-1]
         x = length * z**4 * (35 - 84 * z + 70 * z**2 - 20 * z**3)
         limits = np.full(7, 1e3), np.full(7, 1e3), np.full(7, jerk)
-        time, ratios, feasible, _ = yardstick.shortest_motion(t, x, x[:, None] * direction, limits, 10.0)
+        time, ratios, feasible, _ = yardstick.shortest_motion(
+            t, x, x[:, None] * direction, limits, 10.0
+        )
         self.assertAlmostEqual(time / shortest, 1, delta=0.01)
         self.assertFalse(feasible)  # 10 m/s are never reached
 

@@ -15,7 +15,11 @@ SIDES = [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 5), (1, 5, 4), (2, 3, 5), (0, 4
 
 def rotation(roll, pitch, yaw):
     (a, b), (c, d), (e, f) = ((math.cos(x), math.sin(x)) for x in (roll, pitch, yaw))
-    return [[e * c, e * d * b - f * a, e * d * a + f * b], [f * c, f * d * b + e * a, f * d * a - e * b], [-d, c * b, c * a]]
+    return [
+        [e * c, e * d * b - f * a, e * d * a + f * b],
+        [f * c, f * d * b + e * a, f * d * a - e * b],
+        [-d, c * b, c * a],
+    ]
 
 
 def numbers(element, name):
@@ -25,8 +29,14 @@ def numbers(element, name):
 class Fit(WithFolder):
     def setUp(self):
         super().setUp()
-        (self.folder / "wedge.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in WEDGE) + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in SIDES))
-        self.mesh = '<collision><origin xyz="0.01 0.02 0.03" rpy="0.1 0.2 0.3"/><geometry><mesh filename="wedge.obj" scale="0.001 0.001 0.001"/></geometry></collision>'
+        (self.folder / "wedge.obj").write_text(
+            "".join(f"v {x} {y} {z}\n" for x, y, z in WEDGE)
+            + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in SIDES)
+        )
+        self.mesh = (
+            '<collision><origin xyz="0.01 0.02 0.03" rpy="0.1 0.2 0.3"/><geometry>'
+            '<mesh filename="wedge.obj" scale="0.001 0.001 0.001"/></geometry></collision>'
+        )
         self.text = (DATA / "robots/iiwa14.urdf").read_text()
         self.urdf = self.folder / "robot.urdf"
         self.with_mesh("link_4")
@@ -38,16 +48,27 @@ class Fit(WithFolder):
         self.urdf.write_text(self.text)
 
     def shapes(self, file, link):
-        """Cylinders between their spheres, and spheres, as end, other end and radius; what else there is as text."""
+        """Cylinders between their spheres, and spheres, as end, other end and radius; what else
+        there is as text."""
         ends, others = [], []
-        for collision in xml.parse(file).getroot().find(f"link[@name='{link}']").findall("collision"):
+        for collision in (
+            xml.parse(file).getroot().find(f"link[@name='{link}']").findall("collision")
+        ):
             origin, shape = collision.find("origin"), collision.find("geometry")[0]
             if shape.tag == "cylinder":
                 axis = [row[2] for row in rotation(*numbers(origin, "rpy"))]
                 half, middle = float(shape.get("length")) / 2, numbers(origin, "xyz")
-                ends.append(([m - half * a for m, a in zip(middle, axis)], [m + half * a for m, a in zip(middle, axis)], float(shape.get("radius"))))
+                ends.append(
+                    (
+                        [m - half * a for m, a in zip(middle, axis)],
+                        [m + half * a for m, a in zip(middle, axis)],
+                        float(shape.get("radius")),
+                    )
+                )
             elif shape.tag == "sphere":
-                ends.append((numbers(origin, "xyz"), numbers(origin, "xyz"), float(shape.get("radius"))))
+                ends.append(
+                    (numbers(origin, "xyz"), numbers(origin, "xyz"), float(shape.get("radius")))
+                )
             else:
                 others.append(xml.tostring(collision, encoding="unicode"))
         return ends, others
@@ -58,7 +79,13 @@ class Fit(WithFolder):
             with self.subTest(most=most):
                 done = run("fit", self.urdf, "--out", out, "--capsules", most)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertRegex(done.stdout, r"^link_4 +8 triangles -> [1-3], [\d.]+ l for 0\.48, reaching up to [\d.]+ mm further\n1 meshes")
+                self.assertRegex(
+                    done.stdout,
+                    (
+                        r"^link_4 +8 triangles -> [1-3], [\d.]+ l for 0\.48, reaching up to [\d.]+ "
+                        r"mm further\n1 meshes"
+                    ),
+                )
                 fitted, others = self.shapes(out, "link_4")
                 kept, before = self.shapes(self.urdf, "link_4")
                 self.assertEqual(len(before), 1)
@@ -67,12 +94,19 @@ class Fit(WithFolder):
                 self.assertIn(len(fitted), range(1, 3 * most + 1))
                 turn = rotation(0.1, 0.2, 0.3)
                 for corner in WEDGE:
-                    p = [sum(row[k] * corner[k] / 1000 for k in range(3)) + at for row, at in zip(turn, (0.01, 0.02, 0.03))]
+                    p = [
+                        sum(row[k] * corner[k] / 1000 for k in range(3)) + at
+                        for row, at in zip(turn, (0.01, 0.02, 0.03))
+                    ]
 
                     def away(a, b, radius):
                         way = [y - x for x, y in zip(a, b)]
                         length2 = sum(w * w for w in way)
-                        along = min(1, max(0, sum(w * (x - y) for w, x, y in zip(way, p, a)) / length2)) if length2 else 0
+                        along = (
+                            min(1, max(0, sum(w * (x - y) for w, x, y in zip(way, p, a)) / length2))
+                            if length2
+                            else 0
+                        )
                         return math.dist(p, [x + along * w for x, w in zip(a, way)]) - radius
 
                     self.assertLess(min(away(*shape) for shape in fitted), 1e-12)
@@ -85,16 +119,23 @@ class Fit(WithFolder):
         self.assertEqual([element.tag for element in before], [element.tag for element in after])
         for one, other in zip(before, after):
             if one.get("name") != "link_4":
-                self.assertEqual([(e.tag, e.attrib) for e in one.iter()], [(e.tag, e.attrib) for e in other.iter()])
+                self.assertEqual(
+                    [(e.tag, e.attrib) for e in one.iter()],
+                    [(e.tag, e.attrib) for e in other.iter()],
+                )
         # A capsule is read as one: the robot has as many bodies more as capsules.
         plan = run("plan", self.problem_of(out), "--quiet")
         self.assertEqual(plan.returncode, 0, plan.stdout + plan.stderr)
 
     def problem_of(self, urdf):
         problem = self.folder / "problem.yaml"
-        problem.write_text(f"robot: {{urdf: {urdf}, srdf: {DATA}/robots/iiwa14.srdf, base_link: base_link, tip_link: tool0}}\n"
-                           "path: {waypoints: [{xyz: [0.5, -0.1, 0.4], rpy: [0, 3.1415926536, 0]}, {xyz: [0.5, 0.1, 0.4], rpy: [0, 3.1415926536, 0]}]}\n"
-                           "limits: {clearance: 0.001}\n")
+        problem.write_text(
+            f"robot: {{urdf: {urdf}, srdf: {DATA}/robots/iiwa14.srdf, base_link: base_link, "
+            f"tip_link: tool0}}\n"
+            "path: {waypoints: [{xyz: [0.5, -0.1, 0.4], rpy: [0, 3.1415926536, 0]}, {xyz: [0.5, "
+            "0.1, 0.4], rpy: [0, 3.1415926536, 0]}]}\n"
+            "limits: {clearance: 0.001}\n"
+        )
         return problem
 
     def test_one_link_of_two(self):
@@ -116,11 +157,22 @@ class Fit(WithFolder):
 
     def test_visual_meshes_of_links_without_collision_shapes(self):
         visual = self.mesh.replace("collision>", "visual>")
-        box = '<visual><origin xyz="0 0 0.1"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
-        self.text = re.sub('<link name="link_4">.*?</link>', f'<link name="link_4">{visual}{box}</link>', (DATA / "robots/iiwa14.urdf").read_text(), count=1, flags=re.S)
-        self.text = self.text.replace('<link name="link_5">', '<link name="link_5">' + visual)  # has collision shapes
+        box = (
+            '<visual><origin xyz="0 0 0.1"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+        )
+        self.text = re.sub(
+            '<link name="link_4">.*?</link>',
+            f'<link name="link_4">{visual}{box}</link>',
+            (DATA / "robots/iiwa14.urdf").read_text(),
+            count=1,
+            flags=re.S,
+        )
+        # Has collision shapes.
+        self.text = self.text.replace('<link name="link_5">', '<link name="link_5">' + visual)
         self.urdf.write_text(self.text)
-        self.assertIn("or --visual, which fits capsules about its visual meshes", run("fit", self.urdf).stderr)
+        self.assertIn(
+            "or --visual, which fits capsules about its visual meshes", run("fit", self.urdf).stderr
+        )
         out = self.folder / "fitted.urdf"
         done = run("fit", self.urdf, "--visual", "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -140,9 +192,14 @@ class Fit(WithFolder):
     def test_bad_input(self):
         without = self.folder / "without.urdf"
         without.write_text((DATA / "robots/iiwa14.urdf").read_text())
-        for arguments, words in (((without,), "no collision meshes"), ((self.urdf, "--link", "link_44"), "unknown link 'link_44', nearest is 'link_4'"),
-                                 ((self.urdf, "--link", "link_1"), "no collision meshes of --link"), ((self.urdf, "--capsules", 0), "--capsules"),
-                                 ((self.urdf, "--out", self.urdf), "--out"), ((self.folder / "none.urdf",), "none.urdf")):
+        for arguments, words in (
+            ((without,), "no collision meshes"),
+            ((self.urdf, "--link", "link_44"), "unknown link 'link_44', nearest is 'link_4'"),
+            ((self.urdf, "--link", "link_1"), "no collision meshes of --link"),
+            ((self.urdf, "--capsules", 0), "--capsules"),
+            ((self.urdf, "--out", self.urdf), "--out"),
+            ((self.folder / "none.urdf",), "none.urdf"),
+        ):
             with self.subTest(arguments=arguments):
                 done = run("fit", *arguments)
                 self.assertEqual(done.returncode, 2, done.stdout)

@@ -11,8 +11,15 @@ IIWA = (DATA / "robots/iiwa14.urdf").read_text()
 
 
 def joint(name, kind, parent, child, xyz="0 0 0.05", axis="0 0 1", more=""):
-    limit = '<limit lower="-1" upper="1" velocity="1" effort="1"/>' if kind in ("revolute", "prismatic") else ""
-    return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}"/><axis xyz="{axis}"/>{limit}{more}</joint><link name="{child}"/>'
+    limit = (
+        '<limit lower="-1" upper="1" velocity="1" effort="1"/>'
+        if kind in ("revolute", "prismatic")
+        else ""
+    )
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{xyz}"/><axis xyz="{axis}"/>{limit}{more}</joint><link name="{child}"/>'
+    )
 
 
 class Info(WithFolder):
@@ -25,67 +32,149 @@ class Info(WithFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(f"arm        {base} to {tip}\n", done.stdout)
         self.assertIn(f"class      {words}", done.stdout)
-        self.assertEqual(re.findall(r"^joint \d +(\S+)", done.stdout, re.M), [f"joint_a{k}" for k in range(1, 8)])
+        self.assertEqual(
+            re.findall(r"^joint \d +(\S+)", done.stdout, re.M), [f"joint_a{k}" for k in range(1, 8)]
+        )
 
     def test_arm_alone(self):
         self.finds(self.info(), "base_link", "tool0")
 
     def test_gripper(self):
-        for fingers in (joint("left", "prismatic", "tool0", "l", axis="0 1 0") + joint("right", "prismatic", "tool0", "r", axis="0 -1 0", more='<mimic joint="left"/>'),
-                        joint("left", "revolute", "tool0", "l") + joint("right", "revolute", "tool0", "r", more='<mimic joint="left"/>'),
-                        joint("left", "revolute", "tool0", "l") + joint("left2", "revolute", "l", "l2") + joint("right", "revolute", "tool0", "r"),
-                        joint("one", "prismatic", "tool0", "l"), joint("one", "revolute", "tool0", "l") + joint("two", "revolute", "l", "l2"),
-                        joint("spindle", "continuous", "tool0", "bit")):
+        for fingers in (
+            joint("left", "prismatic", "tool0", "l", axis="0 1 0")
+            + joint(
+                "right", "prismatic", "tool0", "r", axis="0 -1 0", more='<mimic joint="left"/>'
+            ),
+            joint("left", "revolute", "tool0", "l")
+            + joint("right", "revolute", "tool0", "r", more='<mimic joint="left"/>'),
+            joint("left", "revolute", "tool0", "l")
+            + joint("left2", "revolute", "l", "l2")
+            + joint("right", "revolute", "tool0", "r"),
+            joint("one", "prismatic", "tool0", "l"),
+            joint("one", "revolute", "tool0", "l") + joint("two", "revolute", "l", "l2"),
+            joint("spindle", "continuous", "tool0", "bit"),
+        ):
             with self.subTest(fingers=fingers):
                 self.finds(self.info(fingers), "base_link", "tool0")
 
     def test_named_tools(self):
-        self.finds(self.info(joint("mount", "fixed", "link_7", "hand") + joint("end", "fixed", "hand", "hand_tcp")), "base_link", "tool0")
+        self.finds(
+            self.info(
+                joint("mount", "fixed", "link_7", "hand")
+                + joint("end", "fixed", "hand", "hand_tcp")
+            ),
+            "base_link",
+            "tool0",
+        )
         renamed = IIWA.replace('"tool0"', '"plate"')
-        self.finds(self.info(joint("mount", "fixed", "link_7", "hand") + joint("end", "fixed", "hand", "hand_tcp"), text=renamed), "base_link", "hand_tcp")
+        self.finds(
+            self.info(
+                joint("mount", "fixed", "link_7", "hand")
+                + joint("end", "fixed", "hand", "hand_tcp"),
+                text=renamed,
+            ),
+            "base_link",
+            "hand_tcp",
+        )
         self.finds(self.info(text=renamed), "base_link", "plate")
-        hand = joint("mount", "fixed", "plate", "hand") + joint("left", "prismatic", "hand", "l") + joint("right", "prismatic", "hand", "r")
+        hand = (
+            joint("mount", "fixed", "plate", "hand")
+            + joint("left", "prismatic", "hand", "l")
+            + joint("right", "prismatic", "hand", "r")
+        )
         self.finds(self.info(hand, text=renamed), "base_link", "plate")
 
     def test_torso_and_mobile_base(self):
-        for above in (joint("lift", "prismatic", "cart", "base_link"), joint("turn", "revolute", "cart", "base_link"), joint("mount", "fixed", "cart", "base_link")):
+        for above in (
+            joint("lift", "prismatic", "cart", "base_link"),
+            joint("turn", "revolute", "cart", "base_link"),
+            joint("mount", "fixed", "cart", "base_link"),
+        ):
             with self.subTest(above=above):
-                more = '<link name="cart"/>' + above.replace('<link name="base_link"/>', "") + joint("w1", "continuous", "cart", "wheel_1") + joint("w2", "continuous", "cart", "wheel_2")
+                more = (
+                    '<link name="cart"/>'
+                    + above.replace('<link name="base_link"/>', "")
+                    + joint("w1", "continuous", "cart", "wheel_1")
+                    + joint("w2", "continuous", "cart", "wheel_2")
+                )
                 self.finds(self.info(more), "base_link", "tool0")
 
     def test_second_arm(self):
         links = re.findall(r'<link name="([^"]*)"', IIWA)
         other = re.search(r"<robot[^>]*>(.*)</robot>", IIWA, re.S).group(1)
-        for name in sorted(set(links + re.findall(r'<joint name="([^"]*)"', IIWA)), key=len, reverse=True):
+        for name in sorted(
+            set(links + re.findall(r'<joint name="([^"]*)"', IIWA)), key=len, reverse=True
+        ):
             other = other.replace(f'"{name}"', f'"b_{name}"')
         # The other comes first in the file, and has an elbow that is no S-R-S arm's.
-        bent = re.sub(r'(<joint name="b_joint_a7".*?<origin xyz=")\S+', r"\g<1>0.088", other, flags=re.S)
-        mount = '<link name="stand"/>' + "".join(joint(f"m_{k}", "fixed", "stand", k).replace(f'<link name="{k}"/>', "") for k in ("base_link", "b_base_link"))
+        bent = re.sub(
+            r'(<joint name="b_joint_a7".*?<origin xyz=")\S+', r"\g<1>0.088", other, flags=re.S
+        )
+        mount = '<link name="stand"/>' + "".join(
+            joint(f"m_{k}", "fixed", "stand", k).replace(f'<link name="{k}"/>', "")
+            for k in ("base_link", "b_base_link")
+        )
         for second, first in ((other, "base_link to tool0"), (bent, "base_link to tool0")):
             done = self.info(second + mount)
             self.finds(done, "base_link", "tool0")
             self.assertIn("other arm  b_base_link to b_tool0", done.stdout)
-        self.assertIn("arm        stand to b_tool0\n", self.info(other + mount, "--base", "stand", "--tip", "b_tool0").stdout)
-        self.assertIn("arm        b_base_link to b_tool0\n", self.info(other + mount, "--base", "b_base_link").stdout)
+        self.assertIn(
+            "arm        stand to b_tool0\n",
+            self.info(other + mount, "--base", "stand", "--tip", "b_tool0").stdout,
+        )
+        self.assertIn(
+            "arm        b_base_link to b_tool0\n",
+            self.info(other + mount, "--base", "b_base_link").stdout,
+        )
 
     def test_not_srs(self):
-        for number, ends, axes, lock in ((7, "a spherical shoulder and no spherical wrist", "6 and 7", "axes 1, 2 and 3 meet in a point"),
-                                         (2, "no spherical shoulder and a spherical wrist", "1 and 2", "axes 5, 6 and 7 meet in a point")):
-            bent = re.sub(rf'(<joint name="joint_a{number}".*?<origin xyz=")\S+', r"\g<1>0.088", IIWA, flags=re.S)
+        for number, ends, axes, lock in (
+            (
+                7, "a spherical shoulder and no spherical wrist", "6 and 7",
+                "axes 1, 2 and 3 meet in a point"
+            ),
+            (
+                2, "no spherical shoulder and a spherical wrist", "1 and 2",
+                "axes 5, 6 and 7 meet in a point"
+            ),
+        ):
+            bent = re.sub(
+                rf'(<joint name="joint_a{number}".*?<origin xyz=")\S+', r"\g<1>0.088", IIWA,
+                flags=re.S
+            )
             self.assertNotEqual(bent, IIWA)
-            done = self.info(joint("left", "prismatic", "tool0", "l") + joint("right", "prismatic", "tool0", "r"), text=bent)
+            done = self.info(
+                joint("left", "prismatic", "tool0", "l")
+                + joint("right", "prismatic", "tool0", "r"),
+                text=bent,
+            )
             self.assertEqual((done.returncode, done.stderr), (0, ""))
-            for line in (f"class      7R with {ends}\n", f"not S-R-S  axes {axes} miss each other by 88.0 mm\n",
-                         f"solutions  all: closed form: {lock}; locks joint "):
+            for line in (
+                f"class      7R with {ends}\n",
+                f"not S-R-S  axes {axes} miss each other by 88.0 mm\n",
+                f"solutions  all: closed form: {lock}; locks joint ",
+            ):
                 self.assertIn(line, done.stdout)
 
     def test_five_joints_and_a_gripper(self):
         five = IIWA
         for number in (3, 5):
-            five = five.replace(f'<joint name="joint_a{number}" type="revolute">', f'<joint name="joint_a{number}" type="fixed">')
-        done = self.info(joint("left", "prismatic", "tool0", "l") + joint("right", "revolute", "tool0", "r"), text=five)
+            five = five.replace(
+                f'<joint name="joint_a{number}" type="revolute">',
+                f'<joint name="joint_a{number}" type="fixed">',
+            )
+        done = self.info(
+            joint("left", "prismatic", "tool0", "l") + joint("right", "revolute", "tool0", "r"),
+            text=five,
+        )
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("no arm of seven or six joints: the longest row of joints that turn has 5, from 'joint_a1' to 'joint_a7'", done.stderr)
+        self.assertIn(
+            (
+                "no arm of seven or six joints: the longest row of joints that turn has 5, from "
+                "'joint_a1' to 'joint_a7'"
+            ),
+            done.stderr,
+        )
         for name in ("left", "right", "prismatic"):
             self.assertNotIn(name, done.stderr)
 
@@ -94,18 +183,33 @@ class Info(WithFolder):
         for options in ((), named, ("--roll",), ("--roll", *named)):
             done = run("info", DATA / "robots/ur5e_like.urdf", *options)
             self.assertIn("arm        base_link to flange\nclass      6R and a roll", done.stdout)
-            self.assertIn("path.roll\nsolutions  all: closed form: axes 2, 3 and 4 are parallel", done.stdout)
-            self.assertEqual(re.findall(r"^joint \d +(\S+)", done.stdout, re.M), [f"joint_{k}" for k in range(1, 7)])
+            self.assertIn(
+                "path.roll\nsolutions  all: closed form: axes 2, 3 and 4 are parallel", done.stdout
+            )
+            self.assertEqual(
+                re.findall(r"^joint \d +(\S+)", done.stdout, re.M),
+                [f"joint_{k}" for k in range(1, 7)],
+            )
         done = self.info("", "--roll")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("no arm of six joints: the longest row of joints that turn has 7", done.stderr)
+        self.assertIn(
+            "no arm of six joints: the longest row of joints that turn has 7", done.stderr
+        )
 
     def test_meshes_are_not_needed(self):
-        mesh = '<link name="shell"><collision><geometry><mesh filename="package://some_robot/meshes/shell.stl"/></geometry></collision></link>'
-        more = mesh + joint("glue", "fixed", "base_link", "shell").replace('<link name="shell"/>', "")
+        mesh = (
+            '<link name="shell"><collision><geometry>'
+            '<mesh filename="package://some_robot/meshes/shell.stl"/></geometry></collision></link>'
+        )
+        more = mesh + joint("glue", "fixed", "base_link", "shell").replace(
+            '<link name="shell"/>', ""
+        )
         done = self.info(more)
         self.finds(done, "base_link", "tool0")
-        for word in ("meshes     1 not found", "package://some_robot/meshes/shell.stl", "robot.packages: {some_robot: "):
+        for word in (
+            "meshes     1 not found", "package://some_robot/meshes/shell.stl",
+            "robot.packages: {some_robot: "
+        ):
             self.assertIn(word, done.stdout)
         shelf = self.folder / "shelf" / "any-name"
         (shelf / "meshes").mkdir(parents=True)
@@ -118,52 +222,103 @@ class Info(WithFolder):
 
     def test_linkages_follow_the_arm(self):
         mimics = lambda leader, more="": f'<mimic joint="{leader}"{more}/>'
-        rods = joint("balancer", "revolute", "link_1", "rod", axis="0 1 0", more=mimics("joint_a2", ' multiplier="-1"')) + joint("cylinder", "prismatic", "rod", "piston", more=mimics("joint_a2", ' multiplier="0.1"')) \
+        rods = (
+            joint(
+                "balancer", "revolute", "link_1", "rod", axis="0 1 0",
+                more=mimics("joint_a2", ' multiplier="-1"')
+            )
+            + joint(
+                "cylinder", "prismatic", "rod", "piston",
+                more=mimics("joint_a2", ' multiplier="0.1"')
+            )
             + joint("rocker", "revolute", "link_3", "lever", axis="0 1 0", more=mimics("joint_a4"))
+        )
         done = self.info(rods)
         self.finds(done, "base_link", "tool0")
-        for line in ("linkage    balancer moves by -1 times joint 2\n", "linkage    cylinder moves by 0.1 times joint 2\n", "linkage    rocker moves by 1 times joint 4\n"):
+        for line in (
+            "linkage    balancer moves by -1 times joint 2\n",
+            "linkage    cylinder moves by 0.1 times joint 2\n",
+            "linkage    rocker moves by 1 times joint 4\n",
+        ):
             self.assertIn(line, done.stdout)
-        self.assertRegex(done.stdout, r"joint 2    joint_a2 +-1\.0000 to +1\.0000 rad")  # the balancer's limits
+        # The balancer's limits.
+        self.assertRegex(done.stdout, r"joint 2    joint_a2 +-1\.0000 to +1\.0000 rad")
         six = (DATA / "robots/ur5e_like.urdf").read_text()
         first = re.search(r'<joint name="joint_1".*?<child link="([^"]*)"', six, re.S).group(1)
-        done = self.info(joint("balancer", "revolute", first, "rod", axis="0 1 0", more=mimics("joint_2")), text=six)
+        done = self.info(
+            joint("balancer", "revolute", first, "rod", axis="0 1 0", more=mimics("joint_2")),
+            text=six,
+        )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("class      6R and a roll", done.stdout)
         self.assertIn("linkage    balancer moves by 1 times joint 2\n", done.stdout)
 
     def test_an_arm_that_mimics_itself(self):
-        text = re.sub(r'(<joint name="joint_a4".*?<axis[^>]*/>)', r'\g<1><mimic joint="joint_a2" multiplier="-1"/>', IIWA, flags=re.S)
+        text = re.sub(
+            r'(<joint name="joint_a4".*?<axis[^>]*/>)',
+            r'\g<1><mimic joint="joint_a2" multiplier="-1"/>', IIWA, flags=re.S
+        )
         self.assertNotEqual(text, IIWA)
         done = self.info(text=text)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("joint 'joint_a4', between 'base_link' and 'tool0', mimics 'joint_a2' of the arm: not supported", done.stderr)
+        self.assertIn(
+            (
+                "joint 'joint_a4', between 'base_link' and 'tool0', mimics 'joint_a2' of the arm: "
+                "not supported"
+            ),
+            done.stderr,
+        )
 
     def test_tips(self):
         renamed = IIWA.replace('"tool0"', '"plate"')
-        side = joint("shell", "fixed", "link_7", "link_7_sc", xyz="0 0 0")  # holds shapes, at link 7 itself
-        camera = joint("camera_rojoint", "revolute", "link_7", "camera_rolink", xyz="0 0.05 0", axis="0 1 0")
+        # Holds shapes, at link 7 itself.
+        side = joint("shell", "fixed", "link_7", "link_7_sc", xyz="0 0 0")
+        camera = joint(
+            "camera_rojoint", "revolute", "link_7", "camera_rolink", xyz="0 0.05 0", axis="0 1 0"
+        )
         lens = joint("mount", "fixed", "link_7", "front_camera", xyz="0 0.05 0")
-        for more in (side, camera, lens, side + camera + lens, camera + joint("lens", "fixed", "camera_rolink", "lens_link")):
+        for more in (
+            side, camera, lens, side + camera + lens,
+            camera + joint("lens", "fixed", "camera_rolink", "lens_link")
+        ):
             with self.subTest(more=more):
                 self.finds(self.info(more, text=renamed), "base_link", "plate")
-        bare = re.sub(r'<joint name="[^"]*" type="fixed">\s*<parent link="link_7"/>.*?</joint>', "", re.sub(r'<link name="tool0"[^>]*(/>|>.*?</link>)', "", IIWA, flags=re.S), flags=re.S)
+        bare = re.sub(
+            r'<joint name="[^"]*" type="fixed">\s*<parent link="link_7"/>.*?</joint>', "",
+            re.sub(r'<link name="tool0"[^>]*(/>|>.*?</link>)', "", IIWA, flags=re.S), flags=re.S
+        )
         self.assertNotIn("tool0", bare)
         self.finds(self.info(camera, text=bare), "base_link", "link_7")
 
     def rail(self, tail=""):
         """The arm on a rail of 2 m, and a path 1 m beside it."""
-        self.info('<link name="hall"/><joint name="rail" type="prismatic"><parent link="hall"/><child link="base_link"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>')
+        self.info(
+            '<link name="hall"/><joint name="rail" type="prismatic"><parent link="hall"/>'
+            '<child link="base_link"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1" '
+            'effort="1"/></joint>'
+        )
         file = self.folder / "problem.yaml"
-        file.write_text(f"robot: {{urdf: robot.urdf, base_link: hall, tip_link: tool0{tail}}}\npath: {{waypoints: [{{xyz: [0.5, 1.2, 0.5]}}, {{xyz: [0.5, 1.25, 0.5]}}]}}\n")
+        file.write_text(
+            f"robot: {{urdf: robot.urdf, base_link: hall, tip_link: tool0{tail}}}\n"
+            f"path: {{waypoints: [{{xyz: [0.5, 1.2, 0.5]}}, {{xyz: [0.5, 1.25, 0.5]}}]}}\n"
+        )
         return file
 
     def test_held_joints_are_named(self):
         problem = self.rail()
         done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0")
         self.assertIn("held       rail at 0 m\n", done.stdout)
-        self.assertIn("warning    joint 'rail' lies between base and tip and is not planned: it is held at 0 m: robot.hold: {rail: POSITION}", done.stdout)
-        done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0", "--hold", "rail=1")
+        self.assertIn(
+            (
+                "warning    joint 'rail' lies between base and tip and is not planned: it is held "
+                "at 0 m: robot.hold: {rail: POSITION}"
+            ),
+            done.stdout,
+        )
+        done = run(
+            "info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0",
+            "--hold", "rail=1"
+        )
         self.assertIn("held       rail at 1 m\n", done.stdout)
         self.assertNotIn("warning", done.stdout)
         alone = run("info", self.folder / "robot.urdf").stdout
@@ -174,7 +329,13 @@ class Info(WithFolder):
         done = run("plan", problem, "--json", result)
         self.assertEqual(done.returncode, 1)
         self.assertIn("no path at any resolution with rail held at 0 m: ", done.stdout)
-        self.assertIn("swivel: warning: joint 'rail' lies between base and tip and is not planned: it is held at 0 m", done.stderr)
+        self.assertIn(
+            (
+                "swivel: warning: joint 'rail' lies between base and tip and is not planned: it is "
+                "held at 0 m"
+            ),
+            done.stderr,
+        )
         held = {"joint": "rail", "position": 0, "unit": "m", "given": False, "mimics": None}
         self.assertEqual(json.loads(result.read_text())["held"], [held])
 
@@ -182,76 +343,140 @@ class Info(WithFolder):
         done = run("plan", problem, "--json", result, "--out", self.folder / "path.csv")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn(" | held: rail at 1.1 m\n", done.stdout)
-        self.assertEqual(json.loads(result.read_text())["held"], [held | {"position": 1.1, "given": True}])
+        self.assertEqual(
+            json.loads(result.read_text())["held"], [held | {"position": 1.1, "given": True}]
+        )
         done = run("check", problem, self.folder / "path.csv")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn(", held: rail at 1.1 m; ", done.stdout)
         problem = self.rail(", hold: {rail: 3}")
         done = run("plan", problem)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertEqual(done.stderr, f"swivel: {problem}:1: robot.hold.rail: joint 'rail' at 3 is outside its limits: allowed is -2 to 2\n")
-        done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0", "--hold", "rail=3")
-        self.assertEqual((done.returncode, done.stderr), (2, "swivel: --hold: joint 'rail' at 3 is outside its limits: allowed is -2 to 2\n"))
+        self.assertEqual(
+            done.stderr,
+            (
+                f"swivel: {problem}:1: robot.hold.rail: joint 'rail' at 3 is outside its limits: "
+                "allowed is -2 to 2\n"
+            ),
+        )
+        done = run(
+            "info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0",
+            "--hold", "rail=3"
+        )
+        self.assertEqual(
+            (done.returncode, done.stderr),
+            (2, "swivel: --hold: joint 'rail' at 3 is outside its limits: allowed is -2 to 2\n"),
+        )
         done = run("info", self.folder / "robot.urdf", "--without", "rial")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
-        self.assertTrue(done.stderr.startswith("swivel: --without: unknown link 'rial', nearest is '"), done.stderr)
+        self.assertTrue(
+            done.stderr.startswith("swivel: --without: unknown link 'rial', nearest is '"),
+            done.stderr,
+        )
         for value in ("nan", "inf", "-inf", "", "1m", "0x1"):
-            done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0", "--hold", f"rail={value}")
-            self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1))
+            done = run(
+                "info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0",
+                "--hold", f"rail={value}"
+            )
+            self.assertEqual(
+                (done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1)
+            )
             self.assertIn(f"--hold: 'rail={value}': allowed is JOINT=POSITION", done.stderr)
-        done = run("campaign", self.rail(), "--episodes", "1", "--planner", "lazy", "--json", self.folder / "s.json")
+        done = run(
+            "campaign", self.rail(), "--episodes", "1", "--planner", "lazy",
+            "--json", self.folder / "s.json"
+        )
         self.assertEqual(json.loads((self.folder / "s.json").read_text())["held"], [held])
-        self.assertIn("1 of 1 episodes answered: 0 solved, 1 infeasible, held: rail at 0 m\n", done.stdout)
+        self.assertIn(
+            "1 of 1 episodes answered: 0 solved, 1 infeasible, held: rail at 0 m\n", done.stdout
+        )
         done = run("place", self.rail(), "--path", "--x", "0", "--planner", "lazy")
         self.assertIn("1 of 1 placements planned, 0 with a path, 1 without: ", done.stdout)
         self.assertIn(", held: rail at 0 m; ", done.stdout)
 
     def test_near_matches(self):
-        for options, words in ((("--tip", "tol0"), "--tip: unknown link 'tol0', nearest is 'tool0'"), (("--base", "baselink"), "--base: unknown link 'baselink', nearest is 'base_link'"),
-                               (("--hold", "joint_a8=1"), "--hold: unknown joint 'joint_a8', nearest is 'joint_a1'")):
+        for options, words in (
+            (("--tip", "tol0"), "--tip: unknown link 'tol0', nearest is 'tool0'"),
+            (("--base", "baselink"), "--base: unknown link 'baselink', nearest is 'base_link'"),
+            (("--hold", "joint_a8=1"), "--hold: unknown joint 'joint_a8', nearest is 'joint_a1'"),
+        ):
             done = self.info("", *options)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
             self.assertIn(words, done.stderr)
         problem = self.folder / "problem.yaml"
-        problem.write_text(f"robot: {{urdf: {DATA}/robots/iiwa14.urdf, base_link: base_link, tip_link: tol0}}\npath: {{waypoints: [{{xyz: [0.5, 0, 0.5]}}, {{xyz: [0.5, 0.1, 0.5]}}]}}\n")
+        problem.write_text(
+            f"robot: {{urdf: {DATA}/robots/iiwa14.urdf, base_link: base_link, tip_link: tol0}}\n"
+            f"path: {{waypoints: [{{xyz: [0.5, 0, 0.5]}}, {{xyz: [0.5, 0.1, 0.5]}}]}}\n"
+        )
         self.assertIn("unknown link 'tol0', nearest is 'tool0'", run("plan", problem).stderr)
 
 
 def prefixed(text, prefix):
     """The inside of a URDF, all its links and joints named anew."""
-    text = re.sub(r'(<(?:link|joint|parent|child|mimic) (?:name|link|joint)=")', rf"\g<1>{prefix}", text)
+    text = re.sub(
+        r'(<(?:link|joint|parent|child|mimic) (?:name|link|joint)=")', rf"\g<1>{prefix}", text
+    )
     return re.search(r"<robot[^>]*>(.*)</robot>", text, re.S).group(1)
 
 
 class Robots(WithFolder):
-    """Arms of each class with what robots have besides: class, method, joints, base and tip without options."""
+    """Arms of each class with what robots have besides: class, method, joints, base and tip without
+    options."""
 
-    CLASSES = {"iiwa14": ("S-R-S", "all: closed form: spherical"), "sda10f": ("S-R-S", "all: closed form: spherical"),
-               "sda5f": ("S-R-S, in-plane elbow offset", "all: closed form: spherical"),
-               "panda_like": ("7R with a spherical shoulder", "all: closed form: axes 1, 2 and 3 meet"),
-               "xarm7_like": ("7R with a spherical shoulder", "all: closed form: axes 1, 2 and 3 meet"),
-               "fetch_like": ("7R with no spherical shoulder and a spherical wrist", "all: closed form: axes 5, 6 and 7 meet"),
-               "gen3_like": ("7R with no spherical shoulder and a spherical wrist", "all: closed form: axes 5, 6 and 7 meet"),
-               "offsets": ("7R with no spherical shoulder and no spherical wrist", "those that turn up: "),
-               "kr6_like": ("6R and a roll with no spherical shoulder and a spherical wrist", "all: closed form: axes 4, 5 and "),
-               "ur5e_like": ("6R and a roll with no spherical shoulder and no spherical wrist", "all: closed form: axes 2, 3 and 4 are parallel"),
-               "six_offsets": ("6R and a roll with no spherical shoulder and no spherical wrist", "those that turn up: ")}
+    CLASSES = {
+        "iiwa14": ("S-R-S", "all: closed form: spherical"),
+        "sda10f": ("S-R-S", "all: closed form: spherical"),
+        "sda5f": ("S-R-S, in-plane elbow offset", "all: closed form: spherical"),
+        "panda_like": ("7R with a spherical shoulder", "all: closed form: axes 1, 2 and 3 meet"),
+        "xarm7_like": ("7R with a spherical shoulder", "all: closed form: axes 1, 2 and 3 meet"),
+        "fetch_like": (
+            "7R with no spherical shoulder and a spherical wrist",
+            "all: closed form: axes 5, 6 and 7 meet",
+        ),
+        "gen3_like": (
+            "7R with no spherical shoulder and a spherical wrist",
+            "all: closed form: axes 5, 6 and 7 meet",
+        ),
+        "offsets": ("7R with no spherical shoulder and no spherical wrist", "those that turn up: "),
+        "kr6_like": (
+            "6R and a roll with no spherical shoulder and a spherical wrist",
+            "all: closed form: axes 4, 5 and ",
+        ),
+        "ur5e_like": (
+            "6R and a roll with no spherical shoulder and no spherical wrist",
+            "all: closed form: axes 2, 3 and 4 are parallel",
+        ),
+        "six_offsets": (
+            "6R and a roll with no spherical shoulder and no spherical wrist",
+            "those that turn up: ",
+        ),
+    }
 
     def setUp(self):
         super().setUp()
-        self.texts = {name: (DATA / f"robots/{name}.urdf").read_text() for name in self.CLASSES if "offsets" not in name}
+        self.texts = {
+            name: (DATA / f"robots/{name}.urdf").read_text()
+            for name in self.CLASSES
+            if "offsets" not in name
+        }
         # No three neighbouring axes meet or are parallel: the joints of the wrist pass each other.
         for name, of in (("offsets", "panda_like"), ("six_offsets", "kr6_like")):
             text = self.texts[of]
             for number in (2, 3, 5, 6):
-                text = re.sub(rf'(<joint name="joint_{number}".*?<origin xyz=")(\S+) (\S+) (\S+?)"', rf'\g<1>0.0{number}1 0.0{9 - number}3 0.2{number}"', text, flags=re.S)
+                text = re.sub(
+                    rf'(<joint name="joint_{number}".*?<origin xyz=")(\S+) (\S+) (\S+?)"',
+                    rf'\g<1>0.0{number}1 0.0{9 - number}3 0.2{number}"', text, flags=re.S
+                )
             self.texts[name] = text
 
     def arm(self, name):
         """An arm of one row, its tip, and its joints."""
         text = self.texts[name]
         if name.startswith("sda"):
-            return text, "arm_left_link_tool0", re.findall(r'<joint name="(arm_left_joint_\d_\w)"', text)
+            return (
+                text, "arm_left_link_tool0",
+                re.findall(r'<joint name="(arm_left_joint_\d_\w)"', text)
+            )
         tip = "tool0" if name == "iiwa14" else "flange"
         return text, tip, re.findall(r'<joint name="(joint_a?\d)"', text)
 
@@ -261,9 +486,14 @@ class Robots(WithFolder):
         file.write_text(text)
         done = run("info", file)
         kind, method = self.CLASSES[name]
-        right = (done.returncode == 0 and f"arm        {base} to {tip}\n" in done.stdout and re.search(f"^class      {kind}", done.stdout, re.M)
-                 and f"solutions  {method}" in done.stdout and re.findall(r"^joint \d +(\S+)", done.stdout, re.M) == joints
-                 and done.stdout.count("other arm") == others)
+        right = (
+            done.returncode == 0
+            and f"arm        {base} to {tip}\n" in done.stdout
+            and re.search(f"^class      {kind}", done.stdout, re.M)
+            and f"solutions  {method}" in done.stdout
+            and re.findall(r"^joint \d +(\S+)", done.stdout, re.M) == joints
+            and done.stdout.count("other arm") == others
+        )
         if not right:
             self.wrong.append(f"{name}, {words}:\n{done.stdout}{done.stderr}")
 
@@ -273,47 +503,150 @@ class Robots(WithFolder):
             text, tip, joints = self.arm(name)
             others = 1 if name.startswith("sda") else 0  # two arms as they are
 
-            def variant(words, more, before="", base="base_link", last=tip, body=text, named=joints, also=others):
-                head, inside, tail = re.fullmatch(r"(.*<robot[^>]*>)(.*)(</robot>.*)", body, re.S).groups()
-                self.finds(name, head + before + inside + more + tail, base, last, named, words, also)
+            def variant(
+                words, more, before="", base="base_link", last=tip, body=text, named=joints,
+                also=others
+            ):
+                head, inside, tail = re.fullmatch(
+                    r"(.*<robot[^>]*>)(.*)(</robot>.*)", body, re.S
+                ).groups()
+                self.finds(
+                    name, head + before + inside + more + tail, base, last, named, words, also
+                )
 
             variant("alone", "")
             renamed = text.replace(f'"{tip}"', '"plate"')
             for flange, body in ((tip, text), ("plate", renamed)):
                 hand = joint("mount", "fixed", flange, "hand_body")
-                variant("parallel gripper", hand + joint("left", "prismatic", "hand_body", "l", axis="0 1 0") +
-                        joint("right", "prismatic", "hand_body", "r", axis="0 -1 0", more='<mimic joint="left"/>'), last=flange, body=body)
-                variant("four-bar gripper", hand + joint("finger_joint", "revolute", "hand_body", "l") + joint("l_inner", "revolute", "l", "l2", more='<mimic joint="finger_joint"/>') +
-                        joint("right", "revolute", "hand_body", "r", more='<mimic joint="finger_joint"/>'), last=flange, body=body)
-                variant("three fingers", hand + "".join(joint(f"f{k}", "revolute", "hand_body", f"f{k}") + joint(f"f{k}t", "revolute", f"f{k}", f"f{k}t") for k in range(3)), last=flange, body=body)
-                variant("one finger", hand + joint("gripper", "revolute", "hand_body", "l"), last=flange, body=body)
-                variant("gripper with its own centre", hand + joint("end", "fixed", "hand_body", "grasp_tcp") + joint("slide", "prismatic", "hand_body", "l"),
-                        last=tip if flange == tip and tip.endswith("tool0") else "grasp_tcp", body=body)
+                variant(
+                    "parallel gripper",
+                    hand
+                    + joint("left", "prismatic", "hand_body", "l", axis="0 1 0")
+                    + joint(
+                        "right", "prismatic", "hand_body", "r", axis="0 -1 0",
+                        more='<mimic joint="left"/>'
+                    ),
+                    last=flange,
+                    body=body,
+                )
+                variant(
+                    "four-bar gripper",
+                    hand
+                    + joint("finger_joint", "revolute", "hand_body", "l")
+                    + joint("l_inner", "revolute", "l", "l2", more='<mimic joint="finger_joint"/>')
+                    + joint(
+                        "right", "revolute", "hand_body", "r", more='<mimic joint="finger_joint"/>'
+                    ),
+                    last=flange,
+                    body=body,
+                )
+                variant(
+                    "three fingers",
+                    hand
+                    + "".join(
+                        joint(f"f{k}", "revolute", "hand_body", f"f{k}")
+                        + joint(f"f{k}t", "revolute", f"f{k}", f"f{k}t")
+                        for k in range(3)
+                    ),
+                    last=flange,
+                    body=body,
+                )
+                variant(
+                    "one finger", hand + joint("gripper", "revolute", "hand_body", "l"),
+                    last=flange, body=body
+                )
+                variant(
+                    "gripper with its own centre",
+                    hand
+                    + joint("end", "fixed", "hand_body", "grasp_tcp")
+                    + joint("slide", "prismatic", "hand_body", "l"),
+                    last=tip if flange == tip and tip.endswith("tool0") else "grasp_tcp",
+                    body=body,
+                )
             variant("spindle", joint("turn", "continuous", tip, "bit"))
-            wheels = "".join(joint(f"w{k}", "continuous", "cart", f"wheel{k}") for k in range(4)) + joint("c", "continuous", "cart", "fork") + joint("cw", "continuous", "fork", "castor")
-            own = '<link name="cart"/>' + wheels + joint("pan", "revolute", "cart", "neck") + joint("tilt", "revolute", "neck", "head")
-            for words, kind in (("mobile base", "fixed"), ("lift", "prismatic"), ("turntable", "revolute")):
-                above = joint("carry", kind, "cart", "base_link").replace('<link name="base_link"/>', "")
+            wheels = (
+                "".join(joint(f"w{k}", "continuous", "cart", f"wheel{k}") for k in range(4))
+                + joint("c", "continuous", "cart", "fork")
+                + joint("cw", "continuous", "fork", "castor")
+            )
+            own = (
+                '<link name="cart"/>'
+                + wheels
+                + joint("pan", "revolute", "cart", "neck")
+                + joint("tilt", "revolute", "neck", "head")
+            )
+            for words, kind in (
+                ("mobile base", "fixed"),
+                ("lift", "prismatic"),
+                ("turntable", "revolute"),
+            ):
+                above = joint("carry", kind, "cart", "base_link").replace(
+                    '<link name="base_link"/>', ""
+                )
                 variant(words, "", own + above)
-                variant(words + " called base_link", "", (own + above).replace('"base_link"', '"arm_base_link"').replace('"cart"', '"base_link"'), base="arm_base_link",
-                        body=text.replace('"base_link"', '"arm_base_link"'))
-            gantry = '<link name="floor"/>' + joint("x", "prismatic", "floor", "bridge") + joint("y", "prismatic", "bridge", "base_link").replace('<link name="base_link"/>', "")
+                variant(
+                    words + " called base_link",
+                    "",
+                    (own + above)
+                    .replace('"base_link"', '"arm_base_link"')
+                    .replace('"cart"', '"base_link"'),
+                    base="arm_base_link",
+                    body=text.replace('"base_link"', '"arm_base_link"'),
+                )
+            gantry = (
+                '<link name="floor"/>'
+                + joint("x", "prismatic", "floor", "bridge")
+                + joint("y", "prismatic", "bridge", "base_link").replace(
+                    '<link name="base_link"/>', ""
+                )
+            )
             variant("gantry", "", gantry)
             if not others:
                 side = "b_joint_a" if name == "iiwa14" else "b_joint_"
                 for turns in ("fixed", "revolute"):
-                    waist = '<link name="stand"/>' + joint("waist", turns, "stand", "chest") + "".join(
-                        joint(f"on_{base}", "fixed", "chest", base).replace(f'<link name="{base}"/>', "") for base in ("base_link", "b_base_link"))
+                    waist = (
+                        '<link name="stand"/>'
+                        + joint("waist", turns, "stand", "chest")
+                        + "".join(
+                            joint(f"on_{base}", "fixed", "chest", base).replace(
+                                f'<link name="{base}"/>', ""
+                            )
+                            for base in ("base_link", "b_base_link")
+                        )
+                    )
                     variant(f"second arm, waist {turns}", prefixed(text, "b_") + waist, also=1)
                     # Without a base of its own: the torso, of which both arms begin.
                     plain = text.replace('"base_link"', '"left_mount"')
-                    waist = waist.replace('"base_link"', '"left_mount"').replace('"b_base_link"', '"b_left_mount"')
-                    turned = len(joints) == 6 and turns == "revolute"  # with the waist six joints were seven
-                    variant(f"second arm without a base, waist {turns}", prefixed(plain, "b_") + waist, base="chest" if turned else "stand", body=plain, also=1)
-                legs = "".join(joint(f"{side_}_{part}_joint", "revolute", f"{side_}_{above}" if k else "base_link", f"{side_}_{part}")
-                               for side_ in ("left", "right")
-                               for k, (above, part) in enumerate(zip(("", "hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"),
-                                                                     ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll"))))
+                    waist = waist.replace('"base_link"', '"left_mount"').replace(
+                        '"b_base_link"', '"b_left_mount"'
+                    )
+                    # With the waist six joints were seven.
+                    turned = len(joints) == 6 and turns == "revolute"
+                    variant(
+                        f"second arm without a base, waist {turns}",
+                        prefixed(plain, "b_") + waist,
+                        base="chest" if turned else "stand",
+                        body=plain,
+                        also=1,
+                    )
+                legs = "".join(
+                    joint(
+                        f"{side_}_{part}_joint",
+                        "revolute",
+                        f"{side_}_{above}" if k else "base_link",
+                        f"{side_}_{part}",
+                    )
+                    for side_ in ("left", "right")
+                    for k, (above, part) in enumerate(
+                        zip(
+                            ("", "hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"),
+                            (
+                                "hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch",
+                                "ankle_roll"
+                            ),
+                        )
+                    )
+                )
                 variant("legs", legs)
         print(f"{self.ran} robots of {len(self.CLASSES)} arms")
         self.assertFalse(self.wrong, "\n".join(self.wrong))
@@ -321,9 +654,13 @@ class Robots(WithFolder):
 
 
 class Honoured(WithFolder):
-    """What a URDF or SRDF says and the plan does not have: refused in a line, or said as a warning."""
+    """What a URDF or SRDF says and the plan does not have: refused in a line, or said as a
+    warning."""
 
-    PATH = "path: {waypoints: [{xyz: [0.5, -0.1, 0.4], rpy: [0, 3.1415926536, 0]}, {xyz: [0.5, 0.1, 0.4], rpy: [0, 3.1415926536, 0]}]}\n"
+    PATH = (
+        "path: {waypoints: [{xyz: [0.5, -0.1, 0.4], rpy: [0, 3.1415926536, 0]}, {xyz: [0.5, 0.1, "
+        "0.4], rpy: [0, 3.1415926536, 0]}]}\n"
+    )
 
     def files(self, urdf, robot="", more="", srdf=None):
         self.urdf = self.folder / "robot.urdf"
@@ -332,15 +669,24 @@ class Honoured(WithFolder):
             (self.folder / "robot.srdf").write_text(srdf)
             robot += ", srdf: robot.srdf"
         problem = self.folder / "problem.yaml"
-        problem.write_text(f"robot: {{urdf: robot.urdf, base_link: base_link, tip_link: tool0{robot}}}\n{self.PATH}{more}")
+        problem.write_text(
+            f"robot: {{urdf: robot.urdf, base_link: base_link, tip_link: tool0{robot}}}\n"
+            f"{self.PATH}{more}"
+        )
         return problem
 
     def warned(self, *arguments, **keywords):
         done, _, result = self.plan(self.files(*arguments, **keywords))
         self.assertEqual(done.returncode, 0, done.stderr)
-        printed = [line for line in done.stderr.splitlines() if line.startswith("swivel: warning: ")]
+        printed = [
+            line for line in done.stderr.splitlines() if line.startswith("swivel: warning: ")
+        ]
         self.assertEqual(printed, [f"swivel: warning: {warning}" for warning in result["warnings"]])
-        return [warning for warning in result["warnings"] if "robot pairs" not in warning and "no collision shape" not in warning]
+        return [
+            warning
+            for warning in result["warnings"]
+            if "robot pairs" not in warning and "no collision shape" not in warning
+        ]
 
     def refused(self, done, *words):
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
@@ -349,40 +695,77 @@ class Honoured(WithFolder):
             self.assertIn(word, done.stderr)
 
     def test_soft_limits(self):
-        safety = '<safety_controller soft_lower_limit="-1.5" soft_upper_limit="3" k_position="1" k_velocity="1"/>'
+        safety = (
+            '<safety_controller soft_lower_limit="-1.5" soft_upper_limit="3" k_position="1" '
+            'k_velocity="1"/>'
+        )
         limits = r'(<joint name="joint_a2".*?<limit [^>]*/>)'
         urdf = re.sub(limits, lambda m: m[1] + safety, IIWA, count=1, flags=re.S)
         warnings = self.warned(urdf)
-        line = 1 + urdf[:urdf.index('<joint name="joint_a2"')].count("\n")
+        line = 1 + urdf[: urdf.index('<joint name="joint_a2"')].count("\n")
         self.assertEqual(len(warnings), 1)
-        self.assertIn(f"robot.urdf:{line}: joint 'joint_a2' keeps the soft limits of a safety_controller: -1.5 to 2.0944 of -2.0944 to 2.0944 rad", warnings[0])
+        self.assertIn(
+            (
+                f"robot.urdf:{line}: joint 'joint_a2' keeps the soft limits of a "
+                "safety_controller: -1.5 to 2.0944 of -2.0944 to 2.0944 rad"
+            ),
+            warnings[0],
+        )
         self.assertIn("`limits.soft_limits: false`", warnings[0])
         self.assertIn("warning    " + str(self.urdf), run("info", self.urdf).stdout)
         self.assertEqual(self.warned(urdf, more="limits: {soft_limits: false}\n"), [])
         narrow = urdf.replace('soft_lower_limit="-1.5"', 'soft_lower_limit="1.9"')
         self.assertEqual(run("plan", self.files(narrow)).returncode, 1)
-        self.assertEqual(run("plan", self.files(narrow, more="limits: {soft_limits: false}\n")).returncode, 0)
+        self.assertEqual(
+            run("plan", self.files(narrow, more="limits: {soft_limits: false}\n")).returncode, 0
+        )
 
     def test_empty_ranges(self):
         urdf = re.sub(r'lower="[^"]*" upper="[^"]*"', "", IIWA)
         problem = self.files(urdf)
-        line = 1 + urdf[:urdf.index("<joint")].count("\n")
-        self.refused(run("plan", problem), f"robot.urdf:{line}: joints 'joint_a1', 'joint_a2'", "'joint_a7' have an empty range in the URDF")
+        line = 1 + urdf[: urdf.index("<joint")].count("\n")
+        self.refused(
+            run("plan", problem), f"robot.urdf:{line}: joints 'joint_a1', 'joint_a2'",
+            "'joint_a7' have an empty range in the URDF"
+        )
         self.assertIn("have an empty range in the URDF", run("info", self.urdf).stdout)
-        one = re.sub(r'(<joint name="joint_a3".*?)lower="[^"]*" upper="[^"]*"', r'\1lower="0.5" upper="0.5"', IIWA, count=1, flags=re.S)
-        self.refused(run("plan", self.files(one)), "joint 'joint_a3' has an empty range in the URDF (lower = upper = 0.5 rad)", "robot.hold")
-        self.refused(run("plan", self.files(IIWA, more="limits: {joint_margin: 2.5}\n")), "limits.joint_margin: leaves no range for joint 'joint_a2'")
+        one = re.sub(
+            r'(<joint name="joint_a3".*?)lower="[^"]*" upper="[^"]*"', r'\1lower="0.5" upper="0.5"',
+            IIWA, count=1, flags=re.S
+        )
+        self.refused(
+            run("plan", self.files(one)),
+            "joint 'joint_a3' has an empty range in the URDF (lower = upper = 0.5 rad)",
+            "robot.hold",
+        )
+        self.refused(
+            run("plan", self.files(IIWA, more="limits: {joint_margin: 2.5}\n")),
+            "limits.joint_margin: leaves no range for joint 'joint_a2'",
+        )
         six = self.folder / "six.yaml"
-        six.write_text((DATA / "problems/kr6_weld_pipe.yaml").read_text().replace("../", f"{DATA}/").replace("limits: {", "limits: {joint_margin: 4, "))
+        six.write_text(
+            (DATA / "problems/kr6_weld_pipe.yaml")
+            .read_text()
+            .replace("../", f"{DATA}/")
+            .replace("limits: {", "limits: {joint_margin: 4, ")
+        )
         self.refused(run("plan", six), "limits.joint_margin: leaves no range for joint 'joint_1'")
 
-
     def test_floating_joints(self):
-        above = '<link name="world"/>' + joint("free", "floating", "world", "base_link").replace('<link name="base_link"/>', "")
-        urdf = IIWA.replace("</robot>", above + joint("thing", "planar", "tool0", "part") + "</robot>")
-        for warnings in (self.warned(urdf), re.findall("^warning    (.*)$", run("info", self.urdf).stdout, re.M)):
+        above = '<link name="world"/>' + joint("free", "floating", "world", "base_link").replace(
+            '<link name="base_link"/>', ""
+        )
+        urdf = IIWA.replace(
+            "</robot>", above + joint("thing", "planar", "tool0", "part") + "</robot>"
+        )
+        for warnings in (
+            self.warned(urdf),
+            re.findall("^warning    (.*)$", run("info", self.urdf).stdout, re.M),
+        ):
             self.assertEqual(len(warnings), 2, warnings)
-            self.assertRegex(warnings[0], r"robot.urdf:\d+: joint 'free': is floating: it is held at its origin")
+            self.assertRegex(
+                warnings[0], r"robot.urdf:\d+: joint 'free': is floating: it is held at its origin"
+            )
             self.assertIn("joint 'thing': is planar", warnings[1])
         for text in (urdf, urdf.replace('"base_link"', '"first"')):  # whatever the base is called
             self.files(text)
@@ -391,44 +774,85 @@ class Honoured(WithFolder):
             self.assertIn("class      S-R-S", done.stdout)
         problem = self.files(urdf)
         problem.write_text(problem.read_text().replace("base_link: base_link", "base_link: world"))
-        self.refused(run("plan", problem), "joint 'free' between 'world' and 'tool0' is floating or planar")
+        self.refused(
+            run("plan", problem), "joint 'free' between 'world' and 'tool0' is floating or planar"
+        )
 
     def test_links_left_out(self):
-        hand = '<link name="hand"><collision><geometry><mesh filename="absent.stl"/></geometry></collision></link>' + \
-            joint("mount", "fixed", "tool0", "hand").replace('<link name="hand"/>', "") + joint("grip", "prismatic", "hand", "finger")
+        hand = (
+            '<link name="hand"><collision><geometry><mesh filename="absent.stl"/></geometry>'
+            '</collision></link>'
+            + joint("mount", "fixed", "tool0", "hand").replace('<link name="hand"/>', "")
+            + joint("grip", "prismatic", "hand", "finger")
+        )
         urdf = IIWA.replace("</robot>", hand + "</robot>")
         self.refused(run("plan", self.files(urdf)), "absent.stl")
         srdf = '<robot name="iiwa14"><disable_collisions link1="finger" link2="link_7"/></robot>'
         self.assertEqual(self.warned(urdf, robot=", without: [hand]", srdf=srdf), [])
-        self.refused(run("plan", self.files(urdf, robot=", without: [hnad]")), "robot.without[0]: unknown link 'hnad', nearest is 'hand'")
+        self.refused(
+            run("plan", self.files(urdf, robot=", without: [hnad]")),
+            "robot.without[0]: unknown link 'hnad', nearest is 'hand'",
+        )
         self.assertIn("9 links, 8 joints", run("info", self.urdf, "--without", "hand").stdout)
 
     def test_srdf(self):
         srdf = (DATA / "robots/iiwa14.srdf").read_text()
-        more = '<disable_collisions link1="link_11" link2="link_2"/><passive_joint name="joint_9"/></robot>'
+        more = (
+            '<disable_collisions link1="link_11" link2="link_2"/><passive_joint name="joint_9"/>'
+            '</robot>'
+        )
         warnings = self.warned(IIWA, srdf=srdf.replace("</robot>", more))
         self.assertEqual(len(warnings), 2, warnings)
-        self.assertRegex(warnings[0], r"robot\.srdf:\d+: names link 'link_11', which the robot does not have")
+        self.assertRegex(
+            warnings[0], r"robot\.srdf:\d+: names link 'link_11', which the robot does not have"
+        )
         passive = srdf.replace("</robot>", '<passive_joint name="joint_a3"/></robot>')
-        self.refused(run("plan", self.files(IIWA, srdf=passive)), "joint 'joint_a3' is a passive_joint of the SRDF")
-        self.assertIn("warning    " + str(self.urdf), run("info", self.urdf, "--srdf", self.folder / "robot.srdf").stdout)
+        self.refused(
+            run("plan", self.files(IIWA, srdf=passive)),
+            "joint 'joint_a3' is a passive_joint of the SRDF",
+        )
+        self.assertIn(
+            "warning    " + str(self.urdf),
+            run("info", self.urdf, "--srdf", self.folder / "robot.srdf").stdout,
+        )
 
     def test_words_of_other_programs(self):
-        warnings = self.warned(IIWA.replace('<link name="link_4">', '<link name="link_4"><colision/>'))
+        warnings = self.warned(
+            IIWA.replace('<link name="link_4">', '<link name="link_4"><colision/>')
+        )
         self.assertEqual(len(warnings), 1, warnings)
-        self.assertRegex(warnings[0], r"robot\.urdf:\d+: unknown element <colision> in <link>, nearest known is 'collision'")
+        self.assertRegex(
+            warnings[0],
+            r"robot\.urdf:\d+: unknown element <colision> in <link>, nearest known is 'collision'",
+        )
 
     def test_robots_without_shapes(self):
         urdf = re.sub("<collision>.*?</collision>", "", IIWA, flags=re.S)
         self.files(urdf)
-        self.assertIn("shapes     none for collision: the robot is kept clear of nothing\n", run("info", self.urdf).stdout)
-        self.files(urdf.replace('<link name="link_4">', '<link name="link_4"><visual><geometry><mesh filename="x.dae"/></geometry></visual>'))
-        self.assertIn("; `swivel fit --visual` fits capsules about its visual meshes\n", run("info", self.urdf).stdout)
+        self.assertIn(
+            "shapes     none for collision: the robot is kept clear of nothing\n",
+            run("info", self.urdf).stdout,
+        )
+        self.files(
+            urdf.replace(
+                '<link name="link_4">',
+                (
+                    '<link name="link_4"><visual><geometry><mesh filename="x.dae"/></geometry>'
+                    '</visual>'
+                ),
+            )
+        )
+        self.assertIn(
+            "; `swivel fit --visual` fits capsules about its visual meshes\n",
+            run("info", self.urdf).stdout,
+        )
         self.assertNotIn("shapes ", run("info", DATA / "robots/iiwa14.urdf").stdout)
 
     def test_files_of_the_wrong_kind(self):
         problem = self.files(IIWA)
-        self.refused(run("info", problem), "is a problem file", "`swivel info --pairs ", "`swivel plan ")
+        self.refused(
+            run("info", problem), "is a problem file", "`swivel info --pairs ", "`swivel plan "
+        )
         self.refused(run("fit", problem), "is a problem file", "a URDF file")
         self.refused(run("plan", self.urdf), "is XML", "`swivel info`")
         problem.write_text(problem.read_text().replace("urdf: robot.urdf", "urdf: problem.yaml"))

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""swivel merge from outside: shards of campaigns and placements against runs that were not split, and what it refuses."""
+"""swivel merge from outside: shards of campaigns and placements against runs that were not split,
+and what it refuses."""
 import os
 import random
 import re
@@ -23,18 +24,30 @@ def without_scene(page):
 def without_times(text):
     """Of a campaign's CSV, summary or page."""
     text = re.sub(r"^((?:[^,\n]*,){3})[0-9.]+,", r"\1-,", text, flags=re.MULTILINE)
-    return re.sub(r'"plan_ms": ?(\{[^}]*\}|[0-9.e+-]+)|plan [0-9.]+ ms .*above [0-9.]+\)', "plan_ms", text)
+    return re.sub(
+        r'"plan_ms": ?(\{[^}]*\}|[0-9.e+-]+)|plan [0-9.]+ ms .*above [0-9.]+\)', "plan_ms", text
+    )
 
 
 class Merge(WithFolder):
     def ran(self, *arguments, code=0, **environment):
-        done = subprocess.run([SWIVEL, *map(str, arguments)], capture_output=True, text=True, timeout=300,
-                              env={**{key: value for key, value in os.environ.items() if not key.startswith("SLURM_")}, **environment})
+        done = subprocess.run(
+            [SWIVEL, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            timeout=300,
+            env={
+                **{key: value for key, value in os.environ.items() if not key.startswith("SLURM_")},
+                **environment,
+            },
+        )
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
     def pages(self):
-        done = run("campaign", PROBLEM, "--episodes", "1", *QUICK, "--report", self.folder / "page.html")
+        done = run(
+            "campaign", PROBLEM, "--episodes", "1", *QUICK, "--report", self.folder / "page.html"
+        )
         return done.returncode == 0
 
     def shards(self, count, *command, name="shard"):
@@ -51,14 +64,33 @@ class Merge(WithFolder):
         draw = random.Random(seed)
         joined = 0
         for episodes, count in ((13, draw.randint(2, 6)), (2, 3), (5, 1)):
-            command = ("campaign", PROBLEM, "--episodes", episodes, "--seed", draw.randint(0, 2**63), *QUICK)
+            command = (
+                "campaign", PROBLEM, "--episodes", episodes, "--seed", draw.randint(0, 2**63),
+                *QUICK
+            )
             out, html, summary = (self.folder / f"whole.{end}" for end in ("csv", "html", "json"))
-            told = self.ran(*command, "--out", out, "--json", summary, *[word for option in page for word in (option, html)])
+            told = self.ran(
+                *command,
+                "--out",
+                out,
+                "--json",
+                summary,
+                *[word for option in page for word in (option, html)],
+            )
             whole = [file.read_text() for file in (out, summary, html) if file.exists()]
             files = self.shards(count, *command)
             draw.shuffle(files)
-            again = self.ran("merge", out, *files, "--json", summary, *[word for option in page for word in (option, html)])
-            for before, after in zip(whole, [file.read_text() for file in (out, summary, html) if file.exists()]):
+            again = self.ran(
+                "merge",
+                out,
+                *files,
+                "--json",
+                summary,
+                *[word for option in page for word in (option, html)],
+            )
+            for before, after in zip(
+                whole, [file.read_text() for file in (out, summary, html) if file.exists()]
+            ):
                 self.assertEqual(without_times(after), without_times(before))
                 joined += 1
             self.assertEqual(without_times(again.stdout), without_times(told.stdout))
@@ -70,21 +102,43 @@ class Merge(WithFolder):
         print("SWIVEL_TEST_SEED=%d" % seed)
         draw = random.Random(seed)
         grid = ("--x", "-0.1:0.1:0.05", "--y", "0:0.1:0.05", "--yaw", "0.1")
-        for thing in (("--object", "door", *grid, "--best", "clearance,cost"), ("--object", "post", *grid, "--z", "0:0.01:0.01"), ("--base", *grid),
-                      ("--path", "--x", "-0.1:0.1", "--sample", "7", "--seed", "4"), ("--object", "door", "--x", "0:0.1:0.1")):
+        for thing in (
+            ("--object", "door", *grid, "--best", "clearance,cost"),
+            ("--object", "post", *grid, "--z", "0:0.01:0.01"),
+            ("--base", *grid),
+            ("--path", "--x", "-0.1:0.1", "--sample", "7", "--seed", "4"),
+            ("--object", "door", "--x", "0:0.1:0.1"),
+        ):
             command = ("place", PROBLEM, *QUICK, *thing)
-            outputs = {"out": "csv"} | ({"svg": "svg"} if "--y" in thing else {}) | ({"report": "html"} if page else {})
+            outputs = (
+                {"out": "csv"}
+                | ({"svg": "svg"} if "--y" in thing else {})
+                | ({"report": "html"} if page else {})
+            )
             files = {name: self.folder / f"whole.{end}" for name, end in outputs.items()}
-            told = self.ran(*command, *[word for name, file in files.items() for word in ("--" + name, file)])
+            told = self.ran(
+                *command, *[word for name, file in files.items() for word in ("--" + name, file)]
+            )
             whole = {name: file.read_bytes() for name, file in files.items()}
             shards = self.shards(draw.randint(2, 4), *command)
             draw.shuffle(shards)
             out = files.pop("out")
-            again = self.ran("merge", out, *shards, *[word for name, file in files.items() for word in ("--" + name, file)])
+            again = self.ran(
+                "merge",
+                out,
+                *shards,
+                *[word for name, file in files.items() for word in ("--" + name, file)],
+            )
             files["out"] = out
-            for name, file in files.items():  # not assertEqual, which would draw the difference of two pages
-                self.assertTrue(without_scene(file.read_bytes()) == without_scene(whole[name]), name)
-                self.assertEqual(name == "report" and file.read_bytes() != whole[name], name == "report" and b'"scene":{' in whole[name])
+            # Not assertEqual, which would draw the difference of two pages.
+            for name, file in files.items():
+                self.assertTrue(
+                    without_scene(file.read_bytes()) == without_scene(whole[name]), name
+                )
+                self.assertEqual(
+                    name == "report" and file.read_bytes() != whole[name],
+                    name == "report" and b'"scene":{' in whole[name],
+                )
             self.assertEqual(again.stdout, re.sub("; [0-9.]+ s, [0-9]+ a second", "", told.stdout))
 
     def test_nothing_has_a_path(self):
@@ -98,10 +152,14 @@ class Merge(WithFolder):
         files = []
         for task in ("4", "6", "8"):
             files.append(self.folder / f"task{task}.csv")
-            self.ran(*command, "--shard", "auto", "--out", files[-1], SLURM_ARRAY_TASK_ID=task, SLURM_ARRAY_TASK_COUNT="3", SLURM_ARRAY_TASK_MIN="4",
-                     SLURM_ARRAY_TASK_STEP="2")
+            self.ran(
+                *command, "--shard", "auto", "--out", files[-1], SLURM_ARRAY_TASK_ID=task,
+                SLURM_ARRAY_TASK_COUNT="3", SLURM_ARRAY_TASK_MIN="4", SLURM_ARRAY_TASK_STEP="2"
+            )
         self.ran("merge", self.folder / "all.csv", *files)
-        self.assertEqual((self.folder / "all.csv").read_bytes(), (self.folder / "whole.csv").read_bytes())
+        self.assertEqual(
+            (self.folder / "all.csv").read_bytes(), (self.folder / "whole.csv").read_bytes()
+        )
         done = self.ran(*command, "--shard", "auto", "--out", files[0], code=2)
         self.assertIn("SLURM_ARRAY_TASK_ID is not set", done.stderr)
 
@@ -115,7 +173,9 @@ class Merge(WithFolder):
         for word in (*words, "allowed"):
             self.assertIn(word, done.stderr)
         self.assertEqual(done.stdout, "")
-        self.assertEqual({file: file.read_bytes() for file in self.folder.iterdir() if file.is_file()}, before)
+        self.assertEqual(
+            {file: file.read_bytes() for file in self.folder.iterdir() if file.is_file()}, before
+        )
 
     def test_what_is_not_one_run_is_refused(self):
         for folder in ("robots", "meshes", "paths", "problems"):
@@ -142,10 +202,30 @@ class Merge(WithFolder):
         other = self.folder / "other.csv"
         count = 0
         for command, first, changes in (
-                (campaign, a, (("--seed", "2", "seed 2"), ("--ds", "0.021", "ds 0.021"), ("--dphi", "0.21", "dphi 0.21"), ("--edges", "continuous", "edges continuous"),
-                               ("--planner", "lazy", "planner lazy"), ("--episodes", "7", "of 7 episodes"))),
-                (place, p, (("--x", "0:0.2:0.02", "x 0:0.2:0.02"), ("--y", "0.1", "with y 0.1"), ("--best", "speed", "best speed"), ("--object", "post", "object post"),
-                            ("--sample", "6", "with sample 6")))):
+            (
+                campaign,
+                a,
+                (
+                    ("--seed", "2", "seed 2"),
+                    ("--ds", "0.021", "ds 0.021"),
+                    ("--dphi", "0.21", "dphi 0.21"),
+                    ("--edges", "continuous", "edges continuous"),
+                    ("--planner", "lazy", "planner lazy"),
+                    ("--episodes", "7", "of 7 episodes"),
+                ),
+            ),
+            (
+                place,
+                p,
+                (
+                    ("--x", "0:0.2:0.02", "x 0:0.2:0.02"),
+                    ("--y", "0.1", "with y 0.1"),
+                    ("--best", "speed", "best speed"),
+                    ("--object", "post", "object post"),
+                    ("--sample", "6", "with sample 6"),
+                ),
+            ),
+        ):
             for option, value, word in changes:
                 words = list(map(str, command))
                 if option in words:
@@ -163,7 +243,15 @@ class Merge(WithFolder):
             file.write_bytes(before + b"\n")
             for command, first, share in ((campaign, a, "1/3"), (place, p, "1/2")):
                 self.ran(*command, "--shard", share, "--out", other)
-                self.refused(("was another", "the problem file" if name.endswith("yaml") else name, first.name), first, other)
+                self.refused(
+                    (
+                        "was another",
+                        "the problem file" if name.endswith("yaml") else name,
+                        first.name,
+                    ),
+                    first,
+                    other,
+                )
                 count += 1
             file.write_bytes(before)
         self.assertEqual(count, 15)
@@ -176,23 +264,44 @@ class Merge(WithFolder):
         count = 0
         for good in (p, campaign):
             lines = good.read_text().splitlines(keepends=True)
-            for words, text in ((("of the", "rows"), lines[:-1]), (("bad.csv:4",), lines[:3] + lines[4:]), (("bad.csv:4",), [*lines[:3], lines[2], *lines[3:]]),
-                                (("more rows",), [*lines, lines[-1]]), (("ends within a row",), [*lines[:-1], lines[-1][:-4]]), (("another header",), [lines[0], *lines[2:]]),
-                                (("does not say",), lines[1:]), (("does not say",), [lines[0].replace("total", "totals"), *lines[1:]]),
-                                (("does not say",), [lines[0].replace("settings", "setting"), *lines[1:]]), (("does not say",), [lines[0][:40] + "\n", *lines[1:]]),
-                                (("not a row",), [*lines[:3], lines[3].replace("solved", "sold").replace("infeasible", "sold"), *lines[4:]]), (("does not say",), [])):
+            for words, text in (
+                (("of the", "rows"), lines[:-1]),
+                (("bad.csv:4",), lines[:3] + lines[4:]),
+                (("bad.csv:4",), [*lines[:3], lines[2], *lines[3:]]),
+                (("more rows",), [*lines, lines[-1]]),
+                (("ends within a row",), [*lines[:-1], lines[-1][:-4]]),
+                (("another header",), [lines[0], *lines[2:]]),
+                (("does not say",), lines[1:]),
+                (("does not say",), [lines[0].replace("total", "totals"), *lines[1:]]),
+                (("does not say",), [lines[0].replace("settings", "setting"), *lines[1:]]),
+                (("does not say",), [lines[0][:40] + "\n", *lines[1:]]),
+                (
+                    ("not a row",),
+                    [
+                        *lines[:3],
+                        lines[3].replace("solved", "sold").replace("infeasible", "sold"), *lines[4:]
+                    ],
+                ),
+                (("does not say",), []),
+            ):
                 bad.write_text("".join(text))
                 self.refused(("bad.csv", *words), *((bad, q) if good is p else (bad,)))
                 count += 1
         self.assertEqual(count, 24)
         # A shard that ran out of time.
-        done = run("place", PROBLEM, "--object", "door", "--x", "-0.1:0.1:0.0005", "--y", "0:0.1:0.001", "--timeout", "1", "--threads", "1", "--shard", "0/2", "--out", bad)
+        done = run(
+            "place", PROBLEM, "--object", "door", "--x", "-0.1:0.1:0.0005", "--y", "0:0.1:0.001",
+            "--timeout", "1", "--threads", "1", "--shard", "0/2", "--out", bad
+        )
         self.assertEqual(done.returncode, 3, done.stderr)
         self.refused(("rows of shard 0/2", "finished"), bad)
 
     def test_shards_are_refused_where_they_mean_nothing(self):
         door = ("--object", "door", "--x", "0:0.1:0.05")
-        for options, words in ((("--refine-grid",), ("--refine-grid", "--shard")), (("--write", self.folder / "w.yaml"), ("--write", "--shard"))):
+        for options, words in (
+            (("--refine-grid",), ("--refine-grid", "--shard")),
+            (("--write", self.folder / "w.yaml"), ("--write", "--shard")),
+        ):
             done = self.ran("place", PROBLEM, *QUICK, *door, "--shard", "0/2", *options, code=2)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
             for word in (*words, "allowed"):

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Motions in time from outside: every format read by a reader that is not Swivel's, and rates of the joints by differences."""
+"""Motions in time from outside: every format read by a reader that is not Swivel's, and rates of
+the joints by differences."""
 import csv
 import json
 import os
@@ -18,7 +19,9 @@ ACCELERATION, JERK = 10, 100  # what is assumed where nobody says
 
 
 def run(*arguments):
-    return subprocess.run([SWIVEL, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run(
+        [SWIVEL, *map(str, arguments)], capture_output=True, text=True, timeout=300
+    )
 
 
 class Mcap:
@@ -43,7 +46,7 @@ class Mcap:
     @staticmethod
     def text(data, at):
         (n,) = struct.unpack_from("<I", data, at)
-        return data[at + 4:at + 4 + n].decode(), at + 4 + n
+        return data[at + 4 : at + 4 + n].decode(), at + 4 + n
 
     def records(self, at, end):
         while at < end:
@@ -70,7 +73,9 @@ class Mcap:
             self.channels[number] = (schema, topic, encoding)
         elif opcode == 0x05:
             channel, sequence, log, published = struct.unpack_from("<HIQQ", data, at)
-            self.messages.append((channel, sequence, log, published, data[at + 22:at + length], at - 9))
+            self.messages.append(
+                (channel, sequence, log, published, data[at + 22 : at + length], at - 9)
+            )
         elif opcode == 0x06:
             start, end, size, _ = struct.unpack_from("<QQQI", data, at)
             compression, k = self.text(data, at + 28)
@@ -99,7 +104,7 @@ class Cdr:
 
     def text(self):
         n = self.take("I")
-        value = self.data[self.at:self.at + n]
+        value = self.data[self.at : self.at + n]
         self.at += n
         assert value[-1:] == b"\0"
         return value[:-1].decode()
@@ -165,42 +170,63 @@ class Motion(unittest.TestCase):
 
         self.assertEqual(checked(lines).returncode, 0)
         middle = len(lines) // 2
-        # Twice as fast; a sample left out of time; a velocity that is not the joints'; a joint that is moved.
+        # Twice as fast; a sample left out of time; a velocity that is not the joints'; a joint that
+        # is moved.
         fast = checked(lines[:1] + [with_field(line, 0, lambda t: t / 3) for line in lines[1:]])
         self.assertEqual(fast.returncode, 1)
         self.assertIn("jerk", fast.stdout)
-        skipped = checked(lines[:middle] + [with_field(line, 0, lambda t: t - 0.004) for line in lines[middle + 1:]])
+        skipped = checked(
+            lines[:middle]
+            + [with_field(line, 0, lambda t: t - 0.004) for line in lines[middle + 1 :]]
+        )
         self.assertEqual(skipped.returncode, 1)
-        gap = checked(lines[:middle] + [with_field(line, 0, lambda t: t + 0.5) for line in lines[middle:]])
+        gap = checked(
+            lines[:middle] + [with_field(line, 0, lambda t: t + 0.5) for line in lines[middle:]]
+        )
         self.assertEqual(gap.returncode, 1)
         self.assertIn("at a gap in time: 0.504 s, where rows are 0.004 s apart", gap.stdout)
         paused = checked(lines + [with_field(lines[-1], 0, lambda t: t + 0.5)])  # at rest
         self.assertEqual(paused.returncode, 0, paused.stdout)
         for end in (1, len(lines) - 1):
-            stated = checked(lines[:end] + [with_field(lines[end], 11, lambda v: 1000.0)] + lines[end + 1:])
+            stated = checked(
+                lines[:end] + [with_field(lines[end], 11, lambda v: 1000.0)] + lines[end + 1 :]
+            )
             self.assertEqual(stated.returncode, 1)
             self.assertIn("is said to have 1000 rad/s", stated.stdout)
-        said = checked(lines[:middle] + [with_field(lines[middle], 11, lambda v: v + 0.2)] + lines[middle + 1:])
+        said = checked(
+            lines[:middle]
+            + [with_field(lines[middle], 11, lambda v: v + 0.2)]
+            + lines[middle + 1 :]
+        )
         self.assertEqual(said.returncode, 1)
         self.assertIn("is said to have", said.stdout)
-        moved = checked(lines[:middle] + [with_field(lines[middle], 4, lambda q: q + 1e-4)] + lines[middle + 1:])
+        moved = checked(
+            lines[:middle]
+            + [with_field(lines[middle], 4, lambda q: q + 1e-4)]
+            + lines[middle + 1 :]
+        )
         self.assertEqual(moved.returncode, 1)
-        back = checked(lines[:middle] + [lines[middle + 1], lines[middle]] + lines[middle + 2:])
+        back = checked(lines[:middle] + [lines[middle + 1], lines[middle]] + lines[middle + 2 :])
         self.assertEqual(back.returncode, 2)
         self.assertIn("ascend", back.stderr)
 
     def test_joint_trajectory(self):
         table = self.table(self.timed("m.csv", "--speed", "0.1", "--rate", "100")[0])
-        trajectory = json.loads(self.timed("m.json", "--speed", "0.1", "--rate", "100")[0].read_text())
+        trajectory = json.loads(
+            self.timed("m.json", "--speed", "0.1", "--rate", "100")[0].read_text()
+        )
         read = [trajectory]
         text = self.timed("m.yaml", "--speed", "0.1", "--rate", "100")[0].read_text()
         try:
             import yaml
+
             read.append(yaml.safe_load(text))
         except ImportError:
             self.assertIn("joint_names: [", text)
         for message in read:
-            self.assertEqual(message["header"], {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "base_link"})
+            self.assertEqual(
+                message["header"], {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "base_link"}
+            )
             self.assertEqual(message["joint_names"], table[0][4:11])
             self.assertEqual(len(message["points"]), len(table[1]))
             for point, row in zip(message["points"], table[1]):
@@ -217,16 +243,18 @@ class Motion(unittest.TestCase):
         log = Mcap(self.timed("m.mcap", "--speed", "0.1", "--rate", "100")[0].read_bytes())
         self.assertEqual(log.profile, "ros2")
         self.assertEqual(len(log.schemas), 1)
-        (name, encoding, definition), = log.schemas.values()
+        ((name, encoding, definition),) = log.schemas.values()
         self.assertEqual((name, encoding), ("sensor_msgs/msg/JointState", "ros2msg"))
         self.assertIn("MSG: std_msgs/Header", definition)
-        (schema, topic, message_encoding), = log.channels.values()
+        ((schema, topic, message_encoding),) = log.channels.values()
         self.assertEqual((topic, message_encoding), ("/joint_states", "cdr"))
         self.assertEqual(len(log.messages), len(rows))
         self.assertEqual(log.statistics[0], len(rows))
         self.assertEqual([opcode for opcode, _, _ in log.summary], [0x03, 0x04, 0x0B, 0x08])
         self.assertEqual(len(log.index), len(rows))
-        for (channel, sequence, logged, published, data, at), row, entry in zip(log.messages, rows, log.index):
+        for (channel, sequence, logged, published, data, at), row, entry in zip(
+            log.messages, rows, log.index
+        ):
             self.assertAlmostEqual(logged * 1e-9, row[0], delta=1e-9)
             self.assertEqual(entry, (logged, at - log.chunk[2]))
             cdr = Cdr(data)
@@ -246,14 +274,23 @@ class Motion(unittest.TestCase):
 
         def way(file):
             rows = [row[4:11] for row in self.table(file)[1]]
-            return sum(sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5 for a, b in zip(rows, rows[1:]))
+            return sum(
+                sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5 for a, b in zip(rows, rows[1:])
+            )
 
         self.assertLess(way(refined), way(plain))
 
     def test_arms_without_an_arm_angle(self):
-        """Of seven joints without one, and of six whose tool may roll: executable, by rates and by check, in every format."""
-        for name, coarse in ("panda_weld_seam", ()), ("kr6_weld_pipe", ()), ("ur5e_deburr_edge", ("--ds", "0.01")):
-            problem, out, result = PROBLEMS / f"{name}.yaml", self.folder / "arm.csv", self.folder / "arm.json"
+        """Of seven joints without one, and of six whose tool may roll: executable, by rates and by
+        check, in every format."""
+        for name, coarse in (
+            ("panda_weld_seam", ()),
+            ("kr6_weld_pipe", ()),
+            ("ur5e_deburr_edge", ("--ds", "0.01")),
+        ):
+            problem, out, result = (
+                PROBLEMS / f"{name}.yaml", self.folder / "arm.csv", self.folder / "arm.json"
+            )
             options = ("--refine", "--speed", "0.05", "--quiet", *coarse)
             done = run("plan", problem, "--rate", "1000", "--out", out, "--json", result, *options)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -280,7 +317,9 @@ class Motion(unittest.TestCase):
                 self.assertIn("the roll", done.stdout)
             # A trajectory planned without speed, refined and timed afterwards.
             trajectory, later = self.folder / "plain.csv", self.folder / "later.json"
-            self.assertEqual(run("plan", problem, "--out", trajectory, "--quiet", *coarse).returncode, 0)
+            self.assertEqual(
+                run("plan", problem, "--out", trajectory, "--quiet", *coarse).returncode, 0
+            )
             done = run("time", problem, trajectory, "--out", later, *options)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             message = json.loads(later.read_text())
@@ -296,7 +335,10 @@ class Motion(unittest.TestCase):
 
     def test_pages_of_arms_without_an_arm_angle(self):
         page = self.folder / "page.html"
-        done = run("plan", PROBLEMS / "kr6_weld_pipe.yaml", "--refine", "--speed", "0.05", "--report", page, "--quiet")
+        done = run(
+            "plan", PROBLEMS / "kr6_weld_pipe.yaml", "--refine", "--speed", "0.05",
+            "--report", page, "--quiet"
+        )
         if "built without reports" in done.stderr:
             self.skipTest("built without reports")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -306,7 +348,7 @@ class Motion(unittest.TestCase):
         """Largest differences of the joints over what they can do, at rest before and after."""
         _, rows = self.table(file)
         dt = rows[1][0] - rows[0][0]
-        q = [row[4:4 + joints] for row in [rows[0]] * 3 + rows + [rows[-1]] * 3]
+        q = [row[4 : 4 + joints] for row in [rows[0]] * 3 + rows + [rows[-1]] * 3]
         most = [0, 0]
         for k in range(3, len(q)):
             for a, b, c, d in zip(*(q[k - i] for i in range(4))):
@@ -315,10 +357,16 @@ class Motion(unittest.TestCase):
         return most
 
     def test_plan_refines_and_times(self):
-        for problem, options in ((self.problem, COARSE), (PROBLEMS / "experiment_b.yaml", ()),
-                                 (PROBLEMS / "experiment_c.yaml", ("--seed", "1", "--episode", "7"))):
+        for problem, options in (
+            (self.problem, COARSE),
+            (PROBLEMS / "experiment_b.yaml", ()),
+            (PROBLEMS / "experiment_c.yaml", ("--seed", "1", "--episode", "7")),
+        ):
             out, result = self.folder / "p.csv", self.folder / "p.json"
-            done = run("plan", problem, "--refine", "--speed", "0.25", "--rate", "1000", "--out", out, "--json", result, *options)
+            done = run(
+                "plan", problem, "--refine", "--speed", "0.25", "--rate", "1000", "--out", out,
+                "--json", result, *options
+            )
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             lines = done.stdout.splitlines()
             self.assertEqual([line.split(":")[0] for line in lines[-2:]], ["refined", "motion"])
@@ -326,7 +374,9 @@ class Motion(unittest.TestCase):
             self.assertTrue(told["refinement"]["refined"])
             self.assertLess(told["refinement"]["cost"], told["refinement"]["cost_before"])
             self.assertAlmostEqual(told["cost"], told["refinement"]["cost"])
-            self.assertAlmostEqual(told["lattice"]["cost"], told["refinement"]["cost_before"], places=6)
+            self.assertAlmostEqual(
+                told["lattice"]["cost"], told["refinement"]["cost_before"], places=6
+            )
             motion = told["motion"]
             _, rows = self.table(out)
             self.assertTrue(motion["executable"])
@@ -334,11 +384,15 @@ class Motion(unittest.TestCase):
             self.assertGreaterEqual(motion["duration"], motion["ideal"])
             self.assertLess(motion["between_samples"]["position"], 1e-6)
             for key in "speed", "acceleration", "jerk":
-                self.assertEqual([peak["joint"] for peak in motion["peaks"][key]], told["joint_names"])
+                self.assertEqual(
+                    [peak["joint"] for peak in motion["peaks"][key]], told["joint_names"]
+                )
             worst = self.worst_rates(out)
             self.assertLessEqual(max(worst), 1 + 1e-9)
             for key, seen in zip(("acceleration", "jerk"), worst):
-                self.assertAlmostEqual(max(peak["ratio"] for peak in motion["peaks"][key]), seen, places=6)
+                self.assertAlmostEqual(
+                    max(peak["ratio"] for peak in motion["peaks"][key]), seen, places=6
+                )
             for stretch in motion["slow"]:
                 self.assertIn(stretch["joint"], told["joint_names"])
                 self.assertLess(stretch["share"], 1)
@@ -362,27 +416,39 @@ class Motion(unittest.TestCase):
             done = run("plan", self.problem, *COARSE, "--speed", "0.1", "--out", out, "--quiet")
             self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
             self.assertGreater(len(out.read_bytes()), 10000)
-        # Without --refine the motion is that of the trajectory that was planned on the rounded path: here the same.
+        # Without --refine the motion is that of the trajectory that was planned on the rounded
+        # path: here the same.
         timed, _ = self.timed("same.csv", "--speed", "0.1")
         self.assertEqual(self.table(timed)[1][-1][0], self.table(self.folder / "f.csv")[1][-1][0])
 
     def test_what_cannot_be_executed(self):
         jumps, out = self.folder / "jumps.csv", self.folder / "jumps.mcap"
         episode = ("--seed", "1", "--episode", "60")
-        self.assertEqual(run("plan", PROBLEMS / "experiment_c.yaml", *episode, "--out", jumps).returncode, 0)
+        self.assertEqual(
+            run("plan", PROBLEMS / "experiment_c.yaml", *episode, "--out", jumps).returncode, 0
+        )
         out.write_text("from before")
-        done = run("time", PROBLEMS / "experiment_c.yaml", jumps, *episode, "--speed", "0.05", "--out", out)
+        done = run(
+            "time", PROBLEMS / "experiment_c.yaml", jumps, *episode, "--speed", "0.05", "--out", out
+        )
         self.assertEqual(done.returncode, 1)
         self.assertIn("not executable", done.stdout)
         self.assertIn("branch", done.stdout)
         self.assertFalse(out.exists())
-        done = run("plan", PROBLEMS / "experiment_c.yaml", *episode, "--speed", "0.05", "--out", out)
+        done = run(
+            "plan", PROBLEMS / "experiment_c.yaml", *episode, "--speed", "0.05", "--out", out
+        )
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn("jumps to another branch", done.stderr)
 
     def test_plan_says_what_is_not_allowed(self):
-        for options, word in ((("--rate", "100"), "--speed"), (("--turn-speed", "1"), "--speed"), (("--speed", "-1"), "--speed"),
-                              (("--speed", "1", "--out", self.folder / "p.bag"), ".mcap"), (("--speed", "1", "--rate", "0"), "--rate")):
+        for options, word in (
+            (("--rate", "100"), "--speed"),
+            (("--turn-speed", "1"), "--speed"),
+            (("--speed", "-1"), "--speed"),
+            (("--speed", "1", "--out", self.folder / "p.bag"), ".mcap"),
+            (("--speed", "1", "--rate", "0"), "--rate"),
+        ):
             done = run("plan", self.problem, *COARSE, *options)
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(word, done.stderr)
@@ -393,11 +459,15 @@ class Motion(unittest.TestCase):
         seen = set()
         for k in range(36):
             result, out = self.folder / "late.json", self.folder / "late.csv"
-            done = run("plan", PROBLEMS / "experiment_c.yaml", "--planner", "lazy", "--refine", "--speed", "0.05", "--timeout",
-                       5e-4 * 1.25**k, "--json", result, "--out", out)
+            done = run(
+                "plan", PROBLEMS / "experiment_c.yaml", "--planner", "lazy", "--refine",
+                "--speed", "0.05", "--timeout", 5e-4 * 1.25**k, "--json", result, "--out", out
+            )
             told = json.loads(result.read_text())
             if told["status"] != "solved":
-                self.assertEqual((done.returncode, told["motion"], told["refinement"]), (3, None, None))
+                self.assertEqual(
+                    (done.returncode, told["motion"], told["refinement"]), (3, None, None)
+                )
                 seen.add("no path")
             elif told["motion"]["executable"]:
                 self.assertEqual(done.returncode, 0)
@@ -411,9 +481,13 @@ class Motion(unittest.TestCase):
         self.assertLessEqual({"no path", "motion"}, seen)
 
     def test_bad_input(self):
-        for options, word in (((), "--speed"), (("--speed", "0"), "--speed"), (("--speed", "0.1", "--rate", "-1"), "--rate"),
-                              (("--speed", "0.1", "--out", self.folder / "m.bag"), ".mcap"),
-                              (("--speed", "0.1", "--out", self.trajectory), "--out")):
+        for options, word in (
+            ((), "--speed"),
+            (("--speed", "0"), "--speed"),
+            (("--speed", "0.1", "--rate", "-1"), "--rate"),
+            (("--speed", "0.1", "--out", self.folder / "m.bag"), ".mcap"),
+            (("--speed", "0.1", "--out", self.trajectory), "--out"),
+        ):
             done = run("time", self.problem, self.trajectory, *COARSE, *options)
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(word, done.stderr)
@@ -423,16 +497,34 @@ class Motion(unittest.TestCase):
         """The same joints in every format, by themselves or with what Swivel writes besides."""
         files = {"t.csv": self.trajectory}
         for ending in ("csv", "json", "yaml", "mcap"):
-            files[f"motion.{ending}"], _ = self.timed(f"foreign_motion.{ending}", "--speed", "0.1", "--rate", "30")
-        for name, source, wanted in (("joints.csv", self.trajectory, "j"), ("s_joints.csv", self.trajectory, "sj"),
-                                     ("t_joints.csv", files["motion.csv"], "tj")):
+            files[f"motion.{ending}"], _ = self.timed(
+                f"foreign_motion.{ending}", "--speed", "0.1", "--rate", "30"
+            )
+        for name, source, wanted in (
+            ("joints.csv", self.trajectory, "j"),
+            ("s_joints.csv", self.trajectory, "sj"),
+            ("t_joints.csv", files["motion.csv"], "tj"),
+        ):
             header, rows = self.table(source)
-            chosen = [k for k, column in enumerate(header) if column == "t" and "t" in wanted or column == "s" and "s" in wanted
-                      or column.startswith("arm_left_joint") and not column.endswith(("_v", "_a"))][::-1]
+            chosen = [
+                k
+                for k, column in enumerate(header)
+                if column == "t"
+                and "t" in wanted
+                or column == "s"
+                and "s" in wanted
+                or column.startswith("arm_left_joint")
+                and not column.endswith(("_v", "_a"))
+            ][::-1]
             self.assertEqual(len(chosen), 6 + len(wanted))
             files[name] = self.folder / f"foreign_{name}"
-            files[name].write_text("\n".join(",".join(map(str, row)) for row in
-                                             [[line[k] for k in chosen] for line in [header, *rows]]) + "\n")
+            files[name].write_text(
+                "\n".join(
+                    ",".join(map(str, row))
+                    for row in [[line[k] for k in chosen] for line in [header, *rows]]
+                )
+                + "\n"
+            )
         for name, file in files.items():
             with self.subTest(name):
                 check = run("check", self.problem, file, *COARSE)
@@ -443,13 +535,18 @@ class Motion(unittest.TestCase):
                 self.assertEqual(run("check", self.problem, out, *COARSE).returncode, 0)
         # Rows of another resolution are moved to the layers of this one.
         finer = ("--ds", "0.013", "--dphi", "0.1")
-        done = run("time", self.problem, files["joints.csv"], "--speed", "0.1", "--out", out, *finer)
+        done = run(
+            "time", self.problem, files["joints.csv"], "--speed", "0.1", "--out", out, *finer
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(run("check", self.problem, out, *finer).returncode, 0)
         # A joint that is not of the arm is refused; a pose off the path is told by how much.
         header, *rows = files["joints.csv"].read_text().splitlines()
         bad = self.folder / "foreign_bad.csv"
-        for command in (("check", self.problem, bad), ("time", self.problem, bad, "--speed", "0.1")):
+        for command in (
+            ("check", self.problem, bad),
+            ("time", self.problem, bad, "--speed", "0.1"),
+        ):
             bad.write_text("\n".join([header + ",finger", *(row + ",0" for row in rows)]) + "\n")
             done = run(*command, *COARSE)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
@@ -467,9 +564,16 @@ class Motion(unittest.TestCase):
     def test_limits_of_the_problem_file_come_first(self):
         text = self.problem.read_text().replace("../", str(PROBLEMS.parent) + "/")
         gentle = self.folder / "gentle.yaml"
-        gentle.write_text(text.replace("limits: {", "limits: {joint_acceleration: 0.5, joint_jerk: [5, 5, 5, 5, 5, 5, 5], "))
+        gentle.write_text(
+            text.replace(
+                "limits: {", "limits: {joint_acceleration: 0.5, joint_jerk: [5, 5, 5, 5, 5, 5, 5], "
+            )
+        )
         self.assertNotEqual(gentle.read_text(), text)
-        done = run("time", gentle, self.trajectory, "--speed", "0.25", "--out", self.folder / "g.csv", *COARSE)
+        done = run(
+            "time", gentle, self.trajectory, "--speed", "0.25", "--out", self.folder / "g.csv",
+            *COARSE
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("are stated neither", done.stderr)
         quick, _ = self.timed("q.csv", "--speed", "0.25")

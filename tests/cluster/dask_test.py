@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Placements and campaigns over a Dask scheduler with two workers, each a process, one of which is killed in the middle.
+"""Placements and campaigns over a Dask scheduler with two workers, each a process, one of which is
+killed in the middle.
 
 SWIVEL_DATA is the data folder, SWIVEL_EXAMPLES that of examples. Exit code 77: not tried.
 """
@@ -32,8 +33,15 @@ def quick():
 
 
 def bits(rows, without=()):
-    columns = {name: getattr(rows, name) for name in dir(type(rows)) if isinstance(getattr(type(rows), name), property) and name not in without}
-    return {name: column.tobytes() if isinstance(column, np.ndarray) else column for name, column in columns.items()}
+    columns = {
+        name: getattr(rows, name)
+        for name in dir(type(rows))
+        if isinstance(getattr(type(rows), name), property) and name not in without
+    }
+    return {
+        name: column.tobytes() if isinstance(column, np.ndarray) else column
+        for name, column in columns.items()
+    }
 
 
 class Cluster(unittest.TestCase):
@@ -49,27 +57,45 @@ class Cluster(unittest.TestCase):
 
     def start(self, module, *arguments):
         with (self.folder / f"{len(self.processes)}.log").open("wb") as log:
-            process = subprocess.Popen([sys.executable, "-m", f"distributed.cli.{module}", "--scheduler-file", self.folder / "scheduler.json", *arguments],
-                                       stdin=subprocess.DEVNULL, stdout=log, stderr=log, cwd=self.folder)
+            process = subprocess.Popen(
+                [
+                    sys.executable, "-m", f"distributed.cli.{module}",
+                    "--scheduler-file", self.folder / "scheduler.json", *arguments
+                ],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                cwd=self.folder,
+            )
         self.processes.append(process)
         self.addCleanup(process.wait, 30)
         self.addCleanup(process.kill)
         return process
 
     def worker(self):
-        return self.start("dask_worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", self.folder)
+        return self.start(
+            "dask_worker", "--nthreads", "1", "--no-nanny", "--no-dashboard",
+            "--local-directory", self.folder
+        )
 
     GRID = {"object": "door", "x": (-0.1, 0.1, 0.01), "y": (-0.1, 0.1, 0.01), "planner": "lazy"}
 
     def test_rows_are_those_of_one_process(self):
         problem = quick()
         count = 0
-        for keywords in (self.GRID, {**self.GRID, "refine_grid": True, "best": ["clearance", "cost"]},
-                         {"base": True, "x": (-0.1, 0.1), "yaw": (-0.2, 0.2), "sample": 50, "seed": 3}):
-            there, here = swivel.place(problem, client=self.client, **keywords), swivel.place(problem, **keywords)
+        for keywords in (
+            self.GRID,
+            {**self.GRID, "refine_grid": True, "best": ["clearance", "cost"]},
+            {"base": True, "x": (-0.1, 0.1), "yaw": (-0.2, 0.2), "sample": 50, "seed": 3},
+        ):
+            there, here = swivel.place(problem, client=self.client, **keywords), swivel.place(
+                problem, **keywords
+            )
             self.assertEqual(bits(there), bits(here))
             count += len(there)
-        there, here = swivel.campaign(problem, episodes=101, seed=5, client=self.client), swivel.campaign(problem, episodes=101, seed=5)
+        there, here = swivel.campaign(
+            problem, episodes=101, seed=5, client=self.client
+        ), swivel.campaign(problem, episodes=101, seed=5)
         self.assertEqual(bits(there, {"plan_ms"}), bits(here, {"plan_ms"}))
         self.assertEqual(there.episode.tolist(), list(range(101)))
         print(count, "placements and", len(there), "episodes compared")
@@ -106,7 +132,9 @@ class Cluster(unittest.TestCase):
                 self.workers[1].kill()
 
         episodes = swivel.campaign(problem, episodes=200, client=self.client, progress=replace)
-        self.assertEqual(bits(episodes, {"plan_ms"}), bits(swivel.campaign(problem, episodes=200), {"plan_ms"}))
+        self.assertEqual(
+            bits(episodes, {"plan_ms"}), bits(swivel.campaign(problem, episodes=200), {"plan_ms"})
+        )
         self.assertIsNotNone(self.workers[1].wait(30))
         print(f"killed after {came[2]} of 200 episodes")
 
@@ -130,10 +158,14 @@ class Cluster(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "vary"):
             swivel.campaign(PROBLEM.with_name("experiment_a.yaml"), client=self.client)
         begin = time.monotonic()
-        rows = swivel.place(problem, client=self.client, timeout=20, object="door", x=(-0.1, 0.1, 0.0005), y=(-0.1, 0.1, 0.0005))
+        rows = swivel.place(
+            problem, client=self.client, timeout=20, object="door", x=(-0.1, 0.1, 0.0005),
+            y=(-0.1, 0.1, 0.0005)
+        )
         self.assertTrue(0 < len(rows) < 160801)
         self.assertLess(time.monotonic() - begin, 120)
-        self.assertEqual(len(swivel.place(problem, client=self.client, object="door", x=0.01)), 1)  # nothing is in its way
+        # Nothing is in its way.
+        self.assertEqual(len(swivel.place(problem, client=self.client, object="door", x=0.01)), 1)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs what a page of the guide tells its reader to do, in a folder of its own that looks like the clone.
+"""Runs what a page of the guide tells its reader to do, in a folder of its own that looks like the
+clone.
 
-guide_test.py PAGE.md      needs SWIVEL (the program) and SWIVEL_SOURCE (the clone); with PYTHONPATH the Python package as well
+guide_test.py PAGE.md      needs SWIVEL (the program) and SWIVEL_SOURCE (the clone); with
+                           PYTHONPATH the Python package as well
 
 Blocks are taken in their order, by language:
-  sh          run by bash, which stops at the first failure; "ends with exit code N" in the block says that its last command does
-  text        printed by the commands before: each line is the beginning of one of theirs, in this order; ... stands for anything
-  yaml        with title="NAME" a file; else a part of a problem file, whose keys and values the schema must allow
+  sh          run by bash, which stops at the first failure; "ends with exit code N" in the
+              block says that its last command does
+  text        printed by the commands before: each line is the beginning of one of theirs, in this
+              order; ... stands for anything
+  yaml        with title="NAME" a file; else a part of a problem file, whose keys and values the
+              schema must allow
   python      run
   cpp, python that are one line --8<-- "FILE": an example, which has tests of its own
-The README's program in C++ is run by examples/CMakeLists.txt; of `./swivel test` and bench/reproduce its options are held against --help alone.
+The README's program in C++ is run by examples/CMakeLists.txt; of `./swivel test` and
+bench/reproduce its options are held against --help alone.
 """
 import json
 import os
@@ -32,9 +38,17 @@ class Page:
         self.skipped = []
         for name in ("data", "examples"):
             (folder / name).symlink_to(SOURCE / name)
-        self.script("swivel", f'[ "$1" != test ] || exit 0  # it runs this test\nexec "{PROGRAM}" "$@"')
-        options = f'for word; do case $word in --*) grep -q -e "$word" "$help" || {{ echo "no option $word" >&2; exit 2; }};; esac; done'
-        self.script("bench/reproduce", f'help=$(mktemp)\n"{SOURCE}/bench/reproduce" --help >"$help" || exit 2\n{options}')
+        self.script(
+            "swivel", f'[ "$1" != test ] || exit 0  # it runs this test\nexec "{PROGRAM}" "$@"'
+        )
+        options = (
+            f'for word; do case $word in --*) grep -q -e "$word" "$help" || {{ echo "no option '
+            f'$word" >&2; exit 2; }};; esac; done'
+        )
+        self.script(
+            "bench/reproduce",
+            f'help=$(mktemp)\n"{SOURCE}/bench/reproduce" --help >"$help" || exit 2\n{options}',
+        )
 
     def script(self, name, text):
         file = self.folder / name
@@ -44,12 +58,21 @@ class Page:
 
     def sh(self, text, _):
         code = re.search(r"ends with exit code (\d+)", text)
-        done = subprocess.run(["bash", "-e", "-o", "pipefail", "-c", text], cwd=self.folder, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(
+            ["bash", "-e", "-o", "pipefail", "-c", text],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
         self.printed = done.stdout + done.stderr
         if "--report" in text and "built without reports" in done.stderr:
             self.skipped.append("a report, since the program was built without")
             return
-        expect(done.returncode == int(code[1] if code else 0), f"ended with {done.returncode}:\n{text}\n{self.printed}")
+        expect(
+            done.returncode == int(code[1] if code else 0),
+            f"ended with {done.returncode}:\n{text}\n{self.printed}",
+        )
 
     def text(self, text, _):
         expect(self.printed is not None, "output without a command before it")
@@ -69,20 +92,38 @@ class Page:
             import jsonschema
             import yaml
         except ImportError:
-            self.skipped.append("a part of a problem file, since python3-jsonschema or python3-yaml is missing")
+            self.skipped.append(
+                "a part of a problem file, since python3-jsonschema or python3-yaml is missing"
+            )
             return
-        schema = json.loads(subprocess.run([PROGRAM, "schema", "problem"], check=True, capture_output=True, text=True).stdout)
-        errors = [error.message for error in jsonschema.Draft7Validator(schema).iter_errors(yaml.safe_load(text)) if error.validator != "required"]
+        schema = json.loads(
+            subprocess.run(
+                [PROGRAM, "schema", "problem"], check=True, capture_output=True, text=True
+            ).stdout
+        )
+        errors = [
+            error.message
+            for error in jsonschema.Draft7Validator(schema).iter_errors(yaml.safe_load(text))
+            if error.validator != "required"
+        ]
         expect(not errors, f"{errors} in\n{text}")
 
     def python(self, text, _):
         included = INCLUDED.fullmatch(text)
         if included:
             return self.example(included[1], "tests/python/CMakeLists.txt")
-        if subprocess.run([sys.executable, "-c", "import swivel"], cwd=self.folder, capture_output=True).returncode:
+        if subprocess.run(
+            [sys.executable, "-c", "import swivel"], cwd=self.folder, capture_output=True
+        ).returncode:
             self.skipped.append("a program in Python, since the package is not built")
             return
-        done = subprocess.run([sys.executable, "-c", text], cwd=self.folder, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(
+            [sys.executable, "-c", text],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
         self.printed = done.stdout + done.stderr
         expect(done.returncode == 0, f"ended with {done.returncode}:\n{text}\n{self.printed}")
 
@@ -96,11 +137,17 @@ class Page:
     @staticmethod
     def example(name, lists):
         stem = pathlib.Path(name).stem
-        expect((SOURCE / name).is_file() and stem in (SOURCE / lists).read_text(), f"{name} is not run by a test")
+        expect(
+            (SOURCE / name).is_file() and stem in (SOURCE / lists).read_text(),
+            f"{name} is not run by a test",
+        )
 
     def run(self, text):
         for language, more, body in FENCE.findall(text):
-            expect(language in ("sh", "text", "yaml", "python", "cpp"), f"no rule for blocks of '{language}':\n{body}")
+            expect(
+                language in ("sh", "text", "yaml", "python", "cpp"),
+                f"no rule for blocks of '{language}':\n{body}",
+            )
             title = re.search(r'title="([^"/]+)"', more)
             getattr(self, language)(body, title[1] if title else None)
             self.ran += 1
@@ -114,7 +161,10 @@ def expect(condition, message):
 def anchors(page):
     """Of its headings, as GitHub and MkDocs make them."""
     headings = re.findall(r"^#+ (.*)$", FENCE.sub("", page.read_text()), re.MULTILINE)
-    return {re.sub(r"\s+", "-", re.sub(r"[^\w\s-]", "", heading).strip().lower()) for heading in headings}
+    return {
+        re.sub(r"\s+", "-", re.sub(r"[^\w\s-]", "", heading).strip().lower())
+        for heading in headings
+    }
 
 
 def main():
@@ -126,7 +176,10 @@ def main():
             continue  # the references, made with the pages
         linked = page.parent / target if target else page
         expect(linked.exists(), f"{page.name} links {target}, which is not there")
-        expect(not anchor or anchor in anchors(linked), f"{page.name} links {target}#{anchor}, which is not there")
+        expect(
+            not anchor or anchor in anchors(linked),
+            f"{page.name} links {target}#{anchor}, which is not there",
+        )
     with tempfile.TemporaryDirectory() as folder:
         runner = Page(pathlib.Path(folder))
         runner.run(text)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The problem files in data/ are what the schema of problems allows, and results of real plans what that of results says: all of its
-keys, and no others. Needs SWIVEL (the program) and SWIVEL_SOURCE (the clone).
+"""The problem files in data/ are what the schema of problems allows, and results of real plans what
+that of results says: all of its keys, and no others. Needs SWIVEL (the program) and SWIVEL_SOURCE
+(the clone).
 
 Types and values are judged by python3-jsonschema; without it the keys are compared alone."""
 import json
@@ -20,11 +21,16 @@ try:
 except ImportError:
     yaml = None
 
-PROGRAM, PROBLEMS = os.environ["SWIVEL"], pathlib.Path(os.environ["SWIVEL_SOURCE"]) / "data" / "problems"
+PROGRAM, PROBLEMS = (
+    os.environ["SWIVEL"],
+    pathlib.Path(os.environ["SWIVEL_SOURCE"]) / "data" / "problems",
+)
 
 
 def swivel(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run(
+        [PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300
+    )
 
 
 def schema(name):
@@ -66,7 +72,13 @@ class Problems(unittest.TestCase):
         files = sorted(PROBLEMS.glob("*.yaml"))
         for file in files:
             with self.subTest(file.name):
-                self.assertEqual([error.message for error in self.judge.iter_errors(yaml.safe_load(file.read_text()))], [])
+                self.assertEqual(
+                    [
+                        error.message
+                        for error in self.judge.iter_errors(yaml.safe_load(file.read_text()))
+                    ],
+                    [],
+                )
         self.assertGreaterEqual(len(files), 11)
 
     def test_what_the_reader_refuses_is_not(self):
@@ -101,16 +113,24 @@ def made_problem(attached=(), walls=(), touched=(), **path):
     """An iiwa 14 along two lines at right angles."""
     down = [0, 3.14159265358979, 0]
     corners = [[0.5, -0.2, 0.4], [0.5, 0.2, 0.4], [0.6, 0.2, 0.4]]
-    robot = {"urdf": str(PROBLEMS.parent / "robots" / "iiwa14.urdf"), "base_link": "base_link", "tip_link": "tool0", "attached": list(attached)}
+    robot = {
+        "urdf": str(PROBLEMS.parent / "robots" / "iiwa14.urdf"), "base_link": "base_link",
+        "tip_link": "tool0", "attached": list(attached)
+    }
     scene = [{"name": name, "box": [0.3, 0.02, 1], "xyz": [0.5, 0, 0.5]} for name in walls]
     scene += list(touched)
     if path.get("frame") == "far":  # out of reach
         scene.append({"name": "far", "box": [0.1, 0.1, 0.1], "xyz": [2, 0, 0]})
-    return {"robot": robot, "path": {"waypoints": [{"xyz": corner, "rpy": down} for corner in corners], **path}, "scene": scene}
+    return {
+        "robot": robot,
+        "path": {"waypoints": [{"xyz": corner, "rpy": down} for corner in corners], **path},
+        "scene": scene,
+    }
 
 
 class Results(unittest.TestCase):
-    # Every key appears: an answer, none, motions with slow stretches and stops, advice, proofs, robots that touch themselves.
+    # Every key appears: an answer, none, motions with slow stretches and stops, advice, proofs,
+    # robots that touch themselves.
     RUNS = [
         ("experiment_c.yaml", "--refine", "--speed", "0.4", "--turn-speed", "2"),
         ("experiment_c.yaml", "--no-check"),
@@ -123,8 +143,17 @@ class Results(unittest.TestCase):
         (made_problem(walls=["one"], roll=[0.3, 0.6]),),
         (made_problem(frame="far"),),
         # The nib, 0.1 m below the flange, is pressed 10 mm deep into the bed.
-        (made_problem(attached=[{"name": "nib", "sphere": 0.02, "xyz": [0, 0, 0.1]}],
-                      touched=[{"name": "bed", "box": [0.4, 0.8, 0.1], "xyz": [0.6, 0, 0.24], "allow": {"nib": 0.015}}]),),
+        (
+            made_problem(
+                attached=[{"name": "nib", "sphere": 0.02, "xyz": [0, 0, 0.1]}],
+                touched=[
+                    {
+                        "name": "bed", "box": [0.4, 0.8, 0.1], "xyz": [0.6, 0, 0.24],
+                        "allow": {"nib": 0.015}
+                    }
+                ],
+            ),
+        ),
         # The ball touches link_5 in every posture, and is always 4 mm from link_4.
         (made_problem(attached=[{"name": "ball", "sphere": 0.211, "xyz": [0, 0, -0.126]}]),),
     ]
@@ -142,7 +171,10 @@ class Results(unittest.TestCase):
                 (folder / name).write_text(json.dumps(problem))
             more = [folder / word if word == "cut.json" else word for word in more]
             place = PROBLEMS / name if isinstance(problem, str) else folder / name
-            done = swivel("plan", place, "--planner", "lazy", *more, "--quiet", "--json", folder / "result.json")
+            done = swivel(
+                "plan", place, "--planner", "lazy", *more, "--quiet",
+                "--json", folder / "result.json"
+            )
             self.assertIn(done.returncode, (0, 1, 3), done.stderr)
             yield f"{name} {more}", json.loads((folder / "result.json").read_text())
 
@@ -155,18 +187,30 @@ class Results(unittest.TestCase):
                 statuses.add(result["status"])
                 seen |= set(keys_of(result, free))
                 if jsonschema:
-                    errors = [f"{list(error.absolute_path)}: {error.message}" for error in validator(self.schema).iter_errors(result)]
+                    errors = [
+                        f"{list(error.absolute_path)}: {error.message}"
+                        for error in validator(self.schema).iter_errors(result)
+                    ]
                     self.assertEqual(errors, [])
         self.assertEqual(seen - known, set())
         self.assertEqual(known - seen, set())
         self.assertGreaterEqual(len(known), 150)
         self.assertGreaterEqual(statuses, {"solved", "infeasible", "timeout"})
-        print(len(known), "keys of results seen" + ("" if jsonschema else "; values not judged: python3-jsonschema is missing"), file=sys.stderr)
+        print(
+            len(known),
+            "keys of results seen"
+            + ("" if jsonschema else "; values not judged: python3-jsonschema is missing"),
+            file=sys.stderr,
+        )
 
     def test_summaries_of_campaigns_too(self):
         of_campaigns = schema("campaign")
-        for out in (self.folder.name + "/rows.csv", self.folder.name + "/rows.csv"):  # planned, then read again
-            done = swivel("campaign", PROBLEMS / "experiment_c.yaml", "--episodes", 3, "--ds", 0.02, "--dphi", 0.2, "--out", out, "--json", "-")
+        # Planned, then read again.
+        for out in (self.folder.name + "/rows.csv", self.folder.name + "/rows.csv"):
+            done = swivel(
+                "campaign", PROBLEMS / "experiment_c.yaml", "--episodes", 3, "--ds", 0.02,
+                "--dphi", 0.2, "--out", out, "--json", "-"
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads(done.stdout)
             self.assertEqual((summary["schema_version"], summary["answered"]), (1, 3))

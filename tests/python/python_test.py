@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The Python package as a user has it. Usage: python_test.py CASE; SWIVEL is the program, SWIVEL_DATA the data folder.
+# The Python package as a user has it. Usage: python_test.py CASE; SWIVEL is the program,
+# SWIVEL_DATA the data folder.
 import ast
 import base64
 import copy
@@ -59,14 +60,20 @@ def arm(**keywords):
 
 def square(**keywords):
     corners = [(0.45, -0.1), (0.45, 0.1), (0.65, 0.1), (0.65, -0.1)]
-    return swivel.Task([[x, y, 0.4, *DOWN] for x, y in corners], resolution=swivel.Resolution(ds=0.02, dphi=0.1), **keywords)
+    return swivel.Task(
+        [[x, y, 0.4, *DOWN] for x, y in corners],
+        resolution=swivel.Resolution(ds=0.02, dphi=0.1),
+        **keywords,
+    )
 
 
 class Plans(unittest.TestCase):
     def program(self, command, problem, *arguments):
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "out.csv"
-            subprocess.run([PROGRAM, command, problem, *arguments, "--out", out, "--quiet"], check=True)
+            subprocess.run(
+                [PROGRAM, command, problem, *arguments, "--out", out, "--quiet"], check=True
+            )
             return out.read_bytes()
 
     def saved(self, what):
@@ -75,16 +82,24 @@ class Plans(unittest.TestCase):
             return (Path(folder) / "out.csv").read_bytes()
 
     def test_the_program_gives_the_same_bits(self):
-        for name in ("experiment_a", "experiment_b", "experiment_c", "panda_weld_seam", "ur5e_deburr_edge"):
+        for name in (
+            "experiment_a", "experiment_b", "experiment_c", "panda_weld_seam", "ur5e_deburr_edge"
+        ):
             file = PROBLEMS / f"{name}.yaml"
             for planner in ("lazy", "parallel"):
                 plan = swivel.plan(file, planner=planner, threads=2)
                 self.assertTrue(plan.solved)
-                self.assertEqual(self.saved(plan.trajectory), self.program("plan", file, "--planner", planner), name)
+                self.assertEqual(
+                    self.saved(plan.trajectory), self.program("plan", file, "--planner", planner),
+                    name
+                )
 
     def test_motions_are_those_of_the_program(self):
         file = PROBLEMS / "experiment_c.yaml"
-        for options, keywords in ((["--speed", "0.1"], {}), (["--speed", "0.1", "--refine"], {"refine": True})):
+        for options, keywords in (
+            (["--speed", "0.1"], {}),
+            (["--speed", "0.1", "--refine"], {"refine": True}),
+        ):
             motion = swivel.plan(file, speed=0.1, **keywords).motion
             self.assertEqual(self.saved(motion), self.program("plan", file, *options))
 
@@ -106,7 +121,9 @@ class Plans(unittest.TestCase):
         print("verdicts:", statuses)
 
     def test_how_deep_bodies_may_touch(self):
-        plate = swivel.SceneObject("plate", swivel.Box([1, 1, 0.1]), allow={"disc": 0.003, "tool": None})
+        plate = swivel.SceneObject(
+            "plate", swivel.Box([1, 1, 0.1]), allow={"disc": 0.003, "tool": None}
+        )
         self.assertEqual((plate.allow, plate.allow_depth), (["disc", "tool"], {"disc": 0.003}))
         self.assertEqual(pickle.loads(pickle.dumps(plate)).allow_depth, {"disc": 0.003})
         self.assertEqual(swivel.SceneObject("a", swivel.Sphere(1), allow=["disc"]).allow_depth, {})
@@ -119,7 +136,9 @@ class Plans(unittest.TestCase):
         self.assertEqual((contact.bodies, contact.allowed), (("disc", "plate"), None))
         self.assertLess(abs(contact.depth - 0.002), 1.2e-3)
         self.assertLessEqual(contact.at_most, contact.depth + 0.51e-3)
-        self.assertEqual(swivel.check(problem, plan.trajectory).deepest_contact.bodies, contact.bodies)
+        self.assertEqual(
+            swivel.check(problem, plan.trajectory).deepest_contact.bodies, contact.bodies
+        )
 
     def test_refine_time_measure_check_advise(self):
         problem = experiment("c", ds=0.01)
@@ -141,7 +160,10 @@ class Plans(unittest.TestCase):
         self.assertLessEqual(max(check.peaks.values()), 1 + 1e-6)
         self.assertAlmostEqual(motion.t[1] - motion.t[0], 1 / 125)
         self.assertEqual(motion.joints.shape, motion.velocities.shape)
-        wrong = swivel.Trajectory(np.roll(plan.joints, 1, axis=1), plan.trajectory.s, plan.trajectory.phi, plan.trajectory.branch)
+        wrong = swivel.Trajectory(
+            np.roll(plan.joints, 1, axis=1), plan.trajectory.s, plan.trajectory.phi,
+            plan.trajectory.branch
+        )
         self.assertFalse(swivel.check(problem, wrong))
         self.assertFalse(planner.check(plan.trajectory).rounded)
         for refine in (False, True):  # its rows follow the rounded path of its motion
@@ -153,7 +175,9 @@ class Plans(unittest.TestCase):
         self.assertEqual(barred.status, swivel.Status.INFEASIBLE)
         self.assertEqual(barred.diagnosis.cause.kind, swivel.CauseKind.LIMIT)
         advice = swivel.advise(PROBLEMS / "experiment_a_start.yaml", barred)
-        self.assertEqual((advice[0].change, advice[0].outcome), (swivel.Change.FREE_START, swivel.Outcome.SOLVED))
+        self.assertEqual(
+            (advice[0].change, advice[0].outcome), (swivel.Change.FREE_START, swivel.Outcome.SOLVED)
+        )
 
     def test_answers_say_what_they_are(self):
         plan = swivel.plan(experiment("c"), evidence=True)
@@ -164,7 +188,10 @@ class Plans(unittest.TestCase):
         self.assertIn("samples", repr(swivel.plan(experiment("c"), speed=0.1)))
         self.assertIn("arm_left_joint_5_r", repr(swivel.plan(PROBLEMS / "experiment_a_start.yaml")))
         self.assertIn("seven joints", repr(arm()))
-        self.assertEqual(repr(swivel.Limits(clearance=0.01, edges="nodes")), "Limits(clearance=0.01, edges=<EdgeMode.NODES: 1>)")
+        self.assertEqual(
+            repr(swivel.Limits(clearance=0.01, edges="nodes")),
+            "Limits(clearance=0.01, edges=<EdgeMode.NODES: 1>)",
+        )
         count = 0
         for name in swivel.__all__:
             thing = getattr(swivel, name)
@@ -173,9 +200,10 @@ class Plans(unittest.TestCase):
             count += 1
         self.assertGreater(count, 40)
 
-
     def test_the_readme(self):
-        text = re.search(r"```python\n(.*?)```", (DATA.parent / "README.md").read_text(), re.DOTALL).group(1)
+        text = re.search(
+            r"```python\n(.*?)```", (DATA.parent / "README.md").read_text(), re.DOTALL
+        ).group(1)
         before = os.getcwd()
         os.chdir(DATA.parent)
         try:
@@ -191,8 +219,10 @@ class Memory(unittest.TestCase):
     def test_results_outlive_the_planner(self):
         planner = swivel.Planner(experiment("c"))
         plan = planner.plan(refine=True, speed=0.1, evidence=True)
-        kept = [plan.joints, plan.trajectory.s, plan.motion.joints, plan.motion.velocities, plan.lattice_path.joints,
-                plan.refinement.trajectory.phi, plan.measures.arm_angle]
+        kept = [
+            plan.joints, plan.trajectory.s, plan.motion.joints, plan.motion.velocities,
+            plan.lattice_path.joints, plan.refinement.trajectory.phi, plan.measures.arm_angle
+        ]
         copies = [array.copy() for array in kept]
         measures, limits = plan.measures.min_margin, planner.problem.limits
         words = repr(measures), repr(limits)
@@ -253,11 +283,15 @@ class Memory(unittest.TestCase):
             rows.save(Path(folder) / "t.csv")
             read = swivel.load_trajectory(Path(folder) / "t.csv", rows.joint_names)
             np.testing.assert_array_equal(read.joints, rows.joints)
-            motion = swivel.time(experiment("c"), swivel.plan(experiment("c")).trajectory, speed=0.1)
+            motion = swivel.time(
+                experiment("c"), swivel.plan(experiment("c")).trajectory, speed=0.1
+            )
             for ending in ("csv", "json", "yaml", "mcap"):
                 motion.save(Path(folder) / f"m.{ending}")
                 self.assertGreater((Path(folder) / f"m.{ending}").stat().st_size, 1000)
-                read = swivel.load_trajectory(Path(folder) / f"m.{ending}", motion.joint_names, experiment("c"))
+                read = swivel.load_trajectory(
+                    Path(folder) / f"m.{ending}", motion.joint_names, experiment("c")
+                )
                 np.testing.assert_array_equal(read.joints, motion.joints)
                 np.testing.assert_allclose(read.s, motion.s, atol=1e-6)
                 check = swivel.check(experiment("c"), read)
@@ -332,7 +366,10 @@ class Functions(unittest.TestCase):
         def moves(start, end):
             return np.abs(end - start).max(axis=1) < 0.4
 
-        plans = [swivel.plan(problem, check=hose, check_motions=moves, planner=p) for p in ("eager", "eager_dp", "lazy", "parallel")]
+        plans = [
+            swivel.plan(problem, check=hose, check_motions=moves, planner=p)
+            for p in ("eager", "eager_dp", "lazy", "parallel")
+        ]
         states = np.vstack(asked)  # what was given may be kept
         self.assertTrue(np.isfinite(states).all())
         self.assertGreater(len(np.unique(states, axis=0)), 100)
@@ -346,7 +383,10 @@ class Functions(unittest.TestCase):
 
     def test_costs_are_added(self):
         problem = experiment("a", ds=0.02, dphi=0.1)
-        plans = [swivel.plan(problem, cost=lambda q: 0.02 * (q**2).sum(axis=1), planner=p) for p in ("eager_dp", "lazy", "parallel")]
+        plans = [
+            swivel.plan(problem, cost=lambda q: 0.02 * (q**2).sum(axis=1), planner=p)
+            for p in ("eager_dp", "lazy", "parallel")
+        ]
         for plan in plans:
             np.testing.assert_array_equal(plan.joints, plans[0].joints)
         steps = np.linalg.norm(np.diff(plans[0].joints, axis=0), axis=1).sum()
@@ -363,8 +403,12 @@ class Functions(unittest.TestCase):
         for keyword in ("check", "check_motions", "cost", "progress"):
             with self.assertRaisesRegex(KeyError, "mine"):
                 planner.plan(**{keyword: broken})
-        for answer, wanted in ((lambda q: np.ones(len(q)), "float64 of shape"), (lambda q: np.ones((1, 1), bool), r"shape \(1, 1\)"),
-                               (lambda q: None, "allowed is bool of shape"), (lambda q: "yes", "allowed is bool of shape")):
+        for answer, wanted in (
+            (lambda q: np.ones(len(q)), "float64 of shape"),
+            (lambda q: np.ones((1, 1), bool), r"shape \(1, 1\)"),
+            (lambda q: None, "allowed is bool of shape"),
+            (lambda q: "yes", "allowed is bool of shape"),
+        ):
             with self.assertRaisesRegex(ValueError, wanted):
                 planner.plan(check=answer)
         with self.assertRaisesRegex(ValueError, "allowed is a number from 0"):
@@ -390,7 +434,8 @@ class Functions(unittest.TestCase):
 
 
 class Interrupts(unittest.TestCase):
-    """Signals are sent by functions that a plan calls, so that it is certainly under way; it would take minutes."""
+    """Signals are sent by functions that a plan calls, so that it is certainly under way; it would
+    take minutes."""
 
     def test_ctrl_c_stops_a_plan(self):
         for after in (1, 2, 3, 5, 10, 20):
@@ -484,35 +529,96 @@ class Errors(unittest.TestCase):
             self.raises(swivel.InputError, "absent.stl", swivel.Mesh, Path(folder) / "absent.stl")
             rows = swivel.plan(experiment("b")).trajectory
             self.raises(swivel.InputError, "nowhere", rows.save, Path(folder) / "nowhere" / "t.csv")
-            motion = swivel.time(experiment("c"), swivel.plan(experiment("c")).trajectory, speed=0.1)
+            motion = swivel.time(
+                experiment("c"), swivel.plan(experiment("c")).trajectory, speed=0.1
+            )
             self.raises(swivel.InputError, "unknown format", motion.save, Path(folder) / "m.txt")
         self.raises(swivel.InputError, "URDF text:1", swivel.Robot.from_string, "<robot>")
-        self.raises(swivel.InputError, "tool00.*nearest|unknown link", swivel.Robot, ROBOTS / "iiwa14.urdf", tip="tool00")
+        self.raises(
+            swivel.InputError, "tool00.*nearest|unknown link", swivel.Robot, ROBOTS / "iiwa14.urdf",
+            tip="tool00"
+        )
 
     def test_values(self):
         self.raises(TypeError, "'clearence', nearest is 'clearance'", swivel.Limits, clearence=1)
-        self.raises(ValueError, "EdgeMode: 'some': allowed are continuous, nodes", swivel.Limits, edges="some")
-        self.raises(ValueError, "allowed are eager, eager_dp, lazy, parallel", swivel.plan, experiment("b"), planner="lasy")
-        for keywords in ({"threads": -1}, {"timeout": 0}, {"rate": 100}, {"chord": 1e-6}, {"speed": 0}, {"speed": 0.1, "rate": 0}, {"speed": 0.1, "chord": -1}, {"speed": float("nan")}):
-            self.raises(ValueError, next(iter(reversed(keywords))) + ".*allowed", swivel.plan, experiment("b"), **keywords)
-        self.raises(ValueError, r"pose of shape \(2,\)", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), [1, 2])
-        self.raises(ValueError, "no rigid transform", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), 2 * np.eye(4))
-        self.raises(ValueError, r"waypoints\[1\]: pose of shape \(3,\)", swivel.Task, [[0, 0, 0, 1, 0, 0, 0], [1, 2, 3]])
+        self.raises(
+            ValueError, "EdgeMode: 'some': allowed are continuous, nodes", swivel.Limits,
+            edges="some"
+        )
+        self.raises(
+            ValueError, "allowed are eager, eager_dp, lazy, parallel", swivel.plan, experiment("b"),
+            planner="lasy"
+        )
+        for keywords in (
+            {"threads": -1},
+            {"timeout": 0},
+            {"rate": 100},
+            {"chord": 1e-6},
+            {"speed": 0},
+            {"speed": 0.1, "rate": 0},
+            {"speed": 0.1, "chord": -1},
+            {"speed": float("nan")},
+        ):
+            self.raises(
+                ValueError, next(iter(reversed(keywords))) + ".*allowed", swivel.plan,
+                experiment("b"), **keywords
+            )
+        self.raises(
+            ValueError,
+            r"pose of shape \(2,\)",
+            swivel.SceneObject,
+            "box",
+            swivel.Box([1, 1, 1]),
+            [1, 2],
+        )
+        self.raises(
+            ValueError, "no rigid transform", swivel.SceneObject, "box", swivel.Box([1, 1, 1]),
+            2 * np.eye(4)
+        )
+        self.raises(
+            ValueError,
+            r"waypoints\[1\]: pose of shape \(3,\)",
+            swivel.Task,
+            [[0, 0, 0, 1, 0, 0, 0], [1, 2, 3]],
+        )
         self.raises(ValueError, "not an array of numbers", swivel.Task, ["here", "there"])
-        self.raises(ValueError, "quaternion of length 2", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), [0, 0, 0, 2, 0, 0, 0])
+        self.raises(
+            ValueError,
+            "quaternion of length 2",
+            swivel.SceneObject,
+            "box",
+            swivel.Box([1, 1, 1]),
+            [0, 0, 0, 2, 0, 0, 0],
+        )
         self.raises(ValueError, r"joints of shape \(3,\)", arm().tool_pose, [1, 2, 3])
-        self.raises(ValueError, r"start of shape \(3,\): allowed is \(7,\)", square, start=[1, 2, 3])
+        self.raises(
+            ValueError, r"start of shape \(3,\): allowed is \(7,\)", square, start=[1, 2, 3]
+        )
         self.raises(ValueError, "names vertex 3", swivel.Mesh.from_arrays, np.eye(3), [[0, 1, 3]])
-        self.raises(ValueError, "s: allowed is one number for each of the 2 rows", swivel.Trajectory, np.zeros((2, 7)), [1.0])
+        self.raises(
+            ValueError,
+            "s: allowed is one number for each of the 2 rows",
+            swivel.Trajectory,
+            np.zeros((2, 7)),
+            [1.0],
+        )
         self.raises(ValueError, "branch", swivel.Trajectory, np.zeros((1, 7)), [0], [0], [9])
 
     def test_what_no_problem_may_have(self):
         planner = swivel.Planner(arm(), square())
-        self.raises(swivel.InvalidArgument, "radius", planner.add, swivel.SceneObject("ball", swivel.Sphere(-1)))
+        self.raises(
+            swivel.InvalidArgument, "radius", planner.add,
+            swivel.SceneObject("ball", swivel.Sphere(-1))
+        )
         planner.add(swivel.SceneObject("ball", swivel.Sphere(0.1), [0, 0, 2]))
-        self.raises(swivel.InvalidArgument, "taken", planner.add, swivel.SceneObject("ball", swivel.Sphere(0.1)))
+        self.raises(
+            swivel.InvalidArgument, "taken", planner.add,
+            swivel.SceneObject("ball", swivel.Sphere(0.1))
+        )
         self.raises(swivel.InvalidArgument, "no such object", planner.move, "bull", np.eye(4))
-        self.raises(KeyError, "bull.*nearest is 'ball'", planner.problem.scene.move, "bull", np.eye(4))
+        self.raises(
+            KeyError, "bull.*nearest is 'ball'", planner.problem.scene.move, "bull", np.eye(4)
+        )
         task = square()
         task.limits.clearance = float("nan")
         self.raises(swivel.InvalidArgument, "limits.clearance", planner.set_task, task)
@@ -531,8 +637,13 @@ class Robots(unittest.TestCase):
     def test_from_texts(self):
         urdf, srdf = (ROBOTS / "iiwa14.urdf").read_text(), (ROBOTS / "iiwa14.srdf").read_text()
         one, other = arm(), swivel.Robot.from_string(urdf, srdf)
-        self.assertEqual((one.base, one.tip, one.joint_names), (other.base, other.tip, other.joint_names))
-        np.testing.assert_array_equal(swivel.Planner(one, square()).plan().joints, swivel.Planner(other, square()).plan().joints)
+        self.assertEqual(
+            (one.base, one.tip, one.joint_names), (other.base, other.tip, other.joint_names)
+        )
+        np.testing.assert_array_equal(
+            swivel.Planner(one, square()).plan().joints,
+            swivel.Planner(other, square()).plan().joints,
+        )
 
     def test_tool_poses(self):
         robot = arm(tool=swivel.pose([0, 0, 0.1], rpy=[0, 0.3, 0]))
@@ -541,17 +652,27 @@ class Robots(unittest.TestCase):
         self.assertEqual(poses.shape, (len(plan.joints), 4, 4))
         np.testing.assert_array_equal(robot.tool_pose(plan.joints[3]), poses[3])
         np.testing.assert_allclose(poses[0][:3, 3], [0.45, -0.1, 0.4], atol=1e-9)
-        np.testing.assert_allclose(poses[:, :3, :3], np.broadcast_to(np.diag([1, -1, -1]), (len(poses), 3, 3)), atol=1e-9)
+        np.testing.assert_allclose(
+            poses[:, :3, :3], np.broadcast_to(np.diag([1, -1, -1]), (len(poses), 3, 3)), atol=1e-9
+        )
         self.assertEqual(robot.joint_limits.shape, (7, 2))
         self.assertTrue((robot.joint_limits[:, 0] < plan.joints.min(axis=0)).all())
         self.assertTrue((robot.joint_limits[:, 1] > plan.joints.max(axis=0)).all())
 
     def test_links_left_out_and_soft_limits(self):
         urdf = (ROBOTS / "iiwa14.urdf").read_text()
-        hand = '<link name="hand"/><joint name="mount" type="fixed"><parent link="tool0"/><child link="hand"/></joint></robot>'
-        safety = 'velocity="1.4835298641951802"/><safety_controller soft_lower_limit="-0.5" soft_upper_limit="0.5"/>'
+        hand = (
+            '<link name="hand"/><joint name="mount" type="fixed"><parent link="tool0"/>'
+            '<child link="hand"/></joint></robot>'
+        )
+        safety = (
+            'velocity="1.4835298641951802"/><safety_controller soft_lower_limit="-0.5" '
+            'soft_upper_limit="0.5"/>'
+        )
         urdf = urdf.replace("</robot>", hand).replace('velocity="1.4835298641951802"/>', safety, 1)
-        soft, hard = swivel.Robot.from_string(urdf), swivel.Robot.from_string(urdf, without=["hand"], soft_limits=False)
+        soft, hard = swivel.Robot.from_string(urdf), swivel.Robot.from_string(
+            urdf, without=["hand"], soft_limits=False
+        )
         self.assertEqual(soft.joint_limits[0].tolist(), [-0.5, 0.5])
         self.assertLess(hard.joint_limits[0, 0], -2.9)
         self.assertEqual(set(soft.links) - set(hard.links), {"hand"})
@@ -564,11 +685,20 @@ class Robots(unittest.TestCase):
         problem = swivel.load_problem(PROBLEMS / "ur5e_deburr_edge.yaml")
         self.assertIsNotNone(problem.roll)
         self.assertEqual(len(problem.joint_names), 7)
-        robot = swivel.Robot(ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip, roll=swivel.Roll(lower=-1, upper=1))
+        robot = swivel.Robot(
+            ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip,
+            roll=swivel.Roll(lower=-1, upper=1)
+        )
         self.assertEqual(robot.roll, swivel.Roll(lower=-1, upper=1))
         found = swivel.Robot(ROBOTS / "ur5e_like.urdf", roll=swivel.Roll())
         self.assertEqual((found.base, found.tip), (problem.base, problem.tip))
-        with self.assertRaisesRegex(ValueError, "has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`"):
+        with self.assertRaisesRegex(
+            ValueError,
+            (
+                "has six joints: allowed with a tool that may turn about its own z axis: add "
+                "`roll: free`"
+            ),
+        ):
             swivel.Robot(ROBOTS / "ur5e_like.urdf")
         with self.assertRaisesRegex(ValueError, "no arm of six joints in a row was found"):
             swivel.Robot(ROBOTS / "iiwa14.urdf", roll=swivel.Roll())
@@ -580,37 +710,71 @@ class Robots(unittest.TestCase):
         problem.waypoints = np.hstack([problem.waypoints, windows])
         self.assertEqual(problem.waypoints.shape, (n, 9))
         np.testing.assert_array_equal(problem.waypoints[:, 7:], windows)
-        np.testing.assert_array_equal(pickle.loads(pickle.dumps(problem)).waypoints, problem.waypoints)
+        np.testing.assert_array_equal(
+            pickle.loads(pickle.dumps(problem)).waypoints, problem.waypoints
+        )
         plan = swivel.Planner(problem).plan()
         self.assertTrue(plan.solved)
         self.assertAlmostEqual(plan.joints[-1, 6], 0.1, delta=1e-8)
         self.assertTrue(-0.4 - 1e-9 <= plan.joints[0, 6] <= 1e-9)
-        with self.assertRaisesRegex(ValueError, r"waypoints\[1\]: roll_min and roll_max are not given at all waypoints"):
+        with self.assertRaisesRegex(
+            ValueError, r"waypoints\[1\]: roll_min and roll_max are not given at all waypoints"
+        ):
             problem.waypoints = [problem.waypoints[0], problem.waypoints[1][:7]]
-        free = swivel.Robot(ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip, roll=swivel.Roll())
-        with self.assertRaisesRegex(ValueError, "circle: allowed is a robot whose roll has a range of less than a turn"):
+        free = swivel.Robot(
+            ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip, roll=swivel.Roll()
+        )
+        with self.assertRaisesRegex(
+            ValueError, "circle: allowed is a robot whose roll has a range of less than a turn"
+        ):
             swivel.Planner(free, swivel.Task(problem.waypoints))
 
     def test_what_it_carries(self):
         planner = swivel.Planner(arm(), square())
         free = planner.plan(evidence=True)
-        planner.attach(swivel.AttachedBody("plate", swivel.Box([0.4, 0.4, 0.01]), "tool0", [0, 0, 0.02]))
+        planner.attach(
+            swivel.AttachedBody("plate", swivel.Box([0.4, 0.4, 0.01]), "tool0", [0, 0, 0.02])
+        )
         planner.add(swivel.SceneObject("post", swivel.Cylinder(0.02, 1), [0.3, 0.0, 0.4]))
         carrying = planner.plan(evidence=True)
-        self.assertNotEqual(carrying.measures.min_clearance if carrying.solved else None, free.measures.min_clearance)
+        self.assertNotEqual(
+            carrying.measures.min_clearance if carrying.solved else None,
+            free.measures.min_clearance,
+        )
         planner.detach("plate")
         planner.remove("post")
         np.testing.assert_array_equal(planner.plan().joints, free.joints)
 
     def test_meshes(self):
-        corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * 0.2 - 0.1
-        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+        corners = (
+            np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * 0.2 - 0.1
+        )
+        faces = [
+            [0, 1, 3],
+            [0, 3, 2],
+            [4, 6, 7],
+            [4, 7, 5],
+            [0, 4, 5],
+            [0, 5, 1],
+            [2, 3, 7],
+            [2, 7, 6],
+            [0, 2, 6],
+            [0, 6, 4],
+            [1, 5, 7],
+            [1, 7, 3],
+        ]
         mesh = swivel.Mesh.from_arrays(corners, faces, "cube")
         self.assertTrue(mesh.closed)
         np.testing.assert_array_equal(mesh.vertices, corners)
-        plans = [swivel.Planner(arm(), square(), [swivel.SceneObject("cube", shape, [0.55, 0.0, 0.2])]).plan(evidence=True)
-                 for shape in (mesh, swivel.Box([0.2, 0.2, 0.2]))]
-        self.assertAlmostEqual(plans[0].measures.min_clearance, plans[1].measures.min_clearance, places=5)
+        plans = [
+            swivel.Planner(
+                arm(), square(), [swivel.SceneObject("cube", shape, [0.55, 0.0, 0.2])]
+            ).plan(evidence=True)
+            for shape in (mesh, swivel.Box([0.2, 0.2, 0.2]))
+        ]
+        self.assertAlmostEqual(
+            plans[0].measures.min_clearance, plans[1].measures.min_clearance, places=5
+        )
 
 
 class Cartesian(unittest.TestCase):
@@ -631,27 +795,44 @@ class Cartesian(unittest.TestCase):
         fraction, part = swivel.compute_cartesian_path(self.robot, scene, [self.there], self.start)
         self.assertTrue(0.1 < fraction < 0.75, fraction)
         self.assertAlmostEqual(part.s[-1], 0.3 * fraction, places=9)
-        fraction, _ = swivel.compute_cartesian_path(self.robot, scene, [self.there], self.start, max_step=0.02, planner="lazy")
+        fraction, _ = swivel.compute_cartesian_path(
+            self.robot, scene, [self.there], self.start, max_step=0.02, planner="lazy"
+        )
         self.assertTrue(0.1 < fraction < 0.75, fraction)
 
     def test_ways_to_say_it(self):
         rows = swivel.Task([self.there]).waypoints
-        results = [swivel.compute_cartesian_path(self.robot, [], waypoints, self.start)
-                   for waypoints in ([self.there], np.array([self.there]), rows, rows.tolist(), [self.robot.tool_pose(self.start), self.there])]
+        results = [
+            swivel.compute_cartesian_path(self.robot, [], waypoints, self.start)
+            for waypoints in (
+                [self.there],
+                np.array([self.there]),
+                rows,
+                rows.tolist(),
+                [self.robot.tool_pose(self.start), self.there],
+            )
+        ]
         for fraction, trajectory in results:
             self.assertEqual(fraction, 1.0)
             np.testing.assert_allclose(trajectory.joints, results[0][1].joints, atol=1e-9)
-        fraction, free = swivel.compute_cartesian_path(self.robot, [], [self.robot.tool_pose(self.start), self.there], None)
+        fraction, free = swivel.compute_cartesian_path(
+            self.robot, [], [self.robot.tool_pose(self.start), self.there], None
+        )
         self.assertEqual(fraction, 1.0)
 
     def test_a_start_in_collision_goes_nowhere(self):
-        wall = [swivel.SceneObject("wall", swivel.Box([0.1, 0.1, 0.1]), self.robot.tool_pose(self.start))]
+        wall = [
+            swivel.SceneObject(
+                "wall", swivel.Box([0.1, 0.1, 0.1]), self.robot.tool_pose(self.start)
+            )
+        ]
         fraction, rows = swivel.compute_cartesian_path(self.robot, wall, [self.there], self.start)
         self.assertEqual((fraction, len(rows)), (0.0, 0))
 
 
 class Threads(unittest.TestCase):
-    """What one thread waits for is done by another: nothing here depends on which of them runs when."""
+    """What one thread waits for is done by another: nothing here depends on which of them runs
+    when."""
 
     def test_python_runs_while_a_plan_does(self):
         planning = threading.Event()
@@ -669,7 +850,9 @@ class Threads(unittest.TestCase):
         counter.join()
 
     def test_a_planner_is_for_one_thread_at_a_time(self):
-        planner, planning, seen = swivel.Planner(experiment("c", ds=0.02, dphi=0.1)), threading.Event(), threading.Event()
+        planner, planning, seen = (
+            swivel.Planner(experiment("c", ds=0.02, dphi=0.1)), threading.Event(), threading.Event()
+        )
 
         def check(joints):
             planning.set()
@@ -701,7 +884,9 @@ class Threads(unittest.TestCase):
                 planner.plan(check=broken, planner="lazy")
             with self.assertRaises(TimeoutError):
                 planner.refine(rows, timeout=1e-6)
-            np.testing.assert_array_equal(planner.plan(check=lambda joints: np.ones(len(joints), bool)).joints, rows.joints)
+            np.testing.assert_array_equal(
+                planner.plan(check=lambda joints: np.ones(len(joints), bool)).joints, rows.joints
+            )
             done.append(threading.get_ident())
 
         done = []
@@ -722,7 +907,10 @@ class Threads(unittest.TestCase):
 
         clones = [planner.clone() for _ in range(2)]
         expected, answers = list(walk(planner)), [[], []]
-        workers = [threading.Thread(target=lambda clone, answer: answer.extend(walk(clone)), args=one) for one in zip(clones, answers)]
+        workers = [
+            threading.Thread(target=lambda clone, answer: answer.extend(walk(clone)), args=one)
+            for one in zip(clones, answers)
+        ]
         for worker in workers:
             worker.start()
         for worker in workers:
@@ -742,7 +930,14 @@ class Places(unittest.TestCase):
     def table(self, command, *arguments):
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "out.csv"
-            run = subprocess.run([PROGRAM, command, PROBLEMS / "experiment_c.yaml", *self.QUICK, *arguments, "--out", out], capture_output=True, text=True)
+            run = subprocess.run(
+                [
+                    PROGRAM, command, PROBLEMS / "experiment_c.yaml", *self.QUICK, *arguments,
+                    "--out", out
+                ],
+                capture_output=True,
+                text=True,
+            )
             self.assertIn(run.returncode, (0, 1), run.stderr)
             return out.read_text()
 
@@ -755,10 +950,21 @@ class Places(unittest.TestCase):
         grid = ("--x", "-0.1:0.1:0.05", "--y", "0:0.1:0.05", "--yaw", "0.1")
         fine = {"x": (-0.1, 0.1, 0.02), "y": (-0.1, 0.1, 0.02)}
         count = 0
-        for options, keywords in ((("--object", "door", *grid), {"object": "door", **self.GRID}), (("--base", *grid), {"base": True, **self.GRID}),
-                                  (("--path", "--x", "-0.1:0.1", "--z", "0.01", "--sample", "9", "--seed", "5"), {"path": True, "x": (-0.1, 0.1), "z": 0.01, "sample": 9, "seed": 5}),
-                                  (("--object", "door", "--x", "-0.1:0.1:0.02", "--y", "-0.1:0.1:0.02", "--refine-grid", "--best", "speed"),
-                                   {"object": "door", **fine, "refine_grid": True, "best": "speed"})):
+        for options, keywords in (
+            (("--object", "door", *grid), {"object": "door", **self.GRID}),
+            (("--base", *grid), {"base": True, **self.GRID}),
+            (
+                ("--path", "--x", "-0.1:0.1", "--z", "0.01", "--sample", "9", "--seed", "5"),
+                {"path": True, "x": (-0.1, 0.1), "z": 0.01, "sample": 9, "seed": 5},
+            ),
+            (
+                (
+                    "--object", "door", "--x", "-0.1:0.1:0.02", "--y", "-0.1:0.1:0.02",
+                    "--refine-grid", "--best", "speed"
+                ),
+                {"object": "door", **fine, "refine_grid": True, "best": "speed"},
+            ),
+        ):
             wanted = self.table("place", *options)
             for threads in (1, 2):
                 rows = swivel.place(self.problem(), planner="lazy", threads=threads, **keywords)
@@ -776,11 +982,19 @@ class Places(unittest.TestCase):
         self.assertTrue(0 < len(solved) < 15)
         for k in range(15):
             row = rows[k]
-            self.assertEqual((row.cell, row.offset.tolist(), row.status), (k, rows.offset[k].tolist(), rows.status[k]))
-            plan = swivel.plan(problem.placed(row.offset, object="door"), planner="lazy", evidence=True)
+            self.assertEqual(
+                (row.cell, row.offset.tolist(), row.status),
+                (k, rows.offset[k].tolist(), rows.status[k]),
+            )
+            plan = swivel.plan(
+                problem.placed(row.offset, object="door"), planner="lazy", evidence=True
+            )
             self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
             if row.solved:
-                self.assertEqual((rows.cost[k], row.clearance_margin, row.tool_speed), (row.cost, plan.measures.min_margin.margin, plan.measures.top_tool_speed.speed))
+                self.assertEqual(
+                    (rows.cost[k], row.clearance_margin, row.tool_speed),
+                    (row.cost, plan.measures.min_margin.margin, plan.measures.top_tool_speed.speed),
+                )
                 self.assertRegex(repr(row), r"<Placement \d+.*, yaw 0.1: cost [0-9.]+, clearance ")
             else:
                 self.assertTrue(np.isnan(rows.cost[k]) and row.cost is None)
@@ -789,58 +1003,108 @@ class Places(unittest.TestCase):
         self.assertEqual(rows[-1].cell, 14)
         with self.assertRaises(IndexError):
             rows[15]
-        self.assertEqual([row.cell for row in rows.best("cost", 3)], sorted(solved, key=lambda k: (round(rows.cost[k], 9), k))[:3])
-        self.assertEqual([row.cell for row in rows.best(["clearance", "cost"], 99)],
-                         sorted(solved, key=lambda k: (round(-rows.clearance_margin[k], 9), round(rows.cost[k], 9), k)))
-        self.assertRegex(repr(rows), r"^<Placements: 15, of which %d have a path; cost [0-9.]+ to [0-9.]+>$" % len(solved))
+        self.assertEqual(
+            [row.cell for row in rows.best("cost", 3)],
+            sorted(solved, key=lambda k: (round(rows.cost[k], 9), k))[:3],
+        )
+        self.assertEqual(
+            [row.cell for row in rows.best(["clearance", "cost"], 99)],
+            sorted(
+                solved,
+                key=lambda k: (round(-rows.clearance_margin[k], 9), round(rows.cost[k], 9), k),
+            ),
+        )
+        self.assertRegex(
+            repr(rows),
+            r"^<Placements: 15, of which %d have a path; cost [0-9.]+ to [0-9.]+>$" % len(solved),
+        )
 
     def test_campaigns(self):
-        without = lambda text: [[*line.split(",")[:3], *line.split(",")[4:]] for line in text.splitlines()]
+        without = lambda text: [
+            [*line.split(",")[:3], *line.split(",")[4:]] for line in text.splitlines()
+        ]
         rows = swivel.campaign(self.problem(), episodes=12, seed=3, planner="lazy")
-        self.assertEqual(without(self.saved(rows)), without(self.table("campaign", "--episodes", "12", "--seed", "3")))
+        self.assertEqual(
+            without(self.saved(rows)),
+            without(self.table("campaign", "--episodes", "12", "--seed", "3")),
+        )
         self.assertEqual(rows.episode.tolist(), list(range(12)))
         self.assertTrue((rows.plan_ms > 0).all())
         plan = swivel.plan(self.problem().episode(3, 5), planner="lazy")
-        self.assertEqual((rows[5].status, rows[5].cost, rows[5].nodes_checked), (plan.status, plan.cost, plan.counters["nodes_checked"]))
+        self.assertEqual(
+            (rows[5].status, rows[5].cost, rows[5].nodes_checked),
+            (plan.status, plan.cost, plan.counters["nodes_checked"]),
+        )
         self.assertRegex(repr(rows), r"^<Episodes: 12, of which \d+ have a path; cost ")
         self.assertRegex(repr(rows[0]), r"^<Episode 0: .* ms>$")
 
     def test_progress(self):
         seen = []
-        rows = swivel.place(self.problem(), object="door", planner="lazy", progress=lambda part, done, of: seen.append((part[0].cell, done, of)), **self.GRID)
+        rows = swivel.place(
+            self.problem(), object="door", planner="lazy",
+            progress=lambda part, done, of: seen.append((part[0].cell, done, of)), **self.GRID
+        )
         self.assertEqual(sorted(cell for cell, _, _ in seen), rows.cell.tolist())
         self.assertEqual([(done, of) for _, done, of in seen], [(k + 1, 15) for k in range(15)])
         seen.clear()
-        swivel.campaign(self.problem(), episodes=6, progress=lambda part, done, of: seen.append((part[0].episode, done, of)))
+        swivel.campaign(
+            self.problem(), episodes=6,
+            progress=lambda part, done, of: seen.append((part[0].episode, done, of))
+        )
         self.assertEqual(seen, [(k, k + 1, 6) for k in range(6)])
 
         def broken(*_):
             raise KeyError("mine")
 
-        for many in (lambda: swivel.place(self.problem(), object="door", progress=broken, **self.GRID), lambda: swivel.campaign(self.problem(), progress=broken)):
+        for many in (
+            lambda: swivel.place(self.problem(), object="door", progress=broken, **self.GRID),
+            lambda: swivel.campaign(self.problem(), progress=broken),
+        ):
             with self.assertRaisesRegex(KeyError, "mine"):
                 many()
 
     def test_timeout_and_ctrl_c(self):
         many = {"object": "door", "x": (-0.1, 0.1, 0.0005), "y": (-0.1, 0.1, 0.0005)}
         seen = []
-        rows = swivel.place(self.problem(), timeout=0.5, progress=lambda rows, *_: seen.extend(row.cell for row in rows), **many)
+        rows = swivel.place(
+            self.problem(),
+            timeout=0.5,
+            progress=lambda rows, *_: seen.extend(row.cell for row in rows),
+            **many,
+        )
         self.assertLess(len(rows), 160801)
         self.assertEqual(sorted(row.cell for row in rows), sorted(seen))
         stop = {"progress": lambda *_: interrupt()}
-        for work in (lambda: swivel.place(self.problem(), **many, **stop), lambda: swivel.campaign(self.problem(), episodes=100000, **stop)):
+        for work in (
+            lambda: swivel.place(self.problem(), **many, **stop),
+            lambda: swivel.campaign(self.problem(), episodes=100000, **stop),
+        ):
             with self.assertRaises(KeyboardInterrupt):
                 work()
 
     def test_bad_values(self):
         problem = self.problem()
-        for keywords, words in (({"x": 0}, "exactly one"), ({"object": "door", "base": True, "x": 0}, "exactly one"), ({"object": "door"}, "one to six"),
-                                ({"object": "dor", "x": 0}, "'dor'"), ({"object": "door", "x": (0, 1)}, "step"), ({"object": "door", "x": (1, 0, 0.1)}, "from <= to"),
-                                ({"object": "door", "x": (0, 1, 0)}, "step > 0"), ({"object": "door", "x": (0, 1, 1e-300)}, "larger step"),
-                                ({"object": "door", "x": (0, 1, 1e-4), "y": (0, 1, 1e-4)}, "1000000"), ({"object": "door", "x": (0, 1), "sample": 0}, "1000000"),
-                                ({"object": "door", "x": (0, 1), "sample": 5, "refine_grid": True}, "without sample"), ({"object": "door", "x": 0, "planner": "magic"}, "eager_dp"),
-                                ({"object": "door", "x": (0, 1, 0.5), "refine_grid": True, "best": "fastest"}, "clearance, cost"), ({"object": "door", "x": float("nan")}, "1000"),
-                                ({"object": "door", "x": 0, "threads": -1}, "1024"), ({"object": "door", "x": 0, "timeout": 0}, "above 0")):
+        for keywords, words in (
+            ({"x": 0}, "exactly one"),
+            ({"object": "door", "base": True, "x": 0}, "exactly one"),
+            ({"object": "door"}, "one to six"),
+            ({"object": "dor", "x": 0}, "'dor'"),
+            ({"object": "door", "x": (0, 1)}, "step"),
+            ({"object": "door", "x": (1, 0, 0.1)}, "from <= to"),
+            ({"object": "door", "x": (0, 1, 0)}, "step > 0"),
+            ({"object": "door", "x": (0, 1, 1e-300)}, "larger step"),
+            ({"object": "door", "x": (0, 1, 1e-4), "y": (0, 1, 1e-4)}, "1000000"),
+            ({"object": "door", "x": (0, 1), "sample": 0}, "1000000"),
+            ({"object": "door", "x": (0, 1), "sample": 5, "refine_grid": True}, "without sample"),
+            ({"object": "door", "x": 0, "planner": "magic"}, "eager_dp"),
+            (
+                {"object": "door", "x": (0, 1, 0.5), "refine_grid": True, "best": "fastest"},
+                "clearance, cost",
+            ),
+            ({"object": "door", "x": float("nan")}, "1000"),
+            ({"object": "door", "x": 0, "threads": -1}, "1024"),
+            ({"object": "door", "x": 0, "timeout": 0}, "above 0"),
+        ):
             with self.assertRaisesRegex(ValueError, words):
                 swivel.place(problem, **keywords)
         with self.assertRaisesRegex(ValueError, "vary"):
@@ -852,7 +1116,8 @@ class Places(unittest.TestCase):
 
 
 class Pickles(unittest.TestCase):
-    """What went through pickle is what went in: every public attribute, and what is planned of it."""
+    """What went through pickle is what went in: every public attribute, and what is planned of
+    it."""
 
     def setUp(self):
         self.count = 0
@@ -879,7 +1144,11 @@ class Pickles(unittest.TestCase):
             self.assertEqual(repr(a), repr(b), where)
             for name in dir(type(a)):
                 member = getattr(type(a), name)
-                if not name.startswith("_") and isinstance(member, property) and not (isinstance(a, swivel.Motion) and not a.executable):
+                if (
+                    not name.startswith("_")
+                    and isinstance(member, property)
+                    and not (isinstance(a, swivel.Motion) and not a.executable)
+                ):
                     self.same(getattr(a, name), getattr(b, name), f"{where}.{name}")
 
     def through(self, thing):
@@ -894,21 +1163,48 @@ class Pickles(unittest.TestCase):
             again = self.through(problem)
             for part in (problem.robot, problem.task, problem.scene):
                 self.through(part)
-            if file.stem in ("experiment_a", "experiment_b", "experiment_c", "panda_weld_seam", "kr6_weld_pipe"):
+            if file.stem in (
+                "experiment_a", "experiment_b", "experiment_c", "panda_weld_seam", "kr6_weld_pipe"
+            ):
                 one, two = swivel.plan(problem, planner="lazy"), swivel.plan(again, planner="lazy")
                 self.assertTrue(one.solved)
-                self.assertEqual((one.joints.tobytes(), one.cost, one.counters), (two.joints.tobytes(), two.cost, two.counters))
+                self.assertEqual(
+                    (one.joints.tobytes(), one.cost, one.counters),
+                    (two.joints.tobytes(), two.cost, two.counters),
+                )
             if file.stem == "experiment_c":
-                self.assertEqual(swivel.plan(problem.episode(1, 4), planner="lazy").cost, swivel.plan(again.episode(1, 4), planner="lazy").cost)
+                self.assertEqual(
+                    swivel.plan(problem.episode(1, 4), planner="lazy").cost,
+                    swivel.plan(again.episode(1, 4), planner="lazy").cost,
+                )
         print(self.count, "values compared")
         self.assertGreater(self.count, 5000)
 
     def test_parts(self):
-        corners, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+        corners, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [
+            [0, 2, 1],
+            [0, 1, 3],
+            [0, 3, 2],
+            [1, 2, 3],
+        ]
         mesh = swivel.Mesh.from_arrays(corners, faces)
-        for thing in (swivel.Sphere(0.1), swivel.Box([0.1, 1 / 3, 0.3]), swivel.Cylinder(0.1, 0.2), swivel.Capsule(0.1, 0.2), mesh, swivel.Roll(lower=-1 / 3), swivel.Limits(edges="nodes"),
-                      swivel.AttachedBody("tool", mesh, "flange", swivel.pose([0, 0, 0.1], rpy=[0.1, 0.2, 0.3])), swivel.SceneObject("box", mesh, [1, 2, 3], ["flange"]),
-                      swivel.Resolution(arc=0.3), swivel.Cost(metric="max"), swivel.PathSmoothing(angle=0.1), swivel.Refinement(smoothing=0.2)):
+        for thing in (
+            swivel.Sphere(0.1),
+            swivel.Box([0.1, 1 / 3, 0.3]),
+            swivel.Cylinder(0.1, 0.2),
+            swivel.Capsule(0.1, 0.2),
+            mesh,
+            swivel.Roll(lower=-1 / 3),
+            swivel.Limits(edges="nodes"),
+            swivel.AttachedBody(
+                "tool", mesh, "flange", swivel.pose([0, 0, 0.1], rpy=[0.1, 0.2, 0.3])
+            ),
+            swivel.SceneObject("box", mesh, [1, 2, 3], ["flange"]),
+            swivel.Resolution(arc=0.3),
+            swivel.Cost(metric="max"),
+            swivel.PathSmoothing(angle=0.1),
+            swivel.Refinement(smoothing=0.2),
+        ):
             self.through(thing)
 
     def test_a_mesh_of_many_is_written_once(self):
@@ -923,7 +1219,10 @@ class Pickles(unittest.TestCase):
         problem = experiment("c")
         plan = self.through(swivel.plan(problem, refine=True, speed=0.1, evidence=True))
         self.assertEqual(plan.to_json(), pickle.loads(pickle.dumps(plan)).to_json())
-        for thing in (plan.motion, plan.refinement, plan.trajectory, plan.measures, swivel.check(problem, plan.trajectory)):
+        for thing in (
+            plan.motion, plan.refinement, plan.trajectory, plan.measures,
+            swivel.check(problem, plan.trajectory)
+        ):
             self.through(thing)
         slow = experiment("c")
         slow.limits.joint_acceleration = [0.3] * 7
@@ -931,7 +1230,9 @@ class Pickles(unittest.TestCase):
         none = swivel.plan(PROBLEMS / "experiment_a_start.yaml", evidence=True)
         self.assertTrue(self.through(none).diagnosis.cause)
         far = experiment("a")
-        far.waypoints = far.waypoints + [2, 0, 0, 0, 0, 0, 0] * np.linspace(0, 1, len(far.waypoints))[:, None]
+        far.waypoints = (
+            far.waypoints + [2, 0, 0, 0, 0, 0, 0] * np.linspace(0, 1, len(far.waypoints))[:, None]
+        )
         far = swivel.plan(far, evidence=True)
         self.assertTrue(self.through(far).diagnosis.empty_layers)
         self.assertTrue(far.diagnosis.removed)
@@ -940,7 +1241,9 @@ class Pickles(unittest.TestCase):
         self.through(advice)
         timed = swivel.check(experiment("c"), plan.motion)
         self.assertIsNotNone(self.through(timed).duration)
-        self.through(swivel.place(Places.problem(), object="door", x=(-0.1, 0.1, 0.05), y=(0, 0.1, 0.05)))
+        self.through(
+            swivel.place(Places.problem(), object="door", x=(-0.1, 0.1, 0.05), y=(0, 0.1, 0.05))
+        )
         self.through(swivel.campaign(Places.problem(), episodes=12))
         self.through(swivel.place(Places.problem(), object="door", x=(-0.1, 0.1, 0.05))[2])
         stuck = swivel.plan(PROBLEMS / "experiment_c.yaml", speed=0.1, timeout=1e-3)
@@ -950,35 +1253,67 @@ class Pickles(unittest.TestCase):
 
     def test_another_process_plans_the_same(self):
         problem = experiment("c")
-        code = "import pickle, sys, swivel; sys.stdout.buffer.write(pickle.dumps(swivel.plan(pickle.load(sys.stdin.buffer), planner='lazy')))"
-        run = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(problem), capture_output=True)
+        code = (
+            "import pickle, sys, swivel; "
+            "sys.stdout.buffer.write(pickle.dumps(swivel.plan(pickle.load(sys.stdin.buffer), "
+            "planner='lazy')))"
+        )
+        run = subprocess.run(
+            [sys.executable, "-c", code], input=pickle.dumps(problem), capture_output=True
+        )
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(pickle.loads(run.stdout).joints.tobytes(), swivel.plan(problem, planner="lazy").joints.tobytes())
+        self.assertEqual(
+            pickle.loads(run.stdout).joints.tobytes(),
+            swivel.plan(problem, planner="lazy").joints.tobytes(),
+        )
 
     def test_what_is_no_pickle_of_this_version(self):
         state = swivel.Box([1, 2, 3]).__getstate__()
         version, checksum, content = state
-        for wrong, words in ((("0.0.9", checksum, content), "version 0.0.9 .*allowed"), ((version, checksum, content[:-1]), "damaged pickle.*allowed"), ((), "version . .*allowed"),
-                             ((version, checksum + 1, content), "damaged pickle"), ((version, content), "not a pickle of swivel"), ((version, str(checksum), content), "not a pickle of swivel"),
-                             ((version, checksum, content.decode("latin1")), "not a pickle of swivel"), ((version, -1, content), "damaged pickle"), ((version, 1 << 80, content), "damaged pickle")):
+        for wrong, words in (
+            (("0.0.9", checksum, content), "version 0.0.9 .*allowed"),
+            ((version, checksum, content[:-1]), "damaged pickle.*allowed"),
+            ((), "version . .*allowed"),
+            ((version, checksum + 1, content), "damaged pickle"),
+            ((version, content), "not a pickle of swivel"),
+            ((version, str(checksum), content), "not a pickle of swivel"),
+            ((version, checksum, content.decode("latin1")), "not a pickle of swivel"),
+            ((version, -1, content), "damaged pickle"),
+            ((version, 1 << 80, content), "damaged pickle"),
+        ):
             with self.assertRaisesRegex(ValueError, words):
                 swivel.Box.__new__(swivel.Box).__setstate__(wrong)
         with self.assertRaisesRegex(ValueError, "damaged pickle"):  # the bytes of another class
-            swivel.Cylinder.__new__(swivel.Cylinder).__setstate__(swivel.Capsule(0.1, 0.2).__getstate__())
+            swivel.Cylinder.__new__(swivel.Cylinder).__setstate__(
+                swivel.Capsule(0.1, 0.2).__getstate__()
+            )
 
     def test_damaged_ones_end_at_once(self):
-        """One or two bytes of the version, the checksum or the content changed: refused in milliseconds, and without memory."""
+        """One or two bytes of the version, the checksum or the content changed: refused in
+        milliseconds, and without memory."""
         problem = experiment("a")
         plan = swivel.plan(problem, refine=True, speed=0.1, evidence=True)
         far = experiment("a")
-        far.waypoints = far.waypoints + [2, 0, 0, 0, 0, 0, 0] * np.linspace(0, 1, len(far.waypoints))[:, None]
+        far.waypoints = (
+            far.waypoints + [2, 0, 0, 0, 0, 0, 0] * np.linspace(0, 1, len(far.waypoints))[:, None]
+        )
         none = swivel.plan(far, evidence=True)
         places = swivel.place(Places.problem(), object="door", x=(-0.1, 0.1, 0.1))
         episodes = swivel.campaign(Places.problem(), episodes=2)
-        things = [problem, problem.robot, problem.task, problem.scene, swivel.SceneObject("box", swivel.Box([1, 2, 3]), [1, 2, 3], ["flange"]), plan, plan.motion, plan.refinement, plan.trajectory, plan.measures, plan.lattice, none, none.diagnosis,
-                  none.diagnosis.cause, none.diagnosis.empty_layers[0], swivel.check(problem, plan.trajectory), places, places[0], episodes, episodes[0], plan.measures.nearest_limit, plan.measures.min_margin,
-                  plan.measures.tool_path_error_mm, swivel.Sphere(0.1), swivel.Box([0.1, 0.2, 0.3]), swivel.Cylinder(0.1, 0.2), swivel.Capsule(0.1, 0.2), swivel.Mesh.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
-                  swivel.Roll(lower=-0.5), swivel.Limits(), swivel.Resolution(), swivel.Cost(), swivel.PathSmoothing(), swivel.Refinement(), swivel.AttachedBody("tool", swivel.Sphere(0.1), "flange")]
+        things = [
+            problem, problem.robot, problem.task, problem.scene,
+            swivel.SceneObject("box", swivel.Box([1, 2, 3]), [1, 2, 3], ["flange"]), plan,
+            plan.motion, plan.refinement, plan.trajectory, plan.measures, plan.lattice, none,
+            none.diagnosis, none.diagnosis.cause, none.diagnosis.empty_layers[0],
+            swivel.check(problem, plan.trajectory), places, places[0], episodes, episodes[0],
+            plan.measures.nearest_limit, plan.measures.min_margin, plan.measures.tool_path_error_mm,
+            swivel.Sphere(0.1), swivel.Box([0.1, 0.2, 0.3]), swivel.Cylinder(0.1, 0.2),
+            swivel.Capsule(0.1, 0.2),
+            swivel.Mesh.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
+            swivel.Roll(lower=-0.5), swivel.Limits(), swivel.Resolution(), swivel.Cost(),
+            swivel.PathSmoothing(), swivel.Refinement(),
+            swivel.AttachedBody("tool", swivel.Sphere(0.1), "flange")
+        ]
         seed = int(os.environ.get("SWIVEL_TEST_SEED", 41))
         random = np.random.default_rng(seed)
         refused = 0
@@ -986,7 +1321,8 @@ class Pickles(unittest.TestCase):
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         for thing in things:
             whole, (version, checksum, content) = pickle.dumps(thing), thing.__getstate__()
-            # The words of pickle itself are left whole: damaged ones are between Python and its memory.
+            # The words of pickle itself are left whole: damaged ones are between Python and its
+            # memory.
             parts = [version.encode(), pickle.encode_long(checksum), content]
             places = np.concatenate([whole.index(part) + np.arange(len(part)) for part in parts])
             for _ in range(200):
@@ -994,12 +1330,18 @@ class Pickles(unittest.TestCase):
                 for place in set(places[random.integers(0, len(places), random.integers(1, 3))]):
                     damaged[place] ^= random.integers(1, 256)
                 start = time.monotonic()
-                with self.assertRaisesRegex((ValueError, UnicodeDecodeError), "allowed|utf-8|pickled by version", msg=type(thing).__name__):
+                with self.assertRaisesRegex(
+                    (ValueError, UnicodeDecodeError),
+                    "allowed|utf-8|pickled by version",
+                    msg=type(thing).__name__,
+                ):
                     pickle.loads(bytes(damaged))
                 refused += 1
                 longest = max(longest, time.monotonic() - start)
         grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
-        print(f"seed {seed}: {refused} refused, {1e3 * longest:.1f} ms at most, {grown:.0f} MiB more")
+        print(
+            f"seed {seed}: {refused} refused, {1e3 * longest:.1f} ms at most, {grown:.0f} MiB more"
+        )
         self.assertGreaterEqual(refused, 6800)
         self.assertLess(longest, 2)
         self.assertLess(grown, 300)
@@ -1013,7 +1355,10 @@ class Wheels(unittest.TestCase):
         import build_wheel
 
         def install_what_is_built(folder):
-            shutil.copytree(Path(swivel.__file__).parent, Path(folder) / "swivel", ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(
+                Path(swivel.__file__).parent, Path(folder) / "swivel",
+                ignore=shutil.ignore_patterns("__pycache__")
+            )
 
         build_wheel.build_package = install_what_is_built
         with tempfile.TemporaryDirectory() as folder:
@@ -1026,27 +1371,62 @@ class Wheels(unittest.TestCase):
             rows = [line.split(",") for line in files[f"{info}/RECORD"].decode().splitlines()]
             self.assertEqual({row[0] for row in rows}, set(files))
             for path, digest, size in rows[:-1]:
-                self.assertEqual(digest, "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(files[path]).digest()).rstrip(b"=").decode())
+                self.assertEqual(
+                    digest,
+                    "sha256="
+                    + base64.urlsafe_b64encode(hashlib.sha256(files[path]).digest())
+                    .rstrip(b"=")
+                    .decode(),
+                )
                 self.assertEqual(int(size), len(files[path]))
             self.assertIn(f"Version: {swivel.__version__}\n", files[f"{info}/METADATA"].decode())
-            if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True).returncode:
+            if subprocess.run(
+                [sys.executable, "-m", "pip", "--version"], capture_output=True
+            ).returncode:
                 self.skipTest("pip is not installed")
             where = Path(folder) / "site"
-            subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--quiet", "--target", where, Path(folder) / name], check=True)
-            program = f"import swivel; print(swivel.__file__, swivel.plan({str(PROBLEMS / 'experiment_b.yaml')!r}).status)"
-            run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(where)})
+            subprocess.run(
+                [
+                    sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--quiet",
+                    "--target", where, Path(folder) / name
+                ],
+                check=True,
+            )
+            program = (
+                "import swivel; print(swivel.__file__, "
+                f"swivel.plan({str(PROBLEMS / 'experiment_b.yaml')!r}).status)"
+            )
+            run = subprocess.run(
+                [sys.executable, "-c", program],
+                capture_output=True,
+                text=True,
+                check=True,
+                env={**os.environ, "PYTHONPATH": str(where)},
+            )
             self.assertEqual(run.stdout, f"{where}/swivel/__init__.py solved\n")
 
     def test_source_distribution(self):
         sys.path.insert(0, os.environ["SWIVEL_BACKEND"])
         import build_wheel
 
-        if subprocess.run(["git", "-C", str(build_wheel.ROOT), "rev-parse"], capture_output=True).returncode:
+        if subprocess.run(
+            ["git", "-C", str(build_wheel.ROOT), "rev-parse"], capture_output=True
+        ).returncode:
             self.skipTest("no clone by git")
-        with tempfile.TemporaryDirectory() as folder, tarfile.open(Path(folder) / build_wheel.build_sdist(folder)) as archive:
+        with tempfile.TemporaryDirectory() as folder, tarfile.open(
+            Path(folder) / build_wheel.build_sdist(folder)
+        ) as archive:
             names = archive.getnames()
             base = f"swivel-{swivel.__version__}"
-            self.assertTrue({f"{base}/{name}" for name in ("PKG-INFO", "pyproject.toml", "CMakeLists.txt", "python/build_wheel.py")} <= set(names))
+            self.assertTrue(
+                {
+                    f"{base}/{name}"
+                    for name in (
+                        "PKG-INFO", "pyproject.toml", "CMakeLists.txt", "python/build_wheel.py"
+                    )
+                }
+                <= set(names)
+            )
 
 
 class Stubs(unittest.TestCase):
@@ -1056,14 +1436,25 @@ class Stubs(unittest.TestCase):
 
     @staticmethod
     def members(thing):
-        own = {name for name in vars(thing) if not name.startswith("_") or name in ("__len__", "__iter__", "__getitem__", "__contains__", "__bool__")}
+        own = {
+            name
+            for name in vars(thing)
+            if not name.startswith("_")
+            or name in ("__len__", "__iter__", "__getitem__", "__contains__", "__bool__")
+        }
         own |= {"__eq__", "__hash__"} if hasattr(thing, "__members__") else set()
-        return own | ({"__init__"} if "__init__" in vars(thing) and not hasattr(thing, "__members__") else set())
+        return own | (
+            {"__init__"}
+            if "__init__" in vars(thing) and not hasattr(thing, "__members__")
+            else set()
+        )
 
     def test_names_are_those_of_the_module(self):
         self.assertTrue((self.folder / "py.typed").exists())
         classes = {node.name: node for node in self.tree.body if isinstance(node, ast.ClassDef)}
-        functions = {node.name: node for node in self.tree.body if isinstance(node, ast.FunctionDef)}
+        functions = {
+            node.name: node for node in self.tree.body if isinstance(node, ast.FunctionDef)
+        }
         self.assertEqual(set(classes) | set(functions), set(swivel.__all__))
         count = 0
         for name, node in classes.items():
@@ -1073,45 +1464,89 @@ class Stubs(unittest.TestCase):
             told = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
             told |= {item.target.id for item in node.body if isinstance(item, ast.AnnAssign)}
             # What no one can make has an __init__ that says so.
-            actual = self.members(thing) - ({"__init__"} if "__init__" not in told and "No constructor" in self.refusal(thing) else set())
+            actual = self.members(thing) - (
+                {"__init__"}
+                if "__init__" not in told and "No constructor" in self.refusal(thing)
+                else set()
+            )
             self.assertEqual(told, actual, name)
             count += len(told)
             for item in node.body:
-                if isinstance(item, ast.FunctionDef):  # what is told to be a property is none that must be called, and the other way round
-                    tells_property = any("property" in ast.dump(d) or "setter" in ast.dump(d) for d in item.decorator_list)
-                    self.assertEqual(tells_property, not callable(getattr(thing, item.name)) or isinstance(getattr(thing, item.name), property), f"{name}.{item.name}")
-                if isinstance(item, ast.FunctionDef) and not any(isinstance(d, (ast.Attribute, ast.Name)) and "setter" in ast.dump(d) for d in item.decorator_list):
-                    count += self.same_arguments(f"{name}.{item.name}", item, getattr(thing, item.name))
+                # What is told to be a property is none that must be called, and the other way
+                # round.
+                if isinstance(item, ast.FunctionDef):
+                    tells_property = any(
+                        "property" in ast.dump(d) or "setter" in ast.dump(d)
+                        for d in item.decorator_list
+                    )
+                    self.assertEqual(
+                        tells_property,
+                        not callable(getattr(thing, item.name))
+                        or isinstance(getattr(thing, item.name), property),
+                        f"{name}.{item.name}",
+                    )
+                if isinstance(item, ast.FunctionDef) and not any(
+                    isinstance(d, (ast.Attribute, ast.Name)) and "setter" in ast.dump(d)
+                    for d in item.decorator_list
+                ):
+                    count += self.same_arguments(
+                        f"{name}.{item.name}", item, getattr(thing, item.name)
+                    )
         for name, node in functions.items():
             count += self.same_arguments(name, node, getattr(swivel, name))
         print(count, "names compared")
         self.assertGreater(count, 300)
 
     def test_members_of_enums_have_a_name_and_a_value(self):
-        enums = [thing for name in swivel.__all__ if hasattr(thing := getattr(swivel, name), "__members__")]
+        enums = [
+            thing
+            for name in swivel.__all__
+            if hasattr(thing := getattr(swivel, name), "__members__")
+        ]
         self.assertGreaterEqual(len(enums), 6)
         for enum in enums:
             self.assertTrue(enum.__members__, enum)
             for name, member in enum.__members__.items():
                 self.assertIs(type(member), enum)
-                self.assertEqual((member.name, str(member), member.value, repr(member)), (name, name.lower(), int(member), f"<{enum.__name__}.{name}: {member.value}>"))
-                self.assertEqual((getattr(enum, name), enum(member.value), pickle.loads(pickle.dumps(member))), (member, member, member))
-            self.assertEqual({m.value for m in enum.__members__.values()}, set(range(len(enum.__members__))))
+                self.assertEqual(
+                    (member.name, str(member), member.value, repr(member)),
+                    (name, name.lower(), int(member), f"<{enum.__name__}.{name}: {member.value}>"),
+                )
+                self.assertEqual(
+                    (getattr(enum, name), enum(member.value), pickle.loads(pickle.dumps(member))),
+                    (member, member, member),
+                )
+            self.assertEqual(
+                {m.value for m in enum.__members__.values()}, set(range(len(enum.__members__)))
+            )
         self.assertTrue(swivel.Status.SOLVED.name == "SOLVED")
 
     def test_members_of_enums_are_equal_to_their_names(self):
-        enums = [thing for name in swivel.__all__ if hasattr(thing := getattr(swivel, name), "__members__")]
+        enums = [
+            thing
+            for name in swivel.__all__
+            if hasattr(thing := getattr(swivel, name), "__members__")
+        ]
         for enum in enums:
             members = list(enum.__members__.values())
-            self.assertEqual(len({*members, *map(str, members)}), len(members))  # one key, whichever of the two it is
+            # One key, whichever of the two it is.
+            self.assertEqual(len({*members, *map(str, members)}), len(members))
             for member in members:
                 name = str(member)
-                self.assertTrue(member == name and name == member and not member != name and not name != member)
-                self.assertEqual((hash(member), {name: 1}[member], {member: 2}[name], member in (name,)), (hash(name), 1, 2, True))
+                self.assertTrue(
+                    member == name and name == member and not member != name and not name != member
+                )
+                self.assertEqual(
+                    (hash(member), {name: 1}[member], {member: 2}[name], member in (name,)),
+                    (hash(name), 1, 2, True),
+                )
                 for other in (name.upper(), name + "d", "", None, member.value, b"x", object()):
                     self.assertTrue(member != other and not member == other, (member, other))
                 for other in members:
-                    self.assertEqual((member == other, member != other, member == str(other)), (member is other, member is not other, member is other))
+                    self.assertEqual(
+                        (member == other, member != other, member == str(other)),
+                        (member is other, member is not other, member is other),
+                    )
         self.assertFalse(swivel.Status.SOLVED == swivel.EdgeMode.CONTINUOUS)
         self.assertTrue(swivel.Status.INFEASIBLE == "infeasible")
 
@@ -1124,14 +1559,22 @@ class Stubs(unittest.TestCase):
         return ""
 
     def same_arguments(self, name, node, function):
-        told = [a.arg for a in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs) if a.arg != "self"]
+        told = [
+            a.arg
+            for a in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)
+            if a.arg != "self"
+        ]
         if not callable(function) or isinstance(function, property) or not told:
             return 0
         if hasattr(function, "__code__"):
             code = function.__code__
             actual = set(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
         else:
-            text = function.__doc__.split("\n\n")[0] if "Overloaded function" not in function.__doc__ else function.__doc__
+            text = (
+                function.__doc__.split("\n\n")[0]
+                if "Overloaded function" not in function.__doc__
+                else function.__doc__
+            )
             if "**kwargs" in text:
                 return 0  # a struct made of keywords: its members are compared
             actual = set(re.findall(r"[(,] ?\*?(\w+):", text)) - {"self"}
@@ -1139,13 +1582,22 @@ class Stubs(unittest.TestCase):
         return len(told)
 
     def test_mypy_accepts_the_examples(self):
-        if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:
+        if subprocess.run(
+            [sys.executable, "-m", "mypy", "--version"], capture_output=True
+        ).returncode:
             self.skipTest("mypy is not installed")
         examples = sorted(Path(os.environ["SWIVEL_EXAMPLES"]).glob("*.py"))
         self.assertEqual(len(examples), 4)
         with tempfile.TemporaryDirectory() as folder:
-            run = subprocess.run([sys.executable, "-m", "mypy", "--ignore-missing-imports", "--cache-dir", folder, *examples], capture_output=True, text=True,
-                                 env={**os.environ, "MYPYPATH": str(self.folder.parent)})
+            run = subprocess.run(
+                [
+                    sys.executable, "-m", "mypy", "--ignore-missing-imports", "--cache-dir", folder,
+                    *examples
+                ],
+                capture_output=True,
+                text=True,
+                env={**os.environ, "MYPYPATH": str(self.folder.parent)},
+            )
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of ./swivel and of the bundling of the pages, in projects made for them. SWIVEL_ROOT is the source tree."""
+"""Tests of ./swivel and of the bundling of the pages, in projects made for them. SWIVEL_ROOT is the
+source tree."""
 import json
 import os
 import pathlib
@@ -15,20 +16,28 @@ import unittest
 
 ROOT = pathlib.Path(os.environ["SWIVEL_ROOT"])
 
-# Builds cli/swivel, a script, and by `pages` what stands for the page: its content is asked of a fake npm.
+# Builds cli/swivel, a script, and by `pages` what stands for the page: its content is asked of a
+# fake npm.
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(fake LANGUAGES NONE)
 add_custom_command(OUTPUT cli/swivel COMMAND ${CMAKE_COMMAND} -P ${CMAKE_SOURCE_DIR}/work.cmake
-  COMMAND ${CMAKE_COMMAND} -E copy ${CMAKE_SOURCE_DIR}/program cli/swivel DEPENDS program work.cmake)
-add_custom_command(OUTPUT report/web/report.html COMMAND sh ${CMAKE_SOURCE_DIR}/page > report/web/report.html)
+  COMMAND ${CMAKE_COMMAND} -E copy ${CMAKE_SOURCE_DIR}/program cli/swivel
+  DEPENDS program work.cmake)
+add_custom_command(OUTPUT report/web/report.html
+  COMMAND sh ${CMAKE_SOURCE_DIR}/page > report/web/report.html)
 add_custom_target(pages ALL DEPENDS report/web/report.html)
 add_custom_target(program ALL DEPENDS cli/swivel)
 add_dependencies(program pages)
 add_custom_target(all_of_it DEPENDS program)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/report/web)
 """
-PRESETS = {"version": 6, "configurePresets": [{"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/${presetName}"}]}
+PRESETS = {
+    "version": 6,
+    "configurePresets": [
+        {"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/${presetName}"}
+    ],
+}
 
 
 def executable(path, text):
@@ -48,11 +57,14 @@ class Project(unittest.TestCase):
         (self.root / "work.cmake").write_text("")
         (self.root / "page").write_text("echo page\n")
         executable(self.root / "program", '#!/bin/sh\necho "$PWD:$*"\nexit 3\n')
-        self.environment = {name: value for name, value in os.environ.items() if name not in ("CI", "SWIVEL_PRESET")}
+        self.environment = {
+            name: value for name, value in os.environ.items() if name not in ("CI", "SWIVEL_PRESET")
+        }
 
     def build_until_told(self, then=""):
         """The build goes on until let_go(), two minutes at most."""
-        (self.root / "work.cmake").write_text(f"""
+        (self.root / "work.cmake").write_text(
+            f"""
 foreach(tick RANGE 1200)
   if(EXISTS {self.root}/go)
     break()
@@ -60,17 +72,32 @@ foreach(tick RANGE 1200)
   execute_process(COMMAND sleep 0.1)
 endforeach()
 {then}
-""")
+"""
+        )
 
     def let_go(self):
         (self.root / "go").touch()
 
     def begin(self, stderr=subprocess.PIPE):
-        return subprocess.Popen([self.root / "swivel"], env=self.environment, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stderr)
+        return subprocess.Popen(
+            [self.root / "swivel"],
+            env=self.environment,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=stderr,
+        )
 
     def call(self, *arguments, cwd=None, **environment):
-        return subprocess.run([self.root / "swivel", *arguments], cwd=cwd or self.root, env=self.environment | environment, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=120)
+        return subprocess.run(
+            [self.root / "swivel", *arguments],
+            cwd=cwd or self.root,
+            env=self.environment | environment,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=120,
+        )
 
     def log(self):
         return self.root / "build/release.log"
@@ -100,7 +127,8 @@ class Wrapper(Project):
         self.build_until_told()
         began = time.monotonic()
         call, shown = self.begin(), ""
-        while "of 2 steps" not in shown:  # a line each half minute, the first perhaps before the steps are known
+        # A line each half minute, the first perhaps before the steps are known.
+        while "of 2 steps" not in shown:
             line = call.stderr.readline()
             self.assertTrue(line, shown)
             shown += line
@@ -108,8 +136,13 @@ class Wrapper(Project):
         shown += call.stderr.read()
         call.communicate(timeout=120)
         self.assertEqual(call.returncode, 3)
-        self.assertLessEqual(shown.count("building"), 1 + (time.monotonic() - began) // 30, "one line each half minute")
-        self.assertRegex(shown, r"swivel: building release, [01] of 2 steps; output in .*release.log\n")
+        self.assertLessEqual(
+            shown.count("building"), 1 + (time.monotonic() - began) // 30,
+            "one line each half minute"
+        )
+        self.assertRegex(
+            shown, r"swivel: building release, [01] of 2 steps; output in .*release.log\n"
+        )
 
     def test_a_terminal_gets_one_line_that_moves(self):
         self.call()
@@ -141,7 +174,10 @@ class Wrapper(Project):
         self.assertEqual(self.call().returncode, 3)
 
     def test_a_configuration_that_fails_shows_why_and_ends_with_4(self):
-        (self.root / "CMakeLists.txt").write_text('cmake_minimum_required(VERSION 3.25)\nproject(fake LANGUAGES NONE)\nmessage(FATAL_ERROR "the reason")')
+        (self.root / "CMakeLists.txt").write_text(
+            'cmake_minimum_required(VERSION 3.25)\nproject(fake LANGUAGES NONE)\n'
+            'message(FATAL_ERROR "the reason")'
+        )
         done = self.call()
         self.assertEqual((done.returncode, done.stdout), (4, ""))
         self.assertIn("the reason", done.stderr)
@@ -177,15 +213,24 @@ class Wrapper(Project):
         ends = [(call.communicate(timeout=120)[1], call.returncode) for call in calls]
         self.assertEqual([code for _, code in ends], [3, 3, 3])
         self.assertEqual((self.root / "count").read_text(), "x")
-        self.assertEqual((shown + "".join(text for text, _ in ends)).count("waiting for another call"), 2)
+        self.assertEqual(
+            (shown + "".join(text for text, _ in ends)).count("waiting for another call"), 2
+        )
 
 
 class Pages(unittest.TestCase):
     """npm fails, as it does without a network or behind a proxy."""
 
     def bundle(self, folder, report, npm="false"):
-        return subprocess.run(["cmake", f"-DNPM={npm}", "-DNODE=node", f"-DFOLDER={folder}", f"-DREPORT={report}", "-P", ROOT / "report/bundle.cmake"],
-                              text=True, capture_output=True, timeout=120)
+        return subprocess.run(
+            [
+                "cmake", f"-DNPM={npm}", "-DNODE=node", f"-DFOLDER={folder}", f"-DREPORT={report}",
+                "-P", ROOT / "report/bundle.cmake"
+            ],
+            text=True,
+            capture_output=True,
+            timeout=120,
+        )
 
     def test_where_reports_are_not_asked_for_the_pages_are_left_empty(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -194,8 +239,13 @@ class Pages(unittest.TestCase):
             self.assertIn("npm ci failed (1): built without the pages of --report", done.stderr)
             for name in ("report.html", "overview.html", "THIRD-PARTY.txt"):
                 self.assertEqual((pathlib.Path(folder) / name).read_bytes(), b"")
-            self.assertEqual((pathlib.Path(folder) / "pages.d").read_text(), f"{folder}/report.html: {ROOT}/report/web/build.mjs\n")
-            self.assertIn("npm ci failed", self.bundle(folder, "AUTO").stderr, "tries again when asked again")
+            self.assertEqual(
+                (pathlib.Path(folder) / "pages.d").read_text(),
+                f"{folder}/report.html: {ROOT}/report/web/build.mjs\n",
+            )
+            self.assertIn(
+                "npm ci failed", self.bundle(folder, "AUTO").stderr, "tries again when asked again"
+            )
 
     def test_where_reports_are_asked_for_the_build_fails(self):
         with tempfile.TemporaryDirectory() as folder:
