@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What pip calls to build the package (PEP 517): CMake builds and installs the component `python`, and this packs it as a wheel.
+"""What pip calls to build the package (PEP 517): CMake builds and installs the component `python`,
+and this packs it as a wheel.
 
-CMAKE_ARGS, as elsewhere, are more arguments for CMake. The build folder is build/pip, so that a second call builds what changed.
+CMAKE_ARGS, as elsewhere, are more arguments for CMake. The build folder is build/pip, so that a
+second call builds what changed.
 """
 import base64
 import hashlib
@@ -21,14 +23,19 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def version():
-    return re.search(r"project\(swivel VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
+    return re.search(
+        r"project\(swivel VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()
+    ).group(1)
 
 
 def metadata():
     text = (ROOT / "pyproject.toml").read_text()
     description = re.search(r'^description = "(.*)"$', text, re.MULTILINE).group(1)
-    lines = ["Metadata-Version: 2.1", "Name: swivel", f"Version: {version()}", f"Summary: {description}", "License: BSD-3-Clause",
-             "Requires-Python: >=3.9", "Requires-Dist: numpy", "Description-Content-Type: text/markdown", ""]
+    lines = [
+        "Metadata-Version: 2.1", "Name: swivel", f"Version: {version()}", f"Summary: {description}",
+        "License: BSD-3-Clause", "Requires-Python: >=3.9", "Requires-Dist: numpy",
+        "Description-Content-Type: text/markdown", ""
+    ]
     return "\n".join(lines) + "\n" + (ROOT / "README.md").read_text()
 
 
@@ -45,11 +52,17 @@ def jobs():
 
 def build_package(folder):
     build = ROOT / "build" / "pip"
-    arguments = ["-DCMAKE_BUILD_TYPE=Release", "-DSWIVEL_PYTHON=ON", "-DSWIVEL_PYTHON_DIR=.", f"-DPython_EXECUTABLE={sys.executable}",
-                 "-DBUILD_SHARED_LIBS=OFF", "-DSWIVEL_TESTS=OFF", "-DSWIVEL_BENCH=OFF", "-DSWIVEL_REPORT=OFF"]
+    arguments = [
+        "-DCMAKE_BUILD_TYPE=Release", "-DSWIVEL_PYTHON=ON", "-DSWIVEL_PYTHON_DIR=.",
+        f"-DPython_EXECUTABLE={sys.executable}", "-DBUILD_SHARED_LIBS=OFF", "-DSWIVEL_TESTS=OFF",
+        "-DSWIVEL_BENCH=OFF", "-DSWIVEL_REPORT=OFF"
+    ]
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     # --fresh: a virtual environment of an earlier call may be gone.
-    run("cmake", "--fresh", "-S", ROOT, "-B", build, *generator, *arguments, *shlex.split(os.environ.get("CMAKE_ARGS", "")))
+    run(
+        "cmake", "--fresh", "-S", ROOT, "-B", build, *generator, *arguments,
+        *shlex.split(os.environ.get("CMAKE_ARGS", ""))
+    )
     run("cmake", "--build", build, "--target", "swivel_python", "--parallel", jobs())
     run("cmake", "--install", build, "--component", "python", "--prefix", folder, "--strip")
 
@@ -61,8 +74,14 @@ def tag():
 
 def information():
     """Name of the wheel's dist-info folder, and its files but for RECORD."""
-    files = {"METADATA": metadata().encode(), "LICENSE": (ROOT / "LICENSE").read_bytes(),
-             "WHEEL": f"Wheel-Version: 1.0\nGenerator: swivel\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()}
+    files = {
+        "METADATA": metadata().encode(),
+        "LICENSE": (ROOT / "LICENSE").read_bytes(),
+        "WHEEL": (
+            "Wheel-Version: 1.0\nGenerator: swivel\nRoot-Is-Purelib: false\n"
+            f"Tag: {tag()}\n"
+        ).encode(),
+    }
     return f"swivel-{version()}.dist-info", files
 
 
@@ -82,12 +101,18 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     name, (info, about) = f"swivel-{version()}-{tag()}.whl", information()
     with tempfile.TemporaryDirectory() as folder:
         build_package(folder)
-        files = {str(path.relative_to(folder)): path.read_bytes() for path in sorted(Path(folder).rglob("*")) if path.is_file()}
+        files = {
+            str(path.relative_to(folder)): path.read_bytes()
+            for path in sorted(Path(folder).rglob("*"))
+            if path.is_file()
+        }
     files |= {f"{info}/{file}": content for file, content in about.items()}
     record = ""
     with zipfile.ZipFile(Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
         for path, content in files.items():
-            digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+            digest = (
+                base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+            )
             record += f"{path},sha256={digest},{len(content)}\n"
             wheel.writestr(path, content)
         wheel.writestr(f"{info}/RECORD", record + f"{info}/RECORD,,\n")
@@ -97,8 +122,12 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 def build_sdist(sdist_directory, config_settings=None):
     """The files that git knows."""
     base = f"swivel-{version()}"
-    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-z"], check=True, capture_output=True).stdout.decode()
-    with tempfile.TemporaryDirectory() as folder, tarfile.open(Path(sdist_directory) / f"{base}.tar.gz", "w:gz") as archive:
+    listed = subprocess.run(
+        ["git", "-C", str(ROOT), "ls-files", "-z"], check=True, capture_output=True
+    ).stdout.decode()
+    with tempfile.TemporaryDirectory() as folder, tarfile.open(
+        Path(sdist_directory) / f"{base}.tar.gz", "w:gz"
+    ) as archive:
         information = Path(folder) / "PKG-INFO"
         information.write_text(metadata())
         archive.add(information, f"{base}/PKG-INFO")

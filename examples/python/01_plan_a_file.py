@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # %% [markdown]
-# A problem file is planned, looked at, proved and written. Cells begin with `# %%`: Jupyter (with jupytext), VS Code and Spyder run
-# them one by one, `python3` all of them.
+# A problem file is planned, looked at, proved and written. Cells begin with `# %%`: Jupyter (with
+# jupytext), VS Code and Spyder run them one by one, `python3` all of them.
 
 # %%
 import sys
@@ -34,7 +34,8 @@ trajectory.save(out)
 same = swivel.load_trajectory(out, plan.joint_names)
 print("written and read:", np.array_equal(same.joints, trajectory.joints))
 
-# %% Where there is no path, the plan says how far one comes, what ends every one, and `advise` what would help.
+# %% Where there is no path, the plan says how far one comes, what ends every one, and `advise` what
+# would help.
 barred = data / "problems" / "experiment_a_start.yaml"
 plan = swivel.plan(barred)
 print(plan.status, "-", plan.diagnosis.cause, "at s =", plan.diagnosis.at_s, "m")

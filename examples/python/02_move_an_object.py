@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # %% [markdown]
-# Robot, scene and task are made here. An object moves, and the planner plans again, re-using what did not change.
+# Robot, scene and task are made here. An object moves, and the planner plans again, re-using what
+# did not change.
 
 # %%
 import time
@@ -11,7 +12,8 @@ import swivel
 
 robots = Path(__file__).resolve().parents[2] / "data" / "robots"
 
-# %% An arm from its URDF; base and tip are found where they are not given. The tool's point lies 0.1 m past the flange.
+# %% An arm from its URDF; base and tip are found where they are not given. The tool's point lies
+# 0.1 m past the flange.
 robot = swivel.Robot(robots / "iiwa14.urdf", robots / "iiwa14.srdf", tool=swivel.pose([0, 0, 0.1]))
 print(robot)
 
@@ -37,7 +39,10 @@ for y in np.linspace(0.35, 0.1, 6):
     begin = time.perf_counter()
     plan = planner.plan()
     took = 1e3 * (time.perf_counter() - begin)
-    print(f"post at y = {y:.2f} m: {plan.status}, {'cost %.4f' % plan.cost if plan.solved else plan.diagnosis.cause}, {took:.1f} ms")
+    print(
+        f"post at y = {y:.2f} m: {plan.status}, "
+        f"{'cost %.4f' % plan.cost if plan.solved else plan.diagnosis.cause}, {took:.1f} ms"
+    )
 
 # %% The same in the words of other software: straight lines from a posture, as far as that goes.
 start = planner.plan().joints[0] if plan.solved else swivel.Planner(robot, task).plan().joints[0]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # %% [markdown]
-# A rule of one's own, a cost of one's own, and the path as a motion in time that a controller can run, plotted where matplotlib is
-# installed.
+# A rule of one's own, a cost of one's own, and the path as a motion in time that a controller can
+# run, plotted where matplotlib is installed.
 
 # %%
 import sys
@@ -11,10 +11,13 @@ import numpy as np
 import swivel
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
-problem = swivel.load_problem(Path(__file__).resolve().parents[2] / "data" / "problems" / "experiment_c.yaml")
+problem = swivel.load_problem(
+    Path(__file__).resolve().parents[2] / "data" / "problems" / "experiment_c.yaml"
+)
 planner = swivel.Planner(problem)
 
-# %% A hose allows joints 5 and 7 together so much twist and no more. Asked about arrays of states, (n, 7), rad.
+# %% A hose allows joints 5 and 7 together so much twist and no more. Asked about arrays of states,
+# (n, 7), rad.
 asked = []
 
 
@@ -29,7 +32,8 @@ print(f"the hose was asked {len(asked)} times, about {sum(asked)} states")
 if plan.solved:
     print("largest twist:", np.abs(plan.joints[:, 4] + plan.joints[:, 6]).max(), "rad")
 
-# %% Joints are to stay near the middle of their ranges; the cost of states is added to that of steps.
+# %% Joints are to stay near the middle of their ranges; the cost of states is added to that of
+# steps.
 low, high = problem.joint_limits.T
 middle, reach = (low + high) / 2, (high - low) / 2
 
@@ -41,9 +45,13 @@ def off_the_middle(joints):
 for cost in (None, off_the_middle):
     plan = planner.plan(cost=cost)
     share = np.abs((plan.joints - middle) / reach).max()
-    print(f"with{'' if cost else 'out'} it joints come to {100 * share:.0f} % of the way from the middle to a limit")
+    print(
+        f"with{'' if cost else 'out'} it joints come to {100 * share:.0f} % of the way from the "
+        "middle to a limit"
+    )
 
-# %% Refined, and timed at 0.1 m/s: speeds, accelerations and jerks of the joints are kept, and proved.
+# %% Refined, and timed at 0.1 m/s: speeds, accelerations and jerks of the joints are kept, and
+# proved.
 plan = planner.plan(refine=True, speed=0.1)
 motion = plan.motion
 print(motion)

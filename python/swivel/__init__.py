@@ -42,7 +42,17 @@ for _name in __all__:
     elif hasattr(_thing, "__setstate__"):
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
 campaign.__module__ = place.__module__ = __name__
-__all__ += ["advise", "campaign", "check", "compute_cartesian_path", "measure", "place", "plan", "refine", "time"]
+__all__ += [
+    "advise",
+    "campaign",
+    "check",
+    "compute_cartesian_path",
+    "measure",
+    "place",
+    "plan",
+    "refine",
+    "time",
+]
 
 
 def _planner(problem):
@@ -92,7 +102,9 @@ def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, chord=
     problem: a Problem, or the name of its file. speed: of the tool, m/s; turn_speed: rad/s; without
     them those of the problem's limits hold. rate: samples a second. chord: m. timeout: s, or None.
     """
-    return _planner(problem).time(trajectory, speed=speed, turn_speed=turn_speed, rate=rate, chord=chord, timeout=timeout)
+    return _planner(problem).time(
+        trajectory, speed=speed, turn_speed=turn_speed, rate=rate, chord=chord, timeout=timeout
+    )
 
 
 def advise(problem, plan, *, timeout=1.0):
@@ -103,7 +115,9 @@ def advise(problem, plan, *, timeout=1.0):
     return _planner(problem).advise(plan, timeout=timeout)
 
 
-def compute_cartesian_path(robot, scene, waypoints, start, *, max_step=0.005, limits=None, **options):
+def compute_cartesian_path(
+    robot, scene, waypoints, start, *, max_step=0.005, limits=None, **options
+):
     """Follows straight lines through waypoints from a given posture, as far as possible.
 
     robot: Robot. scene: Scene, or any sequence of SceneObjects. waypoints: poses of the tool in the
@@ -126,8 +140,14 @@ def compute_cartesian_path(robot, scene, waypoints, start, *, max_step=0.005, li
         here = _np.array([robot.tool_pose(start)])
         task.waypoints = here
         ahead = Task(waypoints).waypoints  # noqa: F405
-        first = _np.concatenate([task.waypoints[0], ahead[0][7:] if len(ahead) else []])  # with the window of the roll, if any
-        if len(ahead) and _np.abs(ahead[0][:3] - first[:3]).max() < 1e-6 and 1 - abs(ahead[0][3:7] @ first[3:7]) < 5e-13:
+        first = _np.concatenate(
+            [task.waypoints[0], ahead[0][7:] if len(ahead) else []]
+        )  # with the window of the roll, if any
+        if (
+            len(ahead)
+            and _np.abs(ahead[0][:3] - first[:3]).max() < 1e-6
+            and 1 - abs(ahead[0][3:7] @ first[3:7]) < 5e-13
+        ):
             ahead = ahead[1:]  # the start itself
         task.waypoints = _np.vstack([first[None], ahead])
     result = Planner(robot, task, scene).plan(**options)  # noqa: F405

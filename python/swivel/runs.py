@@ -53,9 +53,20 @@ def place(
     """
     problem = _loaded(problem)
     cells = _swivel._Cells([x, y, z, roll, pitch, yaw], sample, seed)
-    refinement = cells.refinement([best] if isinstance(best, str) else list(best)) if refine_grid else None
+    refinement = (
+        cells.refinement([best] if isinstance(best, str) else list(best)) if refine_grid else None
+    )
     here = client is None
-    make = functools.partial(_swivel._Placer, problem, object, path, base, planner, threads if here else 1, timeout if here else None)
+    make = functools.partial(
+        _swivel._Placer,
+        problem,
+        object,
+        path,
+        base,
+        planner,
+        threads if here else 1,
+        timeout if here else None,
+    )
     make()  # says what is wrong before anything is sent
 
     def wanted():
@@ -74,7 +85,9 @@ def place(
         if progress is not None:
             progress(placements, sum(map(len, parts)), total)
 
-    with _Here(make, _plan_cells) if here else _Workers(client, make, _plan_cells, deadline) as workers:
+    with _Here(make, _plan_cells) if here else _Workers(
+        client, make, _plan_cells, deadline
+    ) as workers:
         for numbers in wanted():
             total += len(numbers)
             known = len(parts)
@@ -87,7 +100,9 @@ def place(
     return _swivel.Placements._joined(parts)
 
 
-def campaign(problem, *, episodes=100, seed=1, planner="parallel", threads=0, progress=None, client=None):
+def campaign(
+    problem, *, episodes=100, seed=1, planner="parallel", threads=0, progress=None, client=None
+):
     """Plans many episodes: the problem with the objects of its `vary` at random poses.
 
     Does what `swivel campaign` does.
@@ -101,7 +116,9 @@ def campaign(problem, *, episodes=100, seed=1, planner="parallel", threads=0, pr
     number of threads and workers. Raises InvalidArgument and InputError.
     """
     here = client is None
-    make = functools.partial(_swivel._Campaigner, _loaded(problem), episodes, seed, planner, threads if here else 1)
+    make = functools.partial(
+        _swivel._Campaigner, _loaded(problem), episodes, seed, planner, threads if here else 1
+    )
     make()
     parts = []
 
@@ -110,7 +127,9 @@ def campaign(problem, *, episodes=100, seed=1, planner="parallel", threads=0, pr
         if progress is not None:
             progress(rows, sum(map(len, parts)), episodes)
 
-    with _Here(make, _plan_episodes) if here else _Workers(client, make, _plan_episodes, None) as workers:
+    with _Here(make, _plan_episodes) if here else _Workers(
+        client, make, _plan_episodes, None
+    ) as workers:
         count = 1 if here else -(-episodes // workers.batch(episodes))
         workers.plan(((index, count) for index in range(count)), arrived)
     return _swivel.Episodes._joined(parts)
@@ -209,7 +228,10 @@ class _Workers:
             The other batches wait here, where nothing has to cancel them.
             """
             free = 0 if late.is_set() else 4 * self._threads() - len(self._under_way)
-            sent = [self._client.submit(_Planners.plan, self._planners, self._plan, batch, pure=False) for batch in islice(batches, max(0, free))]
+            sent = [
+                self._client.submit(_Planners.plan, self._planners, self._plan, batch, pure=False)
+                for batch in islice(batches, max(0, free))
+            ]
             self._under_way += sent
             return sent
 
@@ -217,7 +239,11 @@ class _Workers:
             late.set()
             self._client.cancel(list(self._under_way))
 
-        timer = None if self._deadline is None else threading.Timer(max(0, self._deadline - time.monotonic()), stop)
+        timer = (
+            None
+            if self._deadline is None
+            else threading.Timer(max(0, self._deadline - time.monotonic()), stop)
+        )
         coming = as_completed(send())
         if timer is not None:
             timer.start()
