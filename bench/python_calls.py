@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Python costs: a call beside the plan in it, and two threads beside one and beside two processes, in turn.
+"""Measures what Python costs: a call beside the plan in it, and two threads beside one and beside
+two processes. The measurements alternate.
 
-    PYTHONPATH=build/release/python bench/python_calls.py [ROUNDS [PLANS]]      default 7 rounds of 400 plans a thread
+    PYTHONPATH=build/release/python bench/python_calls.py [ROUNDS [PLANS]]
+
+Default: 7 rounds of 400 plans a thread.
 """
 import os
 import statistics
@@ -31,7 +34,8 @@ def prepare(setting):
 
 
 def walk(own, plans):
-    """Plans again and again while the rail goes to and fro by 1 mm a plan; when it began and ended."""
+    """Plans again and again while the rail goes to and fro by 1 mm a plan; when it began and
+    ended."""
     rail = own.problem.scene["rail"].pose
     begin = time.monotonic()
     for k in range(plans):
@@ -54,7 +58,9 @@ def rate(walks, plans):
 def threads(setting, rounds, plans):
     prepare(setting)
     clones = [planner.clone() for _ in range(2)]
-    with ProcessPoolExecutor(2, get_context("spawn"), prepare, (setting,)) as processes, ThreadPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(
+        2, get_context("spawn"), prepare, (setting,)
+    ) as processes, ThreadPoolExecutor(2) as pool:
         measured = []
         for k in range(rounds + 1):
             one = rate(pool.map(walk, clones[:1], [plans]), plans)
@@ -64,8 +70,12 @@ def threads(setting, rounds, plans):
             if k > 0:  # the first warms up
                 measured.append((one, two, two / one, both / alone))
     one, two, of_threads, of_processes = (statistics.median(column) for column in zip(*measured))
-    print(f"{setting}: {one:.0f} plans a second by one thread, {two:.0f} by two: {of_threads:.2f} times as many "
-          f"({min(m[2] for m in measured):.2f} to {max(m[2] for m in measured):.2f}); two processes {of_processes:.2f} times")
+    print(
+        f"{setting}: {one:.0f} plans a second by one thread, {two:.0f} by two: {of_threads:.2f} "
+        "times as many "
+        f"({min(m[2] for m in measured):.2f} to {max(m[2] for m in measured):.2f}); two processes "
+        f"{of_processes:.2f} times"
+    )
 
 
 def calls(plans):
@@ -84,11 +94,17 @@ def overhead(setting, plans):
     prepare(setting)
     with ThreadPoolExecutor(1) as pool:
         (plan, over), (_, elsewhere) = calls(plans), pool.submit(calls, plans).result()
-    print(f"{setting}: a plan takes {plan:.3f} ms, the call {over:.3f} ms more, in other threads than the main one {elsewhere:.3f}")
+    print(
+        f"{setting}: a plan takes {plan:.3f} ms, the call {over:.3f} ms more, in other threads "
+        f"than the main one {elsewhere:.3f}"
+    )
 
 
 def main():
-    rounds, plans = (int(given) if given else usual for given, usual in zip((sys.argv[1:] + [""] * 2)[:2], (7, 400)))
+    rounds, plans = (
+        int(given) if given else usual
+        for given, usual in zip((sys.argv[1:] + [""] * 2)[:2], (7, 400))
+    )
     print(f"medians of {rounds} rounds; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     for setting in SETTINGS:
         overhead(setting, plans)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Distances from line segments, the cores of capsules, to other shapes. Arrays of shape (N, 3), metres; results (N,)."""
+"""Distances from line segments, the cores of capsules, to other shapes. Arrays of shape (N, 3),
+metres; results (N,)."""
 import numpy as np
 
 
@@ -10,7 +11,10 @@ def segment_segment(a, b, c, d):
     uw, vw = (u * w).sum(-1), (v * w).sum(-1)
     tiny = 1e-30
     denominator = uu * vv - uv * uv
-    s = np.where(denominator > 1e-12 * uu * vv + tiny, np.clip((uv * vw - uw * vv) / np.maximum(denominator, tiny), 0, 1), 0)
+    s = np.where(
+        denominator > 1e-12 * uu * vv + tiny,
+        np.clip((uv * vw - uw * vv) / np.maximum(denominator, tiny), 0, 1), 0
+    )
     t = np.clip((uv * s + vw) / np.maximum(vv, tiny), 0, 1)
     s = np.where(uu > tiny, np.clip((uv * t - uw) / np.maximum(uu, tiny), 0, 1), 0)
     apart = w + s[..., None] * u - t[..., None] * v
@@ -31,7 +35,10 @@ def point_box(p, half):
 
 def point_cylinder(p, radius, half):
     """To a solid cylinder with flat ends about the origin, along z."""
-    return np.hypot(np.maximum(np.hypot(p[..., 0], p[..., 1]) - radius, 0), np.maximum(np.abs(p[..., 2]) - half, 0))
+    return np.hypot(
+        np.maximum(np.hypot(p[..., 0], p[..., 1]) - radius, 0),
+        np.maximum(np.abs(p[..., 2]) - half, 0),
+    )
 
 
 def segment_convex(a, b, distance):
@@ -45,7 +52,9 @@ def segment_convex(a, b, distance):
     for _ in range(48):
         left = fx < fy
         low, high = np.where(left, low, x), np.where(left, y, high)
-        x, y, kept = high - golden * (high - low), low + golden * (high - low), np.where(left, fx, fy)
+        x, y, kept = (
+            high - golden * (high - low), low + golden * (high - low), np.where(left, fx, fy)
+        )
         fresh = at(np.where(left, x, y))
         fx, fy = np.where(left, fresh, kept), np.where(left, kept, fresh)
         best = np.minimum(best, fresh)
@@ -55,22 +64,32 @@ def segment_convex(a, b, distance):
 def segment_triangle(a, b, triangle):
     """triangle: (N, 3, 3). Zero where the segment passes through."""
     p, q, r = triangle[:, 0], triangle[:, 1], triangle[:, 2]
-    best = np.minimum(segment_segment(a, b, p, q), np.minimum(segment_segment(a, b, q, r), segment_segment(a, b, r, p)))
+    best = np.minimum(
+        segment_segment(a, b, p, q),
+        np.minimum(segment_segment(a, b, q, r), segment_segment(a, b, r, p)),
+    )
     normal = np.cross(q - p, r - p)
     size = np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
     normal = normal / size
 
     def inside(x):
         """Whether points lie over the triangle, along its normal."""
-        return np.all([(np.cross(side, x - corner) * normal).sum(-1) >= 0
-                       for corner, side in ((p, q - p), (q, r - q), (r, p - r))], axis=0)
+        return np.all(
+            [
+                (np.cross(side, x - corner) * normal).sum(-1) >= 0
+                for corner, side in ((p, q - p), (q, r - q), (r, p - r))
+            ],
+            axis=0,
+        )
 
     heights = [((end - p) * normal).sum(-1) for end in (a, b)]
     for end, height in zip((a, b), heights):
         best = np.where(inside(end), np.minimum(best, np.abs(height)), best)
     span = heights[0] - heights[1]
     t = np.clip(heights[0] / np.where(np.abs(span) > 1e-30, span, 1), 0, 1)
-    through = (heights[0] * heights[1] <= 0) & (np.abs(span) > 1e-30) & inside(a + t[:, None] * (b - a))
+    through = (
+        (heights[0] * heights[1] <= 0) & (np.abs(span) > 1e-30) & inside(a + t[:, None] * (b - a))
+    )
     return np.where(through, 0, best)
 
 
@@ -90,11 +109,14 @@ class Mesh:
             t = np.clip((self.centres - a[n]) @ way / max(way @ way, 1e-30), 0, 1)
             to_centre = np.linalg.norm(a[n] + t[:, None] * way - self.centres, axis=-1)
             near = self.triangles[to_centre - self.radii <= (to_centre + self.radii).min()]
-            result[n] = segment_triangle(np.broadcast_to(a[n], (len(near), 3)), np.broadcast_to(b[n], (len(near), 3)), near).min()
+            result[n] = segment_triangle(
+                np.broadcast_to(a[n], (len(near), 3)), np.broadcast_to(b[n], (len(near), 3)), near
+            ).min()
         return result
 
     def contains(self, p):
-        """Whether a point lies inside: the solid angle of all triangles is 4 pi there, 0 outside (Van Oosterom and Strackee)."""
+        """Whether a point lies inside: the solid angle of all triangles is 4 pi there, 0 outside
+        (Van Oosterom and Strackee)."""
         x, y, z = np.moveaxis(self.triangles - p, 1, 0)
         lx, ly, lz = (np.linalg.norm(v, axis=-1) for v in (x, y, z))
         product = (x * np.cross(y, z)).sum(-1)

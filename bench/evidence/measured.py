@@ -7,7 +7,10 @@ import statistics
 
 PAPER_SETTINGS = ("#1", "#2", "#3", "#4")
 SETTINGS = PAPER_SETTINGS + ("fine", "finest")
-RESOLUTION = {"#1": "20 mm / 0.2", "#2": "5 mm / 0.2", "#3": "20 mm / 0.05", "#4": "5 mm / 0.05", "fine": "2 mm / 0.02", "finest": "1 mm / 0.01"}
+RESOLUTION = {
+    "#1": "20 mm / 0.2", "#2": "5 mm / 0.2", "#3": "20 mm / 0.05", "#4": "5 mm / 0.05",
+    "fine": "2 mm / 0.02", "finest": "1 mm / 0.01"
+}
 
 
 def load(file):
@@ -22,7 +25,8 @@ def table(file):
 
 
 class Benchmarks:
-    """Medians over the repetitions of google-benchmark, by name; and of rows that were not run, the reason."""
+    """Medians over the repetitions of google-benchmark, by name; and of rows that were not run, the
+    reason."""
 
     def __init__(self, file):
         content = load(file)
@@ -36,8 +40,14 @@ class Benchmarks:
                 else:
                     runs.setdefault(name, []).append(entry)
         self.repetitions = runs
-        self.runs = {name: {key: statistics.median(entry[key] for entry in entries if key in entry) for key, value in entries[0].items()
-                            if isinstance(value, (int, float))} for name, entries in runs.items()}
+        self.runs = {
+            name: {
+                key: statistics.median(entry[key] for entry in entries if key in entry)
+                for key, value in entries[0].items()
+                if isinstance(value, (int, float))
+            }
+            for name, entries in runs.items()
+        }
 
     def __bool__(self):
         return bool(self.runs)
@@ -46,7 +56,8 @@ class Benchmarks:
         return self.runs.get(name, {}).get(key)
 
     def quartiles(self, name, key):
-        """Of a counter over the repetitions: lower quartile, median, upper quartile; None where there is none."""
+        """Of a counter over the repetitions: lower quartile, median, upper quartile; None where
+        there is none."""
         values = [entry[key] for entry in self.repetitions.get(name, []) if key in entry]
         if not values:
             return None

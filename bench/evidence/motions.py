@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Verifies motions knowing only the problem's files and the CSV that the program wrote: nothing of Swivel's code, numpy alone.
+"""Verifies motions knowing only the problem's files and the CSV that the program wrote: nothing of
+Swivel's code, numpy alone.
 
 motions.py SWIVEL PROBLEM [--episodes N] [--seed S] [--speeds V ...] [--between 10] [--keep FOLDER]
 
-Each of N random poses (without --episodes: the problem as it is) is planned, refined and timed at each speed, at 1000 and at 250
-samples a second. Then, of the files alone:
-  rates      largest speed, acceleration and jerk of any joint by differences at 1000 Hz, at rest before and after, over the limits
-             (URDF, else the problem's, else 10 rad/s^2 and 100 rad/s^3)
+Each of N random poses (without --episodes: the problem as it is) is planned, refined and timed at
+each speed, at 1000 and at 250 samples a second. Then, of the files alone:
+  rates      largest speed, acceleration and jerk of any joint by differences at 1000 Hz, at rest
+             before and after, over the limits (URDF, else the problem's, else 10 rad/s^2 and
+             100 rad/s^3)
   over ideal duration at 1000 Hz, times the speed, over the length of the path
-  clearance  least distance of any two bodies, at the samples of 250 Hz and at --between points of the straight line of joints from
-             each to the next
-  off path   largest distance of the tool from the polyline and its turn away from it, at all of these points
-  chord      largest distance of the tool between samples from its curve, which is a cubic through the tool at four samples
+  clearance  least distance of any two bodies, at the samples of 250 Hz and at --between
+             points of the straight line of joints from each to the next
+  off path   largest distance of the tool from the polyline and its turn away from it, at all of
+             these points
+  chord      largest distance of the tool between samples from its curve, which is a cubic through
+             the tool at four samples
 One line a motion; below, the worst, and in how many all holds. Ends with 1 where one does not.
 """
 import argparse
@@ -29,7 +33,8 @@ from moving_bodies import Cell
 from problem_files import load_columns, load_problem, load_waypoints, rotation
 
 BAND = 0.05e-3  # m: a clearance may be missed by so much
-ALLOWED_POSITION, ALLOWED_ANGLE = 0.1e-3, 1e-3  # m, rad: how far motions may round corners, where path.smooth is not given
+# M, rad: how far motions may round corners, where path.smooth is not given.
+ALLOWED_POSITION, ALLOWED_ANGLE = 0.1e-3, 1e-3
 
 
 def limits_of(problem, robot):
@@ -41,20 +46,28 @@ def limits_of(problem, robot):
             return np.broadcast_to(np.array(given[key], float), 7)
         return np.array([robot.joints[name]["limit"].get(attribute, default) for name in robot.arm])
 
-    return of("joint_speed", "velocity", 0), of("joint_acceleration", "acceleration", 10), of("joint_jerk", "jerk", 100)
+    return (
+        of("joint_speed", "velocity", 0), of("joint_acceleration", "acceleration", 10),
+        of("joint_jerk", "jerk", 100)
+    )
 
 
 def rate_ratios(t, q, limits):
-    """Largest differences of the first three orders over the limits; the motion rests before and after."""
+    """Largest differences of the first three orders over the limits; the motion rests before and
+    after."""
     dt = (t[-1] - t[0]) / (len(t) - 1)
     if np.abs(np.diff(t) - dt).max() > 1e-9:
         raise ValueError("samples are not evenly spaced")
     padded = np.concatenate([np.repeat(q[:1], 3, 0), q, np.repeat(q[-1:], 3, 0)])
-    return [float((np.abs(np.diff(padded, order, axis=0)).max(0) / dt**order / limit).max()) for order, limit in enumerate(limits, 1)]
+    return [
+        float((np.abs(np.diff(padded, order, axis=0)).max(0) / dt**order / limit).max())
+        for order, limit in enumerate(limits, 1)
+    ]
 
 
 def densified(q, between):
-    """Points on the straight lines from row to row besides the rows: (N - 1) (between + 1) + 1 of them."""
+    """Points on the straight lines from row to row besides the rows: (N - 1) (between + 1) + 1 of
+    them."""
     t = np.arange(between + 1)[None, :, None] / (between + 1)
     lines = q[:-1, None] + t * (q[1:] - q[:-1])[:, None]
     return np.concatenate([lines.reshape(-1, q.shape[1]), q[-1:]])
@@ -62,17 +75,22 @@ def densified(q, between):
 
 def turn_between(A, B):
     """Angle from rotations A to B, (N, 3, 3); accurate for small ones."""
-    return 2 * np.arcsin(np.minimum(1, np.linalg.norm((A - B).reshape(len(A), -1), axis=-1) / np.sqrt(8)))
+    return 2 * np.arcsin(
+        np.minimum(1, np.linalg.norm((A - B).reshape(len(A), -1), axis=-1) / np.sqrt(8))
+    )
 
 
 def axis_angle(R):
     sine = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / 2
     size = np.linalg.norm(sine)
-    return (sine / size if size > 0 else np.array([0, 0, 1.0])), np.arctan2(size, (np.trace(R) - 1) / 2)
+    return (sine / size if size > 0 else np.array([0, 0, 1.0])), np.arctan2(
+        size, (np.trace(R) - 1) / 2
+    )
 
 
 def off_path(positions, rotations, waypoints):
-    """Largest distance from the polyline of waypoints, and largest turn away from the orientation at the nearest point."""
+    """Largest distance from the polyline of waypoints, and largest turn away from the orientation
+    at the nearest point."""
     at, turned = waypoints
     nearest, turn = np.full(len(positions), np.inf), np.zeros(len(positions))
     for k in range(len(at) - 1):
@@ -82,12 +100,15 @@ def off_path(positions, rotations, waypoints):
         axis, angle = axis_angle(turned[k].T @ turned[k + 1])
         closer = away < nearest
         nearest[closer] = away[closer]
-        turn[closer] = turn_between(rotations[closer], turned[k] @ rotation(axis, share[closer] * angle))
+        turn[closer] = turn_between(
+            rotations[closer], turned[k] @ rotation(axis, share[closer] * angle)
+        )
     return float(nearest.max()), float(turn.max())
 
 
 def chord_error(tools, between):
-    """tools: (N - 1) (between + 1) + 1 positions of the tool, the rows' own among them. Away from a cubic through four rows, not along it."""
+    """tools: (N - 1) (between + 1) + 1 positions of the tool, the rows' own among them. Away from a
+    cubic through four rows, not along it."""
     step = between + 1
     rows = tools[::step]
     n = len(rows) - 1
@@ -118,12 +139,18 @@ def waypoints_in_base(problem, cell):
 
 
 def examine(problem, cell, fast, slow, speed, between):
-    """What is measured of a motion. fast, slow: columns of its CSV at 1000 and 250 samples a second."""
+    """What is measured of a motion. fast, slow: columns of its CSV at 1000 and 250 samples a
+    second."""
     limits = problem.get("limits") or {}
     robot = cell.robot
     waypoints = waypoints_in_base(problem, cell)
     length = float(np.linalg.norm(np.diff(waypoints[0], axis=0), axis=-1).sum())
-    found = dict(zip(("speed", "acceleration", "jerk"), rate_ratios(fast["t"], joints_of(fast, robot), limits_of(problem, robot))))
+    found = dict(
+        zip(
+            ("speed", "acceleration", "jerk"),
+            rate_ratios(fast["t"], joints_of(fast, robot), limits_of(problem, robot)),
+        )
+    )
     found["over_ideal"] = float(fast["t"][-1] * speed / length)
     q = joints_of(slow, robot)
     dense = densified(q, between)
@@ -140,9 +167,15 @@ def examine(problem, cell, fast, slow, speed, between):
     micrometre = 1e-5  # m and rad: what straight lines of joints add to the rounding
     found["holds"] = {
         "rates": max(found[rate] for rate in ("speed", "acceleration", "jerk")) <= 1,
-        "clearance": not found["inside"] and min(found["clearance"], found["clearance_at_samples"]) >= asked - BAND,
-        "path": found["off_position"] <= rounding[0] + micrometre and found["off_angle"] <= rounding[1] + micrometre,
-        "ends": bool(np.allclose(robot.tool_pose(robot.forward(q[[0, -1]]))[1], waypoints[0][[0, -1]], atol=1e-6)),
+        "clearance": not found["inside"]
+        and min(found["clearance"], found["clearance_at_samples"]) >= asked - BAND,
+        "path": found["off_position"] <= rounding[0] + micrometre
+        and found["off_angle"] <= rounding[1] + micrometre,
+        "ends": bool(
+            np.allclose(
+                robot.tool_pose(robot.forward(q[[0, -1]]))[1], waypoints[0][[0, -1]], atol=1e-6
+            )
+        ),
     }
     return found
 
@@ -159,79 +192,129 @@ def episodes_of(swivel, file, count, seed, folder):
     if not count:
         return [(None, {})], 0
     table = folder / "episodes.csv"
-    run([swivel, "campaign", file, "--episodes", count, "--seed", seed, "--planner", "lazy", "--out", table])
+    run(
+        [
+            swivel, "campaign", file, "--episodes", count, "--seed", seed, "--planner", "lazy",
+            "--out", table
+        ]
+    )
     lines = [line.split(",") for line in table.read_text().splitlines()]
     names, coordinates = lines[0], ("x", "y", "z", "roll", "pitch", "yaw")
     solved = []
     for line in lines[1:]:
-        row = dict(zip(names, line))  # the columns after `reason`, where commas may be, count from the end
+        # The columns after `reason`, where commas may be, count from the end.
+        row = dict(zip(names, line))
         if row["status"] != "solved":
             continue
         moved = {}
         for name in names:
             if "." in name:
                 thing, coordinate = name.rsplit(".", 1)
-                moved.setdefault(thing, np.zeros(6))[coordinates.index(coordinate)] = float(line[names.index(name) - len(names)])
+                moved.setdefault(thing, np.zeros(6))[coordinates.index(coordinate)] = float(
+                    line[names.index(name) - len(names)]
+                )
         solved.append((int(row["episode"]), moved))
     return solved, len(lines) - 1 - len(solved)
 
 
 def planned(swivel, file, seed, number, speed, rate, folder):
     """Columns of a motion that the program makes, and its JSON."""
-    out, result = folder / f"motion_{number}_{speed:g}_{rate}.csv", folder / f"motion_{number}_{speed:g}_{rate}.json"
+    out, result = (
+        folder / f"motion_{number}_{speed:g}_{rate}.csv",
+        folder / f"motion_{number}_{speed:g}_{rate}.json",
+    )
     choice = [] if number is None else ["--seed", seed, "--episode", number]
-    code = run([swivel, "plan", file, *choice, "--planner", "lazy", "--refine", "--speed", speed, "--rate", rate, "--quiet",
-                "--out", out, "--json", result], (0, 1))
+    code = run(
+        [
+            swivel, "plan", file, *choice, "--planner", "lazy", "--refine", "--speed", speed,
+            "--rate", rate, "--quiet", "--out", out, "--json", result
+        ],
+        (0, 1),
+    )
     return (load_columns(out) if code == 0 else None), json.loads(result.read_text()), out
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("swivel")
     parser.add_argument("problem")
     parser.add_argument("--episodes", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--speeds", type=float, nargs="+", default=[0.05, 0.25], help="m/s")
     parser.add_argument("--between", type=int, default=10, help="points between samples")
-    parser.add_argument("--keep", type=pathlib.Path, help="folder for the motions, and measured.json")
+    parser.add_argument(
+        "--keep", type=pathlib.Path, help="folder for the motions, and measured.json"
+    )
     arguments = parser.parse_args()
     problem = load_problem(arguments.problem)
     temporary = tempfile.TemporaryDirectory()
     folder = arguments.keep or pathlib.Path(temporary.name)
     folder.mkdir(parents=True, exist_ok=True)
-    poses, without = episodes_of(arguments.swivel, arguments.problem, arguments.episodes, arguments.seed, folder)
+    poses, without = episodes_of(
+        arguments.swivel, arguments.problem, arguments.episodes, arguments.seed, folder
+    )
     measured, failed = [], 0
     for (number, moved), speed in itertools.product(poses, arguments.speeds):
         name = f"{'' if number is None else number:>4} at {1e3 * speed:3.0f} mm/s"
-        fast, _, _ = planned(arguments.swivel, arguments.problem, arguments.seed, number, speed, 1000, folder)
-        slow, result, file = planned(arguments.swivel, arguments.problem, arguments.seed, number, speed, 250, folder)
+        fast, _, _ = planned(
+            arguments.swivel, arguments.problem, arguments.seed, number, speed, 1000, folder
+        )
+        slow, result, file = planned(
+            arguments.swivel, arguments.problem, arguments.seed, number, speed, 250, folder
+        )
         if fast is None or slow is None:
             failed += 1
-            print(f"{name}: not executable: {(result.get('motion') or {}).get('reason')}", flush=True)
+            print(
+                f"{name}: not executable: {(result.get('motion') or {}).get('reason')}", flush=True
+            )
             continue
         found = examine(problem, Cell(problem, moved), fast, slow, speed, arguments.between)
         choice = [] if number is None else ["--seed", arguments.seed, "--episode", number]
-        found["holds"]["check"] = run([arguments.swivel, "check", arguments.problem, *choice, file], (0, 1)) == 0
-        found.update(episode=number, asked_speed=speed, time_ms=result["time_ms"], stated_between=result["motion"]["between_samples"])
+        found["holds"]["check"] = (
+            run([arguments.swivel, "check", arguments.problem, *choice, file], (0, 1)) == 0
+        )
+        found.update(
+            episode=number, asked_speed=speed, time_ms=result["time_ms"],
+            stated_between=result["motion"]["between_samples"]
+        )
         wrong = [key for key, holds in found["holds"].items() if not holds]
         failed += bool(wrong)
         measured.append(found)
-        print(f"{name}: rates {found['speed']:.4f} {found['acceleration']:.4f} {found['jerk']:.4f}, {found['over_ideal']:.4f} of ideal, "
-              f"clearance {1e3 * found['clearance_at_samples']:.4f} {1e3 * found['clearance']:.4f} mm ({' - '.join(found['pair'][:2])}), "
-              f"off path {1e6 * found['off_position']:.2f} um {1e6 * found['off_angle']:.1f} urad, chord {1e6 * found['chord']:.3f} um"
-              + (f": {', '.join(wrong).upper()} DO NOT HOLD" if wrong else ""), flush=True)
+        print(
+            f"{name}: rates {found['speed']:.4f} {found['acceleration']:.4f} {found['jerk']:.4f}, "
+            f"{found['over_ideal']:.4f} of ideal, "
+            f"clearance {1e3 * found['clearance_at_samples']:.4f} {1e3 * found['clearance']:.4f} "
+            f"mm ({' - '.join(found['pair'][:2])}), "
+            f"off path {1e6 * found['off_position']:.2f} um {1e6 * found['off_angle']:.1f} urad, "
+            f"chord {1e6 * found['chord']:.3f} um"
+            + (f": {', '.join(wrong).upper()} DO NOT HOLD" if wrong else ""),
+            flush=True,
+        )
     (folder / "measured.json").write_text(json.dumps(measured, indent=1))
-    print(f"{len(poses)} poses with a path, {without} without; {len(poses) * len(arguments.speeds)} motions, {failed} where not all holds")
+    print(
+        f"{len(poses)} poses with a path, {without} without; {len(poses) * len(arguments.speeds)} "
+        f"motions, {failed} where not all holds"
+    )
     for speed in arguments.speeds:
         of_speed = [found for found in measured if found["asked_speed"] == speed]
         if not of_speed:
             continue
         column = lambda key: np.array([found[key] for found in of_speed])
-        print(f"{1e3 * speed:.0f} mm/s, {len(of_speed)} motions: most rate {max(column(key).max() for key in ('speed', 'acceleration', 'jerk')):.6f}; "
-              f"over ideal {np.median(column('over_ideal')):.4f} (median) {np.percentile(column('over_ideal'), 95):.4f} (95 %) "
-              f"{column('over_ideal').max():.4f} (most); least clearance {1e3 * column('clearance_at_samples').min():.4f} mm at samples, "
-              f"{1e3 * column('clearance').min():.4f} mm between; off path {1e6 * column('off_position').max():.2f} um, "
-              f"{1e6 * column('off_angle').max():.1f} urad; chord {1e6 * np.median(column('chord')):.3f} um (median) {1e6 * column('chord').max():.3f} um (most)")
+        print(
+            f"{1e3 * speed:.0f} mm/s, {len(of_speed)} motions: most rate "
+            f"{max(column(key).max() for key in ('speed', 'acceleration', 'jerk')):.6f}; "
+            f"over ideal {np.median(column('over_ideal')):.4f} (median) "
+            f"{np.percentile(column('over_ideal'), 95):.4f} (95 %) "
+            f"{column('over_ideal').max():.4f} (most); least clearance "
+            f"{1e3 * column('clearance_at_samples').min():.4f} mm at samples, "
+            f"{1e3 * column('clearance').min():.4f} mm between; off path "
+            f"{1e6 * column('off_position').max():.2f} um, "
+            f"{1e6 * column('off_angle').max():.1f} urad; chord "
+            f"{1e6 * np.median(column('chord')):.3f} um (median) {1e6 * column('chord').max():.3f} "
+            "um (most)"
+        )
     return 1 if failed else 0
 
 

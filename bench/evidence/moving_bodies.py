@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the bodies of a robot and of its scene are, and how near they come, for many postures at once. Base frame of the problem."""
+"""Where the bodies of a robot and of its scene are, and how near they come, for many postures at
+once. Base frame of the problem."""
 import numpy as np
 
 import distances
@@ -21,7 +22,9 @@ class Robot:
         self.attached = robot.get("attached") or []
         movable = [joint["name"] for joint in self.chain(self.tip) if joint["type"] in MOVING]
         self.arm = movable[-7:]
-        self.disabled = load_disabled_pairs(problem["folder"] / robot["srdf"]) if "srdf" in robot else set()
+        self.disabled = (
+            load_disabled_pairs(problem["folder"] / robot["srdf"]) if "srdf" in robot else set()
+        )
 
     def chain(self, link):
         """Joints from the base to a link, those of the base's own parents left out."""
@@ -42,7 +45,11 @@ class Robot:
                 p = p + R @ joint["origin"][:3, 3]
                 R = R @ joint["origin"][:3, :3]
                 name = joint["name"]
-                value = q[:, self.arm.index(name)] if name in self.arm else np.full(len(q), self.held.get(name, 0.0))
+                value = (
+                    q[:, self.arm.index(name)]
+                    if name in self.arm
+                    else np.full(len(q), self.held.get(name, 0.0))
+                )
                 if joint["type"] == "prismatic":
                     p = p + value[:, None] * (R @ np.array(joint["axis"]))
                 elif joint["type"] in MOVING:
@@ -60,12 +67,14 @@ class Robot:
         return R @ self.tool[:3, :3], p + R @ self.tool[:3, 3]
 
     def group(self, link):
-        """How many of the arm's joints move a link: two links of one group never move against each other."""
+        """How many of the arm's joints move a link: two links of one group never move against each
+        other."""
         return sum(joint["name"] in self.arm for joint in self.chain(link))
 
 
 class Body:
-    """A shape fixed to a link, or to the base where the link is None. Round shapes are a segment and a radius."""
+    """A shape fixed to a link, or to the base where the link is None. Round shapes are a segment
+    and a radius."""
 
     def __init__(self, name, link, X, kind, **sizes):
         self.name, self.link, self.X, self.kind = name, link, X, kind
@@ -97,8 +106,19 @@ def merged_capsules(shapes):
     rest, found = list(shapes), []
     for cylinder in [shape for shape in shapes if shape["kind"] == "cylinder"]:
         ends = [cylinder["pose"] @ (0, 0, z * cylinder["length"] / 2, 1) for z in (-1, 1)]
-        spheres = [next((shape for shape in rest if shape["kind"] == "sphere" and abs(shape["radius"] - cylinder["radius"]) < 1e-12
-                         and np.linalg.norm(shape["pose"][:, 3] - end) < 1e-9), None) for end in ends]
+        spheres = [
+            next(
+                (
+                    shape
+                    for shape in rest
+                    if shape["kind"] == "sphere"
+                    and abs(shape["radius"] - cylinder["radius"]) < 1e-12
+                    and np.linalg.norm(shape["pose"][:, 3] - end) < 1e-9
+                ),
+                None,
+            )
+            for end in ends
+        ]
         if None in spheres:
             continue
         rest = [shape for shape in rest if not any(shape is one for one in (cylinder, *spheres))]
@@ -107,7 +127,11 @@ def merged_capsules(shapes):
 
 
 def sizes_of(shape):
-    return {key: value for key, value in shape.items() if key in ("radius", "length", "size", "triangles")}
+    return {
+        key: value
+        for key, value in shape.items()
+        if key in ("radius", "length", "size", "triangles")
+    }
 
 
 def scene_shape(entry, folder):
@@ -118,14 +142,18 @@ def scene_shape(entry, folder):
 
 
 class Cell:
-    """A robot among the objects of a problem's scene; `moved` maps an object to the offset (x, y, z, roll, pitch, yaw) of an episode."""
+    """A robot among the objects of a problem's scene; `moved` maps an object to the offset (x, y,
+    z, roll, pitch, yaw) of an episode."""
 
     def __init__(self, problem, moved=None):
         self.robot = robot = Robot(problem)
         moved = moved or {}
         bodies, objects = [], []
         for link, shapes in robot.shapes.items():
-            bodies += [Body(link, link, shape["pose"], shape["kind"], **sizes_of(shape)) for shape in merged_capsules(shapes)]
+            bodies += [
+                Body(link, link, shape["pose"], shape["kind"], **sizes_of(shape))
+                for shape in merged_capsules(shapes)
+            ]
         for entry in robot.attached:
             kind, sizes = scene_shape(entry, problem["folder"])
             bodies.append(Body(entry["name"], entry["link"], pose_of(entry), kind, **sizes))
@@ -141,26 +169,38 @@ class Cell:
         self.pairs = [(a, b) for a in bodies for b in objects if robot.group(a.link) > 0]
         for number, a in enumerate(bodies):
             for b in bodies[:number]:
-                if robot.group(a.link) != robot.group(b.link) and frozenset((a.name, b.name)) not in robot.disabled:
+                if (
+                    robot.group(a.link) != robot.group(b.link)
+                    and frozenset((a.name, b.name)) not in robot.disabled
+                ):
                     self.pairs.append((a, b))
 
     def in_contact_inside(self, q):
-        """Names of meshes that an end of a round body's core lies inside of, at one posture (7,)."""
+        """Names of meshes that an end of a round body's core lies inside of, at one posture
+        (7,)."""
         links = self.robot.forward(q[None])
-        return sorted({b.name for a, b in self.pairs if b.kind == "mesh" and b.mesh.contains(a.segment(links)[0][0])})
+        return sorted(
+            {
+                b.name
+                for a, b in self.pairs
+                if b.kind == "mesh" and b.mesh.contains(a.segment(links)[0][0])
+            }
+        )
 
     def least_clearance(self, q):
-        """Of all pairs over all postures q (N, 7) in their order: distance, names of the two bodies, number of the posture.
+        """Of all pairs over all postures q (N, 7) in their order: distance, names of the two
+        bodies, number of the posture.
 
-        Exact: an interval of postures is left out only where the distance at its middle, less what the two bodies move, is more than the
-        least found.
+        Exact: an interval of postures is left out only where the distance at its middle, less what
+        the two bodies move, is more than the least found.
         """
         links = self.robot.forward(q)
         pairs = [_Pair(*pair, links, self.robot) for pair in self.pairs]
         least, which = np.inf, None
         low, high = np.array([0]), np.array([len(q) - 1])
         at_middle = [pair.distance((low + high) // 2)[0] for pair in pairs]
-        for number in np.argsort(at_middle):  # the nearest first, so that little is left of the others
+        # The nearest first, so that little is left of the others.
+        for number in np.argsort(at_middle):
             pair, low, high = pairs[number], np.array([0]), np.array([len(q) - 1])
             while len(low):
                 middle = (low + high) // 2
@@ -168,7 +208,9 @@ class Cell:
                 best = int(d.argmin())
                 if d[best] < least:
                     least, which = float(d[best]), (pair.a.name, pair.b.name, int(middle[best]))
-                reach = np.maximum(pair.travel[middle] - pair.travel[low], pair.travel[high] - pair.travel[middle])
+                reach = np.maximum(
+                    pair.travel[middle] - pair.travel[low], pair.travel[high] - pair.travel[middle]
+                )
                 open_ = (d - reach < least) & (high > low)
                 low, middle, high = low[open_], middle[open_], high[open_]
                 low, high = np.concatenate([low, middle + 1]), np.concatenate([middle - 1, high])
@@ -193,7 +235,9 @@ class _Pair:
         self.ends = a.segment(links)
         self.travel = _travel(self.ends)
         if b.round:
-            self.other = np.atleast_3d(np.array(b.segment(one if self.still else links))).reshape(2, -1, 3)
+            self.other = np.atleast_3d(np.array(b.segment(one if self.still else links))).reshape(
+                2, -1, 3
+            )
             if not self.still:
                 self.travel = self.travel + _travel(self.other)
         elif b.kind != "mesh":
@@ -204,7 +248,11 @@ class _Pair:
         p, q = self.ends[0][at], self.ends[1][at]
         if b.round:
             other = 0 * at if self.still else at
-            return distances.segment_segment(p, q, self.other[0][other], self.other[1][other]) - a.radius - b.radius
+            return (
+                distances.segment_segment(p, q, self.other[0][other], self.other[1][other])
+                - a.radius
+                - b.radius
+            )
         if b.kind == "mesh":
             return b.mesh.distance(p, q) - a.radius
         p, q = ((end - self.frame[:3, 3]) @ self.frame[:3, :3] for end in (p, q))

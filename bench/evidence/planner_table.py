@@ -1,15 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The planners beside each other, on every scene and resolution: time, ratio to eager, questions, FCL calls."""
+"""The planners beside each other, on every scene and resolution: time, ratio to eager, questions,
+FCL calls."""
 import re
 
 from measured import PAPER_SETTINGS, Benchmarks
 from words import markdown, number
 
-SCENES = {"a": "A", "b": "B", "c": "C", "c_20k": "C, 20,000 triangles", "arcs": "arcs", "roll": "roll", "meshes": "meshes"}
-PLANNERS = {"`eager`": "{}/eager/{}/nodes", "`eager`, 2 threads": "{}/eager/{}/nodes/threads:2", "`lazy`, FCL alone": "{}/lazy_fcl_alone/{}/nodes",
-            "`lazy`": "{}/lazy/{}/nodes", "`parallel`, 2 threads": "{}/parallel/{}/nodes/threads:2"}
+SCENES = {
+    "a": "A", "b": "B", "c": "C", "c_20k": "C, 20,000 triangles", "arcs": "arcs", "roll": "roll",
+    "meshes": "meshes"
+}
+PLANNERS = {
+    "`eager`": "{}/eager/{}/nodes", "`eager`, 2 threads": "{}/eager/{}/nodes/threads:2",
+    "`lazy`, FCL alone": "{}/lazy_fcl_alone/{}/nodes", "`lazy`": "{}/lazy/{}/nodes",
+    "`parallel`, 2 threads": "{}/parallel/{}/nodes/threads:2"
+}
 # The rows of these tables, for --benchmark_filter.
-FILTER = rf"^({'|'.join(SCENES)})/((eager|lazy|lazy_fcl_alone)/#[1-4]/nodes/real_time$|(eager|parallel)/#[1-4]/nodes/threads:2/)"
+FILTER = (
+    rf"^({'|'.join(SCENES)})/((eager|lazy|lazy_fcl_alone)/#[1-4]/nodes/real_time$|"
+    r"(eager|parallel)/#[1-4]/nodes/threads:2/)"
+)
 
 
 def time_cell(plans, name):
@@ -19,7 +29,11 @@ def time_cell(plans, name):
         return "–"
     cell = number(plans.get(name, "plan_ms"))
     ratio = plans.quartiles(name, "speed_up_over_eager")
-    return f"{cell}: {number(ratio[1], 2)} ({number(ratio[0], 2)}–{number(ratio[2], 2)})" if ratio else cell
+    return (
+        f"{cell}: {number(ratio[1], 2)} ({number(ratio[0], 2)}–{number(ratio[2], 2)})"
+        if ratio
+        else cell
+    )
 
 
 def work_cell(plans, name):
@@ -32,7 +46,10 @@ def work_cell(plans, name):
 def tables(plans):
     """Header and rows of each of two tables: of times and of work."""
     found = []
-    for first, cell in (("ms: times as fast as `eager`", time_cell), ("questions: FCL calls", work_cell)):
+    for first, cell in (
+        ("ms: times as fast as `eager`", time_cell),
+        ("questions: FCL calls", work_cell),
+    ):
         rows = []
         for scene, title in SCENES.items():
             for setting in PAPER_SETTINGS:
@@ -41,8 +58,12 @@ def tables(plans):
                 if not measured and not any(name in plans.not_run for name in names):
                     continue
                 nodes = f"{plans.get(measured[0], 'nodes'):,.0f}" if measured else "–"
-                verdict = ", no path" if any(not plans.get(name, "solved") for name in measured) else ""
-                rows.append([title, setting + verdict, nodes, *(cell(plans, name) for name in names)])
+                verdict = (
+                    ", no path" if any(not plans.get(name, "solved") for name in measured) else ""
+                )
+                rows.append(
+                    [title, setting + verdict, nodes, *(cell(plans, name) for name in names)]
+                )
         found.append((["scene", first, "nodes", *PLANNERS], rows))
     return found
 
@@ -57,7 +78,9 @@ def planners(data):
 def aligned(header, rows):
     lines = [[re.sub("`", "", cell) for cell in line] for line in (header, *rows)]
     widths = [max(map(len, column)) for column in zip(*lines)]
-    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines
+    )
 
 
 def as_text(data):

@@ -19,21 +19,32 @@ BENCH = ROOT / "build/release/bench"
 def run(command, log, **environment):
     """Runs a program, its output into a file, which is shown where it fails."""
     with open(log, "w") as out:
-        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, env={**os.environ, **environment}).returncode
+        code = subprocess.run(
+            command, stdout=out, stderr=subprocess.STDOUT, env={**os.environ, **environment}
+        ).returncode
     if code != 0:
         sys.stderr.write(open(log).read())
         sys.exit(f"reproduce: {' '.join(map(str, command))}: ended with {code}")
 
 
 def benchmark(program, out, repetitions, min_time, *arguments, **environment):
-    run([BENCH / program, f"--benchmark_out={out}", "--benchmark_out_format=json", f"--benchmark_repetitions={repetitions}",
-         f"--benchmark_min_time={min_time}", "--benchmark_enable_random_interleaving=true", *arguments], f"{out}.log", **environment)
+    run(
+        [
+            BENCH / program, f"--benchmark_out={out}", "--benchmark_out_format=json",
+            f"--benchmark_repetitions={repetitions}", f"--benchmark_min_time={min_time}",
+            "--benchmark_enable_random_interleaving=true", *arguments
+        ],
+        f"{out}.log",
+        **environment,
+    )
 
 
 def vector_units():
     """Those of this processor."""
     flags = open("/proc/cpuinfo").read().split() if os.path.exists("/proc/cpuinfo") else []
-    return ["scalar"] + [unit for unit, flag in (("avx2", "avx2"), ("avx512", "avx512dq")) if flag in flags]
+    return ["scalar"] + [
+        unit for unit, flag in (("avx2", "avx2"), ("avx512", "avx512dq")) if flag in flags
+    ]
 
 
 def experiments(data, quick):
@@ -41,12 +52,17 @@ def experiments(data, quick):
 
 
 def table1(data, quick):
-    run([BENCH / "experiment_c", data / "table1.json", "5" if quick else "100"], data / "table1.log")
+    run(
+        [BENCH / "experiment_c", data / "table1.json", "5" if quick else "100"], data / "table1.log"
+    )
 
 
 def plans(data, quick):
     if quick:
-        benchmark("plan_benchmark", data / "plans.json", 3, 0.01, "--plan_limit=2", f"--benchmark_filter={planner_table.FILTER}")
+        benchmark(
+            "plan_benchmark", data / "plans.json", 3, 0.01, "--plan_limit=2",
+            f"--benchmark_filter={planner_table.FILTER}"
+        )
     else:
         benchmark("plan_benchmark", data / "plans.json", 5, 0.05, "--plan_limit=60")
     print(tables.machine(data), planner_table.as_text(data), sep="\n\n", end="\n\n", flush=True)
@@ -54,29 +70,53 @@ def plans(data, quick):
 
 def pieces(data, quick):
     repetitions, min_time = (1, 0.005) if quick else (5, 0.05)
-    benchmark("micro_benchmark", data / "pieces.json", repetitions, min_time, "--benchmark_filter=-^(ik/layer|ik/single|sweep)")
+    benchmark(
+        "micro_benchmark", data / "pieces.json", repetitions, min_time,
+        "--benchmark_filter=-^(ik/layer|ik/single|sweep)"
+    )
     for unit in vector_units():
-        benchmark("micro_benchmark", data / f"pieces_{unit}.json", repetitions, min_time,
-                  "--benchmark_filter=^(ik/layer|ik/single|sweep)", SWIVEL_FORCE_ISA=unit)
+        benchmark(
+            "micro_benchmark", data / f"pieces_{unit}.json", repetitions, min_time,
+            "--benchmark_filter=^(ik/layer|ik/single|sweep)", SWIVEL_FORCE_ISA=unit
+        )
 
 
 def trace(data, quick):
     """A plan whose path is found wanting several times."""
-    run([ROOT / "build/release/cli/swivel", "plan", ROOT / "data/problems/experiment_c.yaml", "--seed", "1", "--episode", "13", "--planner", "parallel", "--threads", "2",
-         "--trace", data / "trace.json"], data / "trace.log")
+    run(
+        [
+            ROOT / "build/release/cli/swivel", "plan", ROOT / "data/problems/experiment_c.yaml",
+            "--seed", "1", "--episode", "13", "--planner", "parallel", "--threads", "2",
+            "--trace", data / "trace.json"
+        ],
+        data / "trace.log",
+    )
     if all(shutil.which(program) for program in ("chromium", "npm")):
-        run([ROOT / "bench/evidence/trace_picture", data / "trace.json", data / "trace.png"], data / "trace_picture.log")
+        run(
+            [ROOT / "bench/evidence/trace_picture", data / "trace.json", data / "trace.png"],
+            data / "trace_picture.log",
+        )
     else:
-        print("trace: docs/figures/trace.png is left as it is: chromium and npm are needed to draw it")
+        print(
+            "trace: docs/figures/trace.png is left as it is: chromium and npm are needed to draw it"
+        )
 
 
 STEPS = {step.__name__: step for step in (experiments, table1, plans, pieces, trace)}
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="bench/reproduce", description="Regenerates every table and figure of the documents.")
-    parser.add_argument("--only", choices=STEPS, action="append", help="this step alone (may be given several times)")
-    parser.add_argument("--quick", action="store_true", help="few repetitions; leaves the documents of the repository alone")
+    parser = argparse.ArgumentParser(
+        prog="bench/reproduce", description="Regenerates every table and figure of the documents."
+    )
+    parser.add_argument(
+        "--only", choices=STEPS, action="append",
+        help="this step alone (may be given several times)"
+    )
+    parser.add_argument(
+        "--quick", action="store_true",
+        help="few repetitions; leaves the documents of the repository alone"
+    )
     arguments = parser.parse_args()
     data = ROOT / "build" / ("evidence-quick" if arguments.quick else "evidence")
     data.mkdir(parents=True, exist_ok=True)
@@ -95,8 +135,13 @@ def main():
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
     if (data / "trace.png").exists():
         shutil.copy(data / "trace.png", figures)
-    written = plots.draw(data, figures, ROOT) + tables.fill(data, [documents / "README.md", documents / "docs/performance.md"])
-    print(f"all: {time.monotonic() - begin:.0f} s; wrote {', '.join(str(file.relative_to(ROOT)) for file in written)}")
+    written = plots.draw(data, figures, ROOT) + tables.fill(
+        data, [documents / "README.md", documents / "docs/performance.md"]
+    )
+    print(
+        f"all: {time.monotonic() - begin:.0f} s; wrote "
+        f"{', '.join(str(file.relative_to(ROOT)) for file in written)}"
+    )
 
 
 main()

@@ -10,7 +10,11 @@ def number(value, digits=3):
     if value == 0:
         return "0"
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:,.{decimals}f}" if decimals else f"{round(value, digits - 1 - math.floor(math.log10(abs(value)))):,.0f}"
+    return (
+        f"{value:,.{decimals}f}"
+        if decimals
+        else f"{round(value, digits - 1 - math.floor(math.log10(abs(value)))):,.0f}"
+    )
 
 
 def markdown(header, rows):

@@ -1,21 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How long the program's motions last over the shortest that a sequence of linear programs finds on the same path of joints.
+"""How long the program's motions last over the shortest that a sequence of linear programs finds on
+the same path of joints.
 
-yardstick.py SWIVEL PROBLEM [--episodes N] [--take K] [--seed S] [--speeds V ...]          needs scipy (Debian: python3-scipy)
+yardstick.py SWIVEL PROBLEM [--episodes N] [--take K] [--seed S] [--speeds V ...]
 
-K of the poses among N that have a path, drawn by the seed, are planned, refined and timed at each speed, 1000 samples a second. The
-joints over the path's length, q(x), are those of the file. Sought is b(x) = (dx/dt)^2 between rest and rest: linear between some 600
-places, so that the acceleration along the path, a = b'/2, is constant between them. With the speeds, accelerations and jerks v, A, J
+Needs scipy (Debian: python3-scipy).
+
+K of the poses among N that have a path, drawn by the seed, are planned, refined and timed at each
+speed, 1000 samples a second. The joints over the path's length, q(x), are those of the file. Sought
+is b(x) = (dx/dt)^2 between rest and rest: linear between some 600 places, so that the acceleration
+along the path, a = b'/2, is constant between them. With the speeds, accelerations and jerks v, A, J
 of the joints and the speed V asked for,
   b <= V^2,  |q'| sqrt(b) <= v,  |q' a + q'' b| <= A,  |q' a' + 3 q'' a + q''' b| <= J / sqrt(b)
-The last is not linear. Its right side is convex in b, so its tangent at the last answer lies below it: what keeps the tangent keeps the
-limit. The time, the sum of 2 h / (sqrt(b) + sqrt(b next)), is convex: tangents again, at all answers before. So each answer is
-feasible and none is slower than the one before; they end where a program gains less than 1e-4 of the time. It is a yardstick, not a
+The last is not linear. Its right side is convex in b, so its tangent at the last answer lies below
+it: what keeps the tangent keeps the limit. The time, the sum of 2 h / (sqrt(b) + sqrt(b next)), is
+convex: tangents again, at all answers before. So each answer is feasible and none is slower than
+the one before; they end where a program gains less than 1e-4 of the time. It is a yardstick, not a
 bound: another start might end elsewhere.
 
-Printed: both durations, their ratio, the most that the shortest one's joints do at 1000 Hz over their limits (its own error), and
-whether it reaches the speed asked for once and keeps it until it stops ("feasible").
+Printed: both durations, their ratio, the most that the shortest one's joints do at 1000 Hz over
+their limits (its own error), and whether it reaches the speed asked for once and keeps it until it
+stops ("feasible").
 """
 import argparse
 import itertools
@@ -67,7 +73,8 @@ def travel_time(h, b):
 
 
 class Programs:
-    """The linear programs of one path. Unknown: b at the inner places, then the time from each place to the next."""
+    """The linear programs of one path. Unknown: b at the inner places, then the time from each
+    place to the next."""
 
     def __init__(self, curve, x, limits, speed):
         self.x, self.h = x, np.diff(x)
@@ -90,8 +97,14 @@ class Programs:
         self.accelerations = sparse.vstack(rows)[:, 1:-1]
         self.accelerations_right = np.concatenate(right)
         inner = slice(1, n - 1)
-        self.jerks = [(sparse.diags(q1[inner, j]) @ slope + 3 * sparse.diags(q2[inner, j]) @ mean
-                       + sparse.diags(q3[inner, j]) @ here[inner])[:, 1:-1].tocsr() for j in range(7)]
+        self.jerks = [
+            (
+                sparse.diags(q1[inner, j]) @ slope
+                + 3 * sparse.diags(q2[inner, j]) @ mean
+                + sparse.diags(q3[inner, j]) @ here[inner]
+            )[:, 1:-1].tocsr()
+            for j in range(7)
+        ]
         # From rest with constant jerk J: x = J t^3 / 6, sqrt(b) = J t^2 / 2.
         for end, near, length in ((0, 1, h[0]), (-1, -2, h[-1])):
             along = (self.jerk / np.maximum(np.abs(q1[end]), 1e-12)).min()
@@ -128,14 +141,20 @@ class Programs:
         again = np.maximum(abs(matrix).max(1).toarray().ravel(), 1e-100)
         matrix, right = sparse.diags(1 / again) @ matrix, right / size / again
         useful = right < abs(matrix).sum(1).A1 * 10 + 1e-9
-        blocks, ends = [sparse.hstack([matrix[useful], sparse.csr_matrix((int(useful.sum()), n + 1))])], [right[useful]]
+        blocks, ends = [
+            sparse.hstack([matrix[useful], sparse.csr_matrix((int(useful.sum()), n + 1))])
+        ], [right[useful]]
         for G, g in self.tangents[-8:]:
             scaled = G @ sparse.diags(unit)
             blocks.append(sparse.hstack([scaled, -sparse.eye(n + 1)]))
             ends.append(g)
-        bounds = [(0, upper / one) for upper, one in zip(self.cap[1:-1], unit)] + [(0, None)] * (n + 1)
-        answer = linprog(np.concatenate([np.zeros(n), np.ones(n + 1)]), sparse.vstack(blocks).tocsr(), np.concatenate(ends),
-                         bounds=bounds, method="highs-ipm")
+        bounds = [(0, upper / one) for upper, one in zip(self.cap[1:-1], unit)] + [(0, None)] * (
+            n + 1
+        )
+        answer = linprog(
+            np.concatenate([np.zeros(n), np.ones(n + 1)]), sparse.vstack(blocks).tocsr(),
+            np.concatenate(ends), bounds=bounds, method="highs-ipm"
+        )
         return np.maximum(answer.x[:n] * unit, 1e-14) if answer.status == 0 else None
 
     def shortest(self, b, rounds=40):
@@ -158,7 +177,8 @@ class Programs:
 
 
 def shortest_motion(t, x, q, limits, speed):
-    """Duration, most that its joints do at 1000 Hz over their limits, whether the speed asked for is kept, rounds."""
+    """Duration, most that its joints do at 1000 Hz over their limits, whether the speed asked for
+    is kept, rounds."""
     curve, places = path_of(x, q), places_of(t, x)
     programs = Programs(curve, places, limits, speed)
     rate = np.gradient(x, t)
@@ -170,21 +190,27 @@ def shortest_motion(t, x, q, limits, speed):
     at = np.concatenate([[0], np.cumsum(travel_time(programs.h, b))])
     smooth = make_interp_spline(at, places, k=3, bc_type="clamped")
     samples = np.append(np.arange(0, at[-1], 1e-3), at[-1])
-    ratios = rate_ratios(np.arange(len(samples)) * 1e-3, curve(np.clip(smooth(samples), x[0], x[-1])), limits)
+    ratios = rate_ratios(
+        np.arange(len(samples)) * 1e-3, curve(np.clip(smooth(samples), x[0], x[-1])), limits
+    )
     fast = np.flatnonzero(b >= (0.995 * speed) ** 2)
-    feasible = len(fast) > 0 and np.all(b[fast[0]:fast[-1] + 1] >= (0.99 * speed) ** 2)
+    feasible = len(fast) > 0 and np.all(b[fast[0] : fast[-1] + 1] >= (0.99 * speed) ** 2)
     return at[-1], ratios, bool(feasible), rounds
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("swivel")
     parser.add_argument("problem")
     parser.add_argument("--episodes", type=int, default=0)
     parser.add_argument("--take", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--speeds", type=float, nargs="+", default=[0.05, 0.25], help="m/s")
-    parser.add_argument("--keep", type=pathlib.Path, help="folder for the motions, and yardstick.json")
+    parser.add_argument(
+        "--keep", type=pathlib.Path, help="folder for the motions, and yardstick.json"
+    )
     arguments = parser.parse_args()
     problem = load_problem(arguments.problem)
     robot = Robot(problem)
@@ -192,13 +218,24 @@ def main():
     temporary = tempfile.TemporaryDirectory()
     folder = arguments.keep or pathlib.Path(temporary.name)
     folder.mkdir(parents=True, exist_ok=True)
-    poses, _ = episodes_of(arguments.swivel, arguments.problem, arguments.episodes, arguments.seed, folder)
+    poses, _ = episodes_of(
+        arguments.swivel, arguments.problem, arguments.episodes, arguments.seed, folder
+    )
     if len(poses) > arguments.take:
-        poses = [poses[k] for k in sorted(np.random.default_rng(arguments.seed).choice(len(poses), arguments.take, replace=False))]
+        poses = [
+            poses[k]
+            for k in sorted(
+                np.random.default_rng(arguments.seed).choice(
+                    len(poses), arguments.take, replace=False
+                )
+            )
+        ]
     rows = []
     for (number, _), speed in itertools.product(poses, arguments.speeds):
         name = f"{'' if number is None else number:>4} at {1e3 * speed:3.0f} mm/s"
-        motion, result, _ = planned(arguments.swivel, arguments.problem, arguments.seed, number, speed, 1000, folder)
+        motion, result, _ = planned(
+            arguments.swivel, arguments.problem, arguments.seed, number, speed, 1000, folder
+        )
         if motion is None:
             print(f"{name}: not executable", flush=True)
             continue
@@ -208,17 +245,33 @@ def main():
             continue
         shortest, ratios, feasible, rounds = found
         own = float(result["motion"]["duration"])
-        rows.append({"episode": number, "speed": speed, "duration": own, "shortest": shortest, "ratios": ratios, "feasible": feasible,
-                     "ideal": result["motion"]["ideal"], "slow": result["motion"]["slow"]})
-        print(f"{name}: {own:.4f} s, shortest {shortest:.4f} s, {own / shortest:.4f} times; ideal {result['motion']['ideal']:.4f} s; shortest has "
-              f"{ratios[0]:.3f} {ratios[1]:.3f} {ratios[2]:.3f} of the limits; {'feasible' if feasible else 'not feasible'}, {rounds} programs",
-              flush=True)
+        rows.append(
+            {
+                "episode": number, "speed": speed, "duration": own, "shortest": shortest,
+                "ratios": ratios, "feasible": feasible, "ideal": result["motion"]["ideal"],
+                "slow": result["motion"]["slow"]
+            }
+        )
+        print(
+            f"{name}: {own:.4f} s, shortest {shortest:.4f} s, {own / shortest:.4f} times; ideal "
+            f"{result['motion']['ideal']:.4f} s; shortest has "
+            f"{ratios[0]:.3f} {ratios[1]:.3f} {ratios[2]:.3f} of the limits; "
+            f"{'feasible' if feasible else 'not feasible'}, {rounds} programs",
+            flush=True,
+        )
     (folder / "yardstick.json").write_text(json.dumps(rows, indent=1))
     for speed, feasible in itertools.product(arguments.speeds, (True, False)):
-        times = [row["duration"] / row["shortest"] for row in rows if row["speed"] == speed and row["feasible"] == feasible]
+        times = [
+            row["duration"] / row["shortest"]
+            for row in rows
+            if row["speed"] == speed and row["feasible"] == feasible
+        ]
         if times:
-            print(f"{1e3 * speed:.0f} mm/s, {'feasible' if feasible else 'not feasible'}, {len(times)} motions: {np.median(times):.4f} (median) "
-                  f"{np.percentile(times, 95):.4f} (95 %) {max(times):.4f} (most) times the shortest")
+            print(
+                f"{1e3 * speed:.0f} mm/s, {'feasible' if feasible else 'not feasible'}, "
+                f"{len(times)} motions: {np.median(times):.4f} (median) "
+                f"{np.percentile(times, 95):.4f} (95 %) {max(times):.4f} (most) times the shortest"
+            )
     return 0
 
 
