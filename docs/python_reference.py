@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints the reference of the Python package as Markdown: signatures of its stubs, docstrings of the module.
+"""Prints the reference of the Python package as Markdown: signatures of its stubs, docstrings of
+the module.
 
 python_reference.py STUBS.pyi      the package must be importable (PYTHONPATH)
 """
@@ -14,7 +15,8 @@ HEAD = """# Python reference
 
 {doc}
 
-Signatures are those of the type stubs; `help(swivel.Planner.plan)` says the same. Examples: [embedding](docs/guide/embedding.md#python).
+Signatures are those of the type stubs; `help(swivel.Planner.plan)` says the same.
+Examples: [embedding](docs/guide/embedding.md#python).
 
 | in signatures | stands for |
 |---|---|
@@ -25,7 +27,12 @@ Signatures are those of the type stubs; `help(swivel.Planner.plan)` says the sam
 def meaning(thing):
     """The docstring without the signatures that pybind11 writes before it."""
     text = inspect.getdoc(thing) or ""
-    paragraphs = [part for part in text.split("\n\n") if not re.match(r"(\d+\. )?\w+\([^\n]*\) -> [^\n]+$", part) and part != "Overloaded function."]
+    paragraphs = [
+        part
+        for part in text.split("\n\n")
+        if not re.match(r"(\d+\. )?\w+\([^\n]*\) -> [^\n]+$", part)
+        and part != "Overloaded function."
+    ]
     return "\n\n".join(paragraphs).strip()
 
 
@@ -37,7 +44,9 @@ def signature(node):
 
 
 def is_setter(node):
-    return any(isinstance(one, ast.Attribute) and one.attr == "setter" for one in node.decorator_list)
+    return any(
+        isinstance(one, ast.Attribute) and one.attr == "setter" for one in node.decorator_list
+    )
 
 
 def is_property(node):
@@ -55,13 +64,27 @@ def aliases(body):
 
 
 def members(node, thing):
-    settable = {item.name for item in node.body if isinstance(item, ast.FunctionDef) and is_setter(item)}
+    settable = {
+        item.name for item in node.body if isinstance(item, ast.FunctionDef) and is_setter(item)
+    }
     values, functions = [], []
     for item in node.body:
         if isinstance(item, ast.AnnAssign):
-            values.append((item.target.id, ast.unparse(item.annotation).replace("ClassVar[%s]" % node.name, "constant"), getattr(thing, item.target.id, None)))
+            values.append(
+                (
+                    item.target.id,
+                    ast.unparse(item.annotation).replace("ClassVar[%s]" % node.name, "constant"),
+                    getattr(thing, item.target.id, None),
+                )
+            )
         elif isinstance(item, ast.FunctionDef) and is_property(item):
-            values.append((item.name, ast.unparse(item.returns) + ("" if item.name in settable else ", read only"), getattr(thing, item.name, None)))
+            values.append(
+                (
+                    item.name,
+                    ast.unparse(item.returns) + ("" if item.name in settable else ", read only"),
+                    getattr(thing, item.name, None),
+                )
+            )
         elif isinstance(item, ast.FunctionDef) and not is_setter(item):
             functions.append((item, getattr(thing, item.name, None)))
     for item, function in functions:
@@ -84,7 +107,11 @@ def main():
     lines = open(sys.argv[1]).read().split("\n")
     body = ast.parse("\n".join(lines)).body
     print(HEAD.format(doc=inspect.getdoc(package), aliases="\n".join(aliases(body))))
-    headings = {number: line[6:].capitalize() for number, line in enumerate(lines, 1) if line.startswith("# --- ")}
+    headings = {
+        number: line[6:].capitalize()
+        for number, line in enumerate(lines, 1)
+        if line.startswith("# --- ")
+    }
     for node in body:
         for number in [number for number in headings if number < node.lineno]:
             print(f"## {headings.pop(number)}\n")

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rooms of the source tree, and the includes between them: every folder that holds sources is a room of its component.
+"""Rooms of the source tree, and the includes between them: every folder that holds sources is a
+room of its component.
 
 rooms.py [--check] [--svg FILE [--open COMPONENT ...]] [--moved TABLE]
 
-Prints the rooms, the arrows between them (who includes whom), and what is wrong: arrows that docs/rooms.txt does not allow, circles,
-rooms with more than 20 files. --check: exit code 1 where anything is. --svg: draws the picture; of the components --open names, pairs
-of files are drawn, not rooms. --moved: as if files had been moved already, by lines of an old and a new path with a tab between.
+Prints the rooms, the arrows between them (who includes whom), and what is wrong: arrows that
+docs/rooms.txt does not allow, circles, rooms with more than 20 files. --check: exit code 1 where
+anything is. --svg: draws the picture; of the components --open names, pairs of files are drawn, not
+rooms. --moved: as if files had been moved already, by lines of an old and a new path with a tab
+between.
 """
 import argparse
 import collections
@@ -23,7 +26,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 
 
 class Order:
-    """docs/rooms.txt: the floor of each room of each component, and the components that each may include."""
+    """docs/rooms.txt: the floor of each room of each component, and the components that each may
+    include."""
 
     def __init__(self, file):
         self.floor, self.uses = {}, {}
@@ -44,16 +48,25 @@ class Order:
     def allows(self, tail, head):
         if tail[0] != head[0]:
             return head[0] in self.uses.get(tail[0], [])
-        return tail == head or (tail in self.floor and head in self.floor and self.floor[head] < self.floor[tail])
+        return tail == head or (
+            tail in self.floor and head in self.floor and self.floor[head] < self.floor[tail]
+        )
 
 
 def moved_paths(table, files):
-    """Where a table of moves puts each of these files. A line may name many files by a pattern; the first that fits counts."""
-    lines = [line.split("\t")[:2] for line in table.read_text().splitlines() if "\t" in line and line[0] != "#"]
+    """Where a table of moves puts each of these files. A line may name many files by a pattern; the
+    first that fits counts."""
+    lines = [
+        line.split("\t")[:2]
+        for line in table.read_text().splitlines()
+        if "\t" in line and line[0] != "#"
+    ]
     result = {}
     for file in files:
         for old, new in lines:
-            if file == old or ("*" in old and fnmatch.fnmatchcase(file, old) and file.count("/") == old.count("/")):
+            if file == old or (
+                "*" in old and fnmatch.fnmatchcase(file, old) and file.count("/") == old.count("/")
+            ):
                 result[file] = new if not new.endswith("/") else new + file.rsplit("/", 1)[1]
                 break
     return result
@@ -63,8 +76,12 @@ class Tree:
     """Files of the components, the room of each, and which file includes which."""
 
     def __init__(self, components, table=None):
-        names = [str(path.relative_to(ROOT)) for component in components for path in sorted((ROOT / component).rglob("*"))
-                 if path.suffix in ENDINGS and "build" not in path.parts]
+        names = [
+            str(path.relative_to(ROOT))
+            for component in components
+            for path in sorted((ROOT / component).rglob("*"))
+            if path.suffix in ENDINGS and "build" not in path.parts
+        ]
         moved = moved_paths(table, names) if table else {}
         self.path = {name: moved.get(name, name) for name in names}
         self.includes = {}
@@ -121,8 +138,8 @@ def circles(arrows):
             elif other in stack:
                 low[node] = min(low[node], number[other])
         if low[node] == number[node]:
-            group = stack[stack.index(node):]
-            del stack[stack.index(node):]
+            group = stack[stack.index(node) :]
+            del stack[stack.index(node) :]
             if len(group) > 1:
                 result.append(sorted(group))
 
@@ -164,7 +181,8 @@ CHAR, BOX_HEIGHT, FLOOR_GAP, GAP, PAD = 7.2, 40, 44, 18, 26
 
 
 class Panel:
-    """One component: rooms on floors, arrows between them that lead down, drawn around the rooms that they pass."""
+    """One component: rooms on floors, arrows between them that lead down, drawn around the rooms
+    that they pass."""
 
     def __init__(self, title, boxes, floors, arrows, wrong):
         self.title, self.boxes, self.arrows, self.wrong = title, boxes, arrows, wrong
@@ -200,8 +218,13 @@ class Panel:
                 beside[other].append(one)
         place = {item: k for row in self.rows for k, item in enumerate(row)}
         for turn in range(24):
-            for row in (self.rows if turn % 2 else self.rows[::-1]):
-                mean = {item: sum(place[o] for o in beside[item]) / len(beside[item]) if beside[item] else place[item] for item in row}
+            for row in self.rows if turn % 2 else self.rows[::-1]:
+                mean = {
+                    item: sum(place[o] for o in beside[item]) / len(beside[item])
+                    if beside[item]
+                    else place[item]
+                    for item in row
+                }
                 row.sort(key=lambda item: mean[item])
                 total = sum(self.width_of(item) + GAP for item in row)
                 x = -total / 2
@@ -222,9 +245,11 @@ class Panel:
                 x += self.width_of(item) + GAP + spare
 
     def svg(self, left, top):
-        out = [f'<g transform="translate({left:.0f} {top:.0f})">',
-               f'<rect class="panel" width="{self.width:.0f}" height="{self.height:.0f}" rx="8"/>',
-               f'<text class="title" x="{PAD}" y="24">{html.escape(self.title)}</text>']
+        out = [
+            f'<g transform="translate({left:.0f} {top:.0f})">',
+            f'<rect class="panel" width="{self.width:.0f}" height="{self.height:.0f}" rx="8"/>',
+            f'<text class="title" x="{PAD}" y="24">{html.escape(self.title)}</text>',
+        ]
         ports = collections.defaultdict(list)
         for route in self.routes:
             ports[route[0], "out"].append(route)
@@ -248,13 +273,22 @@ class Panel:
             for (x0, y0), (x1, y1) in zip(points, points[1:]):
                 bend = (y1 - y0) / 2
                 path += f" C{x0:.0f} {y0 + bend:.0f} {x1:.0f} {y1 - bend:.0f} {x1:.0f} {y1:.0f}"
-            out.append(f'<path class="{"wrong" if wrong else "arrow"}" marker-end="url(#{"red" if wrong else "grey"})" d="{path}"/>')
+            out.append(
+                f'<path class="{"wrong" if wrong else "arrow"}" '
+                f'marker-end="url(#{"red" if wrong else "grey"})" d="{path}"/>'
+            )
         for box, (lines, bad) in self.boxes.items():
             x, y = self.at[box]
             width = self.width_of(box)
-            out.append(f'<rect class="{"bad" if bad else "box"}" x="{x:.0f}" y="{y:.0f}" width="{width:.0f}" height="{BOX_HEIGHT}" rx="4"/>')
+            out.append(
+                f'<rect class="{"bad" if bad else "box"}" x="{x:.0f}" y="{y:.0f}" '
+                f'width="{width:.0f}" height="{BOX_HEIGHT}" rx="4"/>'
+            )
             for k, line in enumerate(lines):
-                out.append(f'<text class="{"name" if k == 0 else "count"}" x="{x + width / 2:.0f}" y="{y + 17 + 15 * k:.0f}">{html.escape(line)}</text>')
+                out.append(
+                    f'<text class="{"name" if k == 0 else "count"}" x="{x + width / 2:.0f}" '
+                    f'y="{y + 17 + 15 * k:.0f}">{html.escape(line)}</text>'
+                )
         return out + ["</g>"]
 
 
@@ -267,7 +301,9 @@ def floors_of(boxes, arrows):
 
     def visit(box, path=()):
         if box not in floor:
-            below = [visit(other, path + (box,)) for other in next_of[box] if other not in path + (box,)]
+            below = [
+                visit(other, path + (box,)) for other in next_of[box] if other not in path + (box,)
+            ]
             floor[box] = 1 + max(below, default=-1)
         return floor[box]
 
@@ -282,25 +318,41 @@ def draw(tree, order, opened):
     panels = {}
     for component in order.uses:
         if component in opened:
+
             def pair(name):
                 parts = tree.path[name].rsplit("/", 1)
                 return tree.room(name)[0], parts[1].split(".")[0]
+
             boxes = {}
             for name in tree.path:
                 if tree.room(name)[0] == component:
                     boxes[pair(name)] = ([pair(name)[1], ""], False)
-            inner = [pair_ for pair_ in tree.arrows(pair) if pair_[0][0] == pair_[1][0] == component]
+            inner = [
+                pair_ for pair_ in tree.arrows(pair) if pair_[0][0] == pair_[1][0] == component
+            ]
             floors = floors_of(boxes, inner)
-            title = f"{component}: {sum(count for room, count in rooms.items() if room[0] == component)} files, drawn by pairs of .hpp and .cpp"
+            title = (
+                f"{component}: "
+                f"{sum(count for room, count in rooms.items() if room[0] == component)} files, "
+                "drawn by pairs of .hpp and .cpp"
+            )
             rising = [one for one in inner if floors[one[0]] <= floors[one[1]]]
         else:
-            boxes = {room: ([room[1] if room[1] != "." else component, f"{count} files"], count > MOST_FILES)
-                     for room, count in rooms.items() if room[0] == component}
+            boxes = {
+                room: (
+                    [room[1] if room[1] != "." else component, f"{count} files"],
+                    count > MOST_FILES,
+                )
+                for room, count in rooms.items()
+                if room[0] == component
+            }
             inner = [one for one in arrows if one[0][0] == one[1][0] == component]
             rising = [one for one in inner if not order.allows(*one)]
             natural = floors_of(boxes, [one for one in inner if one not in rising])
             floors = {box: order.floor.get(box, natural[box]) for box in boxes}
-            title = component + (f": {sum(rooms[box] for box in boxes)} files" if len(boxes) > 1 else "")
+            title = component + (
+                f": {sum(rooms[box] for box in boxes)} files" if len(boxes) > 1 else ""
+            )
         if order.uses[component]:
             title += f"   (includes {', '.join(order.uses[component])})"
         kept = set(without_implied(inner)) | set(rising)
@@ -308,32 +360,63 @@ def draw(tree, order, opened):
     # Components stand on those that they include.
     level = {}
     for component in panels:
-        level[component] = 1 + max((level.get(other, -1) for other in order.uses[component]), default=-1)
+        level[component] = 1 + max(
+            (level.get(other, -1) for other in order.uses[component]), default=-1
+        )
     rows = [[panels[c] for c in panels if level[c] == k] for k in range(max(level.values()) + 1)]
     width = max([1150] + [sum(p.width for p in row) + 20 * (len(row) - 1) + 40 for row in rows])
     out, y = [], 60
     for row in rows[::-1]:
-        x, height = (width - sum(p.width for p in row) - 20 * (len(row) - 1)) / 2, max(p.height for p in row)
+        x = (width - sum(p.width for p in row) - 20 * (len(row) - 1)) / 2
+        height = max(p.height for p in row)
         for panel in row:
             out += panel.svg(x, y + height - panel.height)
             x += panel.width + 20
         y += height + 20
     files = sum(rooms.values())
-    head = f"Rooms of Swivel: {files} files, {len(rooms)} rooms. An arrow: includes. Arrows that others imply are left out; red: not allowed, or more than {MOST_FILES} files."
-    style = """<style>text { font: 12px sans-serif; fill: #222 } .title { font-weight: bold; font-size: 14px } .name, .count { text-anchor: middle }
-.name { font-weight: bold } .count { fill: #666 } .panel { fill: #f6f6f2; stroke: #bbb } .box { fill: #fff; stroke: #555 }
-.bad { fill: #fbd5d0; stroke: #b3261e; stroke-width: 2 } path.arrow { fill: none; stroke: #6b7785; stroke-width: 1.2 }
-path.wrong { fill: none; stroke: #b3261e; stroke-width: 1.8 }</style>"""
-    markers = "".join(f'<marker id="{name}" viewBox="0 0 8 8" refX="8" refY="4" markerWidth="7" markerHeight="7" orient="auto">'
-                      f'<path d="M0 0L8 4L0 8z" fill="{colour}"/></marker>' for name, colour in (("grey", "#6b7785"), ("red", "#b3261e")))
-    return "\n".join([f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {y:.0f}" width="{width:.0f}" height="{y:.0f}">',
-                      "<!-- SPDX-License-Identifier: BSD-3-Clause; made by docs/rooms.py -->", f"<defs>{markers}</defs>", style,
-                      f'<rect width="{width:.0f}" height="{y:.0f}" fill="#fff"/>', f'<text class="title" x="20" y="32">{html.escape(head)}</text>',
-                      *out, "</svg>"]) + "\n"
+    head = (
+        f"Rooms of Swivel: {files} files, {len(rooms)} rooms. An arrow: includes. Arrows that "
+        f"others imply are left out; red: not allowed, or more than {MOST_FILES} files."
+    )
+    style = (
+        "<style>text { font: 12px sans-serif; fill: #222 } .title { font-weight: bold; font-size: "
+        "14px } .name, .count { text-anchor: middle }\n"
+        ".name { font-weight: bold } .count { fill: #666 } .panel { fill: #f6f6f2; stroke: #bbb } "
+        ".box { fill: #fff; stroke: #555 }\n"
+        ".bad { fill: #fbd5d0; stroke: #b3261e; stroke-width: 2 } "
+        "path.arrow { fill: none; stroke: #6b7785; stroke-width: 1.2 }\n"
+        "path.wrong { fill: none; stroke: #b3261e; stroke-width: 1.8 }</style>"
+    )
+    markers = "".join(
+        f'<marker id="{name}" viewBox="0 0 8 8" refX="8" refY="4" markerWidth="7" markerHeight="7" '
+        'orient="auto">'
+        f'<path d="M0 0L8 4L0 8z" fill="{colour}"/></marker>'
+        for name, colour in (("grey", "#6b7785"), ("red", "#b3261e"))
+    )
+    return (
+        "\n".join(
+            [
+                (
+                    f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {y:.0f}" '
+                    f'width="{width:.0f}" height="{y:.0f}">'
+                ),
+                "<!-- SPDX-License-Identifier: BSD-3-Clause; made by docs/rooms.py -->",
+                f"<defs>{markers}</defs>",
+                style,
+                f'<rect width="{width:.0f}" height="{y:.0f}" fill="#fff"/>',
+                f'<text class="title" x="20" y="32">{html.escape(head)}</text>',
+                *out,
+                "</svg>",
+            ]
+        )
+        + "\n"
+    )
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--svg", type=pathlib.Path)
     parser.add_argument("--open", nargs="+", default=[], metavar="COMPONENT")
@@ -343,16 +426,26 @@ def main():
     tree = Tree(list(order.uses), options.moved)
     rooms = collections.Counter(map(tree.room, tree.path))
     arrows = tree.arrows(tree.room)
-    headers = {one for one, files in arrows.items() if any(name.endswith(".hpp") for name, _ in files)}
+    headers = {
+        one for one, files in arrows.items() if any(name.endswith(".hpp") for name, _ in files)
+    }
     inner = sum(1 for tail, head in arrows if tail[0] == head[0])
     for component in order.uses:
-        of = sorted((room for room in rooms if room[0] == component), key=lambda room: (order.floor.get(room, 99), room))
+        of = sorted(
+            (room for room in rooms if room[0] == component),
+            key=lambda room: (order.floor.get(room, 99), room),
+        )
         print(f"{component}: {sum(rooms[room] for room in of)} files")
         for room in of:
-            below = sorted(head[1] for tail, head in arrows if tail == room and head[0] == component)
+            below = sorted(
+                head[1] for tail, head in arrows if tail == room and head[0] == component
+            )
             print(f"  {room[1]:24}{rooms[room]:4}  {' '.join(below)}")
-    print(f"{sum(rooms.values())} files, {len(rooms)} rooms, {inner} arrows between rooms of one component, "
-          f"{len({(t[0], h[0]) for t, h in arrows if t[0] != h[0]})} between components")
+    print(
+        f"{sum(rooms.values())} files, {len(rooms)} rooms, {inner} arrows between rooms of one "
+        "component, "
+        f"{len({(t[0], h[0]) for t, h in arrows if t[0] != h[0]})} between components"
+    )
     wrong = 0
     for (tail, head), files in sorted(arrows.items()):
         if not order.allows(tail, head):

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Builds the guide, all documents of the clone and the references of C++ and Python as pages that open without a server (their search
-wants one: python3 -m http.server -d OUT/site).
+"""Builds the guide, all documents of the clone and the references of C++ and Python as pages that
+open without a server (their search wants one: python3 -m http.server -d OUT/site).
 
-site.py OUT      writes OUT/site; the Python package must be importable (PYTHONPATH) for its reference. Exit code 4: a tool is missing.
+site.py OUT      writes OUT/site; the Python package must be importable (PYTHONPATH) for its
+                 reference. Exit code 4: a tool is missing.
 """
 import os
 import pathlib
@@ -13,7 +14,10 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What documents link: kept where it lies, so that the links hold.
-COPIED = ["*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/measurements/*.md", "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"]
+COPIED = [
+    "*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/measurements/*.md",
+    "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"
+]
 
 
 # Typesets formulas; copied beside the pages, since nothing is fetched from elsewhere.
@@ -22,8 +26,16 @@ KATEX = pathlib.Path("/usr/share/javascript/katex")
 
 def missing():
     """The Debian packages of what is not there."""
-    names = [package for program, package in (("mkdocs", "mkdocs-material"), ("doxygen", "doxygen")) if not shutil.which(program)]
-    if not names and "material" not in subprocess.run(["mkdocs", "build", "--help"], capture_output=True, text=True).stdout:
+    names = [
+        package
+        for program, package in (("mkdocs", "mkdocs-material"), ("doxygen", "doxygen"))
+        if not shutil.which(program)
+    ]
+    if (
+        not names
+        and "material"
+        not in subprocess.run(["mkdocs", "build", "--help"], capture_output=True, text=True).stdout
+    ):
         names.append("mkdocs-material")
     if not (KATEX / "katex.min.js").is_file():
         names.append("libjs-katex")
@@ -39,24 +51,39 @@ def copy_documents(pages):
                 shutil.copyfile(file, target)
     for name in ("site.css", "formulas.js"):
         shutil.copyfile(ROOT / "docs" / name, pages / name)
-    for file in [KATEX / "katex.min.js", KATEX / "katex.min.css", *(KATEX / "fonts").glob("*.woff2")]:
+    for file in [
+        KATEX / "katex.min.js", KATEX / "katex.min.css", *(KATEX / "fonts").glob("*.woff2")
+    ]:
         target = pages / "katex" / file.relative_to(KATEX)
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(file, target)
 
 
 def python_reference():
-    done = subprocess.run([sys.executable, ROOT / "docs/python_reference.py", ROOT / "python/swivel/__init__.pyi"], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, ROOT / "docs/python_reference.py", ROOT / "python/swivel/__init__.pyi"],
+        capture_output=True,
+        text=True,
+    )
     if done.returncode == 0:
         return done.stdout
-    print("docs: without the Python reference, since the package cannot be imported:", done.stderr.strip().split("\n")[-1], file=sys.stderr)
+    print(
+        "docs: without the Python reference, since the package cannot be imported:",
+        done.stderr.strip().split("\n")[-1], file=sys.stderr
+    )
     return "# Python reference\n\nThese pages were built without the Python package.\n"
 
 
 def main():
     names = missing()
     if names:
-        print(f"docs: missing {', '.join(names)}: on Debian apt-get install --no-install-recommends {' '.join(names)}", file=sys.stderr)
+        print(
+            (
+                f"docs: missing {', '.join(names)}: on Debian apt-get install "
+                f"--no-install-recommends {' '.join(names)}"
+            ),
+            file=sys.stderr,
+        )
         return 4
     out = pathlib.Path(sys.argv[1]).resolve()
     pages = out / "pages"
@@ -67,8 +94,15 @@ def main():
     subprocess.run(["doxygen", "-"], input=settings, cwd=ROOT, text=True, check=True)
     shutil.copyfile(ROOT / "docs/mkdocs.yml", out / "mkdocs.yml")
     # SOURCE_DATE_EPOCH: the same pages from the same clone.
-    subprocess.run(["mkdocs", "build", "--quiet", "--strict", "--clean", "-f", "mkdocs.yml", "-d", out / "site"], cwd=out, check=True,
-                   env={**os.environ, "SOURCE_DATE_EPOCH": os.environ.get("SOURCE_DATE_EPOCH", "0")})
+    subprocess.run(
+        [
+            "mkdocs", "build", "--quiet", "--strict", "--clean", "-f", "mkdocs.yml",
+            "-d", out / "site"
+        ],
+        cwd=out,
+        check=True,
+        env={**os.environ, "SOURCE_DATE_EPOCH": os.environ.get("SOURCE_DATE_EPOCH", "0")},
+    )
     print(f"docs: {out / 'site' / 'index.html'}")
     return 0
 

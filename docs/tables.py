@@ -14,7 +14,9 @@ BLOCK = re.compile(r"<!-- schema (\w+) -->\n.*?<!-- /schema -->\n", re.DOTALL)
 
 def main():
     program, page = sys.argv[1], pathlib.Path(sys.argv[2])
-    printed = subprocess.run([program, "schema", "tables"], check=True, capture_output=True, text=True).stdout
+    printed = subprocess.run(
+        [program, "schema", "tables"], check=True, capture_output=True, text=True
+    ).stdout
     tables = {block[1]: block[0] for block in BLOCK.finditer(printed)}
     text = page.read_text()
     there = [block[1] for block in BLOCK.finditer(text)]
@@ -28,7 +30,10 @@ def main():
     if "--fix" in sys.argv:
         page.write_text(made)
         return 0
-    print(f"{page}: tables differ from `swivel schema tables`: run docs/tables.py {program} {page} --fix")
+    print(
+        f"{page}: tables differ from `swivel schema tables`: run docs/tables.py {program} {page} "
+        "--fix"
+    )
     return 1
 
 
