@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Typesets the formulas that pymdownx.arithmatex has marked: \(...\) in a <span>, \[...\] in a <div>.
+// Typesets the formulas that pymdownx.arithmatex has marked: \(...\) in a <span>, \[...\] in a
+// <div>.
 document.addEventListener("DOMContentLoaded", () => {
   for (const formula of document.querySelectorAll(".arithmatex")) {
     const source = formula.textContent.trim().slice(2, -2);
