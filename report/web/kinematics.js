@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forward kinematics as a product of exponentials; the chain is that of core/kinematics/chain/arm.hpp.
+// Forward kinematics as a product of exponentials; the chain is that of
+// core/kinematics/chain/arm.hpp.
 import { Matrix4, Vector3 } from 'three';
 
 export const vector = (v) => new Vector3(v[0], v[1], v[2]);
@@ -12,19 +13,27 @@ function turned(joint, angle) {
   return turn.setPosition(point.clone().sub(point.clone().applyMatrix4(turn)));
 }
 
-/** The displacement of a body of each group from its pose at q = 0, base frame: G_0 ... G_7, then of the joints that mimic the arm's. */
+/**
+ * The displacement of a body of each group from its pose at q = 0, base frame: G_0 ... G_7, then of
+ * the joints that mimic the arm's.
+ */
 export function displacements(chain, q) {
   const g = [new Matrix4()];
   chain.joints.forEach((joint, k) => g.push(g[k].clone().multiply(turned(joint, q[k]))));
   for (const follower of chain.followers ?? []) {
     const motion = follower.multiplier * q[follower.leader];
-    const own = follower.slides ? new Matrix4().setPosition(vector(follower.axis).multiplyScalar(motion)) : turned(follower, motion);
+    const own = follower.slides
+      ? new Matrix4().setPosition(vector(follower.axis).multiplyScalar(motion))
+      : turned(follower, motion);
     g.push(g[follower.parent].clone().multiply(own));
   }
   return g;
 }
 
-/** Yoshikawa's sqrt(det(J J^T)), J the 6 x 7 geometric Jacobian at the base origin (the value does not depend on the point). */
+/**
+ * Yoshikawa's sqrt(det(J J^T)), J the 6 x 7 geometric Jacobian at the base origin (the value does
+ * not depend on the point).
+ */
 export function manipulability(chain, q) {
   const g = displacements(chain, q);
   const columns = chain.joints.map((joint, k) => {
@@ -33,9 +42,14 @@ export function manipulability(chain, q) {
     const linear = point.cross(axis);
     return [linear.x, linear.y, linear.z, axis.x, axis.y, axis.z];
   });
-  const a = Array.from({ length: 6 }, (_, r) => Array.from({ length: 6 }, (_, c) => columns.reduce((sum, column) => sum + column[r] * column[c], 0)));
+  const a = Array.from({ length: 6 }, (_, r) =>
+    Array.from({ length: 6 }, (_, c) =>
+      columns.reduce((sum, column) => sum + column[r] * column[c], 0),
+    ),
+  );
   let det = 1;
-  for (let k = 0; k < 6; ++k) {  // symmetric and not negative: elimination needs no pivots
+  for (let k = 0; k < 6; ++k) {
+    // symmetric and not negative: elimination needs no pivots
     if (a[k][k] <= 1e-15) return 0;
     det *= a[k][k];
     for (let r = k + 1; r < 6; ++r) {

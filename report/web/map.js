@@ -4,9 +4,16 @@ import { bytes } from './bytes.js';
 
 // States in the order of report/lattice_map.hpp.
 export const [NO_IK, SINGULAR, LIMIT, UNSEEN, FREE, BLOCKED] = [0, 1, 2, 3, 4, 5];
-const kState = 7, kAgain = 32, kCertified = 64, kPosed = 128, kUnknown = 65535;
-// After Okabe & Ito's palette, told apart by all kinds of colour vision: one hue for limits, one for each object in the way.
-const LIMITS = '#a6d3ef', SELF = '#6a4c93', OBJECTS = ['#d55e00', '#e6b800', '#8c2d04', '#f39a6b', '#7a6000', '#c23b22'];
+const kState = 7,
+  kAgain = 32,
+  kCertified = 64,
+  kPosed = 128,
+  kUnknown = 65535;
+// After Okabe & Ito's palette, told apart by all kinds of colour vision: one hue for limits, one
+// for each object in the way.
+const LIMITS = '#a6d3ef',
+  SELF = '#6a4c93',
+  OBJECTS = ['#d55e00', '#e6b800', '#8c2d04', '#f39a6b', '#7a6000', '#c23b22'];
 
 /** An angle less its whole turns. */
 export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
@@ -20,32 +27,70 @@ export class Cells {
     this.causes = new Uint8Array(bytes(map.causes));
     this.poses = new Int16Array(bytes(map.joints));
     this.clearances = new Uint16Array(bytes(map.clearances));
-    this.poseLayers = new Uint16Array(bytes(map.pose_layers));  // counted from the cell's first
+    this.poseLayers = new Uint16Array(bytes(map.pose_layers)); // counted from the cell's first
     this.posePhis = new Float32Array(bytes(map.pose_phis));
-    this.poseRolls = new Float32Array(bytes(map.pose_rolls));  // none where the tool has no roll to choose
-    this.pose = new Int32Array(this.states.length);  // which of the poses is a cell's, -1: none
+    // None where the tool has no roll to choose.
+    this.poseRolls = new Float32Array(bytes(map.pose_rolls));
+    this.pose = new Int32Array(this.states.length); // which of the poses is a cell's, -1: none
     let next = 0;
-    for (let k = 0; k < this.states.length; ++k) this.pose[k] = this.states[k] & kAgain ? next - 1 : this.states[k] & kPosed ? next++ : -1;
+    for (let k = 0; k < this.states.length; ++k)
+      this.pose[k] = this.states[k] & kAgain ? next - 1 : this.states[k] & kPosed ? next++ : -1;
   }
-  index(panel, column, row) { return (column * this.panels.length + panel) * this.rows + row; }
-  state(k) { return this.states[k] & kState; }
+  index(panel, column, row) {
+    return (column * this.panels.length + panel) * this.rows + row;
+  }
+  state(k) {
+    return this.states[k] & kState;
+  }
   /** How many cells are of the states that `wanted` accepts. */
-  count(wanted) { return this.states.reduce((n, state) => n + wanted(state & kState), 0); }
-  /** Where a value of the coordinate, rad, is in a panel, in cells from below: k at the middle of cell k. */
+  count(wanted) {
+    return this.states.reduce((n, state) => n + wanted(state & kState), 0);
+  }
+  /**
+   * Where a value of the coordinate, rad, is in a panel, in cells from below: k at the middle of
+   * cell k.
+   */
   place(value) {
-    const turn = (2 * Math.PI) / this.step, before = this.closed ? 0.5 : (turn - (this.angles - 1)) / 2, k = (value - this.low) / this.step;
+    const turn = (2 * Math.PI) / this.step,
+      before = this.closed ? 0.5 : (turn - (this.angles - 1)) / 2,
+      k = (value - this.low) / this.step;
     return k - turn * Math.floor((k + before) / turn);
   }
-  /** What a cell stands for; where it has a pose (q), all that is said is of that pose, which may be that of another node of the cell, or beside it. */
+  /**
+   * What a cell stands for; where it has a pose (q), all that is said is of that pose, which may be
+   * that of another node of the cell, or beside it.
+   */
   at(panel, column, row) {
-    const k = this.index(panel, column, row), state = this.state(k), pose = this.pose[k], posed = pose >= 0;
-    const layer = column * this.layers_each + (posed ? this.poseLayers[pose] : 0), clearance = posed ? this.clearances[pose] : kUnknown;
-    const value = wrapped(this.low + this.step * row * this.angles_each), { rolls, name, sheet } = this.panels[panel];
-    const phi = posed ? wrapped(this.posePhis[pose]) : rolls ? undefined : value, roll = posed && this.poseRolls.length ? this.poseRolls[pose] : rolls ? value : undefined;
+    const k = this.index(panel, column, row),
+      state = this.state(k),
+      pose = this.pose[k],
+      posed = pose >= 0;
+    const layer = column * this.layers_each + (posed ? this.poseLayers[pose] : 0),
+      clearance = posed ? this.clearances[pose] : kUnknown;
+    const value = wrapped(this.low + this.step * row * this.angles_each),
+      { rolls, name, sheet } = this.panels[panel];
+    const phi = posed ? wrapped(this.posePhis[pose]) : rolls ? undefined : value,
+      roll = posed && this.poseRolls.length ? this.poseRolls[pose] : rolls ? value : undefined;
     return {
-      layer, s: this.s[layer], phi, roll, sheet, rolls, angle: phi === undefined ? NaN : this.place(phi), branch: name,
-      what: this.meaning(k) + (state === BLOCKED ? (this.states[k] & kCertified ? ' (proved by a certificate)' : ' (found by FCL)') : ''),
-      q: pose < 0 ? null : Array.from(this.poses.subarray(7 * pose, 7 * pose + 7), (v) => v * this.joint_unit),
+      layer,
+      s: this.s[layer],
+      phi,
+      roll,
+      sheet,
+      rolls,
+      angle: phi === undefined ? NaN : this.place(phi),
+      branch: name,
+      what:
+        this.meaning(k) +
+        (state === BLOCKED
+          ? this.states[k] & kCertified
+            ? ' (proved by a certificate)'
+            : ' (found by FCL)'
+          : ''),
+      q:
+        pose < 0
+          ? null
+          : Array.from(this.poses.subarray(7 * pose, 7 * pose + 7), (v) => v * this.joint_unit),
       pair: state === BLOCKED ? this.blockers[this.causes[k]] : null,
       clearance_mm: clearance === kUnknown ? undefined : clearance / 10,
     };
@@ -54,18 +99,24 @@ export class Cells {
     const state = this.state(k);
     if (state === LIMIT) return `limit of ${this.jointNames[this.causes[k]]}`;
     if (state === BLOCKED) return `blocked by ${this.blockers[this.causes[k]].join(' - ')}`;
-    if (state === FREE) return this.states[k] & kCertified ? 'free, proved by a certificate' : 'free, found by FCL';
+    if (state === FREE)
+      return this.states[k] & kCertified ? 'free, proved by a certificate' : 'free, found by FCL';
     return { [NO_IK]: this.nothing, [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
   }
   colour(k, { nothing, unseen }) {
     const state = this.state(k);
     if (state === LIMIT) return LIMITS;
-    if (state === BLOCKED) return this.object(k) === null ? SELF : OBJECTS[this.objects.indexOf(this.object(k)) % OBJECTS.length];
+    if (state === BLOCKED)
+      return this.object(k) === null
+        ? SELF
+        : OBJECTS[this.objects.indexOf(this.object(k)) % OBJECTS.length];
     if (state === FREE) return this.states[k] & kCertified ? '#7ed0b4' : '#00795a';
     return { [NO_IK]: nothing, [SINGULAR]: '#cc79a7', [UNSEEN]: unseen }[state];
   }
   /** The object that blocks a cell; null where the robot is in its own way. */
-  object(k) { return this.blockers[this.causes[k]].find((name) => this.objects.includes(name)) ?? null; }
+  object(k) {
+    return this.blockers[this.causes[k]].find((name) => this.objects.includes(name)) ?? null;
+  }
   /** What cells of one colour have in common. */
   group(k) {
     const state = this.state(k);
@@ -74,12 +125,17 @@ export class Cells {
     return this.meaning(k);
   }
   /** Cells of equal state and cause mean the same. */
-  kind(k) { return (this.states[k] & ~(kPosed | kAgain)) << 8 | this.causes[k]; }
+  kind(k) {
+    return ((this.states[k] & ~(kPosed | kAgain)) << 8) | this.causes[k];
+  }
   /** [meaning, colour] of what is there, the most telling first. */
   legend(colours) {
     const kinds = new Map();
-    for (let k = 0; k < this.states.length; ++k) if (!kinds.has(this.kind(k))) kinds.set(this.kind(k), k);
-    const entries = [...kinds.values()].sort((a, b) => this.state(b) - this.state(a)).map((k) => [this.group(k), this.colour(k, colours)]);
+    for (let k = 0; k < this.states.length; ++k)
+      if (!kinds.has(this.kind(k))) kinds.set(this.kind(k), k);
+    const entries = [...kinds.values()]
+      .sort((a, b) => this.state(b) - this.state(a))
+      .map((k) => [this.group(k), this.colour(k, colours)]);
     return [...new Map(entries)];
   }
 }

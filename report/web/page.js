@@ -2,9 +2,11 @@
 // What the pages share: their data, numbers, light and dark, tables.
 export const data = JSON.parse(document.getElementById('data').textContent);
 export const $ = (id) => document.getElementById(id);
-export const number = (v, digits = 4) => (v === null || v === undefined ? '–' : Number(v.toPrecision(digits)).toString());
+export const number = (v, digits = 4) =>
+  v === null || v === undefined ? '–' : Number(v.toPrecision(digits)).toString();
 export const isDark = () => document.documentElement.dataset.theme === 'dark';
-export const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const style = (name) =>
+  getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /** Follows the system at first; the button and the key t change it. */
 export function themes(changed) {
@@ -25,12 +27,14 @@ export function tell(text, event) {
   if (tip.hidden) return;
   tip.textContent = text;
   tip.style.left = `${Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 8)}px`;
-  tip.style.top = `${Math.max(4, Math.min(event.clientY + 14, innerHeight - tip.offsetHeight - 8))}px`;
+  const lowest = innerHeight - tip.offsetHeight - 8;
+  tip.style.top = `${Math.max(4, Math.min(event.clientY + 14, lowest))}px`;
 }
 
 /** Calls back when the window's width has changed and come to rest. */
 export function whenResized(changed) {
-  let width = innerWidth, timer;
+  let width = innerWidth,
+    timer;
   addEventListener('resize', () => {
     clearTimeout(timer);
     timer = setTimeout(() => {

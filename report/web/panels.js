@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The (s, phi) map drawn: a panel for each branch, where the tool may turn one more for its roll, the cells, the path above.
+// The (s, phi) map drawn: a panel for each branch, where the tool may turn one more for its roll,
+// the cells, the path above.
 import * as Plot from '@observablehq/plot';
 import { ticks } from 'd3';
 import { alongPath } from './axis.js';
@@ -7,29 +8,58 @@ import { PAPER, sheet } from './figure.js';
 import { wrapped } from './map.js';
 import { style } from './page.js';
 
-const kDegrees = 180 / Math.PI, kLimit = 2, kBlocked = 5;
+const kDegrees = 180 / Math.PI,
+  kLimit = 2,
+  kBlocked = 5;
 
-/** [place in cells, degrees] of an axis of the coordinate: quarters of a turn, or round values between its ends. */
+/**
+ * [place in cells, degrees] of an axis of the coordinate: quarters of a turn, or round values
+ * between its ends.
+ */
 function marks(cells) {
   const name = (degrees) => String(degrees).replace('-', '−');
-  if (cells.closed) return [-180, -90, 0, 90, 180].map((degrees) => [((degrees + 180) / 360) * cells.angles - (degrees === 180 ? 0.5 : 0), name(degrees)]);
-  const low = cells.low * kDegrees, high = low + (cells.angles - 1) * cells.step * kDegrees;
+  if (cells.closed)
+    return [-180, -90, 0, 90, 180].map((degrees) => [
+      ((degrees + 180) / 360) * cells.angles - (degrees === 180 ? 0.5 : 0),
+      name(degrees),
+    ]);
+  const low = cells.low * kDegrees,
+    high = low + (cells.angles - 1) * cells.step * kDegrees;
   if (cells.angles === 1) return [[0, name(Number((wrapped(cells.low) * kDegrees).toFixed(1)))]];
-  return ticks(low, high, 4).map((degrees) => [(degrees - low) / (cells.step * kDegrees), name(Number((wrapped(degrees / kDegrees) * kDegrees).toFixed(6)))]);
+  return ticks(low, high, 4).map((degrees) => [
+    (degrees - low) / (cells.step * kDegrees),
+    name(Number((wrapped(degrees / kDegrees) * kDegrees).toFixed(6))),
+  ]);
 }
 
 export class Panels {
-  /** cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or none; cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null. */
+  /**
+   * cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or none;
+   * cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null.
+   */
   constructor(host, cells, rows, beside, cut, hover, pick) {
     Object.assign(this, { cells, rows, beside, cut, marks: marks(cells), pose: null });
     this.panels = cells.panels.map((panel, index) => {
       const box = document.createElement('div');
       box.className = 'panel';
-      box.innerHTML = '<h3></h3><div class="stack"><div class="chart"></div><div class="cursor"></div><div class="dot" hidden></div></div>';
+      box.innerHTML =
+        '<h3></h3><div class="stack"><div class="chart"></div><div class="cursor"></div>' +
+        '<div class="dot" hidden></div></div>';
       box.firstChild.textContent = panel.name;
-      const drawn = { ...panel, index, box, chart: box.querySelector('.chart'), line: box.querySelector('.cursor'), dot: box.querySelector('.dot') };
-      let under = null;  // a click's coordinates are rounded, and could mean the neighbour of the cell that is shown
-      for (const kind of ['pointerdown', 'pointermove']) drawn.chart.addEventListener(kind, (event) => hover((under = this.cellAt(drawn, event)), event));
+      const drawn = {
+        ...panel,
+        index,
+        box,
+        chart: box.querySelector('.chart'),
+        line: box.querySelector('.cursor'),
+        dot: box.querySelector('.dot'),
+      };
+      // A click's coordinates are rounded: they could mean the neighbour of the cell that is shown.
+      let under = null;
+      for (const kind of ['pointerdown', 'pointermove'])
+        drawn.chart.addEventListener(kind, (event) =>
+          hover((under = this.cellAt(drawn, event)), event),
+        );
       drawn.chart.addEventListener('pointerleave', (event) => hover(null, event));
       drawn.chart.addEventListener('click', () => pick(under));
       return drawn;
@@ -38,14 +68,22 @@ export class Panels {
     const used = new Set(rows.map((row) => row.sheet));
     for (const panel of this.panels) if (panel.rolls && used.size) used.add(panel.sheet);
     this.panels.sort((a, b) => used.has(b.sheet) - used.has(a.sheet) || a.index - b.index);
-    this.panels.forEach((panel) => panel.box.classList.toggle('other', used.size > 0 && !used.has(panel.sheet)));
+    this.panels.forEach((panel) =>
+      panel.box.classList.toggle('other', used.size > 0 && !used.has(panel.sheet)),
+    );
     host.append(...this.panels.map(({ box }) => box));
   }
   cellAt({ index, chart, x, y }, event) {
-    const { cells } = this, r = chart.getBoundingClientRect();
+    const { cells } = this,
+      r = chart.getBoundingClientRect();
     const bounded = (v, most) => Math.min(most - 1, Math.max(0, v));
-    const layer = x.invert(event.clientX - r.left) + 0.5, angle = y.invert(event.clientY - r.top) + 0.5;
-    return cells.at(index, bounded(Math.floor(layer / cells.layers_each), cells.columns), bounded(Math.floor(angle / cells.angles_each), cells.rows));
+    const layer = x.invert(event.clientX - r.left) + 0.5,
+      angle = y.invert(event.clientY - r.top) + 0.5;
+    return cells.at(
+      index,
+      bounded(Math.floor(layer / cells.layers_each), cells.columns),
+      bounded(Math.floor(angle / cells.angles_each), cells.rows),
+    );
   }
   /** Where a row of a path or a pose is in a panel, in cells from below; NaN: in another panel. */
   height(panel, row) {
@@ -54,100 +92,221 @@ export class Panels {
   }
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
-    const { cells, rows, beside, cut, marks } = this, letter = panel.rolls ? 'ρ' : cells.letter;
-    const lineOf = (path) => path.flatMap((row, k) => {
-      const point = { x: row.layer, y: this.height(panel, row) }, jump = k && cells.closed && Math.abs(this.height(panel, path[k - 1]) - point.y) > cells.angles / 2;
-      return jump ? [{ x: row.layer, y: NaN }, point] : [point];
-    });
-    const path = lineOf(rows), before = lineOf(beside);
-    const changes = rows.filter((row, k) => !panel.rolls && row.sheet === panel.sheet && [rows[k - 1], rows[k + 1]].some((other) => other && other.sheet !== row.sheet));
-    const large = !panel.box.classList.contains('other'), frame = { marginLeft: 38, marginRight: 12, marginTop: vector ? 26 : large ? 20 : 6, marginBottom: vector || large ? 34 : 20 };
+    const { cells, rows, beside, cut, marks } = this,
+      letter = panel.rolls ? 'ρ' : cells.letter;
+    const lineOf = (path) =>
+      path.flatMap((row, k) => {
+        const point = { x: row.layer, y: this.height(panel, row) },
+          jump =
+            k &&
+            cells.closed &&
+            Math.abs(this.height(panel, path[k - 1]) - point.y) > cells.angles / 2;
+        return jump ? [{ x: row.layer, y: NaN }, point] : [point];
+      });
+    const path = lineOf(rows),
+      before = lineOf(beside);
+    const changes = rows.filter(
+      (row, k) =>
+        !panel.rolls &&
+        row.sheet === panel.sheet &&
+        [rows[k - 1], rows[k + 1]].some((other) => other && other.sheet !== row.sheet),
+    );
+    const large = !panel.box.classList.contains('other'),
+      frame = {
+        marginLeft: 38,
+        marginRight: 12,
+        marginTop: vector ? 26 : large ? 20 : 6,
+        marginBottom: vector || large ? 34 : 20,
+      };
     return Plot.plot({
-      width, height, ...frame, style: { color: colours.soft, background: 'none', fontSize: '10px' },
-      x: { domain: [-0.5, cells.layers - 0.5], ...alongPath(cells.s, 5), label: vector || large ? 's, m' : null, labelArrow: 'none' },
-      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `${letter}, deg: ${panel.name}` : large ? `${letter}, deg` : null, labelArrow: 'none', labelAnchor: 'top', ticks: marks.map(([place]) => place), tickFormat: (_, k) => marks[k][1] },
+      width,
+      height,
+      ...frame,
+      style: { color: colours.soft, background: 'none', fontSize: '10px' },
+      x: {
+        domain: [-0.5, cells.layers - 0.5],
+        ...alongPath(cells.s, 5),
+        label: vector || large ? 's, m' : null,
+        labelArrow: 'none',
+      },
+      y: {
+        domain: [-0.5, cells.angles - 0.5],
+        label: vector ? `${letter}, deg: ${panel.name}` : large ? `${letter}, deg` : null,
+        labelArrow: 'none',
+        labelAnchor: 'top',
+        ticks: marks.map(([place]) => place),
+        tickFormat: (_, k) => marks[k][1],
+      },
       marks: [
-        vector ? Plot.rect(this.runs(panel.index, colours), { x1: 'x1', x2: 'x2', y1: 'y1', y2: 'y2', fill: 'fill', shapeRendering: 'crispEdges' })
-          : this.picture(panel.index, colours, width - frame.marginLeft - frame.marginRight, height - frame.marginTop - frame.marginBottom),
+        vector
+          ? Plot.rect(this.runs(panel.index, colours), {
+              x1: 'x1',
+              x2: 'x2',
+              y1: 'y1',
+              y2: 'y2',
+              fill: 'fill',
+              shapeRendering: 'crispEdges',
+            })
+          : this.picture(
+              panel.index,
+              colours,
+              width - frame.marginLeft - frame.marginRight,
+              height - frame.marginTop - frame.marginBottom,
+            ),
         (_, { x, y }) => this.walls(panel.index, x, y),
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
-        cut === null ? null : Plot.ruleX([cut.layer + 0.5], { stroke: '#c2185b', strokeWidth: 2, strokeDasharray: '5 3' }),
+        cut === null
+          ? null
+          : Plot.ruleX([cut.layer + 0.5], {
+              stroke: '#c2185b',
+              strokeWidth: 2,
+              strokeDasharray: '5 3',
+            }),
         Plot.line(before, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 3 }),
-        Plot.line(before, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.2, strokeDasharray: '4 3' }),
+        Plot.line(before, {
+          x: 'x',
+          y: 'y',
+          stroke: '#000',
+          strokeWidth: 1.2,
+          strokeDasharray: '4 3',
+        }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 4.5 }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.8 }),
         Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#cc79a7', stroke: '#fff' }),
-        rows.length === 1 && !Number.isNaN(this.height(panel, rows[0])) ? Plot.dot(rows, { x: 'layer', y: (row) => this.height(panel, row), r: 4, fill: '#000', stroke: '#fff' }) : null,
+        rows.length === 1 && !Number.isNaN(this.height(panel, rows[0]))
+          ? Plot.dot(rows, {
+              x: 'layer',
+              y: (row) => this.height(panel, row),
+              r: 4,
+              fill: '#000',
+              stroke: '#fff',
+            })
+          : null,
       ],
     });
   }
   /** One pixel a cell. */
   picture(panel, colours, width, height) {
-    const { cells } = this, canvas = document.createElement('canvas'), known = new Map();
+    const { cells } = this,
+      canvas = document.createElement('canvas'),
+      known = new Map();
     canvas.width = cells.columns;
     canvas.height = cells.rows;
-    const pen = canvas.getContext('2d', { willReadFrequently: true }), image = pen.createImageData(cells.columns, cells.rows), pixels = new Uint32Array(image.data.buffer);
+    const pen = canvas.getContext('2d', { willReadFrequently: true }),
+      image = pen.createImageData(cells.columns, cells.rows),
+      pixels = new Uint32Array(image.data.buffer);
     const pixel = (k) => {
       const kind = cells.kind(k);
       if (!known.has(kind)) {
-        const [r, g, b] = cells.colour(k, colours).match(/[0-9a-f]{2}/g).map((part) => parseInt(part, 16));
+        const [r, g, b] = cells
+          .colour(k, colours)
+          .match(/[0-9a-f]{2}/g)
+          .map((part) => parseInt(part, 16));
         known.set(kind, (255 << 24) | (b << 16) | (g << 8) | r);
       }
       return known.get(kind);
     };
     for (let column = 0; column < cells.columns; ++column)
-      for (let row = 0; row < cells.rows; ++row) pixels[(cells.rows - 1 - row) * cells.columns + column] = pixel(cells.index(panel, column, row));
+      for (let row = 0; row < cells.rows; ++row)
+        pixels[(cells.rows - 1 - row) * cells.columns + column] = pixel(
+          cells.index(panel, column, row),
+        );
     pen.putImageData(image, 0, 0);
     // The last column and row may stand for fewer layers and angles than the others.
-    const layers = cells.columns * cells.layers_each, angles = cells.rows * cells.angles_each;
-    return Plot.image([canvas.toDataURL()], { src: (url) => url, x: () => (layers - 1) / 2, y: () => (angles - 1) / 2, width: (width * layers) / cells.layers,
-      height: (height * angles) / cells.angles, preserveAspectRatio: 'none', imageRendering: 'pixelated', clip: 'frame' });
+    const layers = cells.columns * cells.layers_each,
+      angles = cells.rows * cells.angles_each;
+    return Plot.image([canvas.toDataURL()], {
+      src: (url) => url,
+      x: () => (layers - 1) / 2,
+      y: () => (angles - 1) / 2,
+      width: (width * layers) / cells.layers,
+      height: (height * angles) / cells.angles,
+      preserveAspectRatio: 'none',
+      imageRendering: 'pixelated',
+      clip: 'frame',
+    });
   }
   /** Cells alike, side by side along s, as one rectangle. */
   runs(panel, colours) {
-    const { cells } = this, runs = [];
+    const { cells } = this,
+      runs = [];
     for (let row = 0; row < cells.rows; ++row)
       for (let column = 0, end; column < cells.columns; column = end) {
         const k = cells.index(panel, column, row);
-        for (end = column + 1; end < cells.columns && cells.kind(cells.index(panel, end, row)) === cells.kind(k);) ++end;
+        for (
+          end = column + 1;
+          end < cells.columns && cells.kind(cells.index(panel, end, row)) === cells.kind(k);
+        )
+          ++end;
         const fill = cells.colour(k, colours);
         if (fill === colours.nothing) continue;
         const edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
-        runs.push({ fill, x1: edge(column, cells.layers_each, cells.layers), x2: edge(end, cells.layers_each, cells.layers),
-          y1: edge(row, cells.angles_each, cells.angles), y2: edge(row + 1, cells.angles_each, cells.angles) });
+        runs.push({
+          fill,
+          x1: edge(column, cells.layers_each, cells.layers),
+          x2: edge(end, cells.layers_each, cells.layers),
+          y1: edge(row, cells.angles_each, cells.angles),
+          y2: edge(row + 1, cells.angles_each, cells.angles),
+        });
       }
     return runs;
   }
-  /** Lines between cells that have the same colour but another cause: limits of two joints, two bodies before one object. */
+  /**
+   * Lines between cells that have the same colour but another cause: limits of two joints, two
+   * bodies before one object.
+   */
   walls(panel, x, y) {
-    const { cells } = this, edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
-    const parts = (k, other) => cells.state(k) === cells.state(other) && (cells.state(k) === kLimit || cells.state(k) === kBlocked) && cells.causes[k] !== cells.causes[other];
+    const { cells } = this,
+      edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
+    const parts = (k, other) =>
+      cells.state(k) === cells.state(other) &&
+      (cells.state(k) === kLimit || cells.state(k) === kBlocked) &&
+      cells.causes[k] !== cells.causes[other];
     let d = '';
     for (let column = 0; column < cells.columns; ++column)
       for (let row = 0; row < cells.rows; ++row) {
-        const k = cells.index(panel, column, row), left = x(edge(column, cells.layers_each, cells.layers)).toFixed(1), low = y(edge(row, cells.angles_each, cells.angles)).toFixed(1);
-        if (column && parts(k, cells.index(panel, column - 1, row))) d += `M${left},${low}V${y(edge(row + 1, cells.angles_each, cells.angles)).toFixed(1)}`;
-        if (row && parts(k, cells.index(panel, column, row - 1))) d += `M${left},${low}H${x(edge(column + 1, cells.layers_each, cells.layers)).toFixed(1)}`;
+        const k = cells.index(panel, column, row),
+          left = x(edge(column, cells.layers_each, cells.layers)).toFixed(1),
+          low = y(edge(row, cells.angles_each, cells.angles)).toFixed(1);
+        if (column && parts(k, cells.index(panel, column - 1, row)))
+          d += `M${left},${low}V${y(edge(row + 1, cells.angles_each, cells.angles)).toFixed(1)}`;
+        if (row && parts(k, cells.index(panel, column, row - 1)))
+          d += `M${left},${low}H${x(edge(column + 1, cells.layers_each, cells.layers)).toFixed(1)}`;
       }
     const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-    for (const [name, value] of Object.entries({ d, fill: 'none', stroke: '#3b4652', 'stroke-opacity': 0.45, 'stroke-width': 0.7 })) path.setAttribute(name, value);
+    for (const [name, value] of Object.entries({
+      d,
+      fill: 'none',
+      stroke: '#3b4652',
+      'stroke-opacity': 0.45,
+      'stroke-width': 0.7,
+    }))
+      path.setAttribute(name, value);
     return path;
   }
   /** Everything anew: at the start, and when the theme or the width changes. */
   paint() {
     const colours = { soft: style('--soft'), unseen: style('--unseen'), nothing: style('--void') };
     for (const panel of this.panels) {
-      const drawing = this.drawing(panel, panel.chart.clientWidth, panel.box.classList.contains('other') ? 92 : 236, colours);
+      const drawing = this.drawing(
+        panel,
+        panel.chart.clientWidth,
+        panel.box.classList.contains('other') ? 92 : 236,
+        colours,
+      );
       Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
       panel.chart.replaceChildren(drawing);
     }
     const legend = document.getElementById('legend');
-    legend.replaceChildren(...this.cells.legend(colours).map(([meaning, colour]) => {
-      const entry = document.createElement('span'), swatch = document.createElement('i');
-      swatch.style.background = colour;
-      entry.append(swatch, meaning);
-      return entry;
-    }));
+    legend.replaceChildren(
+      ...this.cells.legend(colours).map(([meaning, colour]) => {
+        const entry = document.createElement('span'),
+          swatch = document.createElement('i');
+        swatch.style.background = colour;
+        entry.append(swatch, meaning);
+        return entry;
+      }),
+    );
     this.draw(this.pose);
   }
   /** The cursor alone, which moves with every frame: to a pose, or none. */
@@ -160,18 +319,39 @@ export class Panels {
       if (!here) continue;
       const left = x.apply(here.layer).toFixed(1);
       line.style.transform = `translateX(${left}px)`;
-      if (!dot.hidden) dot.style.transform = `translate(${left}px, ${y.apply(this.height(panel, here)).toFixed(1)}px)`;
+      if (!dot.hidden) {
+        const top = y.apply(this.height(panel, here)).toFixed(1);
+        dot.style.transform = `translate(${left}px, ${top}px)`;
+      }
     }
   }
   /** The map as one drawing for papers. */
   figure() {
     const drawings = this.panels.map((panel) => this.drawing(panel, 640, 240, PAPER, true));
     const legend = Plot.plot({
-      width: 640, height: 18 * this.cells.legend(PAPER).length + 12, margin: 6, axis: null, style: { color: PAPER.ink, background: 'none', fontSize: '11px' },
-      x: { domain: [0, 1] }, y: { domain: [this.cells.legend(PAPER).length, 0] },
+      width: 640,
+      height: 18 * this.cells.legend(PAPER).length + 12,
+      margin: 6,
+      axis: null,
+      style: { color: PAPER.ink, background: 'none', fontSize: '11px' },
+      x: { domain: [0, 1] },
+      y: { domain: [this.cells.legend(PAPER).length, 0] },
       marks: [
-        Plot.rect(this.cells.legend(PAPER), { x1: 0.045, x2: 0.065, y1: (_, k) => k + 0.15, y2: (_, k) => k + 0.75, fill: ([, colour]) => colour, stroke: '#999', strokeWidth: 0.5 }),
-        Plot.text(this.cells.legend(PAPER), { x: 0.08, y: (_, k) => k + 0.45, text: ([meaning]) => meaning, textAnchor: 'start' }),
+        Plot.rect(this.cells.legend(PAPER), {
+          x1: 0.045,
+          x2: 0.065,
+          y1: (_, k) => k + 0.15,
+          y2: (_, k) => k + 0.75,
+          fill: ([, colour]) => colour,
+          stroke: '#999',
+          strokeWidth: 0.5,
+        }),
+        Plot.text(this.cells.legend(PAPER), {
+          x: 0.08,
+          y: (_, k) => k + 0.45,
+          text: ([meaning]) => meaning,
+          textAnchor: 'start',
+        }),
       ],
     });
     return sheet([...drawings, legend]);

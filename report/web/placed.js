@@ -5,7 +5,7 @@ import { displacements, matrix } from './kinematics.js';
 import { $, data, isDark } from './page.js';
 import { View } from './scene.js';
 
-const kSeconds = 8;  // that a path takes
+const kSeconds = 8; // that a path takes
 /** For those who test the page: the placement and its joints shown now, pictures drawn. */
 window.swivel = { cell: null, joints: null, frames: 0 };
 
@@ -14,14 +14,24 @@ export class Placed {
     this.chain = chain;
     this.plans = new Map(plans.map((plan) => [plan.cell, plan]));
     Object.assign(this, { cursor: 0, playing: false });
-    $('slider').addEventListener('input', ({ target }) => { this.pause(); this.go(Number(target.value)); });
+    $('slider').addEventListener('input', ({ target }) => {
+      this.pause();
+      this.go(Number(target.value));
+    });
     $('play').addEventListener('click', () => (this.playing ? this.pause() : this.play()));
-    $('views').addEventListener('change', ({ target }) => { this.view?.look(target.value); target.value = ''; });
-    $('names').addEventListener('change', ({ target }) => $('view').classList.toggle('nameless', !target.checked));
+    $('views').addEventListener('change', ({ target }) => {
+      this.view?.look(target.value);
+      target.value = '';
+    });
+    $('names').addEventListener('change', ({ target }) =>
+      $('view').classList.toggle('nameless', !target.checked),
+    );
     // The page can be read before WebGL has started, which takes longest.
     requestAnimationFrame(() => setTimeout(() => this.start()));
   }
-  has(cell) { return this.plans.has(cell); }
+  has(cell) {
+    return this.plans.has(cell);
+  }
   start() {
     try {
       this.view = new View($('scene'), $('gap'), this.shown);
@@ -44,10 +54,17 @@ export class Placed {
   }
   /** Shows the plan of one of its placements, from the beginning. */
   open(cell, offset) {
-    const plan = this.plans.get(cell), joints = new Float32Array(bytes(plan.joints)), s = new Float32Array(bytes(plan.s));
-    const rows = [...s].map((at, k) => ({ s: at, q: [...joints.subarray(k * this.chain.joints.length, (k + 1) * this.chain.joints.length)] }));
+    const plan = this.plans.get(cell),
+      joints = new Float32Array(bytes(plan.joints)),
+      s = new Float32Array(bytes(plan.s));
+    const rows = [...s].map((at, k) => ({
+      s: at,
+      q: [...joints.subarray(k * this.chain.joints.length, (k + 1) * this.chain.joints.length)],
+    }));
     const tool = matrix(this.chain.home);
-    const tool_path = rows.map(({ q }) => displacements(this.chain, q).at(-1).multiply(tool).elements.slice(12, 15));
+    const tool_path = rows.map(({ q }) =>
+      displacements(this.chain, q).at(-1).multiply(tool).elements.slice(12, 15),
+    );
     this.shown = { ...data.scene, rows, tool_path, poses: plan.poses };
     Object.assign(this, { plan, offset, cursor: 0 });
     window.swivel.cell = cell;
@@ -62,18 +79,28 @@ export class Placed {
   lay(squares) {
     this.squares = squares;
     if (!this.view) return;
-    const [x, y] = data.scene.origin, { offset } = this;
-    this.view.lay(squares.map((square) => ({ ...square, x: x + square.x, y: y + square.y })), this.plan.still_frame, [x + (offset.x ?? 0), y + (offset.y ?? 0)]);
+    const [x, y] = data.scene.origin,
+      { offset } = this;
+    this.view.lay(
+      squares.map((square) => ({ ...square, x: x + square.x, y: y + square.y })),
+      this.plan.still_frame,
+      [x + (offset.x ?? 0), y + (offset.y ?? 0)],
+    );
   }
   go(k) {
-    const { rows } = this.shown, last = rows.length - 1;
+    const { rows } = this.shown,
+      last = rows.length - 1;
     this.cursor = Math.min(last, Math.max(0, k));
-    const i = Math.min(Math.floor(this.cursor), Math.max(0, last - 1)), f = this.cursor - i, a = rows[i], b = rows[Math.min(i + 1, last)];
+    const i = Math.min(Math.floor(this.cursor), Math.max(0, last - 1)),
+      f = this.cursor - i,
+      a = rows[i],
+      b = rows[Math.min(i + 1, last)];
     const q = a.q.map((v, j) => v + f * (b.q[j] - v));
     window.swivel.joints = q;
     this.view?.pose(q, null);
     $('slider').value = this.cursor;
-    $('where').textContent = `s ${(a.s + f * (b.s - a.s)).toFixed(3)} of ${rows[last].s.toFixed(3)} m`;
+    $('where').textContent =
+      `s ${(a.s + f * (b.s - a.s)).toFixed(3)} of ${rows[last].s.toFixed(3)} m`;
   }
   play() {
     if (this.cursor >= this.shown.rows.length - 1) this.go(0);
@@ -94,5 +121,7 @@ export class Placed {
     this.before = now;
     if (this.cursor >= last) this.pause();
   }
-  paint() { this.view?.background(isDark() ? '#1a2027' : '#ffffff'); }
+  paint() {
+    this.view?.background(isDark() ? '#1a2027' : '#ffffff');
+  }
 }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How many pixels are drawn for each of the page's: many at rest, for smooth edges, and while the picture moves as many as the
-// machine manages at thirty frames a second. Measured, not guessed from the name of the graphics card.
-const kRestMs = 400, kFrames = 8, kSlow = 1000 / 32, kFast = 1000 / 55, kLeast = 0.5;
+// How many pixels are drawn for each of the page's: many at rest, for smooth edges, and while the
+// picture moves as many as the machine manages at thirty frames a second. Measured, not guessed
+// from the name of the graphics card.
+const kRestMs = 400,
+  kFrames = 8,
+  kSlow = 1000 / 32,
+  kFast = 1000 / 55,
+  kLeast = 0.5;
 
 export class Quality {
   constructor() {
@@ -11,10 +16,13 @@ export class Quality {
     this.moved = this.before = performance.now();
   }
   /** Whether round bodies had better have few corners. */
-  get coarse() { return this.ratio < Math.min(1, devicePixelRatio); }
+  get coarse() {
+    return this.ratio < Math.min(1, devicePixelRatio);
+  }
   /** Called for every frame of the browser. True where `ratio` is another than before. */
   changed(now, moves) {
-    const old = this.ratio, ms = now - this.before;
+    const old = this.ratio,
+      ms = now - this.before;
     this.before = now;
     if (moves) {
       this.ratio = this.moving;
@@ -32,7 +40,8 @@ export class Quality {
     const median = [...this.times].sort((a, b) => a - b)[kFrames >> 1];
     this.times = [];
     if (median > kSlow) this.ratio = this.moving = Math.max(kLeast, this.moving / Math.SQRT2);
-    else if (median < kFast && this.moving < this.best && !this.limit) this.ratio = this.moving = Math.min(this.best, this.moving * Math.SQRT2);
-    if (median > kSlow) this.limit = true;  // not up and down for ever
+    else if (median < kFast && this.moving < this.best && !this.limit)
+      this.ratio = this.moving = Math.min(this.best, this.moving * Math.SQRT2);
+    if (median > kSlow) this.limit = true; // not up and down for ever
   }
 }

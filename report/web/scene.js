@@ -8,12 +8,23 @@ import { displacements, matrix, vector } from './kinematics.js';
 import { Quality } from './quality.js';
 import { surface } from './surface.js';
 
-const kFine = 24, kCoarse = 10;
+const kFine = 24,
+  kCoarse = 10;
 
-/** From blue (0) over grey to yellow (1): told apart by all kinds of colour vision. After cividis. */
+/**
+ * From blue (0) over grey to yellow (1): told apart by all kinds of colour vision. After cividis.
+ */
 export function ramp(t) {
-  const stops = [[0, 45, 110], [90, 96, 110], [143, 139, 120], [203, 186, 105], [253, 231, 55]];
-  const x = Math.min(0.9999, Math.max(0, t)) * 4, k = Math.floor(x), f = x - k;
+  const stops = [
+    [0, 45, 110],
+    [90, 96, 110],
+    [143, 139, 120],
+    [203, 186, 105],
+    [253, 231, 55],
+  ];
+  const x = Math.min(0.9999, Math.max(0, t)) * 4,
+    k = Math.floor(x),
+    f = x - k;
   return stops[k].map((v, c) => (v + f * (stops[k + 1][c] - v)) / 255);
 }
 
@@ -22,18 +33,32 @@ function geometry(body, meshes, around) {
   let shape;
   if (body.sphere) shape = new THREE.SphereGeometry(body.sphere, around, around >> 1);
   else if (body.box) shape = new THREE.BoxGeometry(...body.box);
-  else if (body.cylinder) shape = new THREE.CylinderGeometry(body.cylinder[0], body.cylinder[0], body.cylinder[1], around);
-  else if (body.capsule) shape = new THREE.CapsuleGeometry(body.capsule[0], body.capsule[1], around >> 2, around);
+  else if (body.cylinder)
+    shape = new THREE.CylinderGeometry(
+      body.cylinder[0],
+      body.cylinder[0],
+      body.cylinder[1],
+      around,
+    );
+  else if (body.capsule)
+    shape = new THREE.CapsuleGeometry(body.capsule[0], body.capsule[1], around >> 2, around);
   else {
     shape = new THREE.BufferGeometry();
-    shape.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytes(meshes[body.mesh].vertices)), 3));
-    shape.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes(meshes[body.mesh].triangles)), 1));
+    shape.setAttribute(
+      'position',
+      new THREE.BufferAttribute(new Float32Array(bytes(meshes[body.mesh].vertices)), 3),
+    );
+    shape.setIndex(
+      new THREE.BufferAttribute(new Uint32Array(bytes(meshes[body.mesh].triangles)), 1),
+    );
     shape = shape.toNonIndexed();
     shape.computeVertexNormals();
-    shape.setIndex([...Array(shape.attributes.position.count).keys()]);  // all geometries alike, so that they can be merged
+    // All geometries alike, so that they can be merged.
+    shape.setIndex([...Array(shape.attributes.position.count).keys()]);
   }
   shape.deleteAttribute('uv');
-  if (body.cylinder || body.capsule) shape.rotateX(Math.PI / 2);  // three.js turns about y, swivel about z
+  // three.js turns about y, swivel about z.
+  if (body.cylinder || body.capsule) shape.rotateX(Math.PI / 2);
   return shape;
 }
 
@@ -44,18 +69,28 @@ export class View {
   /** gap: an element that is kept beside the line between the nearest bodies. */
   constructor(canvas, gap, data) {
     Object.assign(this, { canvas, gap });
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });  // edges are smoothed by drawing more pixels at rest
+    // Edges are smoothed by drawing more pixels at rest.
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.quality = new Quality();
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.02, 50);
     this.camera.up.set(0, 0, 1);
     this.addGrid();
     this.parts = data.bodies.map((body) => {
-      const fine = geometry(body, data.meshes, kFine), coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
+      const fine = geometry(body, data.meshes, kFine),
+        coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
       return { body, fine, coarse, rest: matrix(body.pose) };
     });
-    this.materials = { robot: surface(0xf0a830), tool: surface(0x59636f), scene: surface(0x93a3b3, { twoSided: true }), fixed: surface(0xb4b9bf),
-      near: surface(0xe58fc0), 'near scene': surface(0xc3a3bf, { twoSided: true }), hit: surface(0xd11f1f), 'hit scene': surface(0xd9705f, { twoSided: true }) };
+    this.materials = {
+      robot: surface(0xf0a830),
+      tool: surface(0x59636f),
+      scene: surface(0x93a3b3, { twoSided: true }),
+      fixed: surface(0xb4b9bf),
+      near: surface(0xe58fc0),
+      'near scene': surface(0xc3a3bf, { twoSided: true }),
+      hit: surface(0xd11f1f),
+      'hit scene': surface(0xd9705f, { twoSided: true }),
+    };
     this.arm = this.parts.map((part) => {
       const mesh = new THREE.Mesh(part.fine, this.materials[kindOf(part.body)]);
       mesh.matrixAutoUpdate = false;
@@ -73,10 +108,16 @@ export class View {
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
   }
-  /** Another plan of the same arm among the same bodies. poses: of the scene's objects in their order, where they stand elsewhere. */
+  /**
+   * Another plan of the same arm among the same bodies. poses: of the scene's objects in their
+   * order, where they stand elsewhere.
+   */
   show(data) {
     this.data = data;
-    if (data.poses) this.parts.filter(({ body }) => body.kind === 'scene').forEach(({ rest }, k) => rest.copy(matrix(data.poses[k])));
+    if (data.poses)
+      this.parts
+        .filter(({ body }) => body.kind === 'scene')
+        .forEach(({ rest }, k) => rest.copy(matrix(data.poses[k])));
     this.shown?.traverse(({ geometry }) => geometry?.dispose());
     this.shown?.removeFromParent();
     for (const { label } of this.names ?? []) label.remove();
@@ -87,20 +128,39 @@ export class View {
     this.addNames();
     this.dirty = true;
   }
-  /** Coloured squares { x, y, half: [hx, hy], colour } in a frame (its pose), below all that stands on them; a ring at one point of theirs. */
+  /**
+   * Coloured squares { x, y, half: [hx, hy], colour } in a frame (its pose), below all that stands
+   * on them; a ring at one point of theirs.
+   */
   lay(squares, frame, ring) {
     this.floor?.traverse(({ geometry }) => geometry?.dispose());
     this.floor?.removeFromParent();
-    const corners = new Float32Array(12 * squares.length), colours = new Float32Array(12 * squares.length), index = new Uint32Array(6 * squares.length), known = new Map();
-    const rgb = (colour) => known.get(colour) ?? known.set(colour, new THREE.Color(colour).convertLinearToSRGB().toArray()).get(colour);
+    const corners = new Float32Array(12 * squares.length),
+      colours = new Float32Array(12 * squares.length),
+      index = new Uint32Array(6 * squares.length),
+      known = new Map();
+    const rgb = (colour) =>
+      known.get(colour) ??
+      known.set(colour, new THREE.Color(colour).convertLinearToSRGB().toArray()).get(colour);
     squares.forEach(({ x, y, half: [hx, hy], colour }, k) => {
-      corners.set([x - hx, y - hy, 0, x + hx, y - hy, 0, x + hx, y + hy, 0, x - hx, y + hy, 0], 12 * k);
+      corners.set(
+        [x - hx, y - hy, 0, x + hx, y - hy, 0, x + hx, y + hy, 0, x - hx, y + hy, 0],
+        12 * k,
+      );
       for (let c = 0; c < 4; ++c) colours.set(rgb(colour), 12 * k + 3 * c);
-      index.set([0, 1, 2, 0, 2, 3].map((c) => 4 * k + c), 6 * k);
+      index.set(
+        [0, 1, 2, 0, 2, 3].map((c) => 4 * k + c),
+        6 * k,
+      );
     });
-    const shape = new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(corners, 3)).setAttribute('color', new THREE.BufferAttribute(colours, 3))
+    const shape = new THREE.BufferGeometry()
+      .setAttribute('position', new THREE.BufferAttribute(corners, 3))
+      .setAttribute('color', new THREE.BufferAttribute(colours, 3))
       .setIndex(new THREE.BufferAttribute(index, 1));
-    const mark = new THREE.Mesh(new THREE.RingGeometry(0.012, 0.018, 32), surface(0x000000, { lit: false, side: THREE.DoubleSide }));
+    const mark = new THREE.Mesh(
+      new THREE.RingGeometry(0.012, 0.018, 32),
+      surface(0x000000, { lit: false, side: THREE.DoubleSide }),
+    );
     mark.position.set(...ring, 0.001);
     this.floor = new THREE.Group();
     this.floor.add(new THREE.Mesh(shape, surface(null, { lit: false, twoSided: true })), mark);
@@ -112,10 +172,12 @@ export class View {
   }
   /** z of the lowest point of the scene. */
   lowest() {
-    return this.parts.filter(({ body }) => body.kind === 'scene').reduce((least, { fine, rest }) => {
-      fine.computeBoundingBox();
-      return Math.min(least, fine.boundingBox.clone().applyMatrix4(rest).min.z);
-    }, Infinity);
+    return this.parts
+      .filter(({ body }) => body.kind === 'scene')
+      .reduce((least, { fine, rest }) => {
+        fine.computeBoundingBox();
+        return Math.min(least, fine.boundingBox.clone().applyMatrix4(rest).min.z);
+      }, Infinity);
   }
   addGrid() {
     const grid = new THREE.GridHelper(4, 20);
@@ -130,23 +192,54 @@ export class View {
     this.shown.add(this.ghosts);
     const { rows, chain } = this.data;
     if (rows.length < 2) return;
-    for (const [row, colour] of [[rows[0], 0x0072b2], [rows.at(-1), 0x009e73]]) {
+    for (const [row, colour] of [
+      [rows[0], 0x0072b2],
+      [rows.at(-1), 0x009e73],
+    ]) {
       const g = displacements(chain, row.q);
-      const bodies = this.parts.filter(({ body }) => body.group > 0)
-        .map(({ body, coarse, rest }) => coarse.clone().applyMatrix4(g[body.group].clone().multiply(rest)));
-      this.ghosts.add(new THREE.Mesh(mergeGeometries(bodies), surface(colour, { opacity: 0.2, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 })));
+      const bodies = this.parts
+        .filter(({ body }) => body.group > 0)
+        .map(({ body, coarse, rest }) =>
+          coarse.clone().applyMatrix4(g[body.group].clone().multiply(rest)),
+        );
+      this.ghosts.add(
+        new THREE.Mesh(
+          mergeGeometries(bodies),
+          surface(colour, {
+            opacity: 0.2,
+            polygonOffset: true,
+            polygonOffsetFactor: 1,
+            polygonOffsetUnits: 1,
+          }),
+        ),
+      );
     }
   }
   addPath() {
     const points = this.data.tool_path.map(vector);
     this.rings = Math.min(2 * points.length, 200);
-    const tube = points.length > 1 ? new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points, false, 'centripetal'), this.rings, 0.004, 5) : new THREE.BufferGeometry();
+    const tube =
+      points.length > 1
+        ? new THREE.TubeGeometry(
+            new THREE.CatmullRomCurve3(points, false, 'centripetal'),
+            this.rings,
+            0.004,
+            5,
+          )
+        : new THREE.BufferGeometry();
     this.line = new THREE.Mesh(tube, surface(null));
     // What bodies hide of the path shows through them, faintly; arrows tell its direction.
-    const through = Object.assign(new THREE.Mesh(tube, surface(null, { opacity: 0.3, lit: false, depthTest: false })), { renderOrder: 1 });
+    const through = Object.assign(
+      new THREE.Mesh(tube, surface(null, { opacity: 0.3, lit: false, depthTest: false })),
+      { renderOrder: 1 },
+    );
     this.shown.add(this.line, through);
-    const length = points.reduce((sum, point, k) => sum + (k ? point.distanceTo(points[k - 1]) : 0), 0);
-    const cone = new THREE.ConeGeometry(0.011, 0.03, 10).rotateX(Math.PI / 2), arrow = surface(0x1b222b, { opacity: 0.75, depthTest: false });
+    const length = points.reduce(
+      (sum, point, k) => sum + (k ? point.distanceTo(points[k - 1]) : 0),
+      0,
+    );
+    const cone = new THREE.ConeGeometry(0.011, 0.03, 10).rotateX(Math.PI / 2),
+      arrow = surface(0x1b222b, { opacity: 0.75, depthTest: false });
     for (let k = 1, passed = 0, next = length / 8; k < points.length && length > 0.05; ++k) {
       const way = points[k].clone().sub(points[k - 1]);
       passed += way.length();
@@ -157,22 +250,34 @@ export class View {
       mesh.lookAt(points[k].clone().add(way));
       this.shown.add(mesh);
     }
-    this.around = 6;  // vertices of a ring: the first again at the end
+    this.around = 6; // vertices of a ring: the first again at the end
   }
   /** The shortest line between two bodies, drawn over everything. */
   addNearest() {
     const material = surface(0xc2185b, { lit: false, depthTest: false });
-    const rod = new THREE.CylinderGeometry(0.0025, 0.0025, 1, 6).rotateX(Math.PI / 2), dot = new THREE.SphereGeometry(0.007, 10, 8);
+    const rod = new THREE.CylinderGeometry(0.0025, 0.0025, 1, 6).rotateX(Math.PI / 2),
+      dot = new THREE.SphereGeometry(0.007, 10, 8);
     this.nearest = new THREE.Group();
-    this.nearest.add(...[rod, dot, dot].map((shape) => Object.assign(new THREE.Mesh(shape, material), { renderOrder: 1 })));
+    this.nearest.add(
+      ...[rod, dot, dot].map((shape) =>
+        Object.assign(new THREE.Mesh(shape, material), { renderOrder: 1 }),
+      ),
+    );
     this.nearest.visible = false;
     this.scene.add(this.nearest);
   }
   /** The tool's frame: x red, y green, z blue. */
   addTool() {
     this.tool = new THREE.Group();
-    for (const [axis, colour] of [[[1, 0, 0], 0xd62728], [[0, 1, 0], 0x2ca02c], [[0, 0, 1], 0x1f4fd6]]) {
-      const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.003, 0.003, 0.07, 6).translate(0, 0.035, 0), surface(colour, { lit: false, depthTest: false }));
+    for (const [axis, colour] of [
+      [[1, 0, 0], 0xd62728],
+      [[0, 1, 0], 0x2ca02c],
+      [[0, 0, 1], 0x1f4fd6],
+    ]) {
+      const rod = new THREE.Mesh(
+        new THREE.CylinderGeometry(0.003, 0.003, 0.07, 6).translate(0, 0.035, 0),
+        surface(colour, { lit: false, depthTest: false }),
+      );
       rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector(axis));
       rod.renderOrder = 2;
       this.tool.add(rod);
@@ -201,7 +306,9 @@ export class View {
   }
   /** The path, and the arm's bodies that move at both ends of it: what should be seen. */
   subject() {
-    const { rows, cut, chain, tool_path } = this.data, box = new THREE.Box3().setFromPoints(tool_path.map(vector)), centres = [];
+    const { rows, cut, chain, tool_path } = this.data,
+      box = new THREE.Box3().setFromPoints(tool_path.map(vector)),
+      centres = [];
     for (const { q } of rows.length ? [rows[0], rows.at(-1)] : cut ? [cut] : []) {
       const g = displacements(chain, q);
       for (const { body, coarse, rest } of this.parts) {
@@ -214,28 +321,54 @@ export class View {
     }
     return { box, centres };
   }
-  /** From where most of the path, of the arm and of the place that is nearest to something is seen past what stands still. */
+  /**
+   * From where most of the path, of the arm and of the place that is nearest to something is seen
+   * past what stands still.
+   */
   bestDirection({ box, centres }) {
-    const { tool_path, rows } = this.data, path = tool_path.map(vector), target = box.getCenter(new THREE.Vector3()), radius = box.getSize(new THREE.Vector3()).length();
-    const nearest = rows.filter((row) => row.nearest).sort((a, b) => a.clearance_mm - b.clearance_mm).slice(0, 1).map((row) => vector(row.nearest));
-    const marks = [...Array.from({ length: 10 }, (_, k) => [path[Math.round((k / 9) * (path.length - 1))], 2]), ...nearest.map((p) => [p, 6]), ...centres.map((p) => [p, 8 / centres.length])];
+    const { tool_path, rows } = this.data,
+      path = tool_path.map(vector),
+      target = box.getCenter(new THREE.Vector3()),
+      radius = box.getSize(new THREE.Vector3()).length();
+    const nearest = rows
+      .filter((row) => row.nearest)
+      .sort((a, b) => a.clearance_mm - b.clearance_mm)
+      .slice(0, 1)
+      .map((row) => vector(row.nearest));
+    const marks = [
+      ...Array.from({ length: 10 }, (_, k) => [path[Math.round((k / 9) * (path.length - 1))], 2]),
+      ...nearest.map((p) => [p, 6]),
+      ...centres.map((p) => [p, 8 / centres.length]),
+    ];
     const still = this.arm.filter((mesh) => mesh.userData.body.group === 0);
     // Heavy meshes are boxes here: a ray against each of their triangles would take seconds.
     const boxes = still.map((mesh) => {
       mesh.updateMatrixWorld();
       const { fine, rest } = mesh.userData;
       fine.computeBoundingBox();
-      return { mesh, light: fine.index === null || fine.index.count < 6000, box: fine.boundingBox.clone().expandByScalar(-0.002), inverse: rest.clone().invert() };
+      return {
+        mesh,
+        light: fine.index === null || fine.index.count < 6000,
+        box: fine.boundingBox.clone().expandByScalar(-0.002),
+        inverse: rest.clone().invert(),
+      };
     });
-    const caster = new THREE.Raycaster(), local = new THREE.Ray();
+    const caster = new THREE.Raycaster(),
+      local = new THREE.Ray();
     const hidden = (from, to) => {
-      const way = to.clone().sub(from), far = way.length() - 0.01;
+      const way = to.clone().sub(from),
+        far = way.length() - 0.01;
       caster.set(from, way.normalize());
       caster.far = far;
       return boxes.some(({ mesh, light, box: own, inverse }) => {
-        const hit = local.copy(caster.ray).applyMatrix4(inverse).intersectBox(own, new THREE.Vector3());
+        const hit = local
+          .copy(caster.ray)
+          .applyMatrix4(inverse)
+          .intersectBox(own, new THREE.Vector3());
         if (!hit || hit.distanceTo(local.origin) > far) return false;
-        return light ? caster.intersectObject(mesh).length > 0 : !own.containsPoint(to.clone().applyMatrix4(inverse));
+        return light
+          ? caster.intersectObject(mesh).length > 0
+          : !own.containsPoint(to.clone().applyMatrix4(inverse));
       });
     };
     const along = path.at(-1).clone().sub(path[0]).normalize();
@@ -243,38 +376,66 @@ export class View {
     for (const up of [0.3, 0.62, 1.0])
       for (let k = 0; k < 16; ++k) {
         const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 8;
-        const direction = new THREE.Vector3(Math.cos(turn) * Math.cos(up), Math.sin(turn) * Math.cos(up), Math.sin(up)), from = target.clone().addScaledVector(direction, 1.6 * radius);
-        let score = 3 * Math.sqrt(1 - along.dot(direction) ** 2) + (up === 0.62 ? 1 : 0) - 0.05 * Math.min(k, 16 - k);
+        const direction = new THREE.Vector3(
+            Math.cos(turn) * Math.cos(up),
+            Math.sin(turn) * Math.cos(up),
+            Math.sin(up),
+          ),
+          from = target.clone().addScaledVector(direction, 1.6 * radius);
+        let score =
+          3 * Math.sqrt(1 - along.dot(direction) ** 2) +
+          (up === 0.62 ? 1 : 0) -
+          0.05 * Math.min(k, 16 - k);
         for (const [point, worth] of marks) score += hidden(from, point) ? 0 : worth;
         if (best === null || score > best.score) best = { score, direction };
       }
     return best.direction;
   }
-  /** 'best', 'fit' (from where it is seen now), 'front', 'side', 'top': arm and path into the picture. */
+  /**
+   * 'best', 'fit' (from where it is seen now), 'front', 'side', 'top': arm and path into the
+   * picture.
+   */
   look(from) {
-    const subject = this.subject(), ball = subject.box.getBoundingSphere(new THREE.Sphere());
-    const direction = { front: () => new THREE.Vector3(1, 0, 0.001), side: () => new THREE.Vector3(0, -1, 0.001), top: () => new THREE.Vector3(-0.001, 0, 1),
-      fit: () => this.camera.position.clone().sub(this.orbit.target).normalize(), best: () => this.bestDirection(subject) }[from]();
-    const half = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect));
-    this.camera.position.copy(ball.center).addScaledVector(direction, Math.max(0.3, (0.88 * ball.radius) / Math.sin(half)));
+    const subject = this.subject(),
+      ball = subject.box.getBoundingSphere(new THREE.Sphere());
+    const direction = {
+      front: () => new THREE.Vector3(1, 0, 0.001),
+      side: () => new THREE.Vector3(0, -1, 0.001),
+      top: () => new THREE.Vector3(-0.001, 0, 1),
+      fit: () => this.camera.position.clone().sub(this.orbit.target).normalize(),
+      best: () => this.bestDirection(subject),
+    }[from]();
+    const half = Math.atan(
+      Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect),
+    );
+    this.camera.position
+      .copy(ball.center)
+      .addScaledVector(direction, Math.max(0.3, (0.88 * ball.radius) / Math.sin(half)));
     this.orbit.target.copy(ball.center);
     this.orbit.update();
     this.dirty = true;
   }
-  /** pair: names of the two bodies that are nearest, or that hit each other, or null; line: { points (six numbers), text } between them, or null. */
+  /**
+   * pair: names of the two bodies that are nearest, or that hit each other, or null; line: { points
+   * (six numbers), text } between them, or null.
+   */
   pose(q, pair, line = null, hit = false) {
     const g = displacements(this.data.chain, q);
     for (const mesh of this.arm) {
       const { body, rest } = mesh.userData;
       mesh.matrix.multiplyMatrices(g[body.group], rest);
-      const kind = pair?.includes(body.name) ? (hit ? 'hit' : 'near') + (body.kind === 'scene' ? ' scene' : '') : kindOf(body);
+      const kind = pair?.includes(body.name)
+        ? (hit ? 'hit' : 'near') + (body.kind === 'scene' ? ' scene' : '')
+        : kindOf(body);
       mesh.material = this.materials[kind];
     }
     this.tool.matrix.multiplyMatrices(g.at(-1), matrix(this.data.chain.home));
     this.nearest.visible = line !== null;
     this.gap.hidden = line === null;
     if (line) {
-      const [rod, ...dots] = this.nearest.children, from = vector(line.points.slice(0, 3)), to = vector(line.points.slice(3));
+      const [rod, ...dots] = this.nearest.children,
+        from = vector(line.points.slice(0, 3)),
+        to = vector(line.points.slice(3));
       rod.position.lerpVectors(from, to, 0.5);
       rod.lookAt(to);
       rod.scale.z = Math.max(1e-6, from.distanceTo(to));
@@ -286,10 +447,15 @@ export class View {
   }
   /** values: one in 0..1 for each layer of the path, or NaN where nothing is known. */
   colourPath(values) {
-    const count = this.line.geometry.attributes.position?.count ?? 0, colours = new Float32Array(3 * count);
+    const count = this.line.geometry.attributes.position?.count ?? 0,
+      colours = new Float32Array(3 * count);
     for (let k = 0; k < count; ++k) {
-      const value = values[Math.round((Math.floor(k / this.around) / this.rings) * (values.length - 1))];
-      colours.set(Number.isNaN(value) || value === undefined ? [0.55, 0.55, 0.55] : ramp(value), 3 * k);
+      const value =
+        values[Math.round((Math.floor(k / this.around) / this.rings) * (values.length - 1))];
+      colours.set(
+        Number.isNaN(value) || value === undefined ? [0.55, 0.55, 0.55] : ramp(value),
+        3 * k,
+      );
     }
     this.line.geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
     this.dirty = true;
@@ -310,7 +476,8 @@ export class View {
   /** Draws if something changed; true when it did. now: ms; playing: more frames will follow. */
   draw(now, playing) {
     if (this.quality.changed(now, playing || this.moving)) {
-      for (const mesh of this.arm) mesh.geometry = this.quality.coarse ? mesh.userData.coarse : mesh.userData.fine;
+      for (const mesh of this.arm)
+        mesh.geometry = this.quality.coarse ? mesh.userData.coarse : mesh.userData.fine;
       this.resize();
     }
     if (!this.dirty) return false;
@@ -322,8 +489,12 @@ export class View {
   }
   /** An element beside a point of the scene. */
   place(element, point, right, down) {
-    const at = point.clone().project(this.camera), { width, height } = this.size;
-    const x = ((at.x + 1) / 2) * width + right, y = ((1 - at.y) / 2) * height + down;
-    element.style.transform = `translate(${Math.min(Math.max(4, x), width - element.offsetWidth - 4).toFixed(0)}px, ${Math.min(Math.max(4, y), height - 24).toFixed(0)}px)`;
+    const at = point.clone().project(this.camera),
+      { width, height } = this.size;
+    const x = ((at.x + 1) / 2) * width + right,
+      y = ((1 - at.y) / 2) * height + down;
+    const left = Math.min(Math.max(4, x), width - element.offsetWidth - 4).toFixed(0);
+    const top = Math.min(Math.max(4, y), height - 24).toFixed(0);
+    element.style.transform = `translate(${left}px, ${top}px)`;
   }
 }

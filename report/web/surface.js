@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One small shader for all that is drawn. Without a graphics card the shaders of three.js take a second to compile, and light
-// computed for each pixel halves the frames.
+// One small shader for all that is drawn. Without a graphics card the shaders of three.js take a
+// second to compile, and light computed for each pixel halves the frames.
 import { Color, DoubleSide, FrontSide, GLSL3, RawShaderMaterial } from 'three';
 
 const vertexShader = `
@@ -24,13 +24,28 @@ uniform float opacity;
 out vec4 colour;
 void main() { colour = vec4(shade, opacity); }`;
 
-/** A colour for the whole body, or null for the geometry's own. No texture, no shadow; rigid poses only. */
+/**
+ * A colour for the whole body, or null for the geometry's own. No texture, no shadow; rigid poses
+ * only.
+ */
 export function surface(colour, { opacity = 1, twoSided = false, lit = true, ...settings } = {}) {
   const material = new RawShaderMaterial({
-    glslVersion: GLSL3, vertexShader, fragmentShader,
-    uniforms: { tint: { value: colour === null ? [0, 0, 0] : new Color(colour).convertLinearToSRGB().toArray() }, opacity: { value: opacity },
-      twoSided: { value: twoSided ? 1 : 0 }, lit: { value: lit ? 1 : 0 } },
-    transparent: opacity < 1, depthWrite: opacity === 1, side: twoSided ? DoubleSide : FrontSide, forceSinglePass: true, ...settings,
+    glslVersion: GLSL3,
+    vertexShader,
+    fragmentShader,
+    uniforms: {
+      tint: {
+        value: colour === null ? [0, 0, 0] : new Color(colour).convertLinearToSRGB().toArray(),
+      },
+      opacity: { value: opacity },
+      twoSided: { value: twoSided ? 1 : 0 },
+      lit: { value: lit ? 1 : 0 },
+    },
+    transparent: opacity < 1,
+    depthWrite: opacity === 1,
+    side: twoSided ? DoubleSide : FrontSide,
+    forceSinglePass: true,
+    ...settings,
   });
   material.defaultAttributeValues = { color: [0, 0, 0], normal: [0, 0, 1] };
   return material;
