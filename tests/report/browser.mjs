@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Headless Chromium for the tests of the pages. Without a graphics card it draws them by the processor: WebGL by SwiftShader, the rest
-// by its own software compositor.
+// Headless Chromium for the tests of the pages. Without a graphics card it draws them by the
+// processor: WebGL by SwiftShader, the rest by its own software compositor.
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -19,25 +19,52 @@ export function needBrowser() {
   if (!existsSync(browserFile)) skip(`no browser at ${browserFile}`);
 }
 
-/** Calls back with { browser, folder (for files), open, shoot }; skips where there is no browser or nothing to drive it. */
+/**
+ * Calls back with { browser, folder (for files), open, shoot }; skips where there is no browser or
+ * nothing to drive it.
+ */
 export async function withBrowser({ packages, shots }, test) {
   needBrowser();
-  if (!existsSync(join(packages, 'node_modules/playwright-core'))) skip(`no playwright-core in ${packages}: report.packages fetches it`);
+  if (!existsSync(join(packages, 'node_modules/playwright-core')))
+    skip(`no playwright-core in ${packages}: report.packages fetches it`);
   const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
   const folder = mkdtempSync(join(tmpdir(), 'swivel-page-'));
-  const browser = await chromium.launch({ executablePath: browserFile, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+  const browser = await chromium.launch({
+    executablePath: browserFile,
+    args: [
+      '--no-sandbox',
+      '--enable-unsafe-swiftshader',
+      '--disable-quic',
+      '--no-first-run',
+      '--disable-background-networking',
+      '--disable-component-update',
+      '--disable-sync',
+    ],
+  });
   /** A page that must stay without errors and without network: `close` asserts it. */
-  const open = async (html, { before, hash = '', ...options }) => {  // before: a script that runs first in the page
-    const page = await browser.newPage(options), troubles = [];
+  // Before: a script that runs first in the page.
+  const open = async (html, { before, hash = '', ...options }) => {
+    const page = await browser.newPage(options),
+      troubles = [];
     if (before) await page.addInitScript(before);
     page.on('pageerror', (error) => troubles.push(String(error)));
     page.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
-    page.on('request', (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`network: ${request.url()}`));
+    page.on(
+      'request',
+      (request) =>
+        /^(file|data|blob):/.test(request.url()) || troubles.push(`network: ${request.url()}`),
+    );
     await page.goto(`file://${html}${hash}`);
-    return { page, close: async () => { assert.deepEqual(troubles, []); await page.close(); } };
+    return {
+      page,
+      close: async () => {
+        assert.deepEqual(troubles, []);
+        await page.close();
+      },
+    };
   };
-  const shoot = async (page, name, options) => shots && (await page.screenshot({ path: join(shots, name), ...options }));
+  const shoot = async (page, name, options) =>
+    shots && (await page.screenshot({ path: join(shots, name), ...options }));
   try {
     await test({ browser, folder, open, shoot });
   } finally {
@@ -46,8 +73,10 @@ export async function withBrowser({ packages, shots }, test) {
   }
 }
 
-/** Waits until `holds` (a function of the page, with one argument) is true. The driver's own waiting evaluates text in the page, which its
- * content security policy refuses. */
+/**
+ * Waits until `holds` (a function of the page, with one argument) is true. The driver's own waiting
+ * evaluates text in the page, which its content security policy refuses.
+ */
 export async function until(page, holds, argument) {
   for (const end = Date.now() + 30_000; !(await page.evaluate(holds, argument));) {
     assert.ok(Date.now() < end, `not within 30 s: ${holds}`);
@@ -62,12 +91,16 @@ export async function saved(page, button) {
 }
 
 /** How many elements of each name an SVG document has; throws where it is not well formed. */
-export const elements = (page, text) => page.evaluate((source) => {
-  const document = new DOMParser().parseFromString(source, 'image/svg+xml'), count = {};
-  if (document.querySelector('parsererror')) throw new Error(document.querySelector('parsererror').textContent);
-  for (const { localName } of document.querySelectorAll('*')) count[localName] = (count[localName] ?? 0) + 1;
-  return count;
-}, text);
+export const elements = (page, text) =>
+  page.evaluate((source) => {
+    const document = new DOMParser().parseFromString(source, 'image/svg+xml'),
+      count = {};
+    if (document.querySelector('parsererror'))
+      throw new Error(document.querySelector('parsererror').textContent);
+    for (const { localName } of document.querySelectorAll('*'))
+      count[localName] = (count[localName] ?? 0) + 1;
+    return count;
+  }, text);
 
 export async function assertFits(page, width) {
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);

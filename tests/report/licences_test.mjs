@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every page carries the notices of all that is bundled into it. Arguments: the program, the problems' folder, the folder with node_modules.
+// Every page carries the notices of all that is bundled into it. Arguments: the program, the
+// problems' folder, the folder with node_modules.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
@@ -14,7 +15,9 @@ const plain = (text) => text.replace(/\s+/g, ' ').trim();
 const folder = mkdtempSync(join(tmpdir(), 'swivel-licences-'));
 try {
   const page = (name, ...command) => {
-    const done = spawnSync(swivel, [...command, '--report', join(folder, name)], { encoding: 'utf8' });
+    const done = spawnSync(swivel, [...command, '--report', join(folder, name)], {
+      encoding: 'utf8',
+    });
     if (done.stderr.includes('built without reports')) {
       rmSync(folder, { recursive: true }); // skip ends the process
       skip(done.stderr);
@@ -22,10 +25,26 @@ try {
     return plain(readFileSync(join(folder, name), 'utf8'));
   };
   const pages = {
-    report: page('plan.html', 'plan', join(problems, 'experiment_a.yaml'), '--out', join(folder, 'a.csv')),
-    overview: page('campaign.html', 'campaign', join(problems, 'experiment_c.yaml'), '--episodes', '2', '--out', join(folder, 'c.csv')),
+    report: page(
+      'plan.html',
+      'plan',
+      join(problems, 'experiment_a.yaml'),
+      '--out',
+      join(folder, 'a.csv'),
+    ),
+    overview: page(
+      'campaign.html',
+      'campaign',
+      join(problems, 'experiment_c.yaml'),
+      '--episodes',
+      '2',
+      '--out',
+      join(folder, 'c.csv'),
+    ),
   };
-  const { packages: installed } = JSON.parse(readFileSync(join(packages, 'package-lock.json'), 'utf8'));
+  const { packages: installed } = JSON.parse(
+    readFileSync(join(packages, 'package-lock.json'), 'utf8'),
+  );
   let checked = 0;
   for (const [place, { version }] of Object.entries(installed)) {
     const name = place.replace(/^.*node_modules\//, '');
@@ -38,7 +57,11 @@ try {
       ++checked;
     }
   }
-  for (const [page, html] of Object.entries(pages)) assert.ok(html.includes('Copyright (c) 2026') && html.includes('BSD 3-Clause'), `${page}: Swivel's own licence`);
+  for (const [page, html] of Object.entries(pages))
+    assert.ok(
+      html.includes('Copyright (c) 2026') && html.includes('BSD 3-Clause'),
+      `${page}: Swivel's own licence`,
+    );
   console.log(`${checked} notices found`);
   assert.ok(checked > 60);
 } finally {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs swivel place with --report and uses the page in headless Chromium. Arguments as of page_test.mjs.
+// Runs swivel place with --report and uses the page in headless Chromium. Arguments as of
+// page_test.mjs.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { readFileSync, statSync } from 'node:fs';
@@ -7,68 +8,128 @@ import { join, resolve } from 'node:path';
 import { assertFits, elements, saved, until, withBrowser } from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
-const problem = join(problems, 'experiment_c.yaml'), kQuick = ['--planner', 'lazy', '--ds', '0.05', '--dphi', '0.3', '--edges', 'nodes'];
+const problem = join(problems, 'experiment_c.yaml'),
+  kQuick = ['--planner', 'lazy', '--ds', '0.05', '--dphi', '0.3', '--edges', 'nodes'];
 
 await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   const place = (name, ...options) => {
-    const html = join(folder, `${name}.html`), csv = join(folder, `${name}.csv`);
-    execFileSync(swivel, ['place', problem, ...kQuick, '--object', 'door', '--out', csv, '--report', html, ...options]);
-    const rows = readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
+    const html = join(folder, `${name}.html`),
+      csv = join(folder, `${name}.csv`);
+    execFileSync(swivel, [
+      'place',
+      problem,
+      ...kQuick,
+      '--object',
+      'door',
+      '--out',
+      csv,
+      '--report',
+      html,
+      ...options,
+    ]);
+    const rows = readFileSync(csv, 'utf8')
+      .trim()
+      .split('\n')
+      .slice(1)
+      .map((line) => line.split(','));
     return { html, rows, bytes: statSync(html).size };
   };
-  const fills = (page) => page.$$eval('.cells rect', (cells) => cells.map((cell) => cell.getAttribute('fill')));
+  const fills = (page) =>
+    page.$$eval('.cells rect', (cells) => cells.map((cell) => cell.getAttribute('fill')));
   const [cell, x, y, , , , , status, cost] = Array.from({ length: 9 }, (_, k) => k);
 
   const { html, rows } = place('map', '--x', '-0.1:0.1:0.01', '--y', '-0.1:0.1:0.02');
   const solved = rows.filter((row) => row[status] === 'solved');
   assert.ok(solved.length > 50 && solved.length < rows.length && rows.length === 21 * 11);
-  const { page, close } = await open(html, { viewport: { width: 1280, height: 800 }, colorScheme: 'light' });
-  assert.match(await page.textContent('#verdict'), new RegExp(`^${solved.length} of ${rows.length} placements have a path`));
+  const { page, close } = await open(html, {
+    viewport: { width: 1280, height: 800 },
+    colorScheme: 'light',
+  });
+  assert.match(
+    await page.textContent('#verdict'),
+    new RegExp(`^${solved.length} of ${rows.length} placements have a path`),
+  );
   await assertFits(page, 1280);
   await shoot(page, 'placements_c.png');
   assert.equal((await fills(page)).length, rows.length);
   await page.selectOption('#colour', 'verdict');
-  assert.deepEqual((await fills(page)).map((fill) => fill === '#00795a'), rows.map((row) => row[status] === 'solved'));
+  assert.deepEqual(
+    (await fills(page)).map((fill) => fill === '#00795a'),
+    rows.map((row) => row[status] === 'solved'),
+  );
   await page.selectOption('#colour', 'end');
   assert.match(await page.textContent('#legend'), /post \(\d+\)/);
   assert.equal(new Set(await fills(page)).size, await page.locator('#legend span').count());
   await page.selectOption('#colour', 'cost');
 
   // A place of the map and a line of the table pick a placement; its command plans the same.
-  const best = [...solved].sort((a, b) => Number(a[cost]) - Number(b[cost]))[0], failed = rows.find((row) => row[status] !== 'solved');
+  const best = [...solved].sort((a, b) => Number(a[cost]) - Number(b[cost]))[0],
+    failed = rows.find((row) => row[status] !== 'solved');
   assert.match(await page.textContent('#facts'), new RegExp(`^Placement ${best[cell]}\\D`));
   assert.equal(await page.locator('#best tbody tr').first().getAttribute('data-cell'), best[cell]);
   for (const wanted of [rows[0], failed, best]) {
     await page.locator('.cells rect').nth(rows.indexOf(wanted)).dispatchEvent('click');
     assert.match(await page.textContent('#facts'), new RegExp(`^Placement ${wanted[cell]}\\D`));
     const command = await page.textContent('#command');
-    const again = spawnSync('sh', ['-c', `exec '${swivel}' ${command.slice('swivel '.length)} --quiet --json -`], { cwd: folder });
+    const again = spawnSync(
+      'sh',
+      ['-c', `exec '${swivel}' ${command.slice('swivel '.length)} --quiet --json -`],
+      { cwd: folder },
+    );
     const result = JSON.parse(String(again.stdout));
     assert.equal(result.status, wanted[status]);
     assert.equal(result.cost ?? '', wanted[cost] === '' ? '' : Number(wanted[cost]));
     assert.ok(statSync(join(folder, `placement_${wanted[cell]}.html`)).size > 1e5);
-    if (wanted === failed) assert.ok((await page.textContent('#facts')).includes(wanted.at(-1).replaceAll('"', '')));
+    if (wanted === failed)
+      assert.ok((await page.textContent('#facts')).includes(wanted.at(-1).replaceAll('"', '')));
   }
   await page.locator('#best tbody tr').nth(3).click();
-  assert.match(await page.textContent('#facts'), new RegExp(`^Placement ${await page.locator('#best tbody tr').nth(3).getAttribute('data-cell')}\\D`));
-  // The best twenty open their plan: the joints that the program writes, from the first row to the last.
+  assert.match(
+    await page.textContent('#facts'),
+    new RegExp(
+      `^Placement ${await page.locator('#best tbody tr').nth(3).getAttribute('data-cell')}\\D`,
+    ),
+  );
+  // The best twenty open their plan: the joints that the program writes, from the first row to the
+  // last.
   await until(page, () => window.swivel.frames > 0);
   for (const k of [0, 3, 19]) {
     await page.locator('#best tbody tr').nth(k).click();
-    const chosen = await page.locator('#best tbody tr').nth(k).getAttribute('data-cell'), command = await page.textContent('#command');
-    execFileSync('sh', ['-c', `exec '${swivel}' ${command.slice('swivel '.length).replace(/ --report .*/, '')} --quiet --out best.csv`], { cwd: folder });
-    const path = readFileSync(join(folder, 'best.csv'), 'utf8').trim().split('\n').slice(1).map((line) => line.split(',').slice(-7).map(Number));
-    for (const [at, joints] of [['0', path[0]], [String(path.length - 1), path.at(-1)]]) {
+    const chosen = await page.locator('#best tbody tr').nth(k).getAttribute('data-cell'),
+      command = await page.textContent('#command');
+    execFileSync(
+      'sh',
+      [
+        '-c',
+        `exec '${swivel}' ${command.slice('swivel '.length).replace(/ --report .*/, '')} --quiet ` +
+          '--out best.csv',
+      ],
+      { cwd: folder },
+    );
+    const path = readFileSync(join(folder, 'best.csv'), 'utf8')
+      .trim()
+      .split('\n')
+      .slice(1)
+      .map((line) => line.split(',').slice(-7).map(Number));
+    for (const [at, joints] of [
+      ['0', path[0]],
+      [String(path.length - 1), path.at(-1)],
+    ]) {
       await page.locator('#slider').fill(at);
       const shown = await page.evaluate(() => window.swivel);
       assert.equal(String(shown.cell), chosen);
-      shown.joints.forEach((q, j) => assert.ok(Math.abs(q - joints[j]) < 1e-6, `${chosen} at ${at}: ${q} ${joints[j]}`));
+      shown.joints.forEach((q, j) =>
+        assert.ok(Math.abs(q - joints[j]) < 1e-6, `${chosen} at ${at}: ${q} ${joints[j]}`),
+      );
     }
     assert.equal(await page.textContent('#readout'), `the plan of placement ${chosen}`);
   }
   const last = await page.evaluate(() => window.swivel.cell);
   await page.locator('.cells rect').nth(rows.indexOf(failed)).dispatchEvent('click');
-  assert.equal(await page.textContent('#readout'), `the plan of placement ${last}; that of ${failed[cell]} is opened by its command`);
+  assert.equal(
+    await page.textContent('#readout'),
+    `the plan of placement ${last}; that of ${failed[cell]} is opened by its command`,
+  );
   const svg = await saved(page, page.locator('#map h2 button').filter({ hasText: 'SVG' }));
   assert.equal(svg.name, 'experiment_c_placements.svg');
   assert.ok((await elements(page, svg.bytes.toString())).rect >= rows.length);
@@ -80,21 +141,37 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await narrow.close();
 
   // One, three and sampled coordinates; a grid with holes.
-  for (const [name, options, marks] of [['one', ['--yaw', '-0.2:0.2:0.05'], 'rect'], ['three', ['--x', '0:0.1:0.05', '--y', '0:0.1:0.05', '--z', '0:0.02:0.02'], 'rect'],
-    ['sample', ['--sample', '20', '--x', '-0.1:0.1', '--roll', '-0.1:0.1'], 'circle'], ['refined', ['--x', '-0.1:0.1:0.01', '--y', '-0.1:0.1:0.02', '--refine-grid'], 'rect']]) {
+  for (const [name, options, marks] of [
+    ['one', ['--yaw', '-0.2:0.2:0.05'], 'rect'],
+    ['three', ['--x', '0:0.1:0.05', '--y', '0:0.1:0.05', '--z', '0:0.02:0.02'], 'rect'],
+    ['sample', ['--sample', '20', '--x', '-0.1:0.1', '--roll', '-0.1:0.1'], 'circle'],
+    ['refined', ['--x', '-0.1:0.1:0.01', '--y', '-0.1:0.1:0.02', '--refine-grid'], 'rect'],
+  ]) {
     const { html: other, rows: found } = place(name, ...options);
-    const { page: view, close: done } = await open(other, { viewport: { width: 1280, height: 800 } });
-    assert.equal(await view.locator(`.cells ${marks}`).count(), name === 'three' ? 9 : found.length, name);
+    const { page: view, close: done } = await open(other, {
+      viewport: { width: 1280, height: 800 },
+    });
+    assert.equal(
+      await view.locator(`.cells ${marks}`).count(),
+      name === 'three' ? 9 : found.length,
+      name,
+    );
     await done();
   }
   const many = place('many', '--x', '-0.1:0.1:0.002', '--y', '-0.1:0.098:0.002');
   assert.equal(many.rows.length, 10100);
   assert.ok(many.bytes <= 3e6, `${many.bytes} bytes`);
-  const begun = Date.now(), { page: large, close: closed } = await open(many.html, { viewport: { width: 1280, height: 800 } });
+  const begun = Date.now(),
+    { page: large, close: closed } = await open(many.html, {
+      viewport: { width: 1280, height: 800 },
+    });
   assert.equal(await large.locator('.cells rect').count(), many.rows.length);
   const seconds = (Date.now() - begun) / 1000;
   await until(large, () => window.swivel.frames > 0);
   const drawn = (Date.now() - begun) / 1000;
   await closed();
-  console.log(`${many.rows.length} placements: ${(many.bytes / 1e6).toFixed(2)} MB, opened in ${seconds.toFixed(1)} s, the arm drawn after ${drawn.toFixed(1)} s`);
+  console.log(
+    `${many.rows.length} placements: ${(many.bytes / 1e6).toFixed(2)} MB, opened in ` +
+      `${seconds.toFixed(1)} s, the arm drawn after ${drawn.toFixed(1)} s`,
+  );
 });
