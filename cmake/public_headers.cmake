@@ -1,5 +1,6 @@
-# The headers that are installed: what programs that embed Swivel may include. A header that is not named here is a detail of the
-# project, though other components may include it. One that is named includes no other but these; tests/install holds that.
+# The headers that are installed: what programs that embed Swivel may include. A header that is not
+# named here is a detail of the project, though other components may include it. One that is named
+# includes no other but these; tests/install holds that.
 set(SWIVEL_PUBLIC_HEADERS
   swivel/core/base/budget.hpp
   swivel/core/base/timeline.hpp

@@ -1,7 +1,10 @@
-# Bundles the pages of report/web into FOLDER: report.html, overview.html, placements.html, THIRD-PARTY.txt. npm runs when the pinned packages have changed.
-# Where that fails and REPORT is AUTO, the pages are left empty: the planner is built all the same, without --report.
+# Bundles the pages of report/web into FOLDER: report.html, overview.html, placements.html,
+# THIRD-PARTY.txt. npm runs when the pinned packages have changed.
+# Where that fails and REPORT is AUTO, the pages are left empty: the planner is built all the same,
+# without --report.
 set(web ${CMAKE_CURRENT_LIST_DIR}/web)
-set(results ${FOLDER}/report.html ${FOLDER}/overview.html ${FOLDER}/placements.html ${FOLDER}/THIRD-PARTY.txt)
+set(results ${FOLDER}/report.html ${FOLDER}/overview.html ${FOLDER}/placements.html
+  ${FOLDER}/THIRD-PARTY.txt)
 file(MAKE_DIRECTORY ${FOLDER})
 
 function(run what)
@@ -13,11 +16,13 @@ function(run what)
     file(REMOVE ${results})
     message(FATAL_ERROR "${what} failed (${code})")
   endif()
-  message("${what} failed (${code}): built without the pages of --report; to try again, remove ${FOLDER}/report.html")
+  message("${what} failed (${code}): built without the pages of --report; "
+    "to try again, remove ${FOLDER}/report.html")
   foreach(result IN LISTS results)
     file(WRITE ${result} "")
   endforeach()
-  # Names a source, since ninja takes an empty list for one that is missing, and would try again each time.
+  # Names a source, since ninja takes an empty list for one that is missing, and would try again
+  # each time.
   string(REPLACE " " "\\ " rule "${FOLDER}/report.html: ${web}/build.mjs")
   string(REPLACE ":\\ " ": " rule "${rule}")
   file(WRITE ${FOLDER}/pages.d "${rule}\n")

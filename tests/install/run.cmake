@@ -1,7 +1,9 @@
-# Installs BUILD under SCRATCH, looks at what was installed, and builds strangers' projects against it.
+# Installs BUILD under SCRATCH, looks at what was installed, and builds strangers' projects against
+# it.
 cmake_minimum_required(VERSION 3.25)  # for IN_LIST
 function(run output)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE printed ERROR_VARIABLE complaints)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE printed
+    ERROR_VARIABLE complaints)
   if(NOT code EQUAL 0)
     list(JOIN ARGN " " command)
     message(FATAL_ERROR "${command}\nended with ${code}:\n${printed}${complaints}")
@@ -15,7 +17,8 @@ set(main ${consumer}/main.cpp)
 file(REMOVE_RECURSE ${SCRATCH})
 run(_ ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 
-# Targets of other packages: each must be asked for by name, since what one package finds for another differs between systems.
+# Targets of other packages: each must be asked for by name, since what one package finds for
+# another differs between systems.
 file(GLOB_RECURSE targets ${prefix}/*/swivelTargets.cmake)
 file(GLOB_RECURSE config ${prefix}/*/swivelConfig.cmake)
 file(READ ${targets} text)
@@ -30,7 +33,8 @@ if(count LESS 2 OR (NOT SHARED AND count LESS 4))
 endif()
 foreach(package IN LISTS packages)
   if(NOT asked MATCHES "find_dependency\\(${package}[ )]")
-    message(SEND_ERROR "swivelTargets.cmake names ${package}::..., which swivelConfig.cmake does not find")
+    message(SEND_ERROR
+      "swivelTargets.cmake names ${package}::..., which swivelConfig.cmake does not find")
   endif()
 endforeach()
 
@@ -47,7 +51,8 @@ list(SORT headers)
 list(SORT named)
 list(LENGTH named count)
 if(NOT headers STREQUAL named OR count LESS 20 OR count GREATER 60)
-  message(SEND_ERROR "installed are the headers ${headers}, named are the ${count} (20 to 60 are allowed) ${named}")
+  message(SEND_ERROR
+    "installed are the headers ${headers}, named are the ${count} (20 to 60 are allowed) ${named}")
 endif()
 foreach(header IN LISTS headers)
   file(STRINGS ${prefix}/include/${header} includes REGEX "^#include \"")
@@ -59,11 +64,11 @@ foreach(header IN LISTS headers)
   endforeach()
 endforeach()
 
-# Every header compiles alone, and reads nothing but headers of Swivel, Eigen and the standard library. The headers are the same where
-# libraries are static, so this minute is spent once.
+# Every header compiles alone, and reads nothing but headers of Swivel, Eigen and the standard
+# library. The headers are the same where libraries are static, so this minute is spent once.
 if(SHARED)
-  run(_ ${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/tests/install/headers -B ${SCRATCH}/headers -DCMAKE_CXX_COMPILER=${CXX} -DSWIVEL_PREFIX=${prefix}
-      -DEIGEN=${EIGEN})
+  run(_ ${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/tests/install/headers -B ${SCRATCH}/headers
+    -DCMAKE_CXX_COMPILER=${CXX} -DSWIVEL_PREFIX=${prefix} -DEIGEN=${EIGEN})
   run(_ ${CMAKE_COMMAND} --build ${SCRATCH}/headers)
   run(read ninja -C ${SCRATCH}/headers -t deps)
   run(allowed ninja -C ${SCRATCH}/headers -t deps CMakeFiles/headers.dir/allowed.cpp.o)
@@ -75,7 +80,8 @@ if(SHARED)
   list(LENGTH read count)
   list(FILTER read EXCLUDE REGEX "${prefix}/include/swivel/|alone/")
   if(read OR count LESS 60)
-    message(SEND_ERROR "installed headers read ${count} files, among them headers of others: ${read}")
+    message(SEND_ERROR
+      "installed headers read ${count} files, among them headers of others: ${read}")
   endif()
 endif()
 
@@ -92,12 +98,14 @@ endif()
 
 # By CMake, without Boost and with it.
 foreach(boost IN ITEMS OFF ON)
-  run(_ ${CMAKE_COMMAND} -G Ninja -S ${consumer} -B ${SCRATCH}/cmake_${boost} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX}
-      -DMAIN=${main} -DBOOST=${boost} -DVERSION=${VERSION})
+  run(_ ${CMAKE_COMMAND} -G Ninja -S ${consumer} -B ${SCRATCH}/cmake_${boost}
+    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX} -DMAIN=${main} -DBOOST=${boost}
+    -DVERSION=${VERSION})
   run(_ ${CMAKE_COMMAND} --build ${SCRATCH}/cmake_${boost})
 endforeach()
 run(printed ${SCRATCH}/cmake_OFF/consumer)
-if(NOT printed MATCHES "^yes: a path past a box\n.*yes: another thread cancels\n$" OR printed MATCHES "NO:")
+if(NOT printed MATCHES "^yes: a path past a box\n.*yes: another thread cancels\n$"
+  OR printed MATCHES "NO:")
   message(SEND_ERROR "the consumer printed ${printed}")
 endif()
 
@@ -135,7 +143,8 @@ if(SHARED)
     run(symbols nm --dynamic --defined-only --demangle ${library})
     string(REGEX MATCHALL "[^\n]+" symbols "${symbols}")
     list(LENGTH symbols count)
-    list(FILTER symbols EXCLUDE REGEX " [A-Za-z] (typeinfo for |typeinfo name for |vtable for )?swivel::")
+    list(FILTER symbols EXCLUDE REGEX
+      " [A-Za-z] (typeinfo for |typeinfo name for |vtable for )?swivel::")
     if(symbols OR count LESS 3)
       message(SEND_ERROR "${library} exports ${count} symbols, among them ${symbols}")
     endif()
