@@ -80,8 +80,9 @@ scene:
   - {name: post, cylinder: {radius: 0.05, length: 1}, xyz: [0.2, -0.6, 0.5]}
   - {name: crate, mesh: box.stl, scale: [0.1, 0.1, 0.1], xyz: [0.9, 0, 0.2], rpy: [0, 0, 0.3]}
 resolution: {ds: 0.02, dphi: 0.3, dalpha: 0.2}
-limits: {clearance: 0.01, manipulability: 0.01, joint_margin: 0.02, joint_step: 0.6, arm_slope: 30, step_error: 0.3,
-         tool_path_error: 0.01, tool_angle_error: 0.1, tool_speed: 0.1, tool_turn_speed: 1, edges: continuous, edge_clearance: 0.004, edge_tolerance: 0.002}
+limits: {clearance: 0.01, manipulability: 0.01, joint_margin: 0.02, joint_step: 0.6, arm_slope: 30,
+         step_error: 0.3, tool_path_error: 0.01, tool_angle_error: 0.1, tool_speed: 0.1,
+         tool_turn_speed: 1, edges: continuous, edge_clearance: 0.004, edge_tolerance: 0.002}
 cost: {metric: l2, weights: [1, 1, 1, 1, 1, 1, 0.5]}
 vary:
   - {object: ball, xyz: [0.1, 0.1, 0.1], rpy: [0, 0, 3]}
@@ -112,18 +113,24 @@ const char* const kDae = R"(<?xml version="1.0"?>
 <asset><unit name="mm" meter="0.001"/><up_axis>Z_UP</up_axis></asset>
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="pa" count="15">0 0 0 1 0 0 0 0 2 0 3 0 1 1 1</float_array>
-<technique_common><accessor source="#pa" count="5" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<technique_common><accessor source="#pa" count="5" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 1 2 3</p></triangles>
-<polylist count="2"><input semantic="VERTEX" source="#v" offset="1"/><input semantic="NORMAL" source="#p" offset="0"/><vcount>3 4</vcount><p>0 0 0 1 0 2 0 0 0 1 0 4 0 3</p></polylist>
+<polylist count="2"><input semantic="VERTEX" source="#v" offset="1"/>
+<input semantic="NORMAL" source="#p" offset="0"/><vcount>3 4</vcount>
+<p>0 0 0 1 0 2 0 0 0 1 0 4 0 3</p></polylist>
 <polygons count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 4 2 3</p></polygons>
 <tristrips count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3 4</p></tristrips>
 <trifans count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3 4</p></trifans>
 </mesh></geometry></library_geometries>
 <library_controllers><controller id="c"><skin source="#g"/></controller></library_controllers>
 <library_nodes><node id="m"><scale>1 2 3</scale><instance_geometry url="#g"/></node></library_nodes>
-<library_visual_scenes><visual_scene id="s"><node id="n"><matrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix><rotate>0 0 1 90</rotate><translate>1 2 3</translate>
-<instance_geometry url="#g"/><instance_controller url="#c"/><instance_node url="#m"/><node><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes>
+<library_visual_scenes><visual_scene id="s"><node id="n">
+<matrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix><rotate>0 0 1 90</rotate>
+<translate>1 2 3</translate>
+<instance_geometry url="#g"/><instance_controller url="#c"/><instance_node url="#m"/><node>
+<instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 )";
 

@@ -27,21 +27,31 @@ using swivel::test::trials;
 /// Every element and attribute that the reader honours, on a tree with a mimic joint and joints of
 /// all types.
 const char* const kEveryWord = R"(<robot name="every" version="1.2">
-<link name="base_link"><collision name="c"><origin xyz="0 0 0.1" rpy="0.1 0.2 0.3"/><geometry><box size="0.1 0.2 0.3"/></geometry></collision>
-<collision><origin xyz="0 0 0.2" quat_xyzw="0 0.6 0 0.8"/><geometry><capsule radius="0.05" length="0.2"/></geometry></collision></link>
-<link name="a"><collision><geometry><cylinder radius="0.05" length="0.2"/></geometry></collision></link>
+<link name="base_link"><collision name="c"><origin xyz="0 0 0.1" rpy="0.1 0.2 0.3"/><geometry>
+<box size="0.1 0.2 0.3"/></geometry></collision>
+<collision><origin xyz="0 0 0.2" quat_xyzw="0 0.6 0 0.8"/><geometry>
+<capsule radius="0.05" length="0.2"/></geometry></collision></link>
+<link name="a"><collision><geometry><cylinder radius="0.05" length="0.2"/></geometry></collision>
+</link>
 <link name="b"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
 <link name="c"/><link name="d"/><link name="e"/><link name="f"/>
-<joint name="ja" type="revolute"><parent link="base_link"/><child link="a"/><origin xyz="0 0 0.3" rpy="0 0.5 0"/><axis xyz="0 0 2"/>
+<joint name="ja" type="revolute"><parent link="base_link"/><child link="a"/>
+<origin xyz="0 0 0.3" rpy="0 0.5 0"/><axis xyz="0 0 2"/>
 <limit lower="-1" upper="2" velocity="3" effort="4" acceleration="5" deceleration="4" jerk="60"/>
-<safety_controller soft_lower_limit="-0.5" soft_upper_limit="1.5" k_position="10" k_velocity="10"/></joint>
-<joint name="jb" type="prismatic"><parent link="a"/><child link="b"/><origin xyz="0.1 0 0.3"/><axis xyz="0 1 0"/>
+<safety_controller soft_lower_limit="-0.5" soft_upper_limit="1.5" k_position="10" k_velocity="10"/>
+</joint>
+<joint name="jb" type="prismatic"><parent link="a"/><child link="b"/><origin xyz="0.1 0 0.3"/>
+<axis xyz="0 1 0"/>
 <limit lower="0" upper="0.5" velocity="1" effort="1"/></joint>
-<joint name="jc" type="continuous"><parent link="a"/><child link="c"/><origin rpy="0 0 1" xyz="0 0.2 0"/><axis xyz="1 1 0"/><limit velocity="1" effort="1"/></joint>
-<joint name="jd" type="revolute"><parent link="b"/><child link="d"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/>
+<joint name="jc" type="continuous"><parent link="a"/><child link="c"/>
+<origin rpy="0 0 1" xyz="0 0.2 0"/><axis xyz="1 1 0"/><limit velocity="1" effort="1"/></joint>
+<joint name="jd" type="revolute"><parent link="b"/><child link="d"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" velocity="1" effort="1"/>
 <mimic joint="jb" multiplier="-2" offset="0.5"/></joint>
-<joint name="je" type="fixed"><parent link="d"/><child link="e"/><origin xyz="0 0 0.1" quat_xyzw="0.5 0.5 0.5 0.5"/></joint>
-<joint name="jf" type="floating"><parent link="base_link"/><child link="f"/><origin xyz="1 0 0.1"/></joint>
+<joint name="je" type="fixed"><parent link="d"/><child link="e"/>
+<origin xyz="0 0 0.1" quat_xyzw="0.5 0.5 0.5 0.5"/></joint>
+<joint name="jf" type="floating"><parent link="base_link"/><child link="f"/>
+<origin xyz="1 0 0.1"/></joint>
 </robot>)";
 
 std::vector<std::string> robots(const char* extension) {
@@ -370,12 +380,19 @@ TEST(Mutated, NothingOfTheProjectsRobotsIsWarnedOf) {
 TEST(Mutated, Srdf) {
   Random random(swivel::test::seed("Mutated.Srdf"));
   const char* const every_word =
-      R"(<robot name="arm"><group name="g"><link name="link_1"/><joint name="joint_1"/><chain base_link="base_link" tip_link="link_7"/>
-<group name="h"/></group><group_state name="s" group="g"><joint name="joint_2" value="0"/></group_state><end_effector name="e" parent_link="link_7" group="g"/>
-<virtual_joint name="v" type="fixed" parent_frame="world" child_link="base_link"/><passive_joint name="finger_joint"/>
-<joint_property joint_name="joint_1" property_name="p" value="1"/><disable_default_collisions link="link_2"/>
-<enable_collisions link1="link_2" link2="link_5" reason="x"/><disable_collisions link1="link_3" link2="link_5" reason="x"/>
-<link_sphere_approximation link="link_1"><sphere center="0 0 0" radius="0.1"/></link_sphere_approximation></robot>)";
+      R"(<robot name="arm"><group name="g"><link name="link_1"/><joint name="joint_1"/>
+<chain base_link="base_link" tip_link="link_7"/>
+<group name="h"/></group><group_state name="s" group="g">
+<joint name="joint_2" value="0"/></group_state>
+<end_effector name="e" parent_link="link_7" group="g"/>
+<virtual_joint name="v" type="fixed" parent_frame="world" child_link="base_link"/>
+<passive_joint name="finger_joint"/>
+<joint_property joint_name="joint_1" property_name="p" value="1"/>
+<disable_default_collisions link="link_2"/>
+<enable_collisions link1="link_2" link2="link_5" reason="x"/>
+<disable_collisions link1="link_3" link2="link_5" reason="x"/>
+<link_sphere_approximation link="link_1">
+<sphere center="0 0 0" radius="0.1"/></link_sphere_approximation></robot>)";
   const std::set<std::string> names{"group",
                                     "link",
                                     "joint",

@@ -103,10 +103,10 @@ TEST(Result, SolvedRoundTrip) {
             Json({{"max_mm", 0.2}, {"allowed_mm", 1.0}, {"s", 0.1}}));
   EXPECT_EQ(json["summary"]["top_tool_speed"], Json({{"speed", 0.35}, {"joint", "g"}, {"s", 0.1}}));
   EXPECT_EQ(json["robot_pairs"]["dropped"], Json::parse(R"([{"bodies": ["link_1", "link_3"]}])"));
-  EXPECT_EQ(
-      json["robot_pairs"]["reduced"],
-      Json::parse(
-          R"([{"bodies": ["link_5", "link_7"], "median": 0.004, "clearance": 0.002, "edge_clearance": 0.001}])"));
+  EXPECT_EQ(json["robot_pairs"]["reduced"],
+            Json::parse(
+                R"([{"bodies": ["link_5", "link_7"], "median": 0.004, "clearance": 0.002,
+      "edge_clearance": 0.001}])"));
   EXPECT_TRUE(json["diagnosis"].is_null());
   ASSERT_EQ(json["trajectory"].size(), 2u);
   EXPECT_EQ(json["trajectory"][0]["phi"].get<double>(), kPi);
@@ -157,12 +157,11 @@ TEST(Result, Infeasible) {
   EXPECT_EQ(diagnosis["reached_layer"], 12);
   EXPECT_EQ(diagnosis["reached_s"], 0.34);
   EXPECT_EQ(diagnosis["reason"], "joint j5");
-  EXPECT_EQ(
-      diagnosis["cause"],
-      Json::parse(
-          R"({"cause": "limit", "joint": "j5", "other_joints": false, "unwinds": false, "side": "lower",
-      "bodies": null, "between_layers": false, "object": null, "check": null, "by": 0.5, "value": -2.5, "limit": -2.0, "over": null,
-      "unit": "rad"})"));
+  EXPECT_EQ(diagnosis["cause"],
+            Json::parse(
+                R"({"cause": "limit", "joint": "j5", "other_joints": false, "unwinds": false,
+      "side": "lower", "bodies": null, "between_layers": false, "object": null, "check": null,
+      "by": 0.5, "value": -2.5, "limit": -2.0, "over": null, "unit": "rad"})"));
   EXPECT_EQ(diagnosis["waypoints"], Json({3, 4}));
   EXPECT_EQ(diagnosis["without_it"], 20);
   EXPECT_EQ(diagnosis["empty_layers"][0]["layers"], Json({13, 14}));

@@ -15,11 +15,13 @@ using Json = nlohmann::ordered_json;
 /// A problem with every section, as JSON, which is YAML.
 Json whole_problem() {
   return Json::parse(R"({
-    "robot": {"urdf": "../robots/arm.urdf", "base_link": "base_link", "tip_link": "link_7", "tool": {}, "hold": {"finger_joint": 0.01},
+    "robot": {"urdf": "../robots/arm.urdf", "base_link": "base_link", "tip_link": "link_7",
+              "tool": {}, "hold": {"finger_joint": 0.01},
               "attached": [{"name": "grip", "box": [0.1, 0.1, 0.1]}]},
     "path": {"waypoints": [{"xyz": [0.6, -0.1, 0.9]}, {"xyz": [0.6, 0.1, 0.9]}], "smooth": {}},
     "scene": [{"name": "post", "box": [0.1, 0.1, 0.1]}],
-    "resolution": {}, "limits": {}, "start": {"joints": [0, 0, 0, 0, 0, 0, 0]}, "cost": {}, "refine": {}, "vary": [{"object": "post"}]
+    "resolution": {}, "limits": {}, "start": {"joints": [0, 0, 0, 0, 0, 0, 0]}, "cost": {},
+    "refine": {}, "vary": [{"object": "post"}]
   })");
 }
 
@@ -77,7 +79,8 @@ struct Walk {
       if (option["type"] == "array") (*this)(problem, option["items"], at / 0);
       if (option["type"] != "object" || !option.contains("properties")) continue;
       static const Json kSections = Json::parse(
-          R"({"cylinder": {"radius": 0.1, "length": 0.1}, "capsule": {"radius": 0.1, "length": 0.1}, "sphere": {"radius": 0.1}})");
+          R"({"cylinder": {"radius": 0.1, "length": 0.1}, "capsule": {"radius": 0.1, "length": 0.1},
+              "sphere": {"radius": 0.1}})");
       visit_object(problem, at);
       for (const auto& [key, value] : option["properties"].items()) {
         Place place{problem, at, key, value};
