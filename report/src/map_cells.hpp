@@ -11,7 +11,8 @@
 
 namespace swivel::detail {
 
-/// A panel's cells, each standing for layers_each x angles_each nodes (fewer at the ends).
+/// Divides a panel into cells, each standing for layers_each x angles_each nodes (fewer at the
+/// ends).
 class MapCells {
  public:
   MapCells(const LatticeMap& map, int most_columns, int most_rows)
@@ -21,7 +22,7 @@ class MapCells {
         columns((map.layers + layers_each - 1) / layers_each),
         rows((map.angles + angles_each - 1) / angles_each) {}
 
-  /// Row 0 holds the least arm angles.
+  /// Returns the most important node of a cell. Row 0 holds the least arm angles.
   [[nodiscard]] LatticeMap::Node node(int solution, int column, int row) const {
     LatticeMap::Node most = map_.at(column * layers_each, solution, row * angles_each);
     for (int i = column * layers_each; i < std::min(map_.layers, (column + 1) * layers_each); ++i)
@@ -42,7 +43,8 @@ class MapCells {
   }
 
  private:
-  /// What took FCL to find is told before what a distance proof proves.
+  /// Orders nodes by their state; among nodes of one state, one that FCL had to judge is more
+  /// important than one that a distance proof proves.
   static std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
     return {node.state, !node.proved};
   }
@@ -61,7 +63,7 @@ class MapLegend {
     seen_.insert(
         {-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.proved});
   }
-  /// Most important first.
+  /// Returns the states that were seen, each with its meaning, the most important first.
   [[nodiscard]] std::vector<std::pair<LatticeMap::Node, std::string>> entries() const {
     std::vector<std::pair<LatticeMap::Node, std::string>> result;
     for (const auto& [state, cause, proved] : seen_) {

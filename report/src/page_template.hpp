@@ -13,8 +13,8 @@ namespace swivel::detail {
 [[nodiscard]] std::string_view overview_template();
 [[nodiscard]] std::string_view placement_template();
 
-/// The page with its data, a JSON text, in place of "@@DATA@@". `besides`: other marks, in the
-/// order of the page and all before the data, each with the HTML that takes its place.
+/// Returns the page with its data, a JSON text, in place of "@@DATA@@". `besides`: other marks, in
+/// the order of the page and all before the data, each with the HTML that takes its place.
 [[nodiscard]] std::string fill(
     std::string_view page, const std::string& json,
     const std::vector<std::pair<std::string_view, std::string>>& besides = {});

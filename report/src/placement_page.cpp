@@ -16,7 +16,7 @@ using namespace detail;
 
 namespace {
 
-/// Six significant digits: a page draws them.
+/// Rounds to six significant digits, which suffice for drawings; null where there is no value.
 Json rounded(const std::optional<double>& value) {
   if (!value) return nullptr;
   if (*value == 0) return 0;
@@ -25,7 +25,8 @@ Json rounded(const std::optional<double>& value) {
   return std::isfinite(result) ? result : *value;
 }
 
-/// Where offsets are counted from: the origin of what is moved, before it is.
+/// Returns the point that offsets are counted from: the origin of what is moved, before it is
+/// moved.
 Vector3d origin_of(const Problem& problem, const Movable& thing) {
   const std::string& name =
       thing.kind == Movable::Kind::kObject ? thing.object : problem.path_frame;
@@ -35,7 +36,7 @@ Vector3d origin_of(const Problem& problem, const Movable& thing) {
   return Vector3d::Zero();
 }
 
-/// The base frame with nothing moved, as seen from where the base stands now.
+/// Returns the pose of the base before it was moved, as seen from where the base stands now.
 Pose still_frame(const Movable& thing, const Offset& offset) {
   Pose moved = Pose::Identity();
   if (thing.kind != Movable::Kind::kBase) return moved;

@@ -16,9 +16,9 @@ namespace swivel::detail {
 
 using Json = nlohmann::ordered_json;
 
-/// RFC 4648.
+/// Encodes bytes in base 64 (RFC 4648).
 [[nodiscard]] std::string base64(const unsigned char* bytes, std::size_t count);
-/// The bytes of an array in the machine's order; the page reads little-endian.
+/// Encodes the values of an array in the machine's byte order; the page reads little-endian.
 template <class T>
 [[nodiscard]] std::string base64(const std::vector<T>& values) {
   std::vector<unsigned char> bytes(values.size() * sizeof(T));
@@ -27,9 +27,9 @@ template <class T>
 }
 
 [[nodiscard]] Json vector_json(const Vector3d& v);
-/// The upper three rows, row by row.
+/// Writes the upper three rows of the pose's matrix, row by row.
 [[nodiscard]] Json pose_json(const Pose& pose);
-/// The chain as the page's forward kinematics needs it (core/kinematics/chain/arm.hpp).
+/// Writes the chain as the page's forward kinematics needs it (core/kinematics/chain/arm.hpp).
 [[nodiscard]] Json chain_json(const Chain& chain);
 
 /// Bodies of the robot, what it carries, and the scene in its order. Meshes are written once,

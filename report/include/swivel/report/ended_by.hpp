@@ -6,8 +6,8 @@
 
 namespace swivel {
 
-/// What ended the paths of a row, for people: its object, its joint, or the cause in words; empty
-/// where there is a path. `cause`, `by`, `reason` as in PlacementRow and EpisodeRow.
+/// Returns what ended the paths of a row, for people: its object, its joint, or the cause in words;
+/// empty where there is a path. `cause`, `by`, `reason` as in PlacementRow and EpisodeRow.
 [[nodiscard]] std::string ended_by(PlanStatus status, const std::string& cause,
                                    const std::string& by, const std::string& reason);
 

@@ -14,8 +14,8 @@ namespace swivel {
 
 class Lattice;
 
-/// What is known of a node of the (s, phi) lattice. The order is that of importance, least first: a
-/// drawn cell that stands for several nodes shows the last.
+/// What is known of a node of the (s, phi) lattice. The states are listed by importance, the least
+/// important first: a drawn cell that stands for several nodes shows the most important state.
 enum class NodeState : std::uint8_t {
   kNoIk,         ///< out of reach; in layer 0 also: not the given start
   kSingular,     ///< a singular pose, or less manipulability than asked for
@@ -25,10 +25,11 @@ enum class NodeState : std::uint8_t {
   kBlocked,      ///< cause: index into LatticeMap::blockers
 };
 
-/// The task submanifold of the paper's Fig. 5, node by node. Of arms that have no grid of arm
-/// angles (ExplicitLattice): cells of their redundancy coordinate, over the range in which their
-/// nodes lie. A node has its own cell and those up to half the way to its neighbours on its arc of
-/// self-motion; a cell that several have shows the path's, or the most important.
+/// Shows the task submanifold of the paper's Fig. 5, node by node. Arms without a grid of arm
+/// angles (ExplicitLattice) have cells of their redundancy coordinate, over the range in which
+/// their nodes lie. A node has its own cell and those up to half the way to its neighbours on its
+/// arc of self-motion; a cell that belongs to several nodes shows that of the path, or the most
+/// important.
 struct LatticeMap {
   struct Node {
     NodeState state = NodeState::kNoIk;
@@ -56,7 +57,7 @@ struct LatticeMap {
   std::vector<int> path;  ///< one cell in each layer, IK solution * angles + angle: the answer, or
                           ///< a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
-  /// Of a tool that may stand turned: the branches are drawn at the path's rolls, and the last
+  /// True where the tool may stand turned: the branches are drawn at the path's rolls, and the last
   /// panel shows the rolls from -pi to pi at the branch and arm angle that the path has in each
   /// layer, where there is a path.
   bool turns = false;
@@ -65,15 +66,15 @@ struct LatticeMap {
   [[nodiscard]] bool grid() const {
     return coordinate == Coordinate::kArmAngle;
   }  ///< a cell is a node
-  /// Where a value of the coordinate lies, in cells: k at the middle of cell k. Of closed cells at
-  /// least -0.5 and less than angles - 0.5.
+  /// Returns where a value of the coordinate lies, in cells: k at the middle of cell k. Where cells
+  /// are closed, the result is at least -0.5 and less than angles - 0.5.
   [[nodiscard]] double place(double value) const;
-  /// What cell k stands for, rad, in [-pi, pi].
+  /// Returns the value that cell k stands for, rad, in [-pi, pi].
   [[nodiscard]] double value(double k) const;
-  /// "arm angle", "generalised arm angle" or "roll"; and its letter.
+  /// Returns "arm angle", "generalised arm angle" or "roll"; letter() returns its letter.
   [[nodiscard]] const char* coordinate_name() const;
   [[nodiscard]] const char* letter(int panel) const;
-  /// What it means that a cell has no node.
+  /// Says what it means that a cell has no node.
   [[nodiscard]] const char* emptiness() const;
   [[nodiscard]] int solutions() const;
   [[nodiscard]] int panels() const { return solutions() + (turns ? 1 : 0); }
@@ -87,34 +88,36 @@ struct LatticeMap {
                      static_cast<std::size_t>(angles) +
                  static_cast<std::size_t>(angle)];
   }
-  /// Panels that have a node, or the path.
+  /// Returns the panels that have a node, or the path.
   [[nodiscard]] std::vector<int> inhabited_solutions() const;
-  /// What blocks a blocked node, in words.
+  /// Returns what blocks a blocked node, in words.
   [[nodiscard]] std::string blocker_name(const Node& node) const;
-  /// "shoulder +, wrist -, elbow +", with the winding where there are several.
+  /// Names an IK solution: "shoulder +, wrist -, elbow +", with the winding where there are
+  /// several.
   [[nodiscard]] std::string solution_name(int solution) const;
 };
 
-/// Which of the slots of a layer at the path's branch and arm angle have rolls that the cells from
-/// -pi on stand for, -1: none. `like`: a slot of the layer; of a lattice of rolls.
+/// Returns for each of `cells` cells of roll, from -pi on, the slot of the layer with the nearest
+/// roll, -1 where there is none. Only slots at the branch and arm angle of `like`, a slot of the
+/// layer, are considered. The lattice must be one of rolls.
 [[nodiscard]] std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like,
                                               int cells);
 
-/// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch
-/// and coordinate.
+/// Returns the cell of a node in its layer: in a grid that of its slot, in other lattices that of
+/// its branch and coordinate.
 [[nodiscard]] int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot);
 
-/// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of
-/// clearance for each node that the search asked about; with `full`, or where the planner was
-/// eager, for every node. Throws Stopped.
+/// Makes the map after the plan, and evaluates the reasons again: about a microsecond for a node,
+/// and a question of clearance for each node that the search asked about; with `full`, or where the
+/// planner was eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// The map in text, one panel per inhabited IK solution: s to the right, the coordinate from its
-/// largest value at the top, the path on it. A cell stands for as many nodes as it takes to fit
+/// Draws the map as text, one panel per inhabited IK solution: s to the right, the coordinate from
+/// its largest value at the top, the path on it. A cell stands for as many nodes as it takes to fit
 /// into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 
-/// The same as an SVG drawing for papers, with axes and a legend.
+/// Draws the map as SVG for papers, with axes and a legend.
 [[nodiscard]] std::string to_svg(const LatticeMap& map);
 
 }  // namespace swivel

@@ -8,7 +8,7 @@
 
 namespace swivel {
 
-/// What the rows of RESULTS.csv do not say.
+/// What a campaign's page says besides the rows of RESULTS.csv.
 struct CampaignFacts {
   std::string problem;         ///< file name
   std::uint64_t episodes = 0;  ///< of the whole campaign
@@ -19,9 +19,10 @@ struct CampaignFacts {
   std::vector<std::string> coordinates;  ///< whose offsets the rows have
 };
 
-/// One HTML file that needs nothing else: verdicts, times and costs, where episodes fail and why,
-/// and every episode with the command that plans it again. Made of the rows alone, so a resumed
-/// campaign has the page of one that ran through. page_available() says whether this build can.
+/// Returns one HTML file that needs nothing else: verdicts, times and costs, where episodes fail
+/// and why, and every episode with the command that plans it again. It is made of the rows alone,
+/// so a resumed campaign has the page of one that ran through. page_available() says whether this
+/// build can make the file.
 [[nodiscard]] std::string to_overview(const std::vector<EpisodeRow>& rows,
                                       const CampaignFacts& facts);
 

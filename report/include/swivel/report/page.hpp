@@ -8,10 +8,11 @@
 
 namespace swivel {
 
-/// False in a build with SWIVEL_REPORT=OFF, which has no page to fill.
+/// Returns false in a build with SWIVEL_REPORT=OFF, which has no page to fill.
 [[nodiscard]] bool page_available();
 
-/// What became of the lattice's path; null where it stayed what it was, or has no times.
+/// What became of the lattice's path. A member is null where the path was not refined, or has no
+/// times.
 struct PageMotion {
   const std::vector<TrajectoryRow>* refined =
       nullptr;  ///< a row in each layer: shown in the path's place, the path beside it
@@ -25,9 +26,10 @@ struct PageWords {
       answer;  ///< shown with the map where JavaScript is switched off: answer_text, advice_text
 };
 
-/// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi)
-/// map, plots over s and over time, summary. `result_json`: the result in the format of `--json`.
-/// Made after planning: clearances along the path are asked for again. Throws Stopped.
+/// Returns one HTML file that needs nothing else: the arm among the scene in three dimensions, the
+/// (s, phi) map, plots over s and over time, summary. `result_json`: the result in the format of
+/// `--json`. The file is made after planning: clearances along the path are asked for again. Throws
+/// Stopped.
 [[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map,
                                   const std::string& result_json, const PageMotion& motion = {},
                                   const Budget& budget = {}, const PageWords& words = {});

@@ -13,11 +13,11 @@ namespace swivel {
 
 class PreparedRobot;
 
-/// What ended the paths of a placement.
+/// Returns what ended the paths of a placement.
 [[nodiscard]] std::string ended_by(const PlacementRow& row);
 
-/// Placements over two of the axes of a grid. Where more axes vary, a place shows the best that
-/// stands there.
+/// Shows placements over two of the axes of a grid. Where more axes vary, a place shows the best
+/// placement that stands there.
 struct PlacementMap {
   /// `across`, `up`: numbers of axes of the grid. `rows`: any of its cells.
   PlacementMap(const PlacementGrid& grid, std::size_t across, std::size_t up,
@@ -31,17 +31,17 @@ struct PlacementMap {
   std::vector<std::string> ends;  ///< ended_by() of those without a path, the most frequent first
   double least = 0, most = 0;     ///< merit of those with a path
   bool best_of_several = false;   ///< more axes vary
-  /// From 0, the least merit, to 1, the most.
+  /// Returns the merit of a row between 0, for the least merit, and 1, for the most.
   [[nodiscard]] double shade(const PlacementRow& row) const;
 };
 
-/// For a terminal: a digit where there is a path (9: the best), a letter for what ends them, a dot
-/// where nothing was planned.
+/// Draws the map for a terminal: a digit where there is a path (9: the best), a letter for what
+/// ends the paths, a dot where nothing was planned.
 [[nodiscard]] std::string to_text(const PlacementMap& map, int columns, bool coloured);
-/// The same as an SVG drawing.
+/// Draws the map as SVG.
 [[nodiscard]] std::string to_svg(const PlacementMap& map);
 
-/// What the rows do not say.
+/// What a page of placements says besides their rows.
 struct PlacementFacts {
   std::string problem;              ///< file name
   std::string thing;                ///< what is moved, for people
@@ -53,7 +53,7 @@ struct PlacementFacts {
       plan_command;  ///< plans the problem with nothing moved, up to the words of the coordinates
 };
 
-/// The best placements in three dimensions.
+/// What the page's view in three dimensions shows: the best placements.
 struct PlacementScene {
   const PreparedRobot* robot = nullptr;
   const Problem* problem = nullptr;  ///< with nothing moved
@@ -61,9 +61,10 @@ struct PlacementScene {
   std::vector<PlacedPlan> plans;
 };
 
-/// One HTML file that needs nothing else: maps by verdict, by what ends the paths and by quality,
-/// the best, and every placement with the command that plans it; the plans of `scene`, above the
-/// map as a floor. page_available() says whether this build can.
+/// Returns one HTML file that needs nothing else: maps by verdict, by what ends the paths and by
+/// quality, the best placements, and every placement with the command that plans it. The plans of
+/// `scene` are drawn above the map, which is their floor. page_available() says whether this build
+/// can make the file.
 [[nodiscard]] std::string to_placement_page(const std::vector<PlacementRow>& rows,
                                             const PlacementFacts& facts,
                                             const PlacementScene& scene = {});
