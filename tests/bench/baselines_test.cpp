@@ -92,7 +92,8 @@ TEST(Baselines, NullSpaceEscapesTheFirstBallAndSticksBetweenBothInExperimentB) {
   EXPECT_LT(std::max(result.slopes[0], result.slopes[1]), 0) << "the clearance must fall both ways";
   expect_valid(result, robot, problem);
 
-  // The same from outside: along the self-motion the clearance has a peak there.
+  // Clearances that are computed apart from the tracker: along the self-motion the clearance has a
+  // peak where the tracker stopped.
   const Config self_motion =
       robot.arm().chain.jacobian(result.end).fullPivLu().kernel().col(0).normalized();
   const World world(robot.world(), problem.scene);

@@ -7,8 +7,8 @@
 
 namespace swivel::test {
 
-/// Breaks files the way that transfers, editors and attackers do. The same seed gives the same
-/// bytes everywhere.
+/// Breaks files the way that transfers, editors and attackers do. A seed gives the same bytes
+/// on every machine.
 class Mutator {
  public:
   /// `seeds`: good files of one format; `words`: pieces of its syntax.
@@ -16,9 +16,9 @@ class Mutator {
   Mutator(std::vector<std::string> seeds, std::vector<std::string> words, bool mild)
       : seeds_(std::move(seeds)), words_(std::move(words)), mild_(mild) {}
 
-  /// A seed with one to three changes.
+  /// Returns one of the good files with one to three changes, drawn by `seed_value`.
   [[nodiscard]] std::string input(std::uint64_t seed_value) const;
-  /// The text with one to three changes.
+  /// Returns the text with one to three changes, drawn by `seed_value`.
   [[nodiscard]] std::string changed(std::string text, std::uint64_t seed_value) const;
 
  private:

@@ -11,12 +11,13 @@
 
 namespace swivel::test {
 
-/// In steps of 2^-24 units of a lattice's costs.
+/// Expresses a cost in steps of 2^-24 units of the lattice's costs, rounded to a whole number.
 inline double in_steps(const Lattice& lattice, double x) {
   return std::round(std::ldexp(x / lattice.cost_unit(), 24));
 }
 
-/// The definition: how far joints are from the middles of their ranges, in these steps.
+/// Measures by the definition how far joints are from the middles of their ranges, weighted as
+/// costs are, in steps of in_steps().
 inline double off_middle(const Lattice& lattice, const Config& q) {
   double heaviest = 0, sum = 0;
   for (const double weight : lattice.cost_scale()) heaviest = std::max(heaviest, weight);
@@ -39,8 +40,9 @@ inline double off_middle(const Lattice& lattice, const Config& q) {
   return sum;
 }
 
-/// The definition: of the nodes of layer 0, whose joints are joints(k) and from which the least
-/// path costs cost[k], infinity: none, the one that the answer begins at; -1 where there is none.
+/// Finds by the definition the node of layer 0 that the answer begins at; -1 where there is none.
+/// Node k has the joints joints(k), and the cheapest path from it costs cost[k], infinity where
+/// there is none.
 template <class Joints>
 int first_of_answer(const Lattice& lattice, const std::vector<double>& cost, const Joints& joints) {
   using Order = std::tuple<double, double, int>;  // coarse cost, off_middle, slot

@@ -8,9 +8,10 @@
 
 namespace swivel::test {
 
-/// Arms as rows of joints, as URDFs have them: dimensions are those of the makers' descriptions,
-/// rounding included; "like" means lengths of that class. An arm of six joints has a seventh that
-/// turns the tool about its own z axis.
+/// A joint of an arm as URDFs have it: origin (m, and roll, pitch, yaw in rad), axis and limits
+/// (rad). Dimensions are those of the makers' descriptions, rounding included; "like" in an arm's
+/// name means lengths of that class. chain_of() gives an arm of six joints a seventh that turns the
+/// tool about its own z axis.
 struct JointRow {
   Vector3d xyz, rpy, axis;
   double lower, upper;
@@ -32,7 +33,7 @@ inline Pose urdf_pose(const Vector3d& xyz, const Vector3d& rpy) {
   return pose;
 }
 
-/// Links "base", "l1", ...; a fixed joint leads to the tip.
+/// Builds a robot with links "base", "l1", ...; a fixed joint leads to the tip.
 inline RobotModel model_of(const ArmTable& arm, const std::vector<JointRow>& rows,
                            const Pose& tip) {
   RobotModel model;
@@ -72,13 +73,13 @@ inline Chain chain_of(const ArmTable& arm) {
   return build_arm(model, "base", model.links.back().name, {}, Pose::Identity()).chain;
 }
 
-/// Of six joints, with a tool that may turn so far about its own z axis.
+/// Builds an arm of six joints with a tool that may turn about its own z axis, within `roll`.
 inline ArmModel arm_with_roll(const ArmTable& arm, const Roll& roll) {
   const RobotModel model = model_of(arm, arm.joints, urdf_pose(arm.tip_xyz, arm.tip_rpy));
   return build_arm(model, "base", model.links.back().name, {}, Pose::Identity(), roll);
 }
 
-/// Seven joints, none of them S-R-S but the last.
+/// Arms of seven joints. Only the last of them is S-R-S.
 inline std::vector<ArmTable> arms_7r() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
                  o = Vector3d::Zero();
@@ -161,7 +162,7 @@ inline std::vector<ArmTable> arms_7r() {
   };
 }
 
-/// Six joints and the turn of the tool.
+/// Arms of six joints; the turn of the tool is their redundancy.
 inline std::vector<ArmTable> arms_6r() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
                  o = Vector3d::Zero();
@@ -213,7 +214,7 @@ inline std::vector<ArmTable> arms_6r() {
         {v(0, 0, -0.11985), o, y, -kTwoPi, kTwoPi}},
        v(0, 0.11655, 0.03),
        v(-half + 0.5, 0, 0)},
-      // Nothing meets nor stands square: axes 5 and 6 pass each other, so that the position of the
+      // No axes meet or stand square: axes 5 and 6 pass each other, so that the position of the
       // parallel axes is a quartic.
       {"skew-parallel",
        {{v(0, 0, 0.2), o, z, -kPi, kPi},
@@ -224,7 +225,8 @@ inline std::vector<ArmTable> arms_6r() {
         {v(0.06, 0, -0.12), v(0.3, 0.2, 0), y, -kPi, kPi}},
        v(0, 0.1, 0.03),
        v(0.5, 0, 0)},
-      // The same axes from tip to base.
+      // Like skew-parallel with its axes in the order from tip to base: axes 3, 4 and 5 are
+      // parallel.
       {"parallel-3-4-5",
        {{v(0, 0.1, 0.3), v(0.3, 0, 0), y, -kPi, kPi},
         {v(0.06, 0, 0.12), o, z, -kPi, kPi},

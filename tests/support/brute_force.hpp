@@ -25,10 +25,11 @@ struct Answer {
   std::vector<int> empty;  // layers without a valid node
 };
 
-/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic
-/// program; the order of answers. Cost and order of the nodes, everything else of the rows.
-/// `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks are asked about
-/// one state or motion at a time.
+/// Plans by the definition: asks about every pair of nodes of neighbouring layers, with steps of
+/// its own and the plain edge rule, then runs a dynamic program and applies the order of answers.
+/// Costs and order are those of the nodes; all that is tested is tested on the rows, the exact
+/// configurations. `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks
+/// are asked about one state or motion at a time.
 inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
                           const std::function<bool(int layer, int a, int b)>& in_window,
                           const Hooks& hooks = {}) {

@@ -8,7 +8,7 @@
 
 namespace swivel::test {
 
-/// The same robot with other origins of its arm's joints: change(origin).
+/// Returns the robot with its arm's joint origins changed by change(origin).
 template <class Change>
 TestRobot with_origins(const TestRobot& robot, const std::string& name, const Change& change) {
   TestRobot changed = with_limits(robot, [&](int, Joint& joint) { change(joint.origin); });
@@ -16,8 +16,8 @@ TestRobot with_origins(const TestRobot& robot, const std::string& name, const Ch
   return changed;
 }
 
-/// The robot as files have it that write 1.5708 for pi/2: roll, pitch and yaw rounded to `step`,
-/// rad.
+/// Returns the robot as a file has it that writes 1.5708 for pi/2: roll, pitch and yaw are rounded
+/// to `step`, rad.
 inline TestRobot rounded(const TestRobot& robot, double step) {
   return with_origins(robot, robot.name + " rounded", [&](Pose& origin) {
     const Vector3d rpy = origin.linear().eulerAngles(2, 1, 0).reverse();
@@ -30,8 +30,8 @@ inline TestRobot rounded(const TestRobot& robot, double step) {
   });
 }
 
-/// The robot with origins shifted and turned at random, so that it misses the ideal arm by at least
-/// half of `share` of what is tolerated, 1 mm and 10 mrad, and by no more than that.
+/// Returns the robot with origins shifted and turned at random, so that it misses the ideal arm by
+/// at least half of `share` of what is tolerated, 1 mm and 10 mrad, and by no more than that.
 inline TestRobot perturbed(const TestRobot& robot, double share, Random& random) {
   for (;;) {
     const auto vector = [&](double most) {
@@ -53,7 +53,7 @@ inline TestRobot perturbed(const TestRobot& robot, double share, Random& random)
   }
 }
 
-/// Five arms that are not exactly S-R-S, up to the tolerance.
+/// Returns five arms that are not exactly S-R-S: they miss it by as much as the tolerance at most.
 inline std::vector<TestRobot> inexact_robots(Random& random) {
   return {rounded(data_robot("sda5f"), 1e-4), perturbed(data_robot("iiwa14"), 1, random),
           perturbed(data_robot("sda10f"), 0.1, random), perturbed(continuous_robot(), 1, random),

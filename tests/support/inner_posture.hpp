@@ -4,7 +4,8 @@
 
 namespace swivel::test {
 
-/// A posture well inside the limits, its middle joints bent.
+/// Draws a posture near the middles of the joints' ranges, with joints 2, 4 and 6 bent by some 0.8
+/// rad.
 inline Config inner_posture(const Chain& chain, Random& random) {
   Config q;
   for (int j = 0; j < kDof; ++j) {
@@ -16,7 +17,7 @@ inline Config inner_posture(const Chain& chain, Random& random) {
   return q;
 }
 
-/// A vector of some direction and this length.
+/// Draws a vector of any direction with this length.
 inline Vector3d random_vector(Random& random, double length) {
   return length *
          Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();

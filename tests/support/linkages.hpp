@@ -60,7 +60,7 @@ inline void add_linkages(RobotModel& model, const std::vector<std::string>& lead
   }
 }
 
-/// Where a joint stands, given the positions of those that mimic none.
+/// Returns where a joint stands, given the positions of the joints that mimic none.
 inline double plain_position(const RobotModel& model, int joint,
                              const std::vector<double>& positions) {
   const auto& mimic = model.joints[static_cast<std::size_t>(joint)].mimic;
@@ -68,7 +68,7 @@ inline double plain_position(const RobotModel& model, int joint,
                : positions[static_cast<std::size_t>(joint)];
 }
 
-/// Pose of a link in the root's frame, from joint to joint.
+/// Returns the pose of a link in the root's frame, multiplied from joint to joint.
 inline Pose plain_pose(const RobotModel& model, int link, const std::vector<double>& positions) {
   const int j = model.links[static_cast<std::size_t>(link)].parent_joint;
   if (j < 0) return Pose::Identity();

@@ -50,14 +50,15 @@ inline std::vector<TrajectoryRow> rows_of(const Judged& judged) {
   return rows;
 }
 
-/// The verdict on rows in memory.
+/// Checks the rows in memory as `swivel check` checks a file.
 inline CheckResult judge(const Judged& judged, const CheckOptions& options = {}) {
   return judged.timed ? check_motion(*judged.robot, judged.problem, judged.rows, options)
                       : check_trajectory(*judged.robot, judged.problem, rows_of(judged), options);
 }
 
-/// Problems of the data folder and small ones of the project's robots, from the seed: trajectories
-/// as planned, some of them on the path of motions; or motions, at 20 to 250 samples a second.
+/// Plans problems of the data folder and `small_ones` small ones, drawn by the seed, for the
+/// project's robots. Returns trajectories as planned, some of them on the path of motions; with
+/// `timed`, motions at 20 to 250 samples a second.
 inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int small_ones) {
   std::vector<Judged> found;
   const auto add = [&](const std::string& what, const Problem& problem, bool as_motion, double rate,
@@ -91,7 +92,7 @@ inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int sma
     Random random(seed + static_cast<std::uint64_t>(trial));
     Problem problem =
         motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    // Corners rounded as motions do by themselves; or so little that the tool stops at them.
+    // Corners are rounded as motions round them by default, or so little that the tool stops there.
     if (trial % 2 == 0)
       problem.smooth.reset();
     else if (timed)
@@ -133,7 +134,7 @@ inline std::size_t some(std::size_t from, std::size_t to, Random& random) {  // 
   return from + static_cast<std::size_t>(random.below(static_cast<int>(to - from)));
 }
 
-/// Rows k, ..., later by so much, s.
+/// Makes row k and all after it later by `by`, s.
 inline void delay(Judged& judged, std::size_t k, double by) {
   for (; k < judged.rows.size(); ++k) judged.rows[k].t += by;
 }
@@ -143,8 +144,9 @@ inline Config speed(const Judged& judged,
   return (judged.q(k) - judged.q(k - 1)) / (judged.t(k) - judged.t(k - 1));
 }
 
-/// The change of speed at row k, made within h, and the change from the acceleration h before to
-/// that, over what a joint can do. A controller moves joints straight from row to row.
+/// Returns the larger of two ratios at row k, at its largest over the joints: the acceleration that
+/// changes the speed there within h, s, over the limit; and the jerk that leads to it from the
+/// acceleration one row before, over the limit. A controller moves joints straight from row to row.
 inline double jolt(const Judged& judged, std::size_t k, double h) {
   if (k < 2 || k + 1 >= judged.rows.size()) return 0;
   const JointRates rates = judged.rates();
@@ -158,7 +160,7 @@ inline double jolt(const Judged& judged, std::size_t k, double h) {
   return most;
 }
 
-/// A point inside a convex shape.
+/// Returns a point inside a convex shape.
 inline Vector3d inside(const Shape& shape) {
   const auto* mesh = std::get_if<MeshPtr>(&shape);
   if (!mesh) return Vector3d::Zero();
@@ -167,8 +169,8 @@ inline Vector3d inside(const Shape& shape) {
   return sum / static_cast<double>((*mesh)->vertices.size());
 }
 
-/// The row at another posture of its self-motion, where some joint has moved by `far`, rad; none
-/// where the tool cannot stand still so far.
+/// Returns the row at another posture of its self-motion, where some joint has moved by `far`, rad;
+/// nothing where the arm cannot move so far while the tool stands still.
 inline std::optional<TimedRow> beside(const Judged& judged, std::size_t k, double far,
                                       Random& random) {
   const Chain& chain = judged.chain();
@@ -200,8 +202,8 @@ inline std::optional<TimedRow> beside(const Judged& judged, std::size_t k, doubl
   return row;
 }
 
-/// How far the tool is from where it stands at both ends of a straight move of the joints, m and
-/// rad, at its farthest.
+/// Returns how far the tool gets, m and rad, on a straight move of the joints between two postures
+/// at which it has one and the same pose.
 inline std::pair<double, double> sway(const Chain& chain, const Config& from, const Config& to) {
   const Pose at = chain.tool(from);
   std::pair<double, double> most{0, 0};
@@ -214,7 +216,7 @@ inline std::pair<double, double> sway(const Chain& chain, const Config& from, co
   return most;
 }
 
-/// Rows of a motion at which the tool stands at a corner that is not rounded.
+/// Returns the rows of a motion at which the tool stands at a corner that is not rounded.
 inline std::vector<std::size_t> rows_at_corners(const Judged& judged) {
   const ToolPath path = problem_path(with_motion_defaults(judged.problem), judged.chain());
   std::vector<std::size_t> found;
@@ -231,8 +233,8 @@ inline std::vector<std::size_t> rows_at_corners(const Judged& judged) {
   return found;
 }
 
-/// Of a motion with time enough: the arm swings to its first row from another posture, or from its
-/// last row to one; or at a corner to one and back.
+/// A swing of the arm to another posture of its self-motion, with time enough: before the first
+/// row, after the last, or at a corner, to the posture and back.
 struct Swing {
   std::size_t row = 0;  // where the arm rests
   TimedRow other;
@@ -256,7 +258,7 @@ inline void insert(Judged& judged, Swing swing) {
   judged.rows.insert(judged.rows.begin() + static_cast<std::ptrdiff_t>(k) + 2, back);
   delay(judged, k + 2, 2 * kAgesOfTime);
 }
-/// Whether the arm rests where the swing begins: it leaves for the swing, and comes back, without a
+/// Says whether the arm rests at row k, where a swing begins: it leaves, and comes back, without a
 /// jump of its speed.
 inline bool can_leave(const Judged& judged, std::size_t k) {
   if (k < 2 || k + 2 >= judged.rows.size()) return true;
@@ -269,13 +271,14 @@ inline bool can_leave(const Judged& judged, std::size_t k) {
   return true;
 }
 
-/// So that arms may swing far: what is left is that nothing may be met on the way.
+/// Widens the limits of the tool's error, so that arms may swing far: what limits a swing then is
+/// that nothing may be met on the way.
 inline void allow_swings(Judged& judged) {
   judged.problem.limits.tool_path_error = 0.3;
   judged.problem.limits.tool_angle_error = 0.6;
 }
 
-/// Whether the straight move keeps `more` than it must, m, and its ends.
+/// Says whether the straight move, ends included, keeps `more` clearance, m, than it must.
 inline bool is_clear(const Judged& judged, World::Query& query, const Config& from,
                      const Config& to, double more) {
   constexpr int kParts = 64;
@@ -293,7 +296,7 @@ inline Problem as_a_motion(const Judged& judged) {
 
 }  // namespace detail
 
-/// All kinds, in a fixed order.
+/// Returns all mutations, in a fixed order.
 inline const std::vector<MotionMutation>& motion_mutations() {
   using namespace detail;
   static const std::vector<MotionMutation> all = {

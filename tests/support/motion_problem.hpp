@@ -6,8 +6,9 @@
 
 namespace swivel::test {
 
-/// Two to four segments from a posture well inside the limits, a ball near the arm, sometimes a
-/// start, a turn on the spot or a metric other than l2. An arm of six joints has a roll.
+/// Draws a problem of two to four segments from a posture well inside the limits, with a ball near
+/// the arm, and sometimes with a start, a turn on the spot or a metric other than l2. `roll`: of
+/// the tool, for an arm of six joints.
 inline Problem motion_problem(const TestRobot& robot, Random& random,
                               const std::optional<Roll>& roll = {}) {
   Problem problem = problem_for(robot);

@@ -4,8 +4,8 @@
 
 namespace swivel::test {
 
-/// The rule of motions by asking every midpoint in turn: what edge_blocked must agree with. The
-/// pair is that of the first midpoint that fails.
+/// Applies the rule of motions by asking every midpoint, one after the other: edge_blocked must
+/// agree with it. Returns the pair of bodies of the first midpoint that fails, or nothing.
 [[nodiscard]] inline std::optional<BodyPair> edge_blocked_plain(World::Query& query,
                                                                 const EdgeRule& rule,
                                                                 const Config& q0,

@@ -7,7 +7,7 @@
 
 namespace swivel::test {
 
-/// A closed box as triangles, so that meshes take part.
+/// Returns a closed box of triangles, so that problems have meshes too.
 inline MeshPtr box_mesh(const Vector3d& size) {
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->source = "box mesh";
@@ -31,7 +31,7 @@ inline Pose random_pose(Random& random, const Vector3d& center, double spread) {
   return pose;
 }
 
-/// A small random problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near
+/// Draws a small problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near
 /// the arm, random limits, both edge modes, with and without a start. Small enough for brute force
 /// over all pairs of nodes.
 inline Problem random_problem(const TestRobot& robot, Random& random) {

@@ -31,8 +31,9 @@ inline TestRobot data_robot(const std::string& name) {
   return robot;
 }
 
-/// An arm of seven joints in a row, built from axes and origins: for classes that no file of the
-/// data folder has. Link k carries a capsule along the way to joint k + 1.
+/// A joint of an arm that is built from axes and origins, for classes that no file of the data
+/// folder has. synthetic_robot() puts seven of them in a row; link k carries a capsule along the
+/// way to joint k + 1.
 struct SyntheticJoint {
   Vector3d origin, axis;
   double lower, upper;
@@ -76,7 +77,7 @@ inline TestRobot synthetic_robot(const std::string& name, const std::vector<Synt
   return {name, model, "base", "tip"};
 }
 
-/// z-y-z shoulder and wrist, continuous joints 1, 3, 5, 7.
+/// Returns an arm with z-y-z shoulder and wrist, whose joints 1, 3, 5 and 7 are continuous.
 inline TestRobot continuous_robot() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
                  o = Vector3d::Zero();
@@ -91,7 +92,8 @@ inline TestRobot continuous_robot() {
                           {o, z, 0, 0, true}},
                          z * 0.15, 0.05);
 }
-/// x-y-z triples, in-plane elbow offset, asymmetric windows, joints 1 and 7 of more than a turn.
+/// Returns an arm with x-y-z shoulder and wrist, an elbow offset in the plane of the arm,
+/// asymmetric limits, and joints 1 and 7 that turn by more than a turn.
 inline TestRobot windings_robot() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
                  o = Vector3d::Zero();
@@ -106,7 +108,7 @@ inline TestRobot windings_robot() {
                          z * 0.12, 0.05);
 }
 
-/// Seven joints of which no three meet in a point; joint 7 turns without end.
+/// Returns an arm of seven joints of which no three meet in a point; joint 7 turns without end.
 inline TestRobot offset_robot() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
   return synthetic_robot("offsets",
@@ -120,8 +122,8 @@ inline TestRobot offset_robot() {
                          z * 0.12, 0.04);
 }
 
-/// The same robot with other limits of its arm's joints: change(number of the joint, 0 ... 6,
-/// joint).
+/// Returns the robot with the joints of its arm changed, their limits for example, by
+/// change(number of the joint, 0 ... 6, joint).
 template <class Change>
 TestRobot with_limits(const TestRobot& robot, const Change& change) {
   auto model = std::make_shared<RobotModel>(*robot.model);
@@ -133,7 +135,7 @@ TestRobot with_limits(const TestRobot& robot, const Change& change) {
   return {robot.name, model, robot.base_link, robot.tip_link};
 }
 
-/// The same robot without its SRDF.
+/// Returns the robot without its SRDF.
 inline TestRobot without_srdf(TestRobot robot) {
   auto model = std::make_shared<RobotModel>(*robot.model);
   model->has_srdf = false;
@@ -143,8 +145,8 @@ inline TestRobot without_srdf(TestRobot robot) {
   return robot;
 }
 
-/// Links 5 and 7 are some 2 mm apart, whatever the joints, and meet where sin q6 cos q7 > 0.91. No
-/// SRDF.
+/// Returns a robot without SRDF whose links 5 and 7 are some 2 mm apart, whatever the joints, and
+/// meet where sin q6 cos q7 > 0.91.
 inline TestRobot near_wrist_robot() {
   TestRobot robot = continuous_robot();
   auto model = std::make_shared<RobotModel>(*robot.model);

@@ -21,9 +21,9 @@ inline void draw_windows(Problem& problem, Random& random, const std::optional<d
   }
 }
 
-/// By how much a roll at a layer is outside what the waypoints before and after it allow, rad; of
-/// paths that are not rounded, whose layers are spread evenly between waypoints, and that begin at
-/// the first.
+/// Returns by how much a roll at a layer is outside what the waypoints before and after it allow,
+/// rad; negative inside. The path must not be rounded, must begin at the first waypoint, and its
+/// layers must be spread evenly between waypoints.
 inline double outside_windows(const Problem& problem, const ToolPath& path, int layer,
                               double roll) {
   int before = layer, after = layer;

@@ -6,8 +6,9 @@
 
 namespace swivel::test {
 
-/// Whether two nodes of neighbouring layers may be joined, by the definition: from the grid angles
-/// nearest to theirs. A given start stands at its own angle.
+/// Says by the definition whether two nodes of neighbouring layers may be joined: their grid
+/// angles, the nearest to their own, are within the window. A given start counts with its own
+/// angle.
 inline bool window_allows(const SrsLattice& lattice, int layer, int a, int b) {
   const double step = kTwoPi / lattice.angles();
   const auto cell = [&](int i, int slot) {

@@ -8,8 +8,8 @@
 
 namespace swivel::test {
 
-/// The problem without what the cause names; none where nothing can be taken away: reach and
-/// singular poses.
+/// Returns the problem without what the cause names; nothing where nothing can be taken away, as
+/// with reach and singular poses.
 inline std::optional<Problem> without(const Cause& cause, Problem problem) {
   Limits& limits = problem.limits;
   switch (cause.kind) {
