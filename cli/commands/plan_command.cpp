@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
@@ -34,6 +35,7 @@ namespace swivel::cli {
 
 namespace {
 
+/// The command line of `swivel plan`.
 struct PlanArguments {
   std::string problem, out, json, trace, map_svg, report, certificate;
   std::optional<double> timeout;
@@ -42,20 +44,54 @@ struct PlanArguments {
   SearchOptions search;
   MotionOptions motion;
   EpisodeChoice episode;
+
+  /// Returns true if the lattice map is drawn, in whatever form.
+  [[nodiscard]] bool draws() const { return map || !map_svg.empty() || !report.empty(); }
 };
 
+/// What is to be planned, as problem file and command line say it.
+struct PlanRequest {
+  const PlanArguments& arguments;
+  Problem problem{};
+  /// The files that were read, which no output may replace.
+  std::vector<io::InputFiles::File> inputs{};
+  std::optional<TimingOptions> timing{};  ///< set with --speed: the path is timed
+  PlanOptions options{};
+  std::optional<double> advise_s{};  ///< s, time for all trials of --advise
+  double load_ms = 0;                ///< time that loading took
+};
+
+/// What was found. Steps after plan_motion() add to it.
+struct PlanAnswer {
+  MotionPlan plan;
+  std::optional<std::vector<Advice>> advice{};      ///< with --advise, where there is no path
+  std::optional<InfeasibilityCertificate> proof{};  ///< with --certificate, where there is no path
+  std::string certificate{};                        ///< `proof` as JSON
+  std::optional<LatticeMap> map{};                  ///< unset if nothing is drawn
+  std::string page{};                               ///< HTML of --report
+
+  [[nodiscard]] bool solved() const { return plan.result.status == PlanStatus::kSolved; }
+  [[nodiscard]] bool infeasible() const { return plan.result.status == PlanStatus::kInfeasible; }
+  /// Returns true if there is a path, and with --speed its timed motion too.
+  [[nodiscard]] bool executable(const PlanRequest& request) const {
+    return solved() && (!request.timing || plan.motion->motion);
+  }
+};
+
+/// Returns the time in ms that the plan noted for a stage; 0 if it noted none.
 double ms(const PlanResult& result, const char* key) {
   const auto found = result.time_ms.find(key);
   return found == result.time_ms.end() ? 0.0 : found->second;
 }
 
-/// How long the answer took to prove, after the time that it took to find.
+/// Returns the words that say how long the proof of the answer took; "" if it was not proved.
 std::string check_words(const PlanResult& result) {
   char text[40] = "";
   if (result.checked) std::snprintf(text, sizeof text, ", checked in %.1f ms", ms(result, "check"));
   return text;
 }
 
+/// Prints the answer, times and work counts of a plan; warnings go to standard error.
 void print_summary(const PlanResult& result) {
   say_text(answer_text(result));
   const Counters& c = result.counters;
@@ -74,8 +110,8 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
-/// Lays the files beside their targets, prints, and puts them in place: where printing fails,
-/// nothing is written.
+/// Writes the texts of the outputs beside their targets, calls `print`, and then puts the texts in
+/// place: if printing fails, nothing is written. `reason` says why earlier files are removed.
 void deliver(io::OutputFiles& outputs, const std::string& reason,
              const std::function<void()>& print) {
   outputs.stage();
@@ -84,163 +120,245 @@ void deliver(io::OutputFiles& outputs, const std::string& reason,
   report_removed(outputs.commit(), reason);
 }
 
-/// `outputs` is set as soon as it is known that they may be written.
-int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>& outputs) {
-  const auto start = std::chrono::steady_clock::now();
-  PlanOptions options = arguments.search.plan_options();
-  std::optional<Timeline> timeline;
-  if (!arguments.trace.empty()) timeline.emplace();
-  std::vector<io::InputFiles::File> inputs;
-  Problem problem = [&] {
+/// Loads the problem file, notes which files were read, and places the objects as the chosen
+/// episode and placement say.
+void load_problem(PlanRequest& request) {
+  const PlanArguments& arguments = request.arguments;
+  {
     const TraceSpan span("load");
     const io::InputFiles noted;
-    Problem loaded = io::load_problem(arguments.problem);
-    inputs = noted.files();
-    return arguments.episode.apply(loaded);
-  }();
-  arguments.search.apply(problem);
-  const std::optional<TimingOptions> timing = arguments.motion.asked_timing(problem);
-  if (timing) {
+    const Problem loaded = io::load_problem(arguments.problem);
+    request.inputs = noted.files();
+    request.problem = arguments.episode.apply(loaded);
+  }
+  arguments.search.apply(request.problem);
+}
+
+/// Reads from the command line whether the path is timed, and completes the problem for what
+/// follows the search: with_motion_defaults() for a motion, clearance between layers for a
+/// refinement. Throws InputError if --out names a format that does not fit.
+void read_motion(PlanRequest& request) {
+  const PlanArguments& arguments = request.arguments;
+  request.timing = arguments.motion.asked_timing(request.problem);
+  if (request.timing) {
     require_motion_format(arguments.out);
-    problem = with_motion_defaults(std::move(problem));
+    request.problem = with_motion_defaults(std::move(request.problem));
   } else {
     require_table_name("--out", arguments.out, "a path without times",
                        "--speed, with which motions are written in other formats");
-    if (arguments.refine) keep_clearance_between_layers(problem.limits);
-  }
-  if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
-  const auto advise_s =
-      arguments.advise ? std::optional(positive(*arguments.advise, "--advise")) : std::nullopt;
-  const double load = milliseconds_since(start);
-
-  catch_interrupts();
-  ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
-  options.progress = [&](const Progress& now) { progress.show(now); };
-  const bool draws = arguments.map || !arguments.map_svg.empty() || !arguments.report.empty();
-  if (!arguments.report.empty()) require_pages();
-  if (arguments.full_map && !draws)
-    throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
-  if (arguments.map && arguments.json == "-")
-    throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
-  if (!arguments.certificate.empty() && (arguments.refine || timing))
-    throw InputError(
-        "--certificate: is of the problem as its file has it: allowed without --refine and "
-        "--speed, which ask for more");
-  outputs.emplace(std::move(inputs));
-  outputs->add("--out", arguments.out);
-  outputs->add("--report", arguments.report);
-  outputs->add("--map-svg", arguments.map_svg);
-  outputs->add("--certificate", arguments.certificate);
-  outputs->add("--trace", arguments.trace);
-  outputs->add("--json", arguments.json);
-  options.check = !arguments.no_check;
-  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
-    options.evidence = Evidence::all();
-  const auto begun = std::chrono::steady_clock::now();
-  const Budget budget = options.budget();  // of what is drawn; plan() begins with it
-  Planner planner(problem);
-  MotionPlan plan = plan_motion(planner, options, arguments.refine, timing);
-  PlanResult& result = plan.result;
-  result.time_ms["load"] = load;
-  std::optional<std::vector<Advice>> advice;
-  if (advise_s && result.status == PlanStatus::kInfeasible) {
-    PlanOptions trials = options;
-    trials.timeout_s = advise_s;
-    if (options.timeout_s) {
-      const double gone =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-      trials.timeout_s = std::clamp(*options.timeout_s - gone, 1e-6, *advise_s);
-    }
-    advice = advise(planner, result, trials);
-  }
-  std::optional<InfeasibilityCertificate> proof;
-  std::string certificate;
-  if (outputs->wants("--certificate") && result.status == PlanStatus::kInfeasible) {
-    const auto start_of_proof = std::chrono::steady_clock::now();
-    try {
-      proof = prove_infeasible(planner.view(), budget);
-      certificate = io::to_json(*proof);
-    } catch (const Stopped&) {
-      result.warnings.push_back("stopped before the certificate was found: there is none");
-    }
-    result.time_ms["certificate"] = milliseconds_since(start_of_proof);
-  }
-  const io::PlanExtras extras{plan.refinement ? &*plan.refinement : nullptr,
-                              plan.motion ? &*plan.motion : nullptr,
-                              timing.value_or(TimingOptions{}),
-                              advice ? &*advice : nullptr,
-                              proof ? &*proof : nullptr,
-                              certificate.size()};
-  std::optional<LatticeMap> map;
-  std::string page;
-  if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
-    try {
-      const PlanView view = planner.view();
-      map = make_map(view, arguments.full_map, budget);
-      if (!arguments.report.empty()) {
-        PageMotion motion;
-        if (plan.refinement && plan.refinement->refined) motion.refined = &result.trajectory;
-        if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-        page = to_page(view, *map, io::to_json(result, extras), motion, budget,
-                       {arguments.episode.words(),
-                        answer_text(result) + (advice ? advice_text(*advice) : "")});
-      }
-    } catch (const Stopped&) {
-      map.reset();
-      result.warnings.push_back("stopped before the map was drawn: there is none, and no report");
-    }
-  }
-  progress.clear();
-
-  const bool solved = result.status == PlanStatus::kSolved,
-             executable = solved && (!timing || plan.motion->motion);
-  if (executable && timing) {
-    if (outputs->wants("--out"))
-      outputs->write("--out", io::motion_text(*plan.motion->motion, result.joint_names,
-                                              problem.base_link, arguments.out));
-  } else if (executable) {
-    outputs->write("--out", io::to_csv(result));
-  } else {
-    outputs->remove("--out");
-  }
-  if (proof)
-    outputs->write("--certificate", std::move(certificate));
-  else
-    outputs->remove("--certificate");
-  if (map) {
-    outputs->write("--report", std::move(page));
-    if (outputs->wants("--map-svg")) outputs->write("--map-svg", to_svg(*map));
-  } else {
-    outputs->remove("--report");
-    outputs->remove("--map-svg");
-  }
-  if (timeline) outputs->write("--trace", io::to_trace_json(*timeline) + "\n");
-  if (outputs->wants("--json")) outputs->write("--json", io::to_json(result, extras) + "\n");
-  const char* const reason = result.status == PlanStatus::kInfeasible ? "there is no path now"
-                             : executable && outputs->wants("--certificate") ? "there is a path now"
-                             : solved && !plan.stopped ? "there is no motion now"
-                                                       : "the search was stopped";
-  deliver(*outputs, reason, [&] {
-    if (!arguments.quiet && !outputs->takes_standard_output()) {
-      print_summary(result);
-      print_plan_extras(extras, result.joint_names);
-      if (proof) say_text(certificate_text(*proof, extras.certificate_bytes));
-      if (advice) say_text(advice_text(*advice));
-    }
-    if (!arguments.quiet && timeline) print_self_times(*timeline);
-    if (map && arguments.map)
-      std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
-  });
-  switch (result.status) {
-    case PlanStatus::kSolved:
-      return executable ? kOk : plan.stopped ? kStopped : kNo;
-    case PlanStatus::kInfeasible:
-      return kNo;
-    default:
-      return kStopped;
+    if (arguments.refine) keep_clearance_between_layers(request.problem.limits);
   }
 }
 
+/// Returns the request that problem file and command line make. Throws InputError.
+PlanRequest load_request(const PlanArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  PlanRequest request{.arguments = arguments, .options = arguments.search.plan_options()};
+  load_problem(request);
+  read_motion(request);
+  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
+  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
+  request.options.check = !arguments.no_check;
+  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
+    request.options.evidence = Evidence::all();
+  request.load_ms = milliseconds_since(start);
+  return request;
+}
+
+/// Throws InputError if options contradict each other, or need what this build lacks.
+void require_options_agree(const PlanRequest& request) {
+  const PlanArguments& arguments = request.arguments;
+  if (!arguments.report.empty()) require_pages();
+  if (arguments.full_map && !arguments.draws())
+    throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
+  if (arguments.map && arguments.json == "-")
+    throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
+  if (!arguments.certificate.empty() && (arguments.refine || request.timing))
+    throw InputError(
+        "--certificate: is of the problem as its file has it: allowed without --refine and "
+        "--speed, which ask for more");
+}
+
+/// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
+void add_outputs(const PlanArguments& arguments, io::OutputFiles& outputs) {
+  outputs.add("--out", arguments.out);
+  outputs.add("--report", arguments.report);
+  outputs.add("--map-svg", arguments.map_svg);
+  outputs.add("--certificate", arguments.certificate);
+  outputs.add("--trace", arguments.trace);
+  outputs.add("--json", arguments.json);
+}
+
+/// Where there is no path, seeks changes that would help, within --advise and what is left of
+/// --timeout. `begun` is when planning began.
+void find_advice(const Planner& planner, const PlanRequest& request,
+                 std::chrono::steady_clock::time_point begun, PlanAnswer& answer) {
+  if (!request.advise_s || !answer.infeasible()) return;
+  PlanOptions trials = request.options;
+  trials.timeout_s = request.advise_s;
+  if (request.options.timeout_s) {
+    const double gone =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    trials.timeout_s = std::clamp(*request.options.timeout_s - gone, 1e-6, *request.advise_s);
+  }
+  answer.advice = advise(planner, answer.plan.result, trials);
+}
+
+/// Where there is no path, proves it with a certificate. Adds a warning to the result if the budget
+/// ends first.
+void find_certificate(const Planner& planner, const Budget& budget, PlanAnswer& answer) {
+  if (!answer.infeasible()) return;
+  PlanResult& result = answer.plan.result;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    answer.proof = prove_infeasible(planner.view(), budget);
+    answer.certificate = io::to_json(*answer.proof);
+  } catch (const Stopped&) {
+    result.warnings.push_back("stopped before the certificate was found: there is none");
+  }
+  result.time_ms["certificate"] = milliseconds_since(start);
+}
+
+/// Returns what followed the search, for the result file. It points into `answer`.
+io::PlanExtras extras_of(const PlanRequest& request, const PlanAnswer& answer) {
+  const MotionPlan& plan = answer.plan;
+  return {plan.refinement ? &*plan.refinement : nullptr, plan.motion ? &*plan.motion : nullptr,
+          request.timing.value_or(TimingOptions{}),      answer.advice ? &*answer.advice : nullptr,
+          answer.proof ? &*answer.proof : nullptr,       answer.certificate.size()};
+}
+
+/// Returns the page of --report.
+std::string page_of(const PlanRequest& request, const PlanAnswer& answer, const PlanView& view,
+                    const io::PlanExtras& extras, const Budget& budget) {
+  const MotionPlan& plan = answer.plan;
+  PageMotion motion;
+  if (plan.refinement && plan.refinement->refined) motion.refined = &plan.result.trajectory;
+  if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
+  return to_page(view, *answer.map, io::to_json(plan.result, extras), motion, budget,
+                 {request.arguments.episode.words(),
+                  answer_text(plan.result) + (answer.advice ? advice_text(*answer.advice) : "")});
+}
+
+/// Makes the lattice map and the page, if they are asked for and the plan has a verdict. Adds a
+/// warning to the result if the budget ends first; there is then neither map nor page.
+void draw(const Planner& planner, const PlanRequest& request, const io::PlanExtras& extras,
+          const Budget& budget, PlanAnswer& answer) {
+  const PlanArguments& arguments = request.arguments;
+  PlanResult& result = answer.plan.result;
+  if (!arguments.draws() || result.status == PlanStatus::kTimeout ||
+      result.status == PlanStatus::kCancelled)
+    return;
+  try {
+    const PlanView view = planner.view();
+    answer.map = make_map(view, arguments.full_map, budget);
+    if (!arguments.report.empty()) answer.page = page_of(request, answer, view, extras, budget);
+  } catch (const Stopped&) {
+    answer.map.reset();
+    result.warnings.push_back("stopped before the map was drawn: there is none, and no report");
+  }
+}
+
+/// Gives --out its text: with --speed the timed motion, else the path. Marks an earlier file for
+/// removal if there is none.
+void write_path(const PlanRequest& request, const PlanAnswer& answer, io::OutputFiles& outputs) {
+  const MotionPlan& plan = answer.plan;
+  if (!answer.executable(request))
+    outputs.remove("--out");
+  else if (!request.timing)
+    outputs.write("--out", io::to_csv(plan.result));
+  else if (outputs.wants("--out"))
+    outputs.write("--out", io::motion_text(*plan.motion->motion, plan.result.joint_names,
+                                           request.problem.base_link, request.arguments.out));
+}
+
+/// Gives all outputs their texts, or marks earlier files for removal. Moves certificate and page
+/// out of `answer`.
+void write_answer(const PlanRequest& request, const io::PlanExtras& extras,
+                  const std::optional<Timeline>& timeline, PlanAnswer& answer,
+                  io::OutputFiles& outputs) {
+  write_path(request, answer, outputs);
+  if (answer.proof)
+    outputs.write("--certificate", std::move(answer.certificate));
+  else
+    outputs.remove("--certificate");
+  if (answer.map) {
+    outputs.write("--report", std::move(answer.page));
+    if (outputs.wants("--map-svg")) outputs.write("--map-svg", to_svg(*answer.map));
+  } else {
+    outputs.remove("--report");
+    outputs.remove("--map-svg");
+  }
+  if (timeline) outputs.write("--trace", io::to_trace_json(*timeline) + "\n");
+  if (outputs.wants("--json"))
+    outputs.write("--json", io::to_json(answer.plan.result, extras) + "\n");
+}
+
+/// Returns the reason for which earlier files are removed.
+const char* reason_of_removal(const PlanRequest& request, const PlanAnswer& answer,
+                              const io::OutputFiles& outputs) {
+  if (answer.infeasible()) return "there is no path now";
+  if (answer.executable(request) && outputs.wants("--certificate")) return "there is a path now";
+  if (answer.solved() && !answer.plan.stopped) return "there is no motion now";
+  return "the search was stopped";
+}
+
+/// Prints summary, times of the stages and map, as far as they are asked for.
+void print_answer(const PlanRequest& request, const PlanAnswer& answer,
+                  const io::PlanExtras& extras, const std::optional<Timeline>& timeline,
+                  const io::OutputFiles& outputs) {
+  const PlanArguments& arguments = request.arguments;
+  const PlanResult& result = answer.plan.result;
+  if (!arguments.quiet && !outputs.takes_standard_output()) {
+    print_summary(result);
+    print_plan_extras(extras, result.joint_names);
+    if (answer.proof) say_text(certificate_text(*answer.proof, extras.certificate_bytes));
+    if (answer.advice) say_text(advice_text(*answer.advice));
+  }
+  if (!arguments.quiet && timeline) print_self_times(*timeline);
+  if (answer.map && arguments.map)
+    std::fputs(to_text(*answer.map, terminal_columns(), coloured()).c_str(), stdout);
+}
+
+ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
+  if (answer.infeasible()) return kNo;
+  if (!answer.solved()) return kStopped;
+  if (answer.executable(request)) return kOk;
+  return answer.plan.stopped ? kStopped : kNo;
+}
+
+/// Plans the problem of the command line and writes and prints the answer. Returns the exit code.
+/// Sets `outputs` as soon as it is known that they may be written. Throws InputError.
+int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>& outputs) {
+  std::optional<Timeline> timeline;
+  if (!arguments.trace.empty()) timeline.emplace();
+  PlanRequest request = load_request(arguments);
+
+  catch_interrupts();
+  ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
+  request.options.progress = [&](const Progress& now) { progress.show(now); };
+  require_options_agree(request);
+  outputs.emplace(std::move(request.inputs));
+  add_outputs(arguments, *outputs);
+
+  const auto begun = std::chrono::steady_clock::now();
+  const Budget budget = request.options.budget();  // of proof and map; plan_motion() has its own
+  Planner planner(request.problem);
+  PlanAnswer answer{plan_motion(planner, request.options, arguments.refine, request.timing)};
+  answer.plan.result.time_ms["load"] = request.load_ms;
+  find_advice(planner, request, begun, answer);
+  if (outputs->wants("--certificate")) find_certificate(planner, budget, answer);
+  const io::PlanExtras extras = extras_of(request, answer);
+  draw(planner, request, extras, budget, answer);
+  progress.clear();
+
+  write_answer(request, extras, timeline, answer, *outputs);
+  deliver(*outputs, reason_of_removal(request, answer, *outputs),
+          [&] { print_answer(request, answer, extras, timeline, *outputs); });
+  return exit_code_of(request, answer);
+}
+
+/// Calls plan_problem(). If it fails after the outputs are known, and not through bad input or lack
+/// of memory, removes earlier answers and writes the error to --json. Passes every error on.
 int run(const PlanArguments& arguments) {
   std::optional<io::OutputFiles> outputs;
   try {
@@ -286,8 +404,8 @@ Problem EpisodeChoice::apply(const Problem& problem) const {
 
 void add_plan(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("plan", "Plan a joint trajectory");
-  auto arguments =
-      std::make_shared<PlanArguments>();  // shared: lives as long as the callback that reads it
+  // The callback shares the arguments, which must live as long as it does.
+  auto arguments = std::make_shared<PlanArguments>();
   command->add_option("problem", arguments->problem, "problem file")->required();
   arguments->search.add_to(*command);
   arguments->episode.add_to(*command);
