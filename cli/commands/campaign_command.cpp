@@ -29,6 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The command line of `swivel campaign`.
 struct CampaignArguments {
   std::string problem, shard, out, trajectories, json, report;
   std::vector<std::string> rows;
@@ -36,18 +37,20 @@ struct CampaignArguments {
   SearchOptions search;
 };
 
-/// The trajectories of a campaign: DIR/episode_K.csv.
+/// Writes the trajectories of a campaign: DIR/episode_K.csv.
 class Trajectories {
  public:
   explicit Trajectories(fs::path folder) : folder_(std::move(folder)) {}
+  /// Returns true for the name of a file that a campaign may write.
   [[nodiscard]] static bool is_name(const std::string& name) {
     return name.starts_with("episode_") && name.ends_with(".csv");
   }
-  /// Safe to call for several episodes at a time.
+  /// Writes the trajectory of an episode, or removes that of an older campaign if there is no path.
+  /// Several threads may call it at a time. Throws InputError if the folder cannot be written.
   void write(std::uint64_t episode, const PlanResult& result) {
     std::error_code error;
     if (result.status != PlanStatus::kSolved) {
-      removed_ += fs::remove(file(episode), error);  // of an older campaign
+      removed_ += fs::remove(file(episode), error);
       return;
     }
     fs::create_directories(folder_, error);
@@ -56,9 +59,9 @@ class Trajectories {
                        ": allowed is a folder that can be written");
     io::write_trajectory(file(episode), result);
   }
-  /// How many of an older campaign are gone.
+  /// Returns how many files of an older campaign were removed.
   [[nodiscard]] std::uint64_t removed() const { return removed_; }
-  /// Whether all is there that a row promises.
+  /// Returns true if the row has no path, or the file of its trajectory exists.
   [[nodiscard]] bool has(const EpisodeRow& row) const {
     return row.status != PlanStatus::kSolved || fs::exists(file(row.episode));
   }
@@ -71,8 +74,9 @@ class Trajectories {
   std::atomic<std::uint64_t> removed_{0};
 };
 
-/// Rows of shards are not mixed while they come. Episodes are not in it, so that a campaign may be
-/// made longer.
+/// Returns the settings that an unfinished results file must have to be continued: those of the
+/// record and the shard. The number of episodes is none of them, so that a campaign may be made
+/// longer.
 io::RunSettings settings_of(const io::ShardRecord& record) {
   io::RunSettings settings = record.settings;
   settings.values.emplace_back(
@@ -80,7 +84,8 @@ io::RunSettings settings_of(const io::ShardRecord& record) {
   return settings;
 }
 
-/// The rows of --rows in the order of the campaign. Throws InputError where they are not its first.
+/// Returns the rows of --rows in the order of the campaign. Throws InputError unless they are its
+/// first rows.
 std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files,
                                    const CampaignOptions& options,
                                    const std::vector<std::string>& coordinates) {
@@ -103,7 +108,8 @@ std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files,
   return rows;
 }
 
-int run(const CampaignArguments& arguments) {
+/// Returns the options of the campaign, which plan from its first episode. Throws InputError.
+CampaignOptions campaign_options(const CampaignArguments& arguments) {
   CampaignOptions options;
   options.plan = arguments.search.plan_options();
   constexpr std::uint64_t kMostEpisodes = 10'000'000;
@@ -113,9 +119,13 @@ int run(const CampaignArguments& arguments) {
   options.episodes = arguments.episodes;
   options.seed = arguments.seed;
   if (!arguments.shard.empty()) options.shard = shard_from_string(arguments.shard);
-  if (!arguments.report.empty()) require_pages();
-  require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
-  std::vector<io::InputFiles::File> inputs;
+  return options;
+}
+
+/// Loads the problem file and sets `inputs` to the files that were read: with hashes of their
+/// contents if there is a results file, which says what it was computed from. Throws InputError.
+Problem load_problem(const CampaignArguments& arguments,
+                     std::vector<io::InputFiles::File>& inputs) {
   Problem problem = [&] {
     const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
                                                      : io::InputFiles::Contents::kHash);
@@ -124,30 +134,23 @@ int run(const CampaignArguments& arguments) {
     return loaded;
   }();
   arguments.search.apply(problem);
-  const PreparedRobot robot(problem);
-  warn_of_held(robot.arm().held);
+  return problem;
+}
 
-  std::vector<io::InputFiles::File> read = inputs;
-  const std::vector<EpisodeRow> given = [&] {
-    const io::InputFiles noted;
-    std::vector<EpisodeRow> found =
-        given_rows(arguments.rows, options, varied_coordinates(problem.vary));
-    read.insert(read.end(), noted.files().begin(), noted.files().end());
-    return found;
-  }();
-  io::OutputFiles outputs(read);
+/// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
+void add_outputs(const CampaignArguments& arguments, io::OutputFiles& outputs) {
   outputs.add("--out", arguments.out);
   if (!arguments.out.empty()) outputs.add("the rows of --out", arguments.out + ".part");
   outputs.add("--report", arguments.report);
   outputs.add("--json", arguments.json);
-  std::optional<Trajectories> trajectories;
-  if (!arguments.trajectories.empty()) {
+  if (!arguments.trajectories.empty())
     outputs.add_folder("--trajectories", arguments.trajectories, Trajectories::is_name);
-    trajectories.emplace(arguments.trajectories);
-    options.planned = [&](std::uint64_t episode, const PlanResult& result) {
-      trajectories->write(episode, result);
-    };
-  }
+}
+
+/// Returns the record of this run, which a shard's results begin with.
+io::ShardRecord record_of(const CampaignArguments& arguments, const CampaignOptions& options,
+                          const Problem& problem, const PreparedRobot& robot,
+                          const std::vector<io::InputFiles::File>& inputs) {
   io::ShardRecord record{"campaign",
                          run_settings(arguments.problem, problem, arguments.search, inputs),
                          options.shard,
@@ -158,25 +161,32 @@ int run(const CampaignArguments& arguments) {
   record.settings.values.emplace_back("seed", std::to_string(options.seed));
   record.held = robot.arm().held;
   record.settings.coordinates = varied_coordinates(problem.vary);
-  const std::uint64_t size = options.shard.size(options.episodes);
-  std::vector<EpisodeRow> rows = given;
-  std::optional<io::CampaignFile> file;
-  if (!arguments.out.empty()) {
-    file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
-    for (std::size_t k = file->rows().size(); k < rows.size(); ++k) file->append(rows[k]);
-    if (trajectories) {  // the campaign that was killed may have been run without
-      const auto& found = file->rows();
-      const auto lacking = std::find_if_not(found.begin(), found.end(), [&](const EpisodeRow& row) {
-        return trajectories->has(row);
-      });
-      file->keep(lacking - found.begin());
-    }
-    rows = file->rows();
-  }
-  options.skip = rows.size();
+  return record;
+}
 
-  catch_interrupts();
+/// Brings the results file and the rows of --rows together: appends to the file those `given` rows
+/// that it lacks. With --trajectories, cuts the file before the first row whose trajectory is
+/// missing, since the campaign that was interrupted may have run without that option. Returns the
+/// rows that the file then has.
+std::vector<EpisodeRow> resume(io::CampaignFile& file, const std::vector<EpisodeRow>& given,
+                               const std::optional<Trajectories>& trajectories) {
+  for (std::size_t k = file.rows().size(); k < given.size(); ++k) file.append(given[k]);
+  if (trajectories) {
+    const auto& found = file.rows();
+    const auto lacking = std::find_if_not(
+        found.begin(), found.end(), [&](const EpisodeRow& row) { return trajectories->has(row); });
+    file.keep(lacking - found.begin());
+  }
+  return file.rows();
+}
+
+/// Plans the episodes that `rows` lacks, and appends them to `rows` and to the results file. Shows
+/// on standard error how many are done.
+void plan_episodes(const PreparedRobot& robot, const Problem& problem,
+                   const CampaignOptions& options, std::vector<EpisodeRow>& rows,
+                   std::optional<io::CampaignFile>& file) {
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
+  const std::uint64_t size = options.shard.size(options.episodes);
   auto solved = std::count_if(rows.begin(), rows.end(), [](const EpisodeRow& row) {
     return row.status == PlanStatus::kSolved;
   });
@@ -191,13 +201,59 @@ int run(const CampaignArguments& arguments) {
     solved += row.status == PlanStatus::kSolved;
     show();
   });
-  progress.clear();
+}
 
-  const bool complete = rows.size() == size;
+/// Writes results, summary and page, prints the summary, and finishes the results file if all rows
+/// are there.
+void write_results(const CampaignArguments& arguments, const std::vector<EpisodeRow>& rows,
+                   bool complete, const io::ShardRecord& record,
+                   std::optional<io::CampaignFile>& file, io::OutputFiles& outputs) {
   if (file && complete)
     outputs.write("--out", (arguments.shard.empty() ? "" : io::to_line(record)) + file->csv());
   show_campaign(outputs, rows, record);
   if (file && complete) file->finish();
+}
+
+/// Plans the campaign of the command line, from where an earlier run of it ended, writes and prints
+/// its results. Returns the exit code. Throws InputError.
+int run(const CampaignArguments& arguments) {
+  CampaignOptions options = campaign_options(arguments);
+  if (!arguments.report.empty()) require_pages();
+  require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
+  std::vector<io::InputFiles::File> inputs;
+  const Problem problem = load_problem(arguments, inputs);
+  const PreparedRobot robot(problem);
+  warn_of_held(robot.arm().held);
+
+  std::vector<io::InputFiles::File> read = inputs;
+  std::vector<EpisodeRow> rows = [&] {
+    const io::InputFiles noted;
+    std::vector<EpisodeRow> found =
+        given_rows(arguments.rows, options, varied_coordinates(problem.vary));
+    read.insert(read.end(), noted.files().begin(), noted.files().end());
+    return found;
+  }();
+  io::OutputFiles outputs(read);
+  add_outputs(arguments, outputs);
+  std::optional<Trajectories> trajectories;
+  if (!arguments.trajectories.empty()) {
+    trajectories.emplace(arguments.trajectories);
+    options.planned = [&](std::uint64_t episode, const PlanResult& result) {
+      trajectories->write(episode, result);
+    };
+  }
+  const io::ShardRecord record = record_of(arguments, options, problem, robot, inputs);
+  std::optional<io::CampaignFile> file;
+  if (!arguments.out.empty()) {
+    file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
+    rows = resume(*file, rows, trajectories);
+  }
+  options.skip = rows.size();
+
+  catch_interrupts();
+  plan_episodes(robot, problem, options, rows, file);
+  const bool complete = rows.size() == options.shard.size(options.episodes);
+  write_results(arguments, rows, complete, record, file, outputs);
   if (trajectories && trajectories->removed() > 0)
     complain("swivel: removed %llu earlier trajectories in %s: there is no path now\n",
              static_cast<unsigned long long>(trajectories->removed()),
@@ -210,8 +266,8 @@ int run(const CampaignArguments& arguments) {
 void add_campaign(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "campaign", "Plan many episodes: the problem with the objects of 'vary' at random poses");
-  auto arguments =
-      std::make_shared<CampaignArguments>();  // shared: lives as long as the callback that reads it
+  // The callback shares the arguments, which must live as long as it does.
+  auto arguments = std::make_shared<CampaignArguments>();
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("--episodes", arguments->episodes, "how many, all shards together")
       ->capture_default_str();

@@ -24,12 +24,14 @@ namespace swivel::cli {
 
 namespace {
 
+/// The command line of `swivel info`.
 struct InfoArguments {
   std::string urdf, srdf, base, tip;
   std::vector<std::string> hold, packages, without;
   bool pairs = false, roll = false;
 };
 
+/// Returns the positions of --hold by joint, in rad or m. Throws InputError.
 std::map<std::string, double> parse_hold(const std::vector<std::string>& items) {
   std::map<std::string, double> hold;
   for (const std::string& item : items) {
@@ -45,7 +47,8 @@ std::map<std::string, double> parse_hold(const std::vector<std::string>& items) 
   return hold;
 }
 
-/// Joints between two links that move on their own; none where the tip is not below the base.
+/// Returns the number of joints between two links that move on their own; nullopt if the tip is not
+/// below the base.
 std::optional<int> joints_between(const RobotModel& robot, const std::string& base,
                                   const std::string& tip) {
   int link = robot.find_link(tip), count = 0;
@@ -57,8 +60,8 @@ std::optional<int> joints_between(const RobotModel& robot, const std::string& ba
   return link < 0 ? std::nullopt : std::optional(count);
 }
 
-/// Base and tip as asked for; what was not is guessed. Appends the arms that were not taken to
-/// `others`.
+/// Returns base and tip as the command line names them; guesses what it does not name. Sets
+/// `others` to the guessed arms that were not chosen. Throws InputError.
 ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments,
                     std::vector<ArmGuess>& others) {
   const std::string &base = arguments.base, &tip = arguments.tip;
@@ -93,7 +96,7 @@ ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments,
   return guesses.arms.front();
 }
 
-/// Whether axes k, k + 1, k + 2 (from 0) meet in one point, within 1 mm.
+/// Returns true if axes k, k + 1, k + 2 (from 0) meet in one point, within 1 mm.
 bool meet(const Chain& chain, std::size_t k) {
   const auto line_distance = [&](const Vector3d& point, std::size_t j) {
     return (point - chain.point[j]).cross(chain.axis[j]).norm();
@@ -108,6 +111,7 @@ bool meet(const Chain& chain, std::size_t k) {
   return line_distance(point, k) < kMiss && line_distance(point, k + 2) < kMiss;
 }
 
+/// Prints dimensions, fit and reach of an S-R-S arm.
 void print_srs(const SrsArm& srs) {
   const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 ||
                       std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
@@ -129,7 +133,7 @@ void print_srs(const SrsArm& srs) {
       std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
 }
 
-/// An arm that is not S-R-S: what it looks like.
+/// Prints what an arm that is not S-R-S looks like.
 void print_other(const Chain& chain, const ArmClass& arm) {
   const bool wrist = meet(chain, chain.roll ? 3 : 4);
   say("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
@@ -139,8 +143,8 @@ void print_other(const Chain& chain, const ArmClass& arm) {
     say("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
 }
 
-/// Joints that move on their own and are neither the arm's nor between base and tip: a gripper's,
-/// another arm's.
+/// Returns the joints that move on their own and are neither the arm's nor between base and tip,
+/// such as those of a gripper or of another arm, with the positions at which they are held.
 std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
                                    const std::map<std::string, double>& hold) {
   std::vector<HeldJoint> beside;
@@ -160,8 +164,8 @@ std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
   return beside;
 }
 
-/// Calls `work`; what it finds wrong in a key of `robot` is said in the name of the option that
-/// stands for the key.
+/// Calls `work` and returns its result. Throws InputError in the name of the option that stands for
+/// a key of `robot` if `work` finds the key wrong.
 template <class Work>
 auto in_the_options_names(const Work& work) {
   try {
@@ -176,17 +180,85 @@ auto in_the_options_names(const Work& work) {
   }
 }
 
+/// Throws InputError for the name of a problem file, which is not what this command describes.
+void require_no_problem_file(const std::string& name) {
+  const std::string end = std::filesystem::path(name).extension();
+  if (end == ".yaml" || end == ".yml")
+    throw InputError(
+        name + ": is a problem file: allowed is a URDF file, or `swivel info --pairs " + name +
+        "` for the pairs of bodies and `swivel plan " + name + "` for its path");
+}
+
+/// Prints the size of the robot, and what its collision shapes lack.
+void print_robot(const RobotModel& robot, const io::ShapeSurvey& shapes) {
+  say("robot      %s: %zu links, %zu joints\n", robot.name.c_str(), robot.links.size(),
+      robot.joints.size());
+  if (!shapes.missing_meshes.empty())
+    say("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
+        shapes.missing_meshes.front().c_str());
+  if (shapes.collision == 0)
+    say("shapes     none for collision: the robot is kept clear of nothing%s\n",
+        shapes.visual_meshes == 0
+            ? ""
+            : "; `swivel fit --visual` fits capsules about its visual meshes");
+}
+
+/// Prints base and tip of the arm, the joints that stand still, the linkages, and the other arms of
+/// the robot.
+void print_arm(const RobotModel& robot, const ArmGuess& chosen, const ArmModel& arm,
+               const std::map<std::string, double>& hold, const std::vector<ArmGuess>& others) {
+  say("arm        %s to %s\n", chosen.base.c_str(), chosen.tip.c_str());
+  for (const HeldJoint& held : arm.held) say("held       %s\n", words({held}).c_str());
+  if (const auto beside = held_beside(robot, arm, hold); !beside.empty())
+    say("beside     %s\n", words(beside).c_str());
+  for (const Chain::Follower& follower : arm.chain.followers)
+    say("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier,
+        follower.leader + 1);
+  for (const ArmGuess& other : others)
+    say("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(),
+        other.joints == 6 ? ", six joints" : "");
+}
+
+/// Prints the class of the arm, its dimensions, and how its inverse kinematics is solved.
+void print_class(const Chain& chain, const ArmClass& kind) {
+  kind.srs ? print_srs(*kind.srs) : print_other(chain, kind);
+  say("solutions  %s: %s\n", kind.complete() ? "all" : "those that turn up", kind.method().c_str());
+}
+
+/// Prints the limits of each joint of the arm.
+void print_joints(const Chain& chain) {
+  for (std::size_t j = 0; j < kDof - (chain.roll ? 1 : 0); ++j) {
+    const JointLimit& limit = chain.limit[j];
+    if (limit.continuous)
+      say("joint %zu    %-24s continuous", j + 1, chain.joint_names[j].c_str());
+    else
+      say("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1,
+          chain.joint_names[j].c_str(), limit.lower, limit.upper, limit.lower * 180 / kPi,
+          limit.upper * 180 / kPi);
+    limit.velocity > 0 ? say(", %.3f rad/s\n", limit.velocity) : say(", no speed limit\n");
+  }
+}
+
+/// Prints what is doubtful about limits, held joints and the robot's files.
+void print_warnings(const RobotModel& robot, const ArmModel& arm) {
+  for (const std::string& warning : limit_warnings(arm.chain))
+    say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : held_warnings(arm.held))
+    say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : file_warnings(robot, arm.chain))
+    say("warning    %s\n", warning.c_str());
+  if (const std::string rest = joints_at_rest(robot, arm.chain); !rest.empty())
+    say("warning    %s\n", rest.c_str());
+}
+
+/// Describes the arm of the command line, or with --pairs the pairs of bodies of a problem. Returns
+/// the exit code. Throws InputError.
 int run(const InfoArguments& arguments) {
   if (arguments.pairs) {
     print_pairs(arguments.urdf);
     return kOk;
   }
-  if (const std::string end = std::filesystem::path(arguments.urdf).extension();
-      end == ".yaml" || end == ".yml")
-    throw InputError(arguments.urdf +
-                     ": is a problem file: allowed is a URDF file, or `swivel info --pairs " +
-                     arguments.urdf + "` for the pairs of bodies and `swivel plan " +
-                     arguments.urdf + "` for its path");
+  require_no_problem_file(arguments.urdf);
   io::ShapeSurvey shapes;
   const auto robot = in_the_options_names([&] {
     return io::load_kinematics(arguments.urdf, arguments.srdf, parse_packages(arguments.packages),
@@ -197,52 +269,16 @@ int run(const InfoArguments& arguments) {
     require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
   const ArmGuess chosen = choose_arm(*robot, arguments, others);
-  const std::string &base = chosen.base, &tip = chosen.tip;
   const ArmModel arm = in_the_options_names([&] {
-    return build_arm(*robot, base, tip, hold, Pose::Identity(),
+    return build_arm(*robot, chosen.base, chosen.tip, hold, Pose::Identity(),
                      chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
   });
   const ArmClass kind = classify(arm.chain, robot->source);
-  say("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(),
-      robot->joints.size());
-  if (!shapes.missing_meshes.empty())
-    say("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
-        shapes.missing_meshes.front().c_str());
-  if (shapes.collision == 0)
-    say("shapes     none for collision: the robot is kept clear of nothing%s\n",
-        shapes.visual_meshes == 0
-            ? ""
-            : "; `swivel fit --visual` fits capsules about its visual meshes");
-  say("arm        %s to %s\n", base.c_str(), tip.c_str());
-  for (const HeldJoint& held : arm.held) say("held       %s\n", words({held}).c_str());
-  if (const auto beside = held_beside(*robot, arm, hold); !beside.empty())
-    say("beside     %s\n", words(beside).c_str());
-  for (const Chain::Follower& follower : arm.chain.followers)
-    say("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier,
-        follower.leader + 1);
-  for (const ArmGuess& other : others)
-    say("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(),
-        other.joints == 6 ? ", six joints" : "");
-  kind.srs ? print_srs(*kind.srs) : print_other(arm.chain, kind);
-  say("solutions  %s: %s\n", kind.complete() ? "all" : "those that turn up", kind.method().c_str());
-  for (std::size_t j = 0; j < kDof - (arm.chain.roll ? 1 : 0); ++j) {
-    const JointLimit& limit = arm.chain.limit[j];
-    if (limit.continuous)
-      say("joint %zu    %-24s continuous", j + 1, arm.chain.joint_names[j].c_str());
-    else
-      say("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1,
-          arm.chain.joint_names[j].c_str(), limit.lower, limit.upper, limit.lower * 180 / kPi,
-          limit.upper * 180 / kPi);
-    limit.velocity > 0 ? say(", %.3f rad/s\n", limit.velocity) : say(", no speed limit\n");
-  }
-  for (const std::string& warning : limit_warnings(arm.chain))
-    say("warning    %s\n", warning.c_str());
-  for (const std::string& warning : held_warnings(arm.held))
-    say("warning    %s\n", warning.c_str());
-  for (const std::string& warning : file_warnings(*robot, arm.chain))
-    say("warning    %s\n", warning.c_str());
-  if (const std::string rest = joints_at_rest(*robot, arm.chain); !rest.empty())
-    say("warning    %s\n", rest.c_str());
+  print_robot(*robot, shapes);
+  print_arm(*robot, chosen, arm, hold, others);
+  print_class(arm.chain, kind);
+  print_joints(arm.chain);
+  print_warnings(*robot, arm);
   return kOk;
 }
 
@@ -251,8 +287,8 @@ int run(const InfoArguments& arguments) {
 void add_info(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("info", "Describe an arm: class, dimensions, limits, what was fitted");
-  auto arguments =
-      std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
+  // The callback shares the arguments, which must live as long as it does.
+  auto arguments = std::make_shared<InfoArguments>();
   command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")
       ->required();
   command->add_option("--srdf", arguments->srdf,

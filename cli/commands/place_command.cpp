@@ -32,6 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The command line of `swivel place`.
 struct PlaceArguments {
   std::string problem, shard, out, svg, report, write;
   std::size_t top = 10;
@@ -41,7 +42,7 @@ struct PlaceArguments {
   SearchOptions search;
 };
 
-/// The cells of a share, in their order.
+/// Returns the cells of a shard in their order.
 std::vector<PlacementCell> cells_of(const PlacementRequest& request, const PlacementGrid& grid,
                                     const Shard& shard) {
   std::vector<PlacementCell> cells(shard.size(request.total()));
@@ -53,6 +54,41 @@ std::vector<PlacementCell> cells_of(const PlacementRequest& request, const Place
   return cells;
 }
 
+/// The placements that the command line asks for, and how they are ranked.
+struct AskedPlacements {
+  std::vector<PlacementCriterion> criteria;
+  PlacementGrid grid;
+  Shard shard;
+  std::vector<PlacementCell> cells;  ///< of the shard
+};
+
+/// Returns the placements that the command line asks for. Throws InputError.
+AskedPlacements asked_placements(const PlaceArguments& arguments) {
+  const PlacementRequest& request = arguments.request;
+  std::vector<PlacementCriterion> criteria = request.criteria();
+  PlacementGrid grid(request.axes());
+  const Shard shard = arguments.shard.empty() ? Shard() : shard_from_string(arguments.shard);
+  std::vector<PlacementCell> cells = cells_of(request, grid, shard);
+  return {std::move(criteria), std::move(grid), shard, std::move(cells)};
+}
+
+/// Throws InputError if options contradict each other, or need what this build lacks.
+void require_options_agree(const PlaceArguments& arguments) {
+  if (arguments.refine_grid && arguments.request.sample)
+    throw InputError("--refine-grid: a sample has no neighbours: allowed without --sample");
+  if (arguments.refine_grid && !arguments.shard.empty())
+    throw InputError(
+        "--refine-grid: which cells come next hangs on those of other shards: allowed without "
+        "--shard");
+  if (!arguments.write.empty() && !arguments.shard.empty())
+    throw InputError("--write: the best of all may be in another shard: allowed without --shard");
+  if (!arguments.report.empty()) require_pages();
+  require_table_name("--out", arguments.out, "the table of placements",
+                     "--svg and --report for drawings");
+}
+
+/// Returns the text of the problem file, of which --write writes a copy with other poses. Throws
+/// InputError if the file cannot be read twice, or if the copy would be in another folder.
 std::string problem_text(const PlaceArguments& arguments) {
   std::error_code error;
   if (!fs::is_regular_file(arguments.problem, error))
@@ -69,25 +105,17 @@ std::string problem_text(const PlaceArguments& arguments) {
   return text.str();
 }
 
-int run(const PlaceArguments& arguments) {
-  PlanOptions options = arguments.search.plan_options();
-  if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
-  const PlacementRequest& request = arguments.request;
-  const std::vector<PlacementCriterion> criteria = request.criteria();
-  const PlacementGrid grid(request.axes());
-  const Shard shard = arguments.shard.empty() ? Shard() : shard_from_string(arguments.shard);
-  const std::vector<PlacementCell> cells = cells_of(request, grid, shard);
-  if (arguments.refine_grid && request.sample)
-    throw InputError("--refine-grid: a sample has no neighbours: allowed without --sample");
-  if (arguments.refine_grid && !arguments.shard.empty())
-    throw InputError(
-        "--refine-grid: which cells come next hangs on those of other shards: allowed without "
-        "--shard");
-  if (!arguments.write.empty() && !arguments.shard.empty())
-    throw InputError("--write: the best of all may be in another shard: allowed without --shard");
-  if (!arguments.report.empty()) require_pages();
-  require_table_name("--out", arguments.out, "the table of placements",
-                     "--svg and --report for drawings");
+/// The problem whose thing is placed.
+struct PlacedProblem {
+  std::string text;  ///< of the problem file; empty without --write
+  std::vector<io::InputFiles::File> inputs;
+  Problem problem;
+  Movable thing;
+};
+
+/// Loads the problem file and notes which files were read: with hashes of their contents for a
+/// shard, whose results say what they were computed from. Throws InputError.
+PlacedProblem load_problem(const PlaceArguments& arguments) {
   std::string text;
   if (!arguments.write.empty()) text = problem_text(arguments);
   std::vector<io::InputFiles::File> inputs;
@@ -99,94 +127,156 @@ int run(const PlaceArguments& arguments) {
     return loaded;
   }();
   arguments.search.apply(problem);
-  const Movable thing = request.placement.thing(problem);
-  if (!arguments.write.empty())  // what cannot be written is said before it is sought
-    in_the_name_of("--write", [&] {
-      Offset everywhere{};
-      for (const PlacementAxis& axis : grid.axes())
-        everywhere[static_cast<std::size_t>(axis.coordinate)] =
-            axis.from != 0 ? axis.from : axis.to;
-      return io::with_poses(text, problem, placed_problem(problem, thing, everywhere));
-    });
-  require_drawable(request, arguments.svg);
-  io::ShardRecord record{"place",
-                         run_settings(arguments.problem, problem, arguments.search, inputs),
-                         shard,
-                         request.total(),
-                         fs::path(arguments.problem).filename().string(),
-                         "swivel plan " + quoted(arguments.problem) + arguments.search.words()};
-  request.note(record.settings);
+  Movable thing = arguments.request.placement.thing(problem);
+  return {std::move(text), std::move(inputs), std::move(problem), std::move(thing)};
+}
 
-  io::OutputFiles outputs(inputs);
+/// Returns the problem file with the thing moved by `offset`.
+std::string text_with(const PlacedProblem& placed, const Offset& offset) {
+  return io::with_poses(placed.text, placed.problem,
+                        placed_problem(placed.problem, placed.thing, offset));
+}
+
+/// Throws InputError if --write could not write the best placement, before it is sought: writes, to
+/// nowhere, a placement that moves the thing along every axis of the grid.
+void require_writable(const PlacedProblem& placed, const PlacementGrid& grid) {
+  in_the_name_of("--write", [&] {
+    Offset everywhere{};
+    for (const PlacementAxis& axis : grid.axes())
+      everywhere[static_cast<std::size_t>(axis.coordinate)] = axis.from != 0 ? axis.from : axis.to;
+    return text_with(placed, everywhere);
+  });
+}
+
+/// Returns the record of this run, which a shard's results begin with, but for the held joints.
+io::ShardRecord record_of(const PlaceArguments& arguments, const PlacedProblem& placed,
+                          const Shard& shard) {
+  io::ShardRecord record{
+      "place",
+      run_settings(arguments.problem, placed.problem, arguments.search, placed.inputs),
+      shard,
+      arguments.request.total(),
+      fs::path(arguments.problem).filename().string(),
+      "swivel plan " + quoted(arguments.problem) + arguments.search.words()};
+  arguments.request.note(record.settings);
+  return record;
+}
+
+/// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
+void add_outputs(const PlaceArguments& arguments, io::OutputFiles& outputs) {
   outputs.add("--out", arguments.out);
   outputs.add("--svg", arguments.svg);
   outputs.add("--report", arguments.report);
   outputs.add("--write", arguments.write);
+}
 
-  catch_interrupts();
-  const auto begun = std::chrono::steady_clock::now();
-  const auto prepared = std::make_shared<const PreparedRobot>(problem);
-  record.held = prepared->arm().held;
-  warn_of_held(record.held);
-  PlacementPlanner planner(prepared, problem, thing, options);
-  ProgressLine progress(isatty(STDERR_FILENO) != 0);
-  std::vector<PlacementRow> rows;
+/// Plans cells, and shows on standard error how many are done.
+struct PlacementRun {
+  PlacementPlanner& planner;
+  bool grows;  ///< more cells may follow than those asked for so far
+  ProgressLine progress{isatty(STDERR_FILENO) != 0};
+  std::vector<PlacementRow> rows{};  ///< of all cells so far
   std::size_t done = 0, solved = 0;
-  const auto plan = [&](const std::vector<PlacementCell>& wanted) {
-    const std::size_t of = rows.size() + wanted.size();
-    const std::vector<PlacementRow> more = planner.plan(wanted, [&](const PlacementRow& row) {
+
+  /// Plans the cells, returns their rows and adds them to `rows`.
+  std::vector<PlacementRow> plan(const std::vector<PlacementCell>& cells) {
+    const std::size_t of = rows.size() + cells.size();
+    std::vector<PlacementRow> more = planner.plan(cells, [&](const PlacementRow& row) {
       ++done;
       solved += row.status == PlanStatus::kSolved;
-      progress.show(std::to_string(done) + " of " + (arguments.refine_grid ? "at least " : "") +
+      progress.show(std::to_string(done) + " of " + (grows ? "at least " : "") +
                     std::to_string(of) + " placements, " + std::to_string(solved) + " with a path");
     });
     rows.insert(rows.end(), more.begin(), more.end());
     return more;
-  };
-  if (arguments.refine_grid) {
-    GridRefinement refinement(grid, criteria);
-    for (std::vector<std::uint64_t> next = refinement.next(); !next.empty() && !planner.stopped();
-         next = refinement.next()) {
-      std::vector<PlacementCell> wanted;
-      for (const std::uint64_t cell : next) wanted.push_back(cells[cell]);
-      for (const PlacementRow& row : plan(wanted)) refinement.learn(row);
-    }
-    std::sort(rows.begin(), rows.end(),
-              [](const auto& a, const auto& b) { return a.cell < b.cell; });
-  } else {
-    plan(cells);
   }
-  progress.clear();
+};
+
+/// Plans a coarse grid, then refines it where verdicts differ and beside the best placements. The
+/// run's rows are then in the order of cells.
+void plan_refined_grid(PlacementRun& run, const AskedPlacements& asked) {
+  GridRefinement refinement(asked.grid, asked.criteria);
+  for (std::vector<std::uint64_t> next = refinement.next(); !next.empty() && !run.planner.stopped();
+       next = refinement.next()) {
+    std::vector<PlacementCell> cells;
+    for (const std::uint64_t cell : next) cells.push_back(asked.cells[cell]);
+    for (const PlacementRow& row : run.plan(cells)) refinement.learn(row);
+  }
+  std::sort(run.rows.begin(), run.rows.end(),
+            [](const auto& a, const auto& b) { return a.cell < b.cell; });
+}
+
+/// Plans the placements that are asked for and returns their rows in the order of cells.
+std::vector<PlacementRow> plan_placements(PlacementPlanner& planner, const AskedPlacements& asked,
+                                          bool refine_grid) {
+  PlacementRun run{planner, refine_grid};
+  if (refine_grid)
+    plan_refined_grid(run, asked);
+  else
+    run.plan(asked.cells);
+  run.progress.clear();
+  return std::move(run.rows);
+}
+
+/// Gives --write the problem file with the best placement, or marks an earlier file for removal if
+/// no placement has a path.
+void write_best(const PlacedProblem& placed, const std::vector<PlacementRow>& rows,
+                const std::vector<PlacementCriterion>& criteria, io::OutputFiles& outputs) {
+  const std::vector<PlacementRow> best = best_placements(rows, criteria, 1);
+  if (best.empty())
+    outputs.remove("--write");
+  else
+    outputs.write("--write", text_with(placed, best[0].offset));
+}
+
+/// Returns the cells of the best placements, as many as the page of --report lists.
+std::vector<PlacementCell> cells_on_page(const std::vector<PlacementRow>& rows,
+                                         const std::vector<PlacementCriterion>& criteria) {
+  constexpr std::size_t kShown = 20;
+  std::vector<PlacementCell> shown;
+  for (const PlacementRow& row : best_placements(rows, criteria, kShown))
+    shown.push_back({row.cell, row.offset});
+  return shown;
+}
+
+/// Plans the placements of the command line, writes and prints them. Returns the exit code; that of
+/// a shard does not say whether a placement has a path, which all shards say together.
+int run(const PlaceArguments& arguments) {
+  PlanOptions options = arguments.search.plan_options();
+  if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
+  const AskedPlacements asked = asked_placements(arguments);
+  require_options_agree(arguments);
+  const PlacedProblem placed = load_problem(arguments);
+  if (!arguments.write.empty()) require_writable(placed, asked.grid);
+  require_drawable(arguments.request, arguments.svg);
+  io::ShardRecord record = record_of(arguments, placed, asked.shard);
+  io::OutputFiles outputs(placed.inputs);
+  add_outputs(arguments, outputs);
+
+  catch_interrupts();
+  const auto begun = std::chrono::steady_clock::now();
+  const auto prepared = std::make_shared<const PreparedRobot>(placed.problem);
+  record.held = prepared->arm().held;
+  warn_of_held(record.held);
+  PlacementPlanner planner(prepared, placed.problem, placed.thing, options);
+  const std::vector<PlacementRow> rows = plan_placements(planner, asked, arguments.refine_grid);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 
   outputs.write("--out", (arguments.shard.empty() ? "" : io::to_line(record)) + io::to_csv(rows));
-  if (outputs.wants("--write")) {
-    const std::vector<PlacementRow> best = best_placements(rows, criteria, 1);
-    if (best.empty())
-      outputs.remove("--write");
-    else
-      outputs.write("--write",
-                    io::with_poses(text, problem, placed_problem(problem, thing, best[0].offset)));
-  }
+  if (outputs.wants("--write")) write_best(placed, rows, asked.criteria, outputs);
   char rate[64];
   std::snprintf(rate, sizeof rate, "; %.1f s, %.0f a second", seconds,
                 static_cast<double>(rows.size()) / seconds);
   PlacementScene scene;
-  if (outputs.wants("--report")) {
-    constexpr std::size_t kShown = 20;  // as the page lists
-    std::vector<PlacementCell> shown;
-    for (const PlacementRow& row : best_placements(rows, criteria, kShown))
-      shown.push_back({row.cell, row.offset});
-    scene = {prepared.get(), &problem, thing, planner.trajectories(shown)};
-  }
-  show_placements(outputs, rows, request, record, arguments.top, rate, scene);
+  if (outputs.wants("--report"))
+    scene = {prepared.get(), &placed.problem, placed.thing,
+             planner.trajectories(cells_on_page(rows, asked.criteria))};
+  show_placements(outputs, rows, arguments.request, record, arguments.top, rate, scene);
   const int code = placement_exit_code(rows);
   if (code == kInternalError) return code;
   if (planner.stopped()) return kStopped;
-  return arguments.shard.empty()
-             ? code
-             : kOk;  // whether there is a placement with a path, all shards say together
+  return arguments.shard.empty() ? code : kOk;
 }
 
 }  // namespace
@@ -194,8 +284,8 @@ int run(const PlaceArguments& arguments) {
 void add_place(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "place", "Plan many placements of the part, the path or the robot: where should it stand?");
-  auto arguments =
-      std::make_shared<PlaceArguments>();  // shared: lives as long as the callback that reads it
+  // The callback shares the arguments, which must live as long as it does.
+  auto arguments = std::make_shared<PlaceArguments>();
   command->add_option("problem", arguments->problem, "problem file")->required();
   arguments->request.placement.add_to(*command,
                                       ": FROM:TO:STEP, or a number; with --sample FROM:TO");
