@@ -18,24 +18,25 @@ namespace swivel {
 
 namespace {
 
-constexpr int kCells = 90;  // of a panel, where there is no grid
+/// Number of cells in a column of a panel, for a lattice without a grid.
+constexpr int kCells = 90;
 
-/// What took FCL to find is told before what a distance proof proves.
+/// Returns a key that orders nodes by importance: by state, then what FCL found before what a
+/// distance proof proves.
 std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
   return {node.state, !node.proved};
 }
 
-/// Of one roll.
+/// Returns the number of cells in a layer of the grid at one roll.
 int cells_of(const LatticeInfo::Grid& grid) {
   return grid.branches * grid.windings * grid.phi;
 }
 
-/// The values of the coordinate, in [-pi, pi], and the branches of the nodes of each layer, in the
-/// order of slots.
+/// The redundancy coordinate and the branch of every node, by layer and in the order of slots.
 struct Values {
-  std::vector<double> value;
+  std::vector<double> value;  ///< rad, in [-pi, pi]
   std::vector<int> branch;
-  std::vector<std::size_t> first;  // of each layer
+  std::vector<std::size_t> first;  ///< index of each layer's first node in `value`, `branch`
 };
 
 Values values_of(const Lattice& lattice, const Budget& budget) {
@@ -51,10 +52,10 @@ Values values_of(const Lattice& lattice, const Budget& budget) {
   return values;
 }
 
-/// The cells of a panel cover the turn but for the widest gap between the values; all of it where
-/// that gap is less than an eighth.
+/// Sets range and number of the map's cells so that they cover the full turn except the widest gap
+/// between `values` (rad), or all of it if that gap is less than an eighth of the turn.
 void fit_cells(LatticeMap& map, std::vector<double> values) {
-  constexpr double kNarrow = 0.01;  // rad: so little is one cell
+  constexpr double kNarrow = 0.01;  // rad: a range narrower than this is one cell
   std::sort(values.begin(), values.end());
   double gap = values.empty() ? 0 : values.front() + kTwoPi - values.back();
   std::size_t after = 0;
@@ -67,9 +68,10 @@ void fit_cells(LatticeMap& map, std::vector<double> values) {
   if (!map.closed) map.low = values[after] + (span > kNarrow ? 0 : span / 2);
 }
 
-/// Whose node each cell of a layer shows, -1: none. A node has its cell and those up to half the
-/// way to its neighbours on the arc; of several the path's is shown, or the most important.
-/// `nodes`: of the layer's slots. `on_path`: the path's slot, or -1.
+/// Returns, for each cell of a layer, the slot whose node it shows; -1 if none. A node has its own
+/// cell and those up to half the way to its neighbours on the arc. A cell that several nodes have
+/// shows the path's, or else the most important. `nodes` are those of the layer's slots; `on_path`
+/// is the path's slot, or -1.
 std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, int layer,
                                 const Values& values, const std::vector<LatticeMap::Node>& nodes,
                                 int on_path) {
@@ -169,7 +171,7 @@ std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int
   std::vector<int> slots;
   for (int k = 0; k < lattice.slots(layer); k += width)
     slots.push_back(lattice.slots(layer) == 1 ? 0 : k + inner);
-  // Cells between two rolls belong to the nearer one.
+  // A cell between two rolls belongs to the nearer one.
   double apart = cell;
   for (const int slot : slots) {
     double next = kTwoPi;
@@ -194,143 +196,200 @@ int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot)
   return lattice.branch(layer, slot) * map.angles + std::clamp(angle, 0, map.angles - 1);
 }
 
-LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
-  const Lattice& lattice = view.lattice;
-  World::Query query(view.world, DistanceProofs::kOn);
+namespace {
 
-  LatticeMap map;
-  map.layers = lattice.layers();
-  Values values;
-  const auto grid = lattice.describe().grid;
-  if (grid) {
-    map.angles = grid->phi;
-    map.windings = grid->windings;
-    map.turns = grid->rolls.value_or(1) > 1 && !view.path.empty();
-  } else {
-    using Coordinate = LatticeMap::Coordinate;
-    map.coordinate = lattice.chain().roll ? Coordinate::kRoll : Coordinate::kGeneralisedArmAngle;
-    values = values_of(lattice, budget);
-    fit_cells(map, values.value);
+/// Makes the map of a lattice, layer by layer.
+class MapMaker {
+ public:
+  /// Lays out the cells of a map without nodes. `full`: ask about every node's clearance. Throws
+  /// Stopped.
+  MapMaker(const PlanView& view, bool full, const Budget& budget)
+      : view_(view),
+        lattice_(view.lattice),
+        budget_(budget),
+        query_(view.world, DistanceProofs::kOn),
+        grid_(view.lattice.describe().grid) {
+    map_.layers = lattice_.layers();
+    if (grid_)
+      lay_out_grid();
+    else
+      lay_out_arcs();
+    if (map_.grid()) map_.step = kTwoPi / map_.angles;
+    map_.joint_names = lattice_.chain().joint_names;
+    for (const int slot : view.path)
+      map_.path.push_back(map_cell(map_, lattice_, static_cast<int>(map_.path.size()), slot));
+    map_.complete = full || view.verdicts == nullptr;
+    cells_ = static_cast<std::size_t>(map_.panels()) * static_cast<std::size_t>(map_.angles);
+    map_.nodes.resize(static_cast<std::size_t>(map_.layers) * cells_);
+    if (!map_.grid()) map_.slots.reserve(map_.nodes.size());
   }
-  if (map.grid()) map.step = kTwoPi / map.angles;
-  map.joint_names = lattice.chain().joint_names;
-  for (const int slot : view.path)
-    map.path.push_back(map_cell(map, lattice, static_cast<int>(map.path.size()), slot));
-  map.complete = full || view.verdicts == nullptr;
-  const std::size_t cells =
-      static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
-  map.nodes.resize(static_cast<std::size_t>(map.layers) * cells);
-  if (!map.grid()) map.slots.reserve(map.nodes.size());
-  std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>>
-      blocked;  // cell, by what
-  std::vector<Lattice::Node> listed;
-  const auto of_fault = [&](int layer, int slot) {
-    const Lattice::NodeFault fault = lattice.fault(layer, slot);
-    if (fault.status == NodeStatus::kSingular) return LatticeMap::Node{NodeState::kSingular};
-    if (fault.status == NodeStatus::kLimit)
-      return LatticeMap::Node{NodeState::kJointLimit,
-                              static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
-    return LatticeMap::Node{};
-  };
-  std::optional<BodyPair> pair;  // that blocks the node looked at last
-  const auto look_at = [&](int layer, int slot, const Config& node) {
-    const Verdict verdict = view.verdicts ? view.verdicts->node(layer, slot) : Verdict::kUnknown;
-    if (verdict == Verdict::kUnknown && !map.complete)
-      return LatticeMap::Node{NodeState::kNotLookedAt};
-    budget.poll();
-    const auto row = lattice.exact_config(layer, slot, node);
-    if (!row) {  // the exact chain does not reach the pose there, or not within its limits
-      const LatticeMap::Node fault = of_fault(layer, slot);
-      return fault.state == NodeState::kJointLimit ? fault : LatticeMap::Node{};
+
+  /// Returns the map with all its nodes. Throws Stopped.
+  LatticeMap make() {
+    for (int layer = 0; layer < map_.layers; ++layer) {
+      map_.s.push_back(lattice_.path().layer(layer).s);
+      budget_.poll(Stage::kDrawing, layer, map_.layers);
+      lattice_.layer_nodes(layer, listed_);
+      if (grid_) {
+        add_grid_layer(layer);
+        if (map_.turns && on_path(layer)) add_rolls(layer);
+      } else {
+        add_arc_layer(layer);
+      }
     }
-    if (!lattice.manipulable(*row)) return LatticeMap::Node{NodeState::kSingular};
+    name_blockers();
+    return std::move(map_);
+  }
+
+ private:
+  /// What is known of a node, and the pair of bodies that blocks it.
+  struct Found {
+    LatticeMap::Node node;
+    std::optional<BodyPair> pair{};
+  };
+
+  void lay_out_grid() {
+    map_.angles = grid_->phi;
+    map_.windings = grid_->windings;
+    map_.turns = grid_->rolls.value_or(1) > 1 && !view_.path.empty();
+  }
+  void lay_out_arcs() {
+    using Coordinate = LatticeMap::Coordinate;
+    map_.coordinate = lattice_.chain().roll ? Coordinate::kRoll : Coordinate::kGeneralisedArmAngle;
+    values_ = values_of(lattice_, budget_);
+    fit_cells(map_, values_.value);
+  }
+
+  /// Returns true if the path has a node in the layer.
+  [[nodiscard]] bool on_path(int layer) const {
+    return layer < static_cast<int>(view_.path.size());
+  }
+  [[nodiscard]] int slot_on_path(int layer) const {
+    return view_.path[static_cast<std::size_t>(layer)];
+  }
+
+  /// Returns why a slot has no node.
+  [[nodiscard]] LatticeMap::Node fault_of(int layer, int slot) const {
+    const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+    if (fault.status == NodeStatus::kSingular) return {NodeState::kSingular};
+    if (fault.status == NodeStatus::kLimit)
+      return {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
+    return {};
+  }
+
+  /// Returns what is known of a node with joints `q`; asks for its clearance if the search did, or
+  /// if the map is to be complete.
+  Found look_at(int layer, int slot, const Config& q) {
+    const Verdict verdict = view_.verdicts ? view_.verdicts->node(layer, slot) : Verdict::kUnknown;
+    if (verdict == Verdict::kUnknown && !map_.complete) return {{NodeState::kNotLookedAt}};
+    budget_.poll();
+    const auto row = lattice_.exact_config(layer, slot, q);
+    if (!row) {  // the exact chain does not reach the pose there, or not within its limits
+      const LatticeMap::Node fault = fault_of(layer, slot);
+      return {fault.state == NodeState::kJointLimit ? fault : LatticeMap::Node{}};
+    }
+    if (!lattice_.manipulable(*row)) return {{NodeState::kSingular}};
     const auto decided = [](const CollisionCounters& c) {
       return c.proved_free + c.proved_colliding;
     };
-    const std::int64_t before = decided(query.counters());
-    pair = query.find_violating_pair(*row, ClearanceRule::kNode);
-    return LatticeMap::Node{pair ? NodeState::kBlocked : NodeState::kFree, 0,
-                            decided(query.counters()) > before};
-  };
-  int rank = 0;
-  for (int layer = 0; layer < map.layers; ++layer) {
-    map.s.push_back(lattice.path().layer(layer).s);
-    budget.poll(Stage::kDrawing, layer, map.layers);
-    int first = 0, last = lattice.slots(layer);
-    if (grid) {  // at the roll of the path, behind its end at its last one
-      const int width = cells_of(*grid);
-      if (layer < static_cast<int>(view.path.size()))
-        rank = lattice.grid_place(layer, view.path[static_cast<std::size_t>(layer)]).rank;
-      if (last > width) first = rank * width, last = first + width;
+    const std::int64_t before = decided(query_.counters());
+    const auto pair = query_.find_violating_pair(*row, ClearanceRule::kNode);
+    return {{pair ? NodeState::kBlocked : NodeState::kFree, 0, decided(query_.counters()) > before},
+            pair};
+  }
+
+  /// Sets a cell of the map, [layer][panel][angle].
+  void set(std::size_t cell, const Found& found) {
+    map_.nodes[cell] = found.node;
+    if (!found.pair) return;
+    const auto names = view_.world.names(*found.pair);
+    blocked_.emplace_back(cell, std::pair(names[0], names[1]));
+  }
+
+  /// Sets the cells of a layer of a lattice without a grid, in which every slot has a node.
+  void add_arc_layer(int layer) {
+    std::vector<Found> found;
+    std::vector<LatticeMap::Node> nodes;
+    for (const Lattice::Node& node : listed_) {
+      found.push_back(look_at(layer, node.slot, node.q));
+      nodes.push_back(found.back().node);
     }
-    lattice.layer_nodes(layer, listed);
-    if (!map.grid()) {  // all slots exist
-      std::vector<LatticeMap::Node> nodes;
-      std::vector<std::optional<BodyPair>> pairs;
-      for (const Lattice::Node& node : listed) {
-        pair.reset();
-        nodes.push_back(look_at(layer, node.slot, node.q));
-        pairs.push_back(pair);
-      }
-      const int on_path = layer < static_cast<int>(view.path.size())
-                              ? view.path[static_cast<std::size_t>(layer)]
-                              : -1;
-      for (const int slot : slots_of_cells(map, lattice, layer, values, nodes, on_path)) {
-        const std::size_t cell = map.slots.size(), k = static_cast<std::size_t>(slot);
-        map.slots.push_back(slot);
-        if (slot < 0) continue;
-        map.nodes[cell] = nodes[k];
-        if (pairs[k])
-          blocked.emplace_back(
-              cell, std::pair(view.world.names(*pairs[k])[0], view.world.names(*pairs[k])[1]));
-      }
-      continue;
+    const int of_path = on_path(layer) ? slot_on_path(layer) : -1;
+    for (const int slot : slots_of_cells(map_, lattice_, layer, values_, nodes, of_path)) {
+      const std::size_t cell = map_.slots.size();
+      map_.slots.push_back(slot);
+      if (slot >= 0) set(cell, found[static_cast<std::size_t>(slot)]);
     }
-    auto next = std::find_if(listed.begin(), listed.end(),
+  }
+
+  /// Sets the cells of a layer of a grid. Where the tool may turn, they are those at the path's
+  /// roll; behind the end of the path, at its last roll.
+  void add_grid_layer(int layer) {
+    int first = 0, last = lattice_.slots(layer);
+    const int width = cells_of(*grid_);
+    if (on_path(layer)) rank_ = lattice_.grid_place(layer, slot_on_path(layer)).rank;
+    if (last > width) first = rank_ * width, last = first + width;
+    auto next = std::find_if(listed_.begin(), listed_.end(),
                              [&](const Lattice::Node& node) { return node.slot >= first; });
     for (int slot = first; slot < last; ++slot) {
-      const bool exists = next != listed.end() && next->slot == slot;
-      pair.reset();
-      const LatticeMap::Node node = exists ? look_at(layer, slot, next->q) : of_fault(layer, slot);
+      const bool exists = next != listed_.end() && next->slot == slot;
+      const Found found = exists ? look_at(layer, slot, next->q) : Found{fault_of(layer, slot)};
       next += exists;
-      const std::size_t cell = static_cast<std::size_t>(layer) * cells +
-                               static_cast<std::size_t>(map_cell(map, lattice, layer, slot));
-      map.nodes[cell] = node;
-      if (pair)
-        blocked.emplace_back(cell,
-                             std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
+      set(static_cast<std::size_t>(layer) * cells_ +
+              static_cast<std::size_t>(map_cell(map_, lattice_, layer, slot)),
+          found);
     }
-    if (!map.turns || layer >= static_cast<int>(view.path.size())) continue;
-    const int on_path = view.path[static_cast<std::size_t>(layer)],
-              panel = map.solutions() * map.angles;
-    const double roll = wrap_angle(lattice.grid_place(layer, on_path).roll);
-    map.path_of_rolls.push_back(
-        panel + static_cast<int>(std::lround((roll + kPi) / kTwoPi * map.angles)) % map.angles);
-    const std::vector<int> slots = slots_of_rolls(lattice, layer, on_path, map.angles);
-    for (int k = 0; k < map.angles; ++k) {
+  }
+
+  /// Sets the cells of the panel of rolls in a layer that the path reaches.
+  void add_rolls(int layer) {
+    const int of_path = slot_on_path(layer), panel = map_.solutions() * map_.angles;
+    const double roll = wrap_angle(lattice_.grid_place(layer, of_path).roll);
+    map_.path_of_rolls.push_back(
+        panel + static_cast<int>(std::lround((roll + kPi) / kTwoPi * map_.angles)) % map_.angles);
+    const std::vector<int> slots = slots_of_rolls(lattice_, layer, of_path, map_.angles);
+    for (int k = 0; k < map_.angles; ++k) {
       const int slot = slots[static_cast<std::size_t>(k)];
       if (slot < 0) continue;
       const auto at =
-          std::lower_bound(listed.begin(), listed.end(), slot,
+          std::lower_bound(listed_.begin(), listed_.end(), slot,
                            [](const Lattice::Node& node, int other) { return node.slot < other; });
-      pair.reset();
-      const std::size_t cell =
-          static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(panel + k);
-      map.nodes[cell] = at != listed.end() && at->slot == slot ? look_at(layer, slot, at->q)
-                                                               : of_fault(layer, slot);
-      if (pair)
-        blocked.emplace_back(cell,
-                             std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
+      const bool exists = at != listed_.end() && at->slot == slot;
+      set(static_cast<std::size_t>(layer) * cells_ + static_cast<std::size_t>(panel + k),
+          exists ? look_at(layer, slot, at->q) : Found{fault_of(layer, slot)});
     }
   }
-  std::map<std::pair<std::string, std::string>, std::uint8_t> index;
-  for (const auto& [cell, names] : blocked) index.emplace(names, 0);
-  for (auto& [names, cause] : index) {
-    cause = static_cast<std::uint8_t>(std::min<std::size_t>(map.blockers.size(), 255));
-    map.blockers.push_back(names);
+
+  /// Lists the pairs of bodies that block nodes, in the order of their names, and sets the causes
+  /// of the blocked nodes to their numbers.
+  void name_blockers() {
+    std::map<std::pair<std::string, std::string>, std::uint8_t> index;
+    for (const auto& [cell, names] : blocked_) index.emplace(names, 0);
+    for (auto& [names, cause] : index) {
+      cause = static_cast<std::uint8_t>(std::min<std::size_t>(map_.blockers.size(), 255));
+      map_.blockers.push_back(names);
+    }
+    for (const auto& [cell, names] : blocked_) map_.nodes[cell].cause = index.at(names);
   }
-  for (const auto& [cell, names] : blocked) map.nodes[cell].cause = index.at(names);
-  return map;
+
+  const PlanView& view_;
+  const Lattice& lattice_;
+  const Budget& budget_;
+  World::Query query_;
+  const std::optional<LatticeInfo::Grid> grid_;
+  LatticeMap map_;
+  Values values_;                      ///< of a lattice without a grid
+  std::size_t cells_ = 0;              ///< of all panels in one layer
+  int rank_ = 0;                       ///< of the roll that the path has in the layer, or had last
+  std::vector<Lattice::Node> listed_;  ///< nodes of the layer
+  /// The blocked cells, each with the names of the two bodies.
+  std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked_;
+};
+
+}  // namespace
+
+LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
+  return MapMaker(view, full, budget).make();
 }
 
 }  // namespace swivel

@@ -12,6 +12,7 @@ using namespace detail;
 
 namespace {
 
+/// Returns the colour of a node as SVG writes it.
 std::string colour_of(const LatticeMap::Node& node) {
   switch (node.state) {
     case NodeState::kNoIk:
@@ -30,8 +31,8 @@ std::string colour_of(const LatticeMap::Node& node) {
   return "#ffffff";
 }
 
-/// Where marks of the coordinate are, in cells from the lower edge of a panel, and what they say,
-/// rad.
+/// Returns the marks of the coordinate: where they are, in cells from the lower edge of a panel,
+/// and what they say, in rad.
 std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
   if (map.closed) {
     const double quarter = map.angles / 4.0;
@@ -49,110 +50,154 @@ std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
   return marks;
 }
 
-}  // namespace
+/// Draws a lattice map from top to bottom: a panel per inhabited IK solution, then the legend.
+class MapDrawing {
+ public:
+  explicit MapDrawing(const LatticeMap& map)
+      : map_(map), cells_(map, 620, 252), solutions_(map.inhabited_solutions()), seen_(map) {}
 
-std::string to_svg(const LatticeMap& map) {
-  constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52,
-                   kRight = 24;
-  const MapCells cells(map, 620, 252);
-  Drawing drawing;
-  const std::vector<int> solutions = map.inhabited_solutions();
-  const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map.blockers.size());
-  const double width = kLeft + kPanelWidth + kRight;
-  drawing.rectangle(
-      0, 0, width,
-      kTop + static_cast<double>(solutions.size()) * (kPanelHeight + kGap) + height_of_legend,
-      "#ffffff");
-  // A node stands for the stretch halfway to its neighbours, so the first and last layer are half
-  // as wide.
-  const auto x_of = [&](double layer) {
-    return kLeft + kPanelWidth * std::clamp(layer, 0.0, map.layers - 1.0) / (map.layers - 1);
-  };
-  MapLegend seen(map);
-  double top = kTop;
-  for (const int solution : solutions) {
-    const auto y_of = [&](double angle) { return top + kPanelHeight * (1 - angle / map.angles); };
-    for (int row = 0; row < cells.rows; ++row) {
-      const double low = row * cells.angles_each,
-                   high = std::min(map.angles, (row + 1) * cells.angles_each);
-      for (int column = 0; column < cells.columns;) {
-        const LatticeMap::Node node = cells.node(solution, column, row);
-        seen.see(node);
-        int end = column + 1;  // cells alike are one rectangle
-        for (; end < cells.columns; ++end) {
-          const LatticeMap::Node other = cells.node(solution, end, row);
+  /// Returns the SVG document.
+  std::string document() {
+    const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map_.blockers.size());
+    const double width = kLeft + kPanelWidth + kRight;
+    drawing_.rectangle(
+        0, 0, width,
+        kTop + static_cast<double>(solutions_.size()) * (kPanelHeight + kGap) + height_of_legend,
+        "#ffffff");
+    for (const int solution : solutions_) {
+      draw_cells(solution);
+      draw_path(solution);
+      draw_axes(solution);
+      top_ += kPanelHeight + kGap;
+    }
+    draw_legend();
+    return drawing_.document(width, top_);
+  }
+
+ private:
+  static constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52,
+                          kRight = 24;
+
+  /// A node stands for the stretch halfway to its neighbours, so the first and last layer are half
+  /// as wide.
+  [[nodiscard]] double x_of(double layer) const {
+    return kLeft + kPanelWidth * std::clamp(layer, 0.0, map_.layers - 1.0) / (map_.layers - 1);
+  }
+  [[nodiscard]] double y_of(double angle) const {
+    return top_ + kPanelHeight * (1 - angle / map_.angles);
+  }
+  /// Returns true if some cell stands for more than one node.
+  [[nodiscard]] bool merges_nodes() const { return cells_.layers_each * cells_.angles_each > 1; }
+
+  /// Draws the cells of a panel and notes their states for the legend. Equal neighbours in a row
+  /// become one rectangle.
+  void draw_cells(int solution) {
+    for (int row = 0; row < cells_.rows; ++row) {
+      const double low = row * cells_.angles_each,
+                   high = std::min(map_.angles, (row + 1) * cells_.angles_each);
+      for (int column = 0; column < cells_.columns;) {
+        const LatticeMap::Node node = cells_.node(solution, column, row);
+        seen_.see(node);
+        int end = column + 1;
+        for (; end < cells_.columns; ++end) {
+          const LatticeMap::Node other = cells_.node(solution, end, row);
           if (other != node) break;
         }
-        const double from = x_of(column * cells.layers_each - 0.5),
-                     to = x_of(end * cells.layers_each - 0.5);
+        const double from = x_of(column * cells_.layers_each - 0.5),
+                     to = x_of(end * cells_.layers_each - 0.5);
         if (node.state != NodeState::kNoIk)
-          drawing.rectangle(from, y_of(high), to - from, y_of(low) - y_of(high), colour_of(node));
+          drawing_.rectangle(from, y_of(high), to - from, y_of(low) - y_of(high), colour_of(node));
         column = end;
       }
     }
-    std::vector<std::pair<double, double>> line;
-    const auto flush = [&] {
-      if (line.size() > 1) {
-        drawing.line(line, "#ffffff", 4);
-        drawing.line(line, "#000000", 2);
-      }
-      line.clear();
+  }
+
+  /// Draws a stretch of the path, black with a white rim; nothing for fewer than two points.
+  void draw_stretch(const std::vector<std::pair<double, double>>& points) {
+    if (points.size() < 2) return;
+    drawing_.line(points, "#ffffff", 4);
+    drawing_.line(points, "#000000", 2);
+  }
+
+  /// Draws the stretches of the path that lie in the panel, with dots where it changes branch.
+  void draw_path(int solution) {
+    std::vector<std::pair<double, double>> stretch;
+    const auto end_stretch = [&] {
+      draw_stretch(stretch);
+      stretch.clear();
     };
-    const std::vector<int>& path = map.path_in(solution);
+    const std::vector<int>& path = map_.path_in(solution);
     for (std::size_t i = 0; i < path.size(); ++i) {
-      const int slot = path[i], angle = slot % map.angles;
-      const bool here = slot / map.angles == solution;
-      const bool changes = i > 0 && path[i - 1] / map.angles != slot / map.angles;
-      if (here && i > 0 && !changes && map.closed &&
-          std::abs(path[i - 1] % map.angles - angle) > map.angles / 2)
-        flush();  // through pi
+      const int slot = path[i], angle = slot % map_.angles;
+      const bool here = slot / map_.angles == solution;
+      const bool changes = i > 0 && path[i - 1] / map_.angles != slot / map_.angles;
+      const bool through_pi =
+          i > 0 && map_.closed && std::abs(path[i - 1] % map_.angles - angle) > map_.angles / 2;
+      if (here && !changes && through_pi) end_stretch();
       if (!here) {
-        flush();
+        end_stretch();
         continue;
       }
-      line.emplace_back(x_of(static_cast<double>(i)), y_of(angle + 0.5));
-      if (changes || (i + 1 < path.size() && path[i + 1] / map.angles != solution))
-        drawing.circle(line.back().first, line.back().second, 4, "#000000");
+      stretch.emplace_back(x_of(static_cast<double>(i)), y_of(angle + 0.5));
+      if (changes || (i + 1 < path.size() && path[i + 1] / map_.angles != solution))
+        drawing_.circle(stretch.back().first, stretch.back().second, 4, "#000000");
     }
-    flush();
-    drawing.frame(kLeft, top, kPanelWidth, kPanelHeight);
-    drawing.text(kLeft, top - 7, "start", map.solution_name(solution));
-    for (const auto& [angle, name] : marks(map))
-      drawing.text(kLeft - 6, y_of(angle) + 4, "end", name);
-    drawing.text(14, top + kPanelHeight / 2, "middle", map.letter(solution));
+    end_stretch();
+  }
+
+  /// Draws frame, title and marks of a panel.
+  void draw_axes(int solution) {
+    drawing_.frame(kLeft, top_, kPanelWidth, kPanelHeight);
+    drawing_.text(kLeft, top_ - 7, "start", map_.solution_name(solution));
+    for (const auto& [angle, name] : marks(map_))
+      drawing_.text(kLeft - 6, y_of(angle) + 4, "end", name);
+    drawing_.text(14, top_ + kPanelHeight / 2, "middle", map_.letter(solution));
     for (int k = 0; k <= 5; ++k) {
-      const double layer = (map.layers - 1) * k / 5.0;
-      drawing.text(x_of(layer), top + kPanelHeight + 15, "middle",
-                   number(map.s[static_cast<std::size_t>(layer + 0.5)]));
+      const double layer = (map_.layers - 1) * k / 5.0;
+      drawing_.text(x_of(layer), top_ + kPanelHeight + 15, "middle",
+                    number(map_.s[static_cast<std::size_t>(layer + 0.5)]));
     }
-    drawing.text(kLeft + kPanelWidth / 2, top + kPanelHeight + 29, "middle", "s (m)");
-    top += kPanelHeight + kGap;
+    drawing_.text(kLeft + kPanelWidth / 2, top_ + kPanelHeight + 29, "middle", "s (m)");
   }
-  const auto legend = [&](const std::string& colour, const std::string& meaning) {
-    drawing.rectangle(kLeft, top - 10, 14, 12, colour);
-    drawing.frame(kLeft, top - 10, 14, 12);
-    drawing.text(kLeft + 22, top, "start", meaning);
-    top += 18;
-  };
-  if (!map.path.empty()) legend("#000000", seen.path_meaning() + "; dots: change of branch");
-  for (const auto& [node, meaning] : seen.entries()) legend(colour_of(node), meaning);
-  if (!map.grid()) {
-    drawing.text(kLeft, top, "start",
-                 map.letter(solutions.empty() ? 0 : solutions.front()) + std::string(": ") +
-                     map.coordinate_name() +
-                     ", rad. Between two nodes of an arc of solutions the nearer one is shown" +
-                     (cells.layers_each * cells.angles_each > 1
-                          ? ", of several a blocked one first, then a free one."
-                          : "."));
-    top += 18;
-  } else if (cells.layers_each * cells.angles_each > 1) {
-    drawing.text(kLeft, top, "start",
-                 "A cell stands for up to " + std::to_string(cells.layers_each) + " x " +
-                     std::to_string(cells.angles_each) +
-                     " nodes and shows a blocked one first, then a free one.");
-    top += 18;
+
+  void draw_legend() {
+    if (!map_.path.empty()) explain("#000000", seen_.path_meaning() + "; dots: change of branch");
+    for (const auto& [node, meaning] : seen_.entries()) explain(colour_of(node), meaning);
+    if (!map_.grid())
+      remark(map_.letter(solutions_.empty() ? 0 : solutions_.front()) + std::string(": ") +
+             map_.coordinate_name() +
+             ", rad. Between two nodes of an arc of solutions the nearer one is shown" +
+             (merges_nodes() ? ", of several a blocked one first, then a free one." : "."));
+    else if (merges_nodes())
+      remark("A cell stands for up to " + std::to_string(cells_.layers_each) + " x " +
+             std::to_string(cells_.angles_each) +
+             " nodes and shows a blocked one first, then a free one.");
   }
-  return drawing.document(width, top);
+  /// Adds a line to the legend that explains a colour.
+  void explain(const std::string& colour, const std::string& meaning) {
+    drawing_.rectangle(kLeft, top_ - 10, 14, 12, colour);
+    drawing_.frame(kLeft, top_ - 10, 14, 12);
+    drawing_.text(kLeft + 22, top_, "start", meaning);
+    top_ += 18;
+  }
+  /// Adds a line of text to the legend.
+  void remark(const std::string& text) {
+    drawing_.text(kLeft, top_, "start", text);
+    top_ += 18;
+  }
+
+  const LatticeMap& map_;
+  const MapCells cells_;
+  const std::vector<int> solutions_;  ///< whose panels are drawn
+  MapLegend seen_;
+  Drawing drawing_;
+  double top_ = kTop;  ///< upper edge of what is drawn next
+};
+
+}  // namespace
+
+std::string to_svg(const LatticeMap& map) {
+  return MapDrawing(map).document();
 }
 
 }  // namespace swivel

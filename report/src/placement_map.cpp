@@ -18,7 +18,7 @@ using namespace detail;
 
 namespace {
 
-/// "cost 2.27", "clearance 9.9 mm more than asked", ...
+/// Returns a merit as the value of its criterion with its unit, such as "9.9 mm" of clearance.
 std::string value_text(PlacementCriterion criterion, double merit) {
   using enum PlacementCriterion;
   const char* const format = criterion == kClearance ? "%.3g mm"
@@ -32,10 +32,13 @@ std::string value_text(PlacementCriterion criterion, double merit) {
   return formatted(format, scale * merit);
 }
 
+/// Returns the unit of an axis: m for a shift, rad for a turn.
 const char* unit_of(const PlacementAxis& axis) {
   return axis.coordinate < 3 ? "m" : "rad";
 }
 
+/// Returns the words for what the shades mean: the first criterion, from its least to its best
+/// value.
 std::string title_of(const PlacementMap& map) {
   const PlacementCriterion criterion = map.criteria.front();
   std::string title = to_string(criterion);
@@ -46,16 +49,18 @@ std::string title_of(const PlacementMap& map) {
          value_text(criterion, map.most);
 }
 
-/// From the least to the most merit.
+/// The shades of placements that have a path, from the least to the most merit.
 constexpr std::array<const char*, 10> kShade{"#dff3eb", "#c3e8da", "#a6dcc8", "#89cfb5", "#6cc1a2",
                                              "#4fb28e", "#34a17a", "#1c8e66", "#0b7953", "#005c3c"};
 constexpr std::array<int, 10> kAnsiShade{194, 157, 121, 120, 84, 78, 72, 35, 29, 22};
 const char* const kNothing = "#ffffff";
 
+/// Returns the number of the shade of a row that has a path, 0 to 9.
 int step_of(const PlacementMap& map, const PlacementRow& row) {
   return std::min(9, static_cast<int>(10 * map.shade(row)));
 }
 
+/// Returns the index in map.ends of what ended the paths of a row.
 std::size_t end_of(const PlacementMap& map, const PlacementRow& row) {
   return static_cast<std::size_t>(std::find(map.ends.begin(), map.ends.end(), ended_by(row)) -
                                   map.ends.begin());
@@ -115,143 +120,210 @@ double PlacementMap::shade(const PlacementRow& row) const {
   return most > least ? (*value - least) / (most - least) : 1;
 }
 
-std::string to_text(const PlacementMap& map, int columns, bool coloured) {
-  constexpr int kMargin = 10, kMostRows = 60;
-  const int each_across = (map.across.count + std::max(10, columns - kMargin) - 1) /
-                          std::max(10, columns - kMargin),
-            each_up = (map.up.count + kMostRows - 1) / kMostRows;
-  const auto put = [&](std::string& text, char symbol, int background) {
-    if (coloured)
-      text += "\x1b[48;5;" + std::to_string(background) + ";38;5;16m" + symbol + "\x1b[0m";
-    else
-      text += symbol;
-  };
-  const auto look = [&](const PlacementRow* row) -> std::pair<char, int> {
-    if (row == nullptr) return {'.', 231};
-    if (row->status == PlanStatus::kSolved) {
-      const int step = step_of(map, *row);
-      return {static_cast<char>('0' + step), kAnsiShade[static_cast<std::size_t>(step)]};
+namespace {
+
+/// Returns true if the row's path was ended by bodies that came too near or touched.
+bool ended_by_bodies(const PlacementRow& row) {
+  return row.cause == "pair" || row.cause == "contact";
+}
+
+/// Returns true if some place of the map was not planned.
+bool has_unplanned(const PlacementMap& map) {
+  return std::find(map.at.begin(), map.at.end(), -1) != map.at.end();
+}
+
+/// Returns the row at a place of the map, across `i` and up `j`; null if nothing was planned there.
+const PlacementRow* row_at(const PlacementMap& map, int i, int j) {
+  const int k = map.at[static_cast<std::size_t>(j) * static_cast<std::size_t>(map.across.count) +
+                       static_cast<std::size_t>(i)];
+  return k < 0 ? nullptr : &map.shown[static_cast<std::size_t>(k)];
+}
+
+/// How many places a letter of the map in text stands for.
+struct TextCell {
+  int across, up;
+};
+
+/// Returns the best row of the places that a letter stands for, of which (left, bottom) is the
+/// first; null if nothing was planned there.
+const PlacementRow* best_in(const PlacementMap& map, const TextCell& cell, int left, int bottom) {
+  const PlacementRow* best = nullptr;
+  for (int j = bottom; j < std::min(map.up.count, bottom + cell.up); ++j)
+    for (int i = left; i < std::min(map.across.count, left + cell.across); ++i) {
+      const PlacementRow* const row = row_at(map, i, j);
+      if (row && (best == nullptr || better(*row, *best, map.criteria))) best = row;
     }
+  return best;
+}
+
+/// Returns the letter that stands for a row, coloured or not; '.' for none.
+std::string letter_of(const PlacementMap& map, const PlacementRow* row, bool coloured) {
+  char letter = '.';
+  int background = 231;
+  if (row && row->status == PlanStatus::kSolved) {
+    const int step = step_of(map, *row);
+    letter = static_cast<char>('0' + step);
+    background = kAnsiShade[static_cast<std::size_t>(step)];
+  } else if (row) {
     const std::size_t end = end_of(map, *row);
-    return {end < 26 ? static_cast<char>('a' + end) : '#',
-            row->cause == "pair" || row->cause == "contact" ? 208 : 153};
-  };
-  std::string text;
-  for (int top = (map.up.count - 1) / each_up * each_up; top >= 0; top -= each_up) {
-    text += formatted("%8.4g  ", map.up.at(top));
-    for (int left = 0; left < map.across.count; left += each_across) {
-      const PlacementRow* row = nullptr;
-      for (int j = top; j < std::min(map.up.count, top + each_up); ++j)
-        for (int i = left; i < std::min(map.across.count, left + each_across); ++i) {
-          const int k =
-              map.at[static_cast<std::size_t>(j) * static_cast<std::size_t>(map.across.count) +
-                     static_cast<std::size_t>(i)];
-          if (k < 0) continue;
-          const PlacementRow& other = map.shown[static_cast<std::size_t>(k)];
-          if (row == nullptr || better(other, *row, map.criteria)) row = &other;
-        }
-      const auto [symbol, background] = look(row);
-      put(text, symbol, background);
-    }
-    text += '\n';
+    letter = end < 26 ? static_cast<char>('a' + end) : '#';
+    background = ended_by_bodies(*row) ? 208 : 153;
   }
-  text += std::string(kMargin, ' ') + kCoordinates[static_cast<std::size_t>(map.across.coordinate)];
+  if (!coloured) return {letter};
+  return "\x1b[48;5;" + std::to_string(background) + ";38;5;16m" + letter + "\x1b[0m";
+}
+
+/// Returns the lines below the map in text: its axes, then what its letters mean.
+std::string text_legend(const PlacementMap& map, const TextCell& cell, int margin) {
+  const std::string indent(static_cast<std::size_t>(margin), ' ');
+  std::string text = indent + kCoordinates[static_cast<std::size_t>(map.across.coordinate)];
   text += formatted(" %.4g to %.4g %s to the right, ", map.across.at(0),
                     map.across.at(map.across.count - 1), unit_of(map.across)) +
           std::string(kCoordinates[static_cast<std::size_t>(map.up.coordinate)]) + " (" +
           unit_of(map.up) + ") upwards";
-  if (each_across * each_up > 1)
-    text += "; a letter stands for up to " + std::to_string(each_across) + " x " +
-            std::to_string(each_up) + " placements, the best of them";
+  if (cell.across * cell.up > 1)
+    text += "; a letter stands for up to " + std::to_string(cell.across) + " x " +
+            std::to_string(cell.up) + " placements, the best of them";
   if (map.best_of_several) text += "; each is the best over the other coordinates";
   text += '\n';
   const bool solved = std::any_of(map.shown.begin(), map.shown.end(), [](const auto& row) {
     return row.status == PlanStatus::kSolved;
   });
-  if (solved) text += std::string(kMargin, ' ') + "0 to 9: " + title_of(map) + '\n';
+  if (solved) text += indent + "0 to 9: " + title_of(map) + '\n';
   for (std::size_t k = 0; k < map.ends.size(); ++k)
-    text += std::string(kMargin, ' ') + (k < 26 ? static_cast<char>('a' + k) : '#') +
+    text += indent + (k < 26 ? static_cast<char>('a' + k) : '#') +
             ": no path: " + printable(map.ends[k]) + '\n';
-  if (std::find(map.at.begin(), map.at.end(), -1) != map.at.end())
-    text += std::string(kMargin, ' ') + ".: not planned\n";
+  if (has_unplanned(map)) text += indent + ".: not planned\n";
   return text;
 }
 
-std::string to_svg(const PlacementMap& map) {
-  constexpr double kLeft = 64, kTop = 16, kMost = 620, kRight = 24;
-  const double cell =
-      std::max(1.0, std::min(24.0, std::floor(kMost / std::max(map.across.count, map.up.count))));
-  const double wide = cell * map.across.count, high = cell * map.up.count,
-               width = std::max(460.0, kLeft + wide + kRight);
-  const auto colour = [&](const PlacementRow& row) -> std::string {
-    if (row.status == PlanStatus::kSolved)
-      return kShade[static_cast<std::size_t>(step_of(map, row))];
-    const std::size_t end = end_of(map, row);
-    return row.cause == "pair" || row.cause == "contact"
-               ? kBlockerColour[end % kBlockerColour.size()]
-           : row.cause == "limit" ? kJointColour[end % kJointColour.size()]
-                                  : "#b9b9c6";
-  };
-  Drawing drawing;
-  const double below = kTop + high + 52;
-  const double height = below + 18.0 * static_cast<double>(map.ends.size() + 3);
-  drawing.rectangle(0, 0, width, height, kNothing);
-  for (int j = 0; j < map.up.count; ++j)
-    for (int i = 0; i < map.across.count;) {
-      const auto colour_at = [&](int k) {
-        const int row =
-            map.at[static_cast<std::size_t>(j) * static_cast<std::size_t>(map.across.count) +
-                   static_cast<std::size_t>(k)];
-        return row < 0 ? std::string() : colour(map.shown[static_cast<std::size_t>(row)]);
-      };
-      const std::string fill = colour_at(i);
-      int end = i + 1;  // places alike are one rectangle
-      while (end < map.across.count && colour_at(end) == fill) ++end;
-      if (!fill.empty())
-        drawing.rectangle(kLeft + cell * i, kTop + high - cell * (j + 1), cell * (end - i), cell,
-                          fill);
-      i = end;
-    }
-  drawing.frame(kLeft, kTop, wide, high);
-  const auto marks = [](const PlacementAxis& axis) {
-    std::vector<int> places;
-    const int parts = std::min(5, axis.count - 1);
-    for (int k = 0; k <= parts; ++k) places.push_back((axis.count - 1) * k / parts);
-    return places;
-  };
-  for (const int k : marks(map.across))
-    drawing.text(kLeft + cell * (k + 0.5), kTop + high + 15, "middle", number(map.across.at(k)));
-  for (const int k : marks(map.up))
-    drawing.text(kLeft - 6, kTop + high - cell * (k + 0.5) + 4, "end", number(map.up.at(k)));
-  const auto name = [](const PlacementAxis& axis) {
-    return std::string(kCoordinates[static_cast<std::size_t>(axis.coordinate)]) + " (" +
-           unit_of(axis) + ")";
-  };
-  drawing.text(
-      kLeft + wide / 2, kTop + high + 31, "middle",
-      name(map.across) +
-          (map.best_of_several ? "; each place: the best over the other coordinates" : ""));
-  drawing.text(kLeft - 6, kTop - 4, "end", name(map.up));
-  double top = below;
-  const auto legend = [&](const std::string& fill, const std::string& meaning) {
-    drawing.rectangle(kLeft, top - 10, 14, 12, fill);
-    drawing.frame(kLeft, top - 10, 14, 12);
-    drawing.text(kLeft + 22, top, "start", meaning);
-    top += 18;
-  };
-  for (std::size_t k = 0; k < kShade.size(); ++k)
-    drawing.rectangle(kLeft + 14.0 * static_cast<double>(k), top - 10, 14, 12, kShade[k]);
-  drawing.frame(kLeft, top - 10, 14.0 * kShade.size(), 12);
-  drawing.text(kLeft + 14.0 * kShade.size() + 8, top, "start", title_of(map));
-  top += 18;
-  for (const std::string& end : map.ends) {
-    const auto row = std::find_if(map.shown.begin(), map.shown.end(), [&](const auto& r) {
-      return r.status != PlanStatus::kSolved && ended_by(r) == end;
-    });
-    legend(colour(*row), "no path: " + end);
+}  // namespace
+
+std::string to_text(const PlacementMap& map, int columns, bool coloured) {
+  constexpr int kMargin = 10, kMostRows = 60;
+  const int width = std::max(10, columns - kMargin);
+  const TextCell cell{(map.across.count + width - 1) / width,
+                      (map.up.count + kMostRows - 1) / kMostRows};
+  std::string text;
+  for (int bottom = (map.up.count - 1) / cell.up * cell.up; bottom >= 0; bottom -= cell.up) {
+    text += formatted("%8.4g  ", map.up.at(bottom));
+    for (int left = 0; left < map.across.count; left += cell.across)
+      text += letter_of(map, best_in(map, cell, left, bottom), coloured);
+    text += '\n';
   }
-  if (std::find(map.at.begin(), map.at.end(), -1) != map.at.end()) legend(kNothing, "not planned");
-  return drawing.document(width, height);
+  return text + text_legend(map, cell, kMargin);
+}
+
+namespace {
+
+/// Returns the colour of a row in the drawing.
+std::string colour_of(const PlacementMap& map, const PlacementRow& row) {
+  if (row.status == PlanStatus::kSolved) return kShade[static_cast<std::size_t>(step_of(map, row))];
+  const std::size_t end = end_of(map, row);
+  return ended_by_bodies(row)   ? kBlockerColour[end % kBlockerColour.size()]
+         : row.cause == "limit" ? kJointColour[end % kJointColour.size()]
+                                : "#b9b9c6";
+}
+
+/// Returns the places of an axis that get a mark: at most six, evenly spread.
+std::vector<int> marked_places(const PlacementAxis& axis) {
+  std::vector<int> places;
+  const int parts = std::min(5, axis.count - 1);
+  for (int k = 0; k <= parts; ++k) places.push_back((axis.count - 1) * k / parts);
+  return places;
+}
+
+/// Returns the name of an axis with its unit.
+std::string name_of(const PlacementAxis& axis) {
+  return std::string(kCoordinates[static_cast<std::size_t>(axis.coordinate)]) + " (" +
+         unit_of(axis) + ")";
+}
+
+/// Draws a map of placements: cells, axes, and below them the legend.
+class PlacementDrawing {
+ public:
+  explicit PlacementDrawing(const PlacementMap& map) : map_(map) {}
+
+  /// Returns the SVG document.
+  std::string document() {
+    const double width = std::max(460.0, kLeft + wide_ + kRight), below = kTop + high_ + 52,
+                 height = below + 18.0 * static_cast<double>(map_.ends.size() + 3);
+    drawing_.rectangle(0, 0, width, height, kNothing);
+    draw_cells();
+    draw_axes();
+    draw_legend(below);
+    return drawing_.document(width, height);
+  }
+
+ private:
+  static constexpr double kLeft = 64, kTop = 16, kMost = 620, kRight = 24;
+
+  /// Draws the cells. Equal neighbours in a row become one rectangle.
+  void draw_cells() {
+    const auto colour_at = [&](int i, int j) {
+      const PlacementRow* const row = row_at(map_, i, j);
+      return row ? colour_of(map_, *row) : std::string();
+    };
+    for (int j = 0; j < map_.up.count; ++j)
+      for (int i = 0; i < map_.across.count;) {
+        const std::string fill = colour_at(i, j);
+        int end = i + 1;
+        while (end < map_.across.count && colour_at(end, j) == fill) ++end;
+        if (!fill.empty())
+          drawing_.rectangle(kLeft + cell_ * i, kTop + high_ - cell_ * (j + 1), cell_ * (end - i),
+                             cell_, fill);
+        i = end;
+      }
+  }
+
+  /// Draws the frame, the marks and the names of the axes.
+  void draw_axes() {
+    drawing_.frame(kLeft, kTop, wide_, high_);
+    for (const int k : marked_places(map_.across))
+      drawing_.text(kLeft + cell_ * (k + 0.5), kTop + high_ + 15, "middle",
+                    number(map_.across.at(k)));
+    for (const int k : marked_places(map_.up))
+      drawing_.text(kLeft - 6, kTop + high_ - cell_ * (k + 0.5) + 4, "end", number(map_.up.at(k)));
+    drawing_.text(
+        kLeft + wide_ / 2, kTop + high_ + 31, "middle",
+        name_of(map_.across) +
+            (map_.best_of_several ? "; each place: the best over the other coordinates" : ""));
+    drawing_.text(kLeft - 6, kTop - 4, "end", name_of(map_.up));
+  }
+
+  /// Draws the scale of shades and what the other colours mean, from `top` downwards.
+  void draw_legend(double top) {
+    for (std::size_t k = 0; k < kShade.size(); ++k)
+      drawing_.rectangle(kLeft + 14.0 * static_cast<double>(k), top - 10, 14, 12, kShade[k]);
+    drawing_.frame(kLeft, top - 10, 14.0 * kShade.size(), 12);
+    drawing_.text(kLeft + 14.0 * kShade.size() + 8, top, "start", title_of(map_));
+    const auto explain = [&](const std::string& fill, const std::string& meaning) {
+      top += 18;
+      drawing_.rectangle(kLeft, top - 10, 14, 12, fill);
+      drawing_.frame(kLeft, top - 10, 14, 12);
+      drawing_.text(kLeft + 22, top, "start", meaning);
+    };
+    for (const std::string& end : map_.ends) {
+      const auto row = std::find_if(map_.shown.begin(), map_.shown.end(), [&](const auto& r) {
+        return r.status != PlanStatus::kSolved && ended_by(r) == end;
+      });
+      explain(colour_of(map_, *row), "no path: " + end);
+    }
+    if (has_unplanned(map_)) explain(kNothing, "not planned");
+  }
+
+  const PlacementMap& map_;
+  /// Edge of a cell, and size of the map.
+  const double cell_ =
+      std::max(1.0, std::min(24.0, std::floor(kMost / std::max(map_.across.count, map_.up.count))));
+  const double wide_ = cell_ * map_.across.count, high_ = cell_ * map_.up.count;
+  Drawing drawing_;
+};
+
+}  // namespace
+
+std::string to_svg(const PlacementMap& map) {
+  return PlacementDrawing(map).document();
 }
 
 }  // namespace swivel
