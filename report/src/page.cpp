@@ -28,21 +28,23 @@ namespace {
 /// A row of a trajectory, and where it is in the map.
 struct Row {
   TrajectoryRow at;
-  double layer = 0;  ///< of the lattice; between two of them where only every so many layers of the
-                     ///< path are layers of the lattice
+  /// Layer of the lattice. Not a whole number for a row between two layers of the lattice, where
+  /// the path has more layers than the lattice.
+  double layer = 0;
   int solution = 0;
   double angle = 0;              ///< in cells
   std::optional<double> roll{};  ///< rad
 };
 
-/// Whether the tool may stand turned, so that nodes have rolls.
+/// Returns true if the tool may stand turned, so that nodes have rolls.
 bool may_turn(const Lattice& lattice) {
   const auto grid = lattice.describe().grid;
   return grid && grid->rolls;
 }
 
-/// `rows`: of the path's layers, from the first on. Their IK solutions are mostly those of the
-/// lattice's path (`slots`); where their branch is another, those of the nodes that are nearest.
+/// Returns the rows with their places in the map. `rows` are those of the path's layers, from the
+/// first on; `slots` is the lattice's path. A row has the IK solution of the lattice's path if it
+/// is on that branch, else the solution of the nearest node of its own branch.
 std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map,
                         const std::vector<TrajectoryRow>& rows, const std::vector<int>& slots) {
   const bool turned = may_turn(lattice);
@@ -82,8 +84,8 @@ std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map,
   return shown;
 }
 
-/// How far the tool leaves its path on the way from each row to the next, mm; one less than there
-/// are rows.
+/// Returns how far the tool leaves its path on the way from each row to the next, in mm: one number
+/// less than there are rows.
 std::vector<double> errors_mm(const Lattice& lattice, const std::vector<Row>& rows) {
   std::vector<double> errors;
   for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
@@ -97,7 +99,7 @@ std::vector<double> errors_mm(const Lattice& lattice, const std::vector<Row>& ro
   return errors;
 }
 
-/// Where a row is in the map.
+/// Returns the place of a row in the map.
 Json place_json(const Row& row) {
   Json json = {
       {"layer", row.layer}, {"phi", row.at.phi}, {"sheet", row.solution}, {"angle", row.angle}};
@@ -105,6 +107,7 @@ Json place_json(const Row& row) {
   return json;
 }
 
+/// Returns the rows with their clearances, which it asks for. Throws Stopped.
 Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown,
                const Budget& budget) {
   World::Query query(world, DistanceProofs::kOn);
@@ -132,16 +135,16 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row
   return rows;
 }
 
-/// The path beside which a refined one is drawn.
+/// Returns the path beside which a refined one is drawn.
 Json beside_json(const std::vector<Row>& rows) {
   Json json = Json::array();
   for (const Row& row : rows) json.push_back(place_json(row));
   return json;
 }
 
-/// A motion over time, at as many samples as a plot has room for: where it is, in rows; the tool's
-/// speed; the largest share of what a joint can do since the sample shown before, of speed,
-/// acceleration and jerk.
+/// Returns a motion over time at as many samples as a plot has room for: the place, in rows; the
+/// tool's speed; and for speed, acceleration and jerk, the largest share of a joint's limit since
+/// the sample before that is shown, in percent.
 Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& chain,
                  const std::vector<Row>& rows, const ToolPath& path) {
   constexpr std::size_t kMost = 2000;
@@ -157,7 +160,7 @@ Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& 
   std::array<double, 3> most{};
   for (std::ptrdiff_t k = 0; k < n; ++k) {
     const TrajectoryRow& row = samples[static_cast<std::size_t>(k)].row;
-    // s tells the step; where the path only turns the joints do.
+    // The step is found by s, or by the joints where the path only turns.
     double share = 0;
     for (;; ++step) {
       const PathLayer& from = path.layer(static_cast<int>(step));
@@ -194,17 +197,18 @@ std::string millimetres(double metres) {
   return formatted("%.3g mm", 1e3 * metres);
 }
 
-/// How near two bodies are that are too near, in words, and the line between their nearest points;
-/// where they are inside each other, a point of both.
+/// The distance of two bodies that are too near, in words, and the line between their nearest
+/// points; if they are inside each other, a point of both.
 struct Nearness {
   std::string words;
   Json line = nullptr;
 };
 
-/// Of two bodies by name, which may have several shapes.
+/// Returns how near two bodies are at joints `q`. `names` are the bodies', which may have several
+/// shapes. Empty if none of their shapes is too near or nearest.
 Nearness nearness(const World& world, const std::array<std::string, 2>& names, const Config& q) {
   World::Query query(world, DistanceProofs::kOn);
-  // The largest depth that is proved, by bisection: of a point of one inside the other.
+  // Bisection finds the largest depth of a point of one inside the other that is proved.
   constexpr double kDeepest = 0.5, kTelling = 1e-4;  // m
   double depth = 0;
   std::optional<BodyPair> deepest;
@@ -243,8 +247,8 @@ Nearness nearness(const World& world, const std::array<std::string, 2>& names, c
   return apart;
 }
 
-/// A node's joints with those turns of continuous and wide joints that come nearest to a row of the
-/// path, as the trajectory has them; a joint that they would take out of its limits stays as it is.
+/// Returns a node's joints `q`, turned by whole turns to come nearest to a row of the path, as the
+/// trajectory has them. A joint that such a turn would take out of its limits stays as it is.
 Config turned_towards(const Lattice& lattice, const Config& q, const std::vector<Row>& rows,
                       std::size_t row) {
   if (rows.empty()) return q;
@@ -259,99 +263,161 @@ Config turned_towards(const Lattice& lattice, const Config& q, const std::vector
   return result;
 }
 
-/// Where every path has ended: the node past it that the path's last would have moved to. It is
-/// blocked by what the diagnosis names; where that is no pair of bodies, it is the next node that
-/// exists. Null where there is none, or the problem is solved.
-Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
-              const std::vector<int>& path, const std::vector<Row>& rows, const Json& diagnosis) {
-  const int layer = static_cast<int>(map.path.size());
-  if (layer >= map.layers) return nullptr;
-  const std::string reason = diagnosis["reason"];
-  const Json bodies = diagnosis["cause"].is_object() ? diagnosis["cause"]["bodies"] : Json(nullptr);
-  const bool motion = bodies.is_array() && diagnosis["cause"]["between_layers"];
-  const int from = map.path.empty() ? 0 : map.path.back();  // a cell
+/// The place where every path has ended, and what the diagnosis says about it.
+struct PathEnd {
+  const LatticeMap& map;
+  const Lattice& lattice;
+  const std::vector<int>& path;  ///< slots of the path to the furthest layer, by layer
+  const Json& diagnosis;
+  bool turned;  ///< the tool may stand turned
+
+  /// Returns the first layer that no path reaches.
+  [[nodiscard]] int layer() const { return static_cast<int>(map.path.size()); }
+  /// Returns the names of the two bodies that ended the paths; null if it was something else.
+  [[nodiscard]] Json bodies() const {
+    return diagnosis["cause"].is_object() ? diagnosis["cause"]["bodies"] : Json(nullptr);
+  }
+  /// Returns true if the bodies came too near on the way between two layers, not at a node.
+  [[nodiscard]] bool between_layers() const {
+    return bodies().is_array() && diagnosis["cause"]["between_layers"];
+  }
+  [[nodiscard]] std::string reason() const { return diagnosis["reason"]; }
+};
+
+/// Returns true if the map draws the node in its cell: at the roll of the path's last node if the
+/// tool may stand turned, else the node that the cell shows.
+bool is_drawn(const PathEnd& end, const Lattice::Node& node, int cell) {
+  const LatticeMap& map = end.map;
+  const int layer = end.layer();
+  if (end.turned) {
+    const int rank = end.path.empty() ? 0 : end.lattice.grid_place(layer - 1, end.path.back()).rank;
+    return end.lattice.grid_place(layer, node.slot).rank == rank;
+  }
+  const std::size_t cells =
+      static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
+  return map.grid() ||
+         map.slots[static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(cell)] ==
+             node.slot;
+}
+
+/// Returns how far a cell is from another: in cells of the coordinate, plus a whole panel if they
+/// are in two panels.
+int distance(const LatticeMap& map, int cell, int other) {
+  const int away = std::abs(cell % map.angles - other % map.angles);
+  return (map.closed ? std::min(away, map.angles - away) : away) +
+         (cell / map.angles == other / map.angles ? 0 : map.angles);
+}
+
+/// Returns the drawn node of the first layer that no path reaches that is nearest to the path's
+/// last node: among those that the bodies of the diagnosis block, or, if there are none, among the
+/// others. Returns nullopt if there is no node.
+std::optional<Lattice::Node> node_past_end(const PathEnd& end) {
+  const LatticeMap& map = end.map;
+  const Json bodies = end.bodies();
+  const bool at_node = bodies.is_array() && !end.between_layers();
+  const int from = map.path.empty() ? 0 : map.path.back();
   std::vector<Lattice::Node> listed;
-  lattice.layer_nodes(layer, listed);
-  const bool turned = may_turn(lattice);
-  const int rank = turned && !path.empty() ? lattice.grid_place(layer - 1, path.back()).rank
-                                           : 0;  // at which the map is drawn
-  const auto is_drawn = [&](const Lattice::Node& node, int cell) {
-    if (turned) return lattice.grid_place(layer, node.slot).rank == rank;
-    const std::size_t cells =
-        static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
-    return map.grid() ||
-           map.slots[static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(cell)] ==
-               node.slot;
-  };
+  end.lattice.layer_nodes(end.layer(), listed);
   const Lattice::Node* best = nullptr;
   int least = 0;
   for (const bool by_bodies : {true, false}) {
     for (const Lattice::Node& candidate : listed) {
-      const int cell = map_cell(map, lattice, layer, candidate.slot), solution = cell / map.angles,
-                angle = cell % map.angles;
-      if (!is_drawn(candidate, cell)) continue;
-      const LatticeMap::Node& node = map.at(layer, solution, angle);
-      const bool blocked = node.state == NodeState::kBlocked && bodies.is_array() && !motion &&
+      const int cell = map_cell(map, end.lattice, end.layer(), candidate.slot);
+      if (!is_drawn(end, candidate, cell)) continue;
+      const LatticeMap::Node& node = map.at(end.layer(), cell / map.angles, cell % map.angles);
+      const bool blocked = node.state == NodeState::kBlocked && at_node &&
                            bodies[0] == map.blockers[node.cause].first &&
                            bodies[1] == map.blockers[node.cause].second;
       if (blocked != by_bodies) continue;
-      const int away = std::abs(angle - from % map.angles);
-      const int far = (map.closed ? std::min(away, map.angles - away) : away) +
-                      (solution == from / map.angles ? 0 : map.angles);
+      const int far = distance(map, cell, from);
       if (!best || far < least) best = &candidate, least = far;
     }
     if (best) break;
   }
-  if (!best) return nullptr;
-  const int cell = map_cell(map, lattice, layer, best->slot);
-  const LatticeMap::Node& node = map.at(layer, cell / map.angles, cell % map.angles);
-  const Config q =
-      turned_towards(lattice, lattice.exact_config(layer, best->slot, best->q).value_or(best->q),
-                     rows, rows.size());
-  std::string what = "no valid pose here: " + reason;
+  return best ? std::optional(*best) : std::nullopt;
+}
+
+/// What keeps a path from its next node: in words, the two bodies, and the line between them.
+struct Obstruction {
+  std::string what;
   Json pair = nullptr, line = nullptr;
+};
+
+/// Returns the words that say which joint would step too far to the node with joints `q`; "" if
+/// that is not the cause.
+std::string joint_step_words(const PathEnd& end, const Config& q) {
+  const Json& diagnosis = end.diagnosis;
+  if (!diagnosis["cause"].is_object() || diagnosis["cause"]["cause"] != "joint_step") return "";
+  const Config step =
+      end.lattice.delta(*end.lattice.exact_config(end.layer() - 1, end.path.back()), q);
+  Eigen::Index joint = 0;
+  const double most = step.cwiseAbs().maxCoeff(&joint);
+  return ", " + end.map.joint_names[joint] + formatted(" by %.2f rad", most);
+}
+
+/// Returns what keeps the path from the node past its end, whose joints are `q` and whose state in
+/// the map is `node`.
+Obstruction obstruction(const PathEnd& end, const LatticeMap::Node& node, const Config& q,
+                        const World& world) {
+  const LatticeMap& map = end.map;
   if (node.state == NodeState::kBlocked) {
     const auto& [first, second] = map.blockers[node.cause];
-    pair = {first, second};
-    what = (map.path.empty() ? "a pose of the first layer, blocked by "
-                             : "the next pose is blocked by ") +
-           map.blocker_name(node);
+    Obstruction blocked{(map.path.empty() ? "a pose of the first layer, blocked by "
+                                          : "the next pose is blocked by ") +
+                            map.blocker_name(node),
+                        {first, second}};
     Nearness near = nearness(world, {first, second}, q);
-    if (!near.words.empty()) what += ": " + near.words;
-    line = std::move(near.line);
-  } else if (motion) {
-    pair = bodies;
-    what = "the way to the next pose is blocked by " + pair[0].get<std::string>() + " - " +
-           pair[1].get<std::string>();
-  } else if (!map.path.empty()) {
-    what = "the next pose cannot be moved to: " + reason;
-    if (diagnosis["cause"].is_object() && diagnosis["cause"]["cause"] == "joint_step") {
-      const Config step = lattice.delta(*lattice.exact_config(layer - 1, path.back()), q);
-      Eigen::Index joint = 0;
-      const double most = step.cwiseAbs().maxCoeff(&joint);
-      const std::string text = formatted(" by %.2f rad", most);
-      what += ", " + map.joint_names[joint] + text;
-    }
+    if (!near.words.empty()) blocked.what += ": " + near.words;
+    blocked.line = std::move(near.line);
+    return blocked;
   }
+  if (end.between_layers()) {
+    const Json pair = end.bodies();
+    return {"the way to the next pose is blocked by " + pair[0].get<std::string>() + " - " +
+                pair[1].get<std::string>(),
+            pair};
+  }
+  if (map.path.empty()) return {"no valid pose here: " + end.reason()};
+  return {"the next pose cannot be moved to: " + end.reason() + joint_step_words(end, q)};
+}
+
+/// Returns the place where every path has ended: the node past it that the path's last node would
+/// have moved to, and what keeps it from there. Null if there is no such node, or the problem is
+/// solved.
+Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
+              const std::vector<int>& path, const std::vector<Row>& rows, const Json& diagnosis) {
+  const PathEnd end{map, lattice, path, diagnosis, may_turn(lattice)};
+  const int layer = end.layer();
+  if (layer >= map.layers) return nullptr;
+  const auto past = node_past_end(end);
+  if (!past) return nullptr;
+  const int cell = map_cell(map, lattice, layer, past->slot);
+  const Config q =
+      turned_towards(lattice, lattice.exact_config(layer, past->slot, past->q).value_or(past->q),
+                     rows, rows.size());
+  Obstruction by = obstruction(end, map.at(layer, cell / map.angles, cell % map.angles), q, world);
   Json json = {{"layer", layer},
                {"s", lattice.path().layer(layer).s},
-               {"phi", lattice.phi(layer, best->slot)},
+               {"phi", lattice.phi(layer, past->slot)},
                {"sheet", cell / map.angles},
-               {"angle", map.place(lattice.phi(layer, best->slot))},
+               {"angle", map.place(lattice.phi(layer, past->slot))},
                {"q", std::vector<double>(q.begin(), q.end())},
-               {"pair", std::move(pair)},
-               {"line", std::move(line)},
-               {"what", std::move(what)}};
-  if (turned) json["roll"] = lattice.grid_place(layer, best->slot).roll;
+               {"pair", std::move(by.pair)},
+               {"line", std::move(by.line)},
+               {"what", std::move(by.what)}};
+  if (end.turned) json["roll"] = lattice.grid_place(layer, past->slot).roll;
   return json;
 }
 
-/// Clearances of cells, in tenths of a millimetre and 16 bits; `kUnknown` where nothing is near or
-/// nobody asked.
+/// Clearances of cells in tenths of a millimetre and 16 bits; kUnknown where nothing is near or the
+/// clearance was not asked for.
 class Clearances {
  public:
+  /// Prepares for `cells` calls of add().
   Clearances(const World& world, std::size_t cells)
       : query_(world, DistanceProofs::kOn), each_(cells / kMost + 1) {}
+  /// Adds the clearance of a posture. Asks for it if `surely`, or if it is the one in so many that
+  /// there is time for.
   void add(const Config& q, bool surely) {
     values.push_back(kUnknown);
     if (asked_++ % each_ != 0 && !surely) return;
@@ -359,6 +425,7 @@ class Clearances {
       values.back() = static_cast<std::uint16_t>(
           std::lround(std::clamp(1e4 * clearance->distance, 0.0, kUnknown - 1.0)));
   }
+  /// Adds a cell whose clearance is not asked for.
   void skip() { values.push_back(kUnknown); }
   std::vector<std::uint16_t> values;
 
@@ -366,156 +433,228 @@ class Clearances {
   static constexpr std::uint16_t kUnknown = 65535;
   static constexpr std::size_t kMost = 2000;  // a question costs up to a millisecond
   World::Query query_;
-  std::size_t each_, asked_ = 0;  // one cell in so many is asked about, and those of the path
+  std::size_t each_, asked_ = 0;
 };
 
-/// One node for each shown cell, once for those above each other that show the same: its joints in
-/// 16 bits, for drawing, its layer (counted from the cell's first), phi and roll.
-Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
-              const std::vector<int>& path, const std::vector<Row>& rows, const Budget& budget) {
+/// Returns true if the clearance of the node was asked for.
+bool looked_at(const LatticeMap::Node& node) {
+  return node.state >= NodeState::kFree;
+}
+
+/// Returns how many columns of cells each panel of the page's map has at most.
+int most_columns(std::size_t panels) {
   constexpr std::size_t kMostCells = 200'000;
-  const std::vector<int> solutions = map.inhabited_solutions();
-  const auto most_columns =
-      static_cast<int>(kMostCells / (std::max<std::size_t>(1, solutions.size()) * 252));
-  const MapCells cells(map, std::max(100, most_columns), 252);
+  return std::max(100, static_cast<int>(kMostCells / (std::max<std::size_t>(1, panels) * 252)));
+}
+
+/// Writes the map for the page: the state of each cell and the posture of one node for each cell.
+/// Cells above each other that show the same node share its posture.
+class MapWriter {
+ public:
+  /// `rows`: of the path that is shown; postures turn their joints towards them.
+  MapWriter(const LatticeMap& map, const Lattice& lattice, const World& world,
+            const std::vector<int>& path, const std::vector<Row>& rows, const Budget& budget)
+      : map_(map),
+        lattice_(lattice),
+        path_(path),
+        rows_(rows),
+        budget_(budget),
+        solutions_(map.inhabited_solutions()),
+        cells_(map, most_columns(solutions_.size()), 252),
+        turned_(may_turn(lattice)),
+        clearances_(world, cells_looked_at()),
+        panel_of_(static_cast<std::size_t>(map.panels()), -1) {
+    for (const int solution : solutions_) {
+      panel_of_[solution] = static_cast<int>(panels_.size());
+      panels_.push_back({{"sheet", solution},
+                         {"name", map.solution_name(solution)},
+                         {"rolls", map.shows_rolls(solution)}});
+    }
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      if (rows[row].layer == static_cast<double>(row_of_layer_.size()))
+        row_of_layer_.push_back(row);
+  }
+
+  /// Returns the map. Throws Stopped.
+  Json write() {
+    for (int column = 0; column < cells_.columns; ++column) write_column(column, shown_in(column));
+    return json();
+  }
+
+ private:
+  /// The node that a cell shows; layer -1: none.
   struct Shown {
     int layer = -1, slot = -1;
-    double phi = 0, roll = 0;
+    double phi = 0, roll = 0;  ///< rad
     Config q;
   };
-  std::vector<Shown> poses;
-  std::vector<std::uint8_t> states, causes;
-  const auto looked_at = [](const LatticeMap::Node& node) {
-    return node.state >= NodeState::kFree;
-  };
-  std::size_t asked = 0;
-  for (const int solution : solutions)
-    for (int column = 0; column < cells.columns; ++column)
-      for (int row = 0; row < cells.rows; ++row)
-        asked += looked_at(cells.node(solution, column, row));
-  Clearances clearances(world, asked);
-  std::vector<Lattice::Node> listed;
-  std::vector<int> panel_of(map.panels(), -1);
-  Json panels = Json::array();
-  for (const int solution : solutions) {
-    panel_of[solution] = static_cast<int>(panels.size());
-    panels.push_back({{"sheet", solution},
-                      {"name", map.solution_name(solution)},
-                      {"rolls", map.shows_rolls(solution)}});
+  /// The cells of a column, by panel and row.
+  using Column = std::vector<Shown>;
+
+  [[nodiscard]] std::size_t cells_looked_at() const {
+    std::size_t count = 0;
+    for (const int solution : solutions_)
+      for (int column = 0; column < cells_.columns; ++column)
+        for (int row = 0; row < cells_.rows; ++row)
+          count += looked_at(cells_.node(solution, column, row));
+    return count;
   }
-  std::vector<std::size_t> row_of_layer;
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (rows[row].layer == static_cast<double>(row_of_layer.size())) row_of_layer.push_back(row);
-  const bool turned = may_turn(lattice);
-  int rank = 0;  // of the roll that the path has, as in make_map()
-  for (int column = 0; column < cells.columns; ++column) {
-    const int first = column * cells.layers_each,
-              last = std::min(map.layers, first + cells.layers_each);
-    std::vector<Shown> shown(solutions.size() * static_cast<std::size_t>(cells.rows));
+
+  /// Returns the nodes that a column shows: for each cell the first that looks like the cell.
+  Column shown_in(int column) {
+    Column shown(solutions_.size() * static_cast<std::size_t>(cells_.rows));
+    const int first = column * cells_.layers_each,
+              last = std::min(map_.layers, first + cells_.layers_each);
     for (int layer = first; layer < last; ++layer) {
-      budget.poll();
-      lattice.layer_nodes(layer, listed);
-      const auto show = [&](const Lattice::Node& node, int solution, int angle) {
-        const int row = angle / cells.angles_each, k = panel_of[solution] * cells.rows + row;
-        if (panel_of[solution] < 0 || shown[k].layer >= 0 ||
-            map.at(layer, solution, angle) != cells.node(solution, column, row))
-          return;
-        const auto near = static_cast<std::size_t>(layer);
-        const Config q =
-            turned_towards(lattice, lattice.exact_config(layer, node.slot, node.q).value_or(node.q),
-                           rows, near < row_of_layer.size() ? row_of_layer[near] : rows.size());
-        const double roll =
-            turned ? roll_between(lattice.path().layer(layer).tool, lattice.chain().tool(q)) : 0;
-        shown[k] = {layer, node.slot, lattice.phi(layer, node.slot), roll, q};
-      };
-      const bool on_path = layer < static_cast<int>(path.size());
-      if (turned && on_path)
-        rank = lattice.grid_place(layer, path[static_cast<std::size_t>(layer)]).rank;
-      const int panel_cells = map.panels() * map.angles;
-      for (int cell = 0; cell < panel_cells && !map.grid(); ++cell)
-        if (const int slot = map.slots[static_cast<std::size_t>(layer) * panel_cells + cell];
-            slot >= 0)
-          show(listed[static_cast<std::size_t>(slot)], cell / map.angles, cell % map.angles);
-      for (const Lattice::Node& node : listed) {
-        if (!map.grid() || (turned && lattice.grid_place(layer, node.slot).rank != rank)) continue;
-        const int cell = map_cell(map, lattice, layer, node.slot);
-        show(node, cell / map.angles, cell % map.angles);
-      }
-      if (!map.turns || !on_path) continue;
-      const std::vector<int> slots =
-          slots_of_rolls(lattice, layer, path[static_cast<std::size_t>(layer)], map.angles);
-      for (int k = 0; k < map.angles; ++k) {
-        const auto at =
-            std::lower_bound(listed.begin(), listed.end(), slots[static_cast<std::size_t>(k)],
-                             [](const Lattice::Node& node, int slot) { return node.slot < slot; });
-        if (at != listed.end() && at->slot == slots[static_cast<std::size_t>(k)])
-          show(*at, map.solutions(), k);
-      }
+      budget_.poll();
+      lattice_.layer_nodes(layer, listed_);
+      const bool on_path = layer < static_cast<int>(path_.size());
+      if (turned_ && on_path)
+        rank_ = lattice_.grid_place(layer, path_[static_cast<std::size_t>(layer)]).rank;
+      if (map_.grid())
+        offer_grid_nodes(shown, column, layer);
+      else
+        offer_arc_nodes(shown, column, layer);
+      if (map_.turns && on_path) offer_rolls(shown, column, layer);
     }
-    const auto is_of_path = [&](const Shown& pose) {
-      const auto layer = static_cast<std::size_t>(pose.layer);
-      return layer < path.size() && path[layer] == pose.slot;
-    };
+    return shown;
+  }
+
+  /// Offers the nodes of a layer of a grid, at the path's roll if the tool may stand turned.
+  void offer_grid_nodes(Column& shown, int column, int layer) const {
+    for (const Lattice::Node& node : listed_) {
+      if (turned_ && lattice_.grid_place(layer, node.slot).rank != rank_) continue;
+      const int cell = map_cell(map_, lattice_, layer, node.slot);
+      offer(shown, column, layer, node, cell / map_.angles, cell % map_.angles);
+    }
+  }
+  /// Offers the nodes that the map shows in a layer of a lattice without a grid.
+  void offer_arc_nodes(Column& shown, int column, int layer) const {
+    const int panel_cells = map_.panels() * map_.angles;
+    for (int cell = 0; cell < panel_cells; ++cell)
+      if (const int slot = map_.slots[static_cast<std::size_t>(layer) * panel_cells + cell];
+          slot >= 0)
+        offer(shown, column, layer, listed_[static_cast<std::size_t>(slot)], cell / map_.angles,
+              cell % map_.angles);
+  }
+  /// Offers the nodes of the panel of rolls in a layer that the path reaches.
+  void offer_rolls(Column& shown, int column, int layer) const {
+    const std::vector<int> slots =
+        slots_of_rolls(lattice_, layer, path_[static_cast<std::size_t>(layer)], map_.angles);
+    for (int k = 0; k < map_.angles; ++k) {
+      const auto at =
+          std::lower_bound(listed_.begin(), listed_.end(), slots[static_cast<std::size_t>(k)],
+                           [](const Lattice::Node& node, int slot) { return node.slot < slot; });
+      if (at != listed_.end() && at->slot == slots[static_cast<std::size_t>(k)])
+        offer(shown, column, layer, *at, map_.solutions(), k);
+    }
+  }
+
+  /// Shows a node in its cell if the cell shows none yet and looks like the node.
+  void offer(Column& shown, int column, int layer, const Lattice::Node& node, int solution,
+             int angle) const {
+    const int row = angle / cells_.angles_each, k = panel_of_[solution] * cells_.rows + row;
+    if (panel_of_[solution] < 0 || shown[k].layer >= 0 ||
+        map_.at(layer, solution, angle) != cells_.node(solution, column, row))
+      return;
+    const auto near = static_cast<std::size_t>(layer);
+    const Config q =
+        turned_towards(lattice_, lattice_.exact_config(layer, node.slot, node.q).value_or(node.q),
+                       rows_, near < row_of_layer_.size() ? row_of_layer_[near] : rows_.size());
+    const double roll =
+        turned_ ? roll_between(lattice_.path().layer(layer).tool, lattice_.chain().tool(q)) : 0;
+    shown[k] = {layer, node.slot, lattice_.phi(layer, node.slot), roll, q};
+  }
+
+  /// Appends states, postures and clearances of a column's cells.
+  void write_column(int column, const Column& shown) {
     std::size_t k = 0;
-    for (const int solution : solutions)
-      for (int row = 0; row < cells.rows; ++row, ++k) {
-        const LatticeMap::Node cell = cells.node(solution, column, row);
+    for (const int solution : solutions_)
+      for (int row = 0; row < cells_.rows; ++row, ++k) {
+        const LatticeMap::Node cell = cells_.node(solution, column, row);
         const bool posed = shown[k].layer >= 0, is_again = posed && row > 0 &&
                                                            shown[k].slot == shown[k - 1].slot &&
                                                            shown[k].layer == shown[k - 1].layer;
-        states.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) |
-                                                   (is_again ? 32u : 0u) |
-                                                   (cell.proved ? 64u : 0u) | (posed ? 128u : 0u)));
-        causes.push_back(cell.cause);
+        states_.push_back(
+            static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (is_again ? 32u : 0u) |
+                                      (cell.proved ? 64u : 0u) | (posed ? 128u : 0u)));
+        causes_.push_back(cell.cause);
         if (!posed || is_again) continue;
-        budget.poll();
+        budget_.poll();
         if (looked_at(cell))
-          clearances.add(shown[k].q, cells.on_path(solution, column, row) || is_of_path(shown[k]));
+          clearances_.add(shown[k].q,
+                          cells_.on_path(solution, column, row) || is_of_path(shown[k]));
         else
-          clearances.skip();
-        poses.push_back(shown[k]);
-        poses.back().layer -= first;
+          clearances_.skip();
+        poses_.push_back(shown[k]);
+        poses_.back().layer -= column * cells_.layers_each;
       }
   }
-  double reach = 1;  // rad, for 16 bits
-  for (const Shown& pose : poses) reach = std::max(reach, pose.q.cwiseAbs().maxCoeff());
-  std::vector<std::int16_t> joints;
-  std::vector<std::uint16_t> layers;
-  std::vector<float> phis, rolls;
-  for (const Shown& pose : poses) {
-    for (const double q : pose.q)
-      joints.push_back(static_cast<std::int16_t>(std::lround(q / reach * 32767)));
-    layers.push_back(static_cast<std::uint16_t>(pose.layer));
-    phis.push_back(static_cast<float>(pose.phi));
-    if (turned) rolls.push_back(static_cast<float>(pose.roll));
+  [[nodiscard]] bool is_of_path(const Shown& pose) const {
+    const auto layer = static_cast<std::size_t>(pose.layer);
+    return layer < path_.size() && path_[layer] == pose.slot;
   }
-  return {{"layers", map.layers},
-          {"angles", map.angles},
-          {"columns", cells.columns},
-          {"rows", cells.rows},
-          {"layers_each", cells.layers_each},
-          {"angles_each", cells.angles_each},
-          {"coordinate", map.coordinate_name()},
-          {"letter", map.letter(0)},
-          {"low", map.low},
-          {"step", map.step},
-          {"closed", map.closed},
-          {"arcs", !map.grid()},
-          {"nothing", map.emptiness()},
-          {"panels", std::move(panels)},
-          {"states", base64(states)},
-          {"causes", base64(causes)},
-          {"joints", base64(joints)},
-          {"clearances", base64(clearances.values)},
-          {"joint_unit", reach / 32767},
-          {"pose_layers", base64(layers)},
-          {"pose_phis", base64(phis)},
-          {"pose_rolls", base64(rolls)},
-          {"blockers", map.blockers},
-          {"complete", map.complete},
-          {"s", map.s}};
-}
 
+  /// Returns all that was appended, with the postures' joints in 16 bits, which is enough to draw.
+  Json json() {
+    double reach = 1;  // rad, of the largest number in 16 bits
+    for (const Shown& pose : poses_) reach = std::max(reach, pose.q.cwiseAbs().maxCoeff());
+    std::vector<std::int16_t> joints;
+    std::vector<std::uint16_t> layers;
+    std::vector<float> phis, rolls;
+    for (const Shown& pose : poses_) {
+      for (const double q : pose.q)
+        joints.push_back(static_cast<std::int16_t>(std::lround(q / reach * 32767)));
+      layers.push_back(static_cast<std::uint16_t>(pose.layer));
+      phis.push_back(static_cast<float>(pose.phi));
+      if (turned_) rolls.push_back(static_cast<float>(pose.roll));
+    }
+    return {{"layers", map_.layers},
+            {"angles", map_.angles},
+            {"columns", cells_.columns},
+            {"rows", cells_.rows},
+            {"layers_each", cells_.layers_each},
+            {"angles_each", cells_.angles_each},
+            {"coordinate", map_.coordinate_name()},
+            {"letter", map_.letter(0)},
+            {"low", map_.low},
+            {"step", map_.step},
+            {"closed", map_.closed},
+            {"arcs", !map_.grid()},
+            {"nothing", map_.emptiness()},
+            {"panels", std::move(panels_)},
+            {"states", base64(states_)},
+            {"causes", base64(causes_)},
+            {"joints", base64(joints)},
+            {"clearances", base64(clearances_.values)},
+            {"joint_unit", reach / 32767},
+            {"pose_layers", base64(layers)},
+            {"pose_phis", base64(phis)},
+            {"pose_rolls", base64(rolls)},
+            {"blockers", map_.blockers},
+            {"complete", map_.complete},
+            {"s", map_.s}};
+  }
+
+  const LatticeMap& map_;
+  const Lattice& lattice_;
+  const std::vector<int>& path_;
+  const std::vector<Row>& rows_;
+  const Budget& budget_;
+  const std::vector<int> solutions_;  ///< whose panels are written
+  const MapCells cells_;
+  const bool turned_;  ///< the tool may stand turned
+  Clearances clearances_;
+  std::vector<int> panel_of_;  ///< by solution; -1: not written
+  Json panels_ = Json::array();
+  std::vector<std::size_t> row_of_layer_;  ///< by layer of the lattice, as far as there are rows
+  std::vector<Lattice::Node> listed_;      ///< nodes of the layer
+  int rank_ = 0;  ///< of the roll that the path has in the layer, or had last
+  std::vector<std::uint8_t> states_, causes_;  ///< of all cells
+  std::vector<Shown> poses_;                   ///< layers counted from the cell's first
+};
+
+/// Returns the text with its lines escaped for HTML.
 std::string escaped_lines(const std::string& text) {
   std::istringstream lines(text);
   std::string result;
@@ -575,7 +714,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
                      : Json(nullptr)},
       {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, rows, diagnosis)
                                     : Json(nullptr)},
-      {"map", map_json(map, lattice, world, view.path, rows, budget)}};
+      {"map", MapWriter(map, lattice, world, view.path, rows, budget).write()}};
   return fill(
       page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
       {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", to_svg(map)}});
