@@ -4,6 +4,7 @@
 verify.py."""
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -321,6 +322,21 @@ class Files(WithFolder):
             "plan", PROBLEMS / "experiment_a.yaml", "--quiet", "--ds", "0.02", "--dphi", "0.2"
         )
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+
+    def test_check_says_that_degrees_are_not_measured(self):
+        coarse = ("--ds", "0.02", "--dphi", "0.2")
+        _, out, _ = self.plan(PROBLEMS / "experiment_a.yaml", *coarse)
+        rows = list(csv.reader(out.open()))
+        with out.open("w", newline="") as file:
+            degrees = [[repr(math.degrees(float(q))) for q in row[3:]] for row in rows[1:]]
+            csv.writer(file).writerows([rows[0][3:], *degrees])
+        check = run("check", PROBLEMS / "experiment_a.yaml", out, *coarse)
+        self.assertEqual(check.returncode, 1)
+        lines = check.stdout.splitlines()
+        self.assertRegex(lines[0], r"^failed: 26 rows, \d+ failures, .*; no row could be measured$")
+        self.assertEqual(
+            lines[1], "  joints would be within their limits as degrees: allowed are radians"
+        )
 
     def test_check_sees_a_damaged_trajectory(self):
         coarse = ("--ds", "0.02", "--dphi", "0.2")
