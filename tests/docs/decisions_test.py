@@ -152,7 +152,7 @@ class Records:
                     r"(?<![\w.'])" if code[0].isalnum() else "",
                     r"(?![\w.'])" if code[-1].isalnum() else "",
                 )
-                exact = before + re.escape(code) + after
+                exact = before + r"\s+".join(map(re.escape, code.split())) + after
                 self.expect(
                     re.search(exact, found[0].read_text()), index,
                     f"{what}: {name} does not hold `{code}`; its value has changed"
