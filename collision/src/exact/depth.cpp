@@ -13,9 +13,9 @@ namespace swivel::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTolerance = 0.02e-3;  // m
-constexpr int kMostPatches = 20'000;    // looked at before the search is cut short
-constexpr int kMostCorners = 2'000;     // of a mesh, looked for in another mesh
+constexpr double kDepthTolerance = 0.02e-3;  // m
+constexpr int kMostPatches = 20'000;         // looked at before the search is cut short
+constexpr int kMostCorners = 2'000;          // of a mesh, looked for in another mesh
 
 /// A point, a segment or a triangle (1, 2 or 3 `corners`) of a body's medial set. `depth` is how
 /// deep each corner lies beneath the body's surface, m, and is linear in between.
@@ -117,7 +117,7 @@ Medial medial_of(const Cylinder& cylinder) {
                deepest = std::min(radius, half);
   const double inner = radius - deepest, height = half - deepest;
   const int sides = std::clamp(
-      static_cast<int>(std::ceil(kPi / std::sqrt(2 * kTolerance / (4 * radius)))), 8, 64);
+      static_cast<int>(std::ceil(kPi / std::sqrt(2 * kDepthTolerance / (4 * radius)))), 8, 64);
   Medial medial;
   medial.off = radius * (1 - std::cos(kPi / sides));
   const auto on_circle = [&](int k, double r, double z) {
@@ -316,7 +316,7 @@ Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from, doubl
     found = std::max(found, here);
     const double most = patch.corners == 1 ? here : solid.most_on(patch);
     ++asked;
-    if (most <= std::max(found + kTolerance / 2, from - medial.off))
+    if (most <= std::max(found + kDepthTolerance / 2, from - medial.off))
       closed = std::max(closed, most);
     else
       open.push({most, asked, patch});
@@ -327,7 +327,7 @@ Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from, doubl
   }
   const double sought = from - medial.off;
   while (!open.empty() && asked < kMostPatches &&
-         open.top().most > std::max(found + kTolerance / 2, sought) &&
+         open.top().most > std::max(found + kDepthTolerance / 2, sought) &&
          found - medial.off <= enough) {
     const auto [first, second] = open.top().patch.halves();
     open.pop();

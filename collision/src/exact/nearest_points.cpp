@@ -19,7 +19,7 @@ namespace swivel::detail {
 
 namespace {
 
-constexpr double kTolerance = 1e-4;  // m
+constexpr double kPointTolerance = 1e-4;  // m
 
 /// The geometry that FCL is called with: the centre or the axis of a round body, for the reasons
 /// given at PairTest::core_distance(), or any other body itself.
@@ -58,7 +58,7 @@ fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a,
 bool belongs(const Vector3d& point, const Core& core) {
   const Pose at(Eigen::Translation3d{point});
   return distance(fcl::Sphered(0), at, *core.geometry, core.pose).min_distance <=
-         core.radius + kTolerance;
+         core.radius + kPointTolerance;
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a,
       {{p, q}, {core_a.pose * p, core_b.pose * q}}};
   for (const auto& [from, to] : readings) {
     const double cores_apart = (to - from).norm();
-    if (!(std::abs(cores_apart - core_a.radius - core_b.radius - clearance) <= kTolerance))
+    if (!(std::abs(cores_apart - core_a.radius - core_b.radius - clearance) <= kPointTolerance))
       continue;
     const Vector3d along = (to - from) / cores_apart;
     const Vector3d on_a = from + core_a.radius * along, on_b = to - core_b.radius * along;
@@ -93,7 +93,7 @@ std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a,
 std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   PairTest test(PairTest::Meshes::kNear);
   MeshStore none;
-  const FclShape dot = make_fcl_shape(Sphere{kTolerance / 2}, none);
+  const FclShape dot = make_fcl_shape(Sphere{kPointTolerance / 2}, none);
   // Distance of a point from the further one of the two bodies, m.
   const auto apart = [&](const Vector3d& point) {
     const Pose at(Eigen::Translation3d{point});
@@ -117,7 +117,7 @@ std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeR
   constexpr int kMost = 4000;
   for (int asked = 1; !cubes.empty() && asked < kMost;) {
     const Cube cube = cubes.top();
-    if (cube.apart <= kTolerance / 2) return cube.middle;
+    if (cube.apart <= kPointTolerance / 2) return cube.middle;
     cubes.pop();
     const double half = cube.half / 2;
     for (int corner = 0; corner < 8; ++corner, ++asked) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/core/messages/formatted.hpp"
 
 #include <cmath>
 #include <cstdio>
+
+#include "swivel/core/base/angle.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 
@@ -16,7 +18,6 @@ struct Limit {
   const char* unit;
   double scale;  // how many of the unit shown make one of the limit's
 };
-constexpr double kDegrees = 180 / kPi;
 constexpr Limit kLimits[] = {
     {Advice::Change::kClearance, "clearance", "clearance", "mm", 1e3},
     {Advice::Change::kJointMargin, "joint_margin", "joint margin", "deg", kDegrees},

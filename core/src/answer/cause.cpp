@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "swivel/core/base/types.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
@@ -16,7 +16,7 @@ std::string range(double low, double high) {
   return first == last ? first : first + " to " + last;
 }
 
-constexpr double kDegrees = 180 / kPi, kMillimetres = 1e3;
+constexpr double kMillimetres = 1e3;
 
 }  // namespace
 

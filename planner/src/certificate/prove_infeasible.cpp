@@ -19,10 +19,6 @@ namespace swivel {
 
 namespace {
 
-constexpr std::size_t index(int k) {
-  return static_cast<std::size_t>(k);
-}
-
 void add(std::vector<InfeasibilityCertificate::Range>& ranges, int slot) {
   if (!ranges.empty() && ranges.back().last + 1 == slot)
     ranges.back().last = slot;

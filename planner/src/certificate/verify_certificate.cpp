@@ -15,10 +15,6 @@ namespace swivel {
 
 namespace {
 
-constexpr std::size_t index(int k) {
-  return static_cast<std::size_t>(k);
-}
-
 /// The reason why a certificate is refused, thrown within this file.
 struct Refused {
   std::string why;

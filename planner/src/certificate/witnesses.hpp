@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,13 +14,18 @@
 
 namespace swivel {
 
+/// Returns a number that is not negative as an index of a container.
+constexpr std::size_t index(int k) {
+  return static_cast<std::size_t>(k);
+}
+
 /// Witnesses of a certificate: single causes that remove nodes or edges of a lattice, numbered in
 /// the order in which they are met. Tests whether one of them removes a node or an edge, regardless
 /// of the others.
 class Witnesses {
  public:
   /// Creates an empty list of witnesses for a lattice in a world, whose collision queries use
-  /// `certificates`. `lattice`, `world` and `budget` must outlive it; `check` may be null.
+  /// `distance_proofs`. `lattice`, `world` and `budget` must outlive it; `check` may be null.
   Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule,
             DistanceProofs distance_proofs, const std::shared_ptr<StateCheck>& check,
             const Budget& budget);

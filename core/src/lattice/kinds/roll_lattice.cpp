@@ -19,7 +19,6 @@ namespace swivel {
 
 namespace {
 
-constexpr double kSingularSine = 1e-6;
 constexpr double kMostTurning = 5;  // dalpha, that the path may turn from a knot to the next
 
 /// Planes of layers for a tool that is turned: those of the tool that is not, under the smallest

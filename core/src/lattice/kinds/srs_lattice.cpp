@@ -21,7 +21,6 @@ namespace swivel {
 
 namespace {
 
-constexpr double kSingularSine = 1e-6;
 constexpr double kSliver =
     1e-3;  // rad, what a range may have beyond whole turns without another image
 constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision

@@ -6,6 +6,8 @@
 
 namespace swivel {
 
+inline constexpr double kDegrees = 180 / kPi;  ///< degrees in a radian
+
 /// Returns the angle, rad, less its nearest whole number of turns: a value in [-pi, pi]. An odd
 /// multiple of pi rounds away from zero (pi gives -pi), as in the vector kernels, so that both
 /// agree bit for bit.

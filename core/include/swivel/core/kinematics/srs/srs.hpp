@@ -13,6 +13,8 @@ namespace swivel {
 /// from their singular poses. A set bit is a negative sign.
 enum BranchBit { kShoulderBit = 1, kWristBit = 2, kElbowBit = 4 };
 inline constexpr int kBranches = 8;
+/// An S-R-S arm counts as singular if the sine of its shoulder or wrist angle is smaller than this.
+inline constexpr double kSingularSine = 1e-6;
 
 /// Three consecutive axes through one point, neighbours perpendicular, seen as z-y-z: with B = [x y
 /// z], z the first axis and y the second, and `shift` the turn about y that brings the first axis
