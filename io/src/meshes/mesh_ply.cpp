@@ -18,7 +18,7 @@ struct Property {
   Type type{};
   std::optional<Type> count;  ///< of a list
 };
-struct Element {
+struct PlyElement {
   std::string_view name;
   std::uint64_t count = 0;
   std::vector<Property> properties;
@@ -35,7 +35,7 @@ class PlyReader {
 
   Surface read() {
     read_header();
-    for (const Element& element : elements_) {
+    for (const PlyElement& element : elements_) {
       // Every element of a binary file takes bytes, and of a text file a word, unless it has no
       // property.
       if (element.count > (element.properties.empty() ? 0 : file_.text.size()))
@@ -83,7 +83,7 @@ class PlyReader {
                "ascii, binary_little_endian, binary_big_endian");
         (void)words_.rest_of_line();
       } else if (word == "element") {
-        Element element{words_.next(), 0, {}};
+        PlyElement element{words_.next(), 0, {}};
         const std::string_view count = words_.next();
         const auto value = to_number<std::uint64_t>(count);
         if (!value) fail(quoted(count) + " is no number of elements", "a whole number");
@@ -150,7 +150,7 @@ class PlyReader {
     return static_cast<std::int64_t>(number);
   }
 
-  void read_element(const Element& element) {
+  void read_element(const PlyElement& element) {
     const bool vertex = element.name == "vertex", face = element.name == "face";
     std::array<double, 3> x{};
     int found = 0;
@@ -188,7 +188,7 @@ class PlyReader {
   Words words_;
   Surface surface_;
   std::string_view data_;
-  std::vector<Element> elements_;
+  std::vector<PlyElement> elements_;
   std::vector<std::int64_t> corners_;
   bool binary_ = false, big_ = false, text_ = true;
 };
