@@ -33,7 +33,7 @@ from moving_bodies import Cell
 from problem_files import load_columns, load_problem, load_waypoints, rotation
 
 BAND = 0.05e-3  # m: a clearance may be missed by so much
-# M, rad: how far motions may round corners, where path.smooth is not given.
+# How far motions may round corners, m and rad, where path.smooth is not given.
 ALLOWED_POSITION, ALLOWED_ANGLE = 0.1e-3, 1e-3
 
 

@@ -837,7 +837,7 @@ class ForeignText(WithFolder):
         controls = "\u202e\u2066\u200f\x1b[31m\x07\x9b"
         robot = self.folder / "robot.urdf"
         text = (DATA / "robots/iiwa14.urdf").read_text()
-        # Which XML cannot hold.
+        # Characters that XML cannot hold are left out.
         xml = "".join(f"&#{ord(c)};" for c in controls if c not in "\x1b\x07")
         robot.write_text(re.sub(r'<robot name="[^"]*"', f'<robot name="arm{xml}"', text))
         problem = self.folder / f"gnp{controls}.yaml"
@@ -869,7 +869,7 @@ class ForeignText(WithFolder):
 
 
 class Stopping(WithFolder):
-    # minutes.
+    # A plan of minutes.
     LONG = (
         PROBLEMS / "experiment_b.yaml", "--planner", "eager_dp", "--ds", "0.0005", "--dphi", "0.005"
     )

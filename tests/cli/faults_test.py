@@ -295,7 +295,7 @@ class Faults(WithFiles):
         self.assertEqual(self.plan_files(NO_PATH, out=link).returncode, 1)
         self.assertFalse(target.exists())  # what it pointed to was stale
         self.assertTrue(link.is_symlink())
-        # ... and comes back through the link.
+        # The answer comes back through the link.
         self.assertEqual(self.plan_files(out=link).returncode, 0)
         self.assertTrue(link.is_symlink())
         self.assertEqual(len(target.read_text().splitlines()), 27)

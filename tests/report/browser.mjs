@@ -41,8 +41,10 @@ export async function withBrowser({ packages, shots }, test) {
       '--disable-sync',
     ],
   });
-  /** A page that must stay without errors and without network: `close` asserts it. */
-  // Before: a script that runs first in the page.
+  /**
+   * Opens a page that must stay without errors and without network: `close` asserts it. `before`: a
+   * script that runs first in the page.
+   */
   const open = async (html, { before, hash = '', ...options }) => {
     const page = await browser.newPage(options),
       troubles = [];
