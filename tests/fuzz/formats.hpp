@@ -17,18 +17,19 @@ struct Reader {
   std::function<void(const std::string&)> read;
 };
 
-/// A problem about the iiwa with everything in it, for the folder "problems" of prepared().
+/// A problem about the iiwa with everything in it, for the folder "problems" that prepare()
+/// makes.
 extern const char* const kProblem;
 extern const std::vector<std::string> kXmlWords, kYamlWords;
 
-/// A file of the data folder.
+/// Returns the contents of a file of the data folder.
 std::string data(const std::string& name);
 
 /// Puts into an empty folder what problems/*.yaml name: links to the data, problems/box.stl,
 /// problems/good.yaml.
 void prepare(const TempFolder& folder);
 
-/// Of every format. Files are written into `folder`, a prepared one.
+/// Returns a reader of every format. Files are written into `folder`, which prepare() has filled.
 std::vector<Reader> readers(const TempFolder& folder);
 
 }  // namespace swivel::test

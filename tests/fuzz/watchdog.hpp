@@ -15,7 +15,7 @@ struct Verdict {
 };
 [[nodiscard]] Verdict judge(const std::function<void()>& read);
 
-/// What one input may take.
+/// How much time and memory one input may take.
 struct Allowance {
   int seconds = 5;               ///< of the processor
   std::size_t megabytes = 1024;  ///< resident, of the whole process
@@ -30,8 +30,8 @@ struct Tally {
   std::vector<Finding> findings;
 };
 
-/// Calls read(k) for k in [0, count) in a child process, and judges it. What is wrong, a crash, a
-/// hang and too much memory are findings; the next child goes on after them.
+/// Calls read(k) for k in [0, count) in a child process, and judges it. Wrong answers, crashes,
+/// hangs and too much memory are findings; after a child that ended, the next one goes on.
 [[nodiscard]] Tally watch(int count, const Allowance& allowance,
                           const std::function<void(int)>& read);
 

@@ -18,7 +18,7 @@ namespace swivel::io::test {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes away with the test.
+/// A folder that is removed when the test ends.
 class TempFolder {
  public:
   TempFolder() {
@@ -51,8 +51,8 @@ class TempFolder {
   fs::path path_;
 };
 
-/// The message of the InputError that `call` throws; a test failure and "" when it throws nothing
-/// or something else.
+/// Returns the message of the InputError that `call` throws; a test failure and "" when it throws
+/// nothing or something else.
 template <class Call>
 std::string input_error(const Call& call) {
   try {
@@ -67,7 +67,7 @@ std::string input_error(const Call& call) {
   return "";
 }
 
-/// One line that says what is allowed, and holds every needle.
+/// Expects the message to be one line that says what is allowed and holds every needle.
 inline void expect_message(const std::string& message, const std::vector<std::string>& needles) {
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   EXPECT_NE(message.find("allowed"), std::string::npos) << message;
@@ -75,7 +75,7 @@ inline void expect_message(const std::string& message, const std::vector<std::st
     EXPECT_NE(message.find(needle), std::string::npos) << "'" << needle << "' not in: " << message;
 }
 
-/// A box as ASCII STL, outward triangles, corners at the origin and (x, y, z).
+/// Returns a box as ASCII STL: outward triangles, corners at the origin and (x, y, z).
 inline std::string box_stl(double x = 1, double y = 2, double z = 3) {
   // Faces of the corners numbered by bits x y z.
   constexpr std::array<std::array<int, 3>, 12> kTriangles{{{0, 2, 3},
@@ -103,7 +103,7 @@ inline std::string box_stl(double x = 1, double y = 2, double z = 3) {
   return text.str();
 }
 
-/// Six times the signed volume; positive when the triangles turn outwards.
+/// Returns the signed volume of the mesh, positive where its triangles turn outwards.
 inline double volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
@@ -113,7 +113,8 @@ inline double volume(const TriangleMesh& mesh) {
   return sum / 6;
 }
 
-/// base_link, link_1 ... link_7 on joint_1 ... joint_7, and a finger on a prismatic joint.
+/// Returns the URDF of an arm with base_link, link_1 ... link_7 on joint_1 ... joint_7, and a
+/// finger on a prismatic joint.
 inline std::string arm_urdf() {
   std::string text = "<robot name='arm'>\n<link name='base_link'/>\n";
   for (int k = 1; k <= 7; ++k) {

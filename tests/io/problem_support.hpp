@@ -39,7 +39,7 @@ class ProblemFolder {
   TempFolder folder_;
 };
 
-/// The good robot section with more keys.
+/// Returns the good robot section with more keys.
 inline std::string robot_with(const std::string& more) {
   return "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7, " + more + "}";
 }
