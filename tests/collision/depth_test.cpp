@@ -49,8 +49,8 @@ Body random_body(int kind, Random& random, double range) {
   return {as_mesh(box_mesh(size, 3), "box.stl"), pose};
 }
 
-/// How deep beneath the surface a point of the base frame lies, less than 0 outside; by its
-/// definition. Of a mesh: a box's.
+/// Returns by the definition how deep beneath the surface a point of the base frame lies, less than
+/// 0 outside. A mesh counts as its box.
 double beneath(const Body& body, const Vector3d& point) {
   const Vector3d p = body.pose.inverse() * point;
   const double r = std::hypot(p.x(), p.y());
@@ -73,7 +73,7 @@ double beneath(const Body& body, const Vector3d& point) {
       {std::abs(p.x()) - half.x(), std::abs(p.y()) - half.y(), std::abs(p.z()) - half.z()});
 }
 
-/// How far the body reaches along a direction of the base frame.
+/// Returns how far the body reaches along a direction of the base frame.
 double reach(const Body& body, const Vector3d& way) {
   const Vector3d to = body.pose.linear().transpose() * way;
   const double at = way.dot(body.pose.translation()), aside = std::hypot(to.x(), to.y());

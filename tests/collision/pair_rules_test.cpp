@@ -95,7 +95,7 @@ TEST(PairRules, WithoutSrdfAlwaysNearPairsDoNotCount) {
   EXPECT_TRUE(pairs_of(robot, problem_for(robot)).count({"l0", "l7"}));
 }
 
-/// By the limits' own formulas, from the medians.
+/// Expects the required clearances that the limits' formulas give from the medians.
 void expect_keeps(const World& world, const Limits& limits) {
   for (const RobotPair& p : world.robot_pairs_with_medians()) {
     if (p.dropped) continue;

@@ -186,7 +186,7 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
             on_limit.push_back(slot);
           }
         }
-        // Of a pair of arcs both have the same nodes, which continue each other's like.
+        // Both arcs of a pair have the same nodes, flipped, and these continue corresponding nodes.
         for (int slot = 0, half = lattice.slots(i) / 2;
              motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
           const int other = slot < half ? slot + half : slot - half;

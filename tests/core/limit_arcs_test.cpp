@@ -65,7 +65,8 @@ bool holds(const std::vector<AngleArc>& arcs, double phi, double margin = 0) {
   });
 }
 
-/// By the definition: the images of an IK solution's winding exist, one joint after the other.
+/// Says by the definition whether the images of an IK solution's winding exist, one joint after the
+/// other.
 /// `near`: some joint is so near to an end of its range, or some angle so near to singular, that
 /// rounding decides.
 bool within(const Small& small, const std::array<ElbowCircle, 2>& circles,

@@ -144,8 +144,8 @@ TEST(Linkage, EveryLinkStandsWherePlainKinematicsHasIt) {
   EXPECT_GE(behind_followers, at_least(500));
 }
 
-/// Of one body and of two: no point moves further than joints times radii say, and only joints
-/// between two groups move one against the other.
+/// Radii bound the motion of one body and of two: no point moves further than joints times radii
+/// say, and only joints between two groups move one against the other.
 TEST(Linkage, RadiiBoundEveryPointThatMoves) {
   const std::uint64_t base = seed("Linkage.Radii");
   int points = 0, pairs = 0, still = 0;

@@ -202,7 +202,7 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
       const ArcLattice lattice(chain, lock_method(chain), path, problem);
       std::vector<int> slots;
       const double cost = cheapest(lattice, slots);
-      // As fine as the lattice's nodes are where the roll moves most, ends included.
+      // The grid is as fine as the lattice's nodes are where the roll moves most, ends included.
       const int count = free ? 65 : 2 + static_cast<int>((roll.upper - roll.lower) / 0.1);
       std::vector<Roll> allowed(static_cast<std::size_t>(path.size()), roll);
       for (int i = 0; windowed && i < path.size(); ++i) {

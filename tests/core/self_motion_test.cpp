@@ -41,7 +41,7 @@ bool solve(const Chain& chain, const Pose& tool, Config& q) {
   return false;
 }
 
-/// Of q from the arc, by chords between four points of each cubic.
+/// Returns the distance of q from the arc, by chords between four points of each cubic.
 double distance_to(const SelfMotionArc& arc, const Config& q) {
   double least = 1e9;
   const auto between = [&](const Config& from, const Config& to) {
@@ -232,7 +232,7 @@ TEST(SelfMotion, MissesNoArcNearAlignment) {
     EXPECT_EQ(coverage.poses, trials(4));
     EXPECT_GE(coverage.seeds, at_least(10 * coverage.poses));
     EXPECT_LE(coverage.singular, coverage.seeds / 20) << table.name;
-    // Of an arm with three parallel axes a closed curve along which the lock moves by less than
+    // Arms with three parallel axes: a closed curve along which the lock moves by less than
     // 1e-4 may be hidden between lock values: one of 60 such poses.
     EXPECT_LE(coverage.missed, table.joints.size() == 6 ? coverage.seeds / 100 : 0) << table.name;
   }
@@ -287,7 +287,7 @@ TEST(SelfMotion, MissesNoArcAlongPaths) {
   }
 }
 
-/// What is allowed lies where a joint has moved by so much, to either side.
+/// Postures are allowed where a joint has moved by so much, to either side.
 TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
   const std::uint64_t base = seed("PostureBeside");
   Random random(base);

@@ -16,7 +16,7 @@ TEST(Fuzz, EveryReaderRefusesWhatItCannotRead) {
   fuzz("Fuzz", readers(folder), trials(2000), false);
 }
 
-/// What the watchdog is for.
+/// The watchdog finds each kind of fault that it is there for.
 TEST(Fuzz, TheWatchdogBites) {
   const Tally tally = watch(9, {3, 250}, [](int k) {
     switch (k) {

@@ -93,7 +93,7 @@ std::size_t place(const std::string& text, Random& random) {
   return static_cast<std::size_t>(random.below(static_cast<int>(text.size()) + 1));
 }
 
-/// Of mostly few bytes.
+/// Draws a length, mostly of few bytes.
 std::size_t length(std::size_t most, Random& random) {
   const int bits = random.below(random.coin(0.2) ? 20 : 6);
   return std::min(most, static_cast<std::size_t>(random.below((1 << bits) + 1)));

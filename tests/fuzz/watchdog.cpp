@@ -19,7 +19,7 @@ namespace swivel::test {
 
 namespace {
 
-/// In memory that parent and child share.
+/// What a child tells its parent, in memory that both share.
 struct Progress {
   int input, accepted, refused;
   char what[500];
@@ -29,8 +29,8 @@ void note(Progress& progress, const std::string& what) {
   std::snprintf(progress.what, sizeof progress.what, "%s", what.c_str());
 }
 
-/// Of the processor, since the machine may do other things; what waits for something else may wait
-/// twenty times as long.
+/// Ends the process after so many seconds of processor time, since the machine may do other things;
+/// a process that waits for something else may wait twenty times as long.
 void kill_after(int seconds) {
   const itimerval timer{{0, 0}, {seconds, 0}};
   setitimer(ITIMER_PROF, &timer, nullptr);

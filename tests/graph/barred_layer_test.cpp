@@ -27,7 +27,7 @@ class Table final : public Validity {
     for (std::size_t k = 0; k < questions.size(); ++k)
       answers[k].valid = !fails(questions[k].layer, questions[k].slot);
   }
-  /// As other threads may answer: from the questions as they were, before `work` or after.
+  /// Answers as other threads may: from the questions as they were, before `work` or after it.
   void nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
                         const std::function<void()>& work) override {
     const std::vector<NodeQuestion> asked(questions.begin(), questions.end());

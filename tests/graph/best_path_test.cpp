@@ -35,7 +35,8 @@ struct PlainLattice {
       }
     }
   }
-  /// Of node a of a layer to node b of the next; kUnreachable where no edge joins them.
+  /// Returns the cost from node a of a layer to node b of the next; kUnreachable where no edge
+  /// joins them.
   [[nodiscard]] double cost(int layer, std::size_t a, std::size_t b) const {
     const Lattice::Node &from = nodes[layer][a], &to = nodes[layer + 1][b];
     const Config delta = lattice_.delta(from.q, to.q);
@@ -44,9 +45,9 @@ struct PlainLattice {
                         verdicts_.edge(layer, from.slot, to.slot) != Verdict::kRemoved;
     return joined ? lattice_.edge_cost(delta) : kUnreachable;
   }
-  /// From the node of layer 0 that the answer begins at always to the first node that keeps its
-  /// cost. `ties` counts the others that would, `chosen` the paths whose first node is not the
-  /// first of layer 0 that has the least cost.
+  /// Returns the answer's path: it begins at the node of layer 0 that the order names and goes on
+  /// to the first node that keeps the cost. `ties` counts the others that would, `chosen` the paths
+  /// whose first node is not the first of layer 0 that has the least cost.
   [[nodiscard]] SlotPath descend(int& ties, int& chosen) const {
     SlotPath path;
     const int start =

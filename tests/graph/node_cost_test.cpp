@@ -51,7 +51,8 @@ Values plain_values(const Lattice& lattice, const Verdicts& verdicts, const Valu
   return values;
 }
 
-/// From the node that the answer begins at, the smallest slots among the best, by the values.
+/// Returns the path from the node that the answer begins at, by the smallest slots among those with
+/// the best values.
 SlotPath plain_path(const Lattice& lattice, const Verdicts& verdicts, const Values& values,
                     const Values& costs) {
   const int start =

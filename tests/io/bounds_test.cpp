@@ -354,7 +354,8 @@ TEST(Names, AreUtf8WithoutControlCharacters) {
     EXPECT_TRUE(is_valid_name(std::string("a") + joiner + "b"));  // of Persian, of emoji
 }
 
-/// For a double-quoted YAML scalar, byte by byte where YAML would refuse the byte itself.
+/// Writes a name as a double-quoted YAML scalar, with an escape for each byte that YAML would
+/// refuse.
 std::string quoted(const std::string& name) {
   std::string text = "\"";
   for (const char c : name) {

@@ -134,7 +134,7 @@ struct Mutation {
   std::optional<std::string> with_default = {};
 };
 
-/// What stands for an attribute that is not there, https://wiki.ros.org/urdf/XML.
+/// Returns the default of an attribute that is not there, by https://wiki.ros.org/urdf/XML.
 std::optional<std::string> default_of(const std::string& element, const std::string& attribute) {
   static const std::map<std::string, std::string> kDefaults{
       {"origin xyz", "0 0 0"},        {"origin rpy", "0 0 0"}, {"limit lower", "0"},

@@ -49,7 +49,7 @@ PlanResult solved() {
   return result;
 }
 
-/// Of the objects that the schema of a value allows, the first.
+/// Returns the properties of the first object that the schema of a value allows.
 Json properties_of(const Json& schema) {
   if (schema.contains("anyOf")) return properties_of(schema["anyOf"][0]);
   return schema["type"] == "array" ? properties_of(schema["items"]) : schema["properties"];

@@ -56,7 +56,7 @@ struct Place {
     changed[object][key] = value;
     return changed;
   }
-  /// As messages name it: "scene[0].box".
+  /// Returns the place as messages name it: "scene[0].box".
   [[nodiscard]] std::string name() const {
     std::string text;
     for (Json::json_pointer at = object / key; !at.empty(); at.pop_back()) {

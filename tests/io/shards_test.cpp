@@ -21,7 +21,7 @@ std::string some_text(Random& random) {
   return text;
 }
 
-/// Of any size and sign.
+/// Draws a number of any size and sign.
 double some_number(Random& random) {
   return random.coin(0.2) ? random.below(5)
                           : random.uniform(-1, 1) * std::pow(10, random.uniform(-12, 6));

@@ -61,7 +61,7 @@ class DecimalComma {
   }
   DecimalComma(const DecimalComma&) = delete;
   DecimalComma& operator=(const DecimalComma&) = delete;
-  /// Whether C's is: C++'s always is.
+  /// Says whether the locale of C is set; that of C++ always is.
   [[nodiscard]] bool is_set() const { return is_set_; }
 
  private:

@@ -54,8 +54,8 @@ std::vector<Cause> all_causes(const Problem& problem, const World& world, const 
   return causes;
 }
 
-/// Of problems drawn blindly: what the diagnosis says to be enough is enough, and where it says
-/// that no single thing is, none is.
+/// Random problems: what the diagnosis says to be enough is enough, and where it says that no
+/// single thing is enough, none is.
 TEST(Cause, WithoutItPathsGoOn) {
   const std::uint64_t base = seed("Cause");
   const auto robots = all_robots();

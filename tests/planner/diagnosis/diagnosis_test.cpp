@@ -28,7 +28,8 @@ struct Laid {
         robot(problem),
         path(waypoints_in_base(problem), problem.resolution, problem.source),
         lattice(robot.arm().chain, robot.srs(), path, problem) {}
-  /// As if paths ended in a layer that one reaches; -1: in none.
+  /// Diagnoses as if all paths ended in layer `deepest`, which one reaches; -1: as if no path
+  /// reached any.
   Diagnosis diagnose_from(int deepest) const {
     Diagnosis diagnosis;
     const EdgeRule rule = robot.world().edge_rule(robot.radii());

@@ -446,7 +446,7 @@ TEST(InfeasibilityCertificate, OfAnotherLayoutIsBadInput) {
   other = problem;
   other.limits.edges = EdgeMode::kNodes;
   EXPECT_THROW(static_cast<void>(verify_certificate(*robot, other, certificate)), InputError);
-  // Of the same layout, but with a path: it proves nothing there.
+  // The certificate proves nothing of a problem of the same layout that has a path.
   other = problem;
   other.start.reset();
   EXPECT_FALSE(verify_certificate(*robot, other, certificate).passed);

@@ -81,7 +81,7 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
                    seconds += result.from_second_seed;
                    metrics.insert(problem.cost.metric);
                    sum += result.cost / result.cost_before;
-                   // Again the same.
+                   // A second refinement gives the same bits.
                    const Refined again = refine(robot, problem, found.trajectory);
                    for (std::size_t k = 0; k < result.rows.size(); ++k)
                      EXPECT_EQ(again.rows[k].q, result.rows[k].q);
@@ -397,7 +397,7 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
     options.evidence.postures = true;
-    // As large a ball as leaves a path, so that the path must pass near it.
+    // The ball is as large as leaves a path, so that the path must pass near it.
     double solvable = 0.02, blocked = 0.2;
     const auto planned = [&](double radius) {
       problem.scene[0].shape = Sphere{radius};

@@ -257,7 +257,7 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
   }
 }
 
-/// What the roll costs, by its definition.
+/// Computes the cost of the roll by its definition.
 double plain_roll_cost(const Problem& problem, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

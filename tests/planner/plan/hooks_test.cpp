@@ -266,8 +266,8 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_LT(lazy_costs, eager_costs);
 }
 
-/// How far the tool comes, and how, hangs neither on what one planner planned before nor on
-/// threads: remembered failures may end every path before any cost is asked.
+/// How far the tool comes, and by which path, depends neither on what a planner planned before nor
+/// on threads, although remembered failures may end every path before any cost is asked.
 TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
   const std::uint64_t base = seed("Hooks.Partial");
   TestRobot panda = data_robot("panda_like");
@@ -409,7 +409,7 @@ Problem experiment(const char* name, double ds, double dphi) {
   return problem;
 }
 
-/// What a function says of each state.
+/// A check that asks a function about each state.
 template <class Of>
 class CheckOf : public StateCheck {
  public:

@@ -82,8 +82,8 @@ Problem roll_problem(const TestRobot& robot, Random& random) {
   return problem;
 }
 
-/// Of a path whose roll and arm angle change: poses, arm angles and labels of all rows, by forward
-/// kinematics.
+/// Checks poses, arm angles and labels of all rows by forward kinematics, on a path whose roll and
+/// arm angle change.
 void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem,
                          const std::vector<TrajectoryRow>& rows, const std::string& what) {
   const Chain& chain = robot.arm().chain;

@@ -188,7 +188,8 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
     const TrajectoryRow &from = whole.trajectory[cut], &to = whole.trajectory[cut + 1];
     Problem rest = problem;
     rest.start_at = from.s + t * (to.s - from.s);
-    // Where the joints stopped on the way, beside the path; or a node of the path there.
+    // The start is where the joints stopped on the way, beside the path, or a node of the path
+    // there.
     Config q = from.q + t * (to.q - from.q);
     const bool on_path = random.coin();
     if (on_path) {

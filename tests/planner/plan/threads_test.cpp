@@ -99,8 +99,8 @@ TEST(Threads, KeptClearancesCountTheSame) {
   EXPECT_GT(repaired, 2);
 }
 
-/// Of lattices so large that neighbours of failed nodes are asked about while those before them are
-/// dealt with.
+/// Plans on lattices so large that neighbours of failed nodes are asked about while those before
+/// them are dealt with.
 TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
   Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.ds = 0.003;

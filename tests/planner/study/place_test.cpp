@@ -218,7 +218,7 @@ TEST(Place, NeighboursAreWhatTheyAreAlone) {
   EXPECT_LT(2 * asked, asked_alone);
 }
 
-/// Where things are in the world, whichever of them is moved.
+/// Things are where they should be in the world, whichever of them is moved.
 TEST(Place, MovesWhatItSaysAndNothingElse) {
   const std::uint64_t base = seed("Place.Moves");
   const auto robots = all_robots();
@@ -233,7 +233,7 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
     Pose turn = Pose::Identity();
     turn.linear() = from_rpy({offset[3], offset[4], offset[5]}).toRotationMatrix();
     const Vector3d shift(offset[0], offset[1], offset[2]);
-    // Of the world as it was.
+    // The pose of the base in the world as it was.
     Pose robot = Pose::Identity();
     if (thing.kind == Movable::Kind::kBase) {
       robot = turn;

@@ -63,7 +63,7 @@ struct Good {
   }
 };
 
-/// Of path_deviation or angle_deviation, over all moves of the rows.
+/// Returns the largest path_deviation or angle_deviation over all moves of the rows.
 template <class Deviation>
 double largest(const Good& good, const Deviation& deviation) {
   double most = 0;
@@ -589,7 +589,7 @@ std::optional<TrajectoryRow> row_between(const Good& good, double place) {
   return row;
 }
 
-/// Whether a move keeps all rules, with something to spare; by samples.
+/// Says by samples whether a move keeps all rules, with something to spare.
 bool keeps_rules(const Good& good, const World& world, World::Query& query, const TrajectoryRow& a,
                  double begin, const TrajectoryRow& b, double end) {
   const Limits& limits = good.problem.limits;
@@ -719,7 +719,7 @@ TEST(Check, AWaypointThatTurnsIsNotSkipped) {
     problem.limits.tool_angle_error = straight.limits.tool_angle_error = angle_error;
     const CheckResult result = check_trajectory(problem, rows);
     EXPECT_FALSE(result.passed);
-    // By more than the arm angle, which another path carries otherwise.
+    // It fails by more than the arm angle, which another path carries otherwise.
     EXPECT_TRUE(std::any_of(result.failures.begin(), result.failures.end(),
                             [](const std::string& line) {
                               return line.find("leaves the path") != std::string::npos &&

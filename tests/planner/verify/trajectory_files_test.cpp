@@ -67,7 +67,7 @@ std::string text_of(const Format& format, const Judged& judged) {
   return io::motion_text(motion, names, "base", name);
 }
 
-/// As `check` judges the file; refused is failed.
+/// Judges the file as `check` does; a refused file counts as failed.
 CheckResult judge_file(const Format& format, const Judged& judged, const TempFolder& folder,
                        const CheckOptions& options = {}) {
   CheckResult result;
@@ -360,7 +360,7 @@ TEST(RowsAtLayers, OfOtherRowsMakeMotions) {
     EXPECT_TRUE(check.passed) << ds << ": " << first_of(check);
     const MotionResult timed = time_trajectory(*planned.robot, other, rows, timing);
     ASSERT_TRUE(timed.motion) << ds << ": " << timed.failure->reason;
-    // And the rows of a motion, whose path is rounded.
+    // Layers are found in the rows of a motion as well, whose path is rounded.
     std::vector<TrajectoryRow> samples;
     for (const TimedRow& row : timed.motion->rows) samples.push_back({.q = row.row.q});
     const Problem rounded = with_motion_defaults(planned.problem);
