@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Experiment C of the paper: the door at random poses, by every method of Table I and by the
 // planners that the paper has not.
-//   experiment_c OUT.json [EPISODES]    default 100; all methods in turn on each episode
+//   experiment_c OUT.json [EPISODES]    default 100; every method on each episode
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

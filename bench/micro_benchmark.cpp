@@ -135,7 +135,7 @@ void add(const std::string& name, Body body) {
   benchmark::RegisterBenchmark(name.c_str(), body);
 }
 
-/// Calls body(item) with the pool's items in turn; one item of work each.
+/// Calls body(item) with one item of the pool after the other; counts one item of work each.
 template <class Pool, class Body>
 void cycle(benchmark::State& state, const Pool& pool, Body body) {
   std::size_t k = 0;

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Finds constructions that a reader who sees one comment alone cannot follow, in comments of the sources and in documents.
+"""Finds constructions that a reader who sees one comment alone cannot follow, in comments of the
+sources and in documents.
 
-sentences_test.py SOURCE      prints file:line, what was found, and what to write; exit code 1 where anything is
+sentences_test.py SOURCE      prints file:line, what was found, and what to write; exit code 1 where
+anything is
 """
 import pathlib
 import re
@@ -15,10 +17,19 @@ FORBIDDEN = [
     (r"\b(that|this|it) will do\b", "suffices"),
     (r"\bmade ready\b", "initialised, or prepared"),
     (r"\bsittings?\b", "session"),
-    (r"(?:^|[.:;] )The same\b(?! (?:\w+ ){0,3}(?:is|are|holds|was|were|has|have|does|do|serves|applies|goes)\b)", "what it does, as if nothing were read before"),
+    (
+        r"(?:^|[.:;] )The same\b(?! (?:\w+ ){0,3}"
+        r"(?:is|are|holds|was|were|has|have|does|do|serves|applies|goes)\b)",
+        "what it does, as if nothing were read before",
+    ),
 ]
 # Comments alone: documents speak of arms.
-IN_COMMENTS = [(r"^Of arms\b|\bare of arms\b|\bis of arms\b", "for, or of which arms, in a sentence with a subject")]
+IN_COMMENTS = [
+    (
+        r"^Of arms\b|\bare of arms\b|\bis of arms\b",
+        "for, or of which arms, in a sentence with a subject",
+    )
+]
 DOCUMENTS = ("README.md", "HACKING.md", "CONTRIBUTING.md", "docs/*.md", "docs/guide/*.md")
 SOURCES = (".hpp", ".cpp", ".inl", ".py", ".js", ".mjs", ".cmake", "CMakeLists.txt")
 
@@ -55,8 +66,12 @@ def paragraphs(text):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    files = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True).stdout.split()
-    documents = {str(path.relative_to(root)) for pattern in DOCUMENTS for path in root.glob(pattern)}
+    files = subprocess.run(
+        ["git", "ls-files"], cwd=root, capture_output=True, text=True
+    ).stdout.split()
+    documents = {
+        str(path.relative_to(root)) for pattern in DOCUMENTS for path in root.glob(pattern)
+    }
     faults = read = 0
     for name in files:
         path = root / name
@@ -65,14 +80,21 @@ def main():
         if name in documents:
             texts, rules = paragraphs(path.read_text()), FORBIDDEN
         elif name.endswith(SOURCES):
-            texts, rules = comments(path.read_text(), r"///?<?" if name.endswith((".hpp", ".cpp", ".inl", ".js", ".mjs")) else "#"), FORBIDDEN + IN_COMMENTS
+            texts, rules = (
+                comments(
+                    path.read_text(),
+                    r"///?<?" if name.endswith((".hpp", ".cpp", ".inl", ".js", ".mjs")) else "#",
+                ),
+                FORBIDDEN + IN_COMMENTS,
+            )
         else:
             continue
         for line, text in texts:
             read += 1
             for pattern, instead in rules:
                 for found in re.finditer(pattern, text):
-                    print(f"{name}:{line}: '{found[0].strip()}': say {instead}: {text[max(0, found.start() - 30):found.end() + 50]}")
+                    around = text[max(0, found.start() - 30) : found.end() + 50]
+                    print(f"{name}:{line}: '{found[0].strip()}': say {instead}: {around}")
                     faults += 1
     print(f"{read} comments and paragraphs, {faults} faults")
     if read < 1000:
