@@ -8,9 +8,8 @@
 
 namespace swivel::test {
 
-/// Returns the seed of a property test and prints it, so that a failure can be repeated:
-/// SWIVEL_TEST_SEED, or a constant. `./swivel test` draws it from the commit, so that each commit
-/// tries other inputs.
+/// Seed of a property test: SWIVEL_TEST_SEED or a fixed default, printed so that a failure can be
+/// repeated.
 inline std::uint64_t seed(const char* test) {
   const char* given = std::getenv("SWIVEL_TEST_SEED");
   const std::uint64_t value = given ? std::strtoull(given, nullptr, 10) : 20260701;
@@ -18,25 +17,18 @@ inline std::uint64_t seed(const char* test) {
   return value;
 }
 
-/// Returns the share of a test's full number of trials that is run: SWIVEL_TEST_SCALE, or three
-/// tenths. `.ci/more` runs them all.
-inline double scale() {
-  const char* given = std::getenv("SWIVEL_TEST_SCALE");
-  return given ? std::atof(given) : 0.3;
-}
-
-/// Returns how many of `full` trials are run, at least one; SWIVEL_TEST_TRIALS where that is set.
-inline int trials(int full) {
+/// How many trials: SWIVEL_TEST_TRIALS, or SWIVEL_TEST_SCALE (0.1: a tenth) times the usual number,
+/// at least one.
+inline int trials(int usual) {
   if (const char* given = std::getenv("SWIVEL_TEST_TRIALS")) return std::atoi(given);
-  return std::max(1, static_cast<int>(full * scale()));
+  const char* scale = std::getenv("SWIVEL_TEST_SCALE");
+  return scale ? std::max(1, static_cast<int>(usual * std::atof(scale))) : usual;
 }
 
-/// Returns how many trials must have met something for a test to have tried it: `full` with all
-/// trials, a quarter of their share with fewer, since seeds differ, and none with fewer than a
-/// quarter of the trials.
-inline int at_least(int full) {
-  if (std::getenv("SWIVEL_TEST_TRIALS") || scale() < 0.25) return 0;
-  return scale() < 1 ? static_cast<int>(full * scale() / 4) : full;
+/// How many of the trials must have met something, for a test to have tried it: nothing is asked of
+/// fewer trials than usual.
+inline int at_least(int usual) {
+  return std::getenv("SWIVEL_TEST_TRIALS") || std::getenv("SWIVEL_TEST_SCALE") ? 0 : usual;
 }
 
 /// std::mt19937_64 with uniform doubles that do not depend on the standard library's distributions.
