@@ -17,7 +17,8 @@ SOURCES = (*CPP, ".py", ".js", ".mjs", ".css", ".cmake", "CMakeLists.txt")
 LISTS = ("python/src/",)
 # Strings, characters and comments, of which braces do not count. Raw strings first.
 TOKENS = re.compile(
-    r'R"(?P<end>[^()\\ ]*)\(.*?\)(?P=end)"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/',
+    r'R"(?P<end>[^()\\ ]*)\(.*?\)(?P=end)"|"(?:\\.|[^"\\\n])*"|'
+    r"(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'|//[^\n]*|/\*.*?\*/",
     re.DOTALL,
 )
 
@@ -28,7 +29,8 @@ def without_strings(text):
 
 
 def functions(text):
-    """Outermost blocks that are bodies of functions: (line of its head, lines from head to closing brace)."""
+    """Yields the outermost blocks that are bodies of functions: the line of the head, and how many
+    lines there are from it to the closing brace."""
     text = without_strings(text)
     text = re.sub(
         r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*",
