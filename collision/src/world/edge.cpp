@@ -38,9 +38,10 @@ namespace {
 
 /// Searches the motion from q0 to q1 for a pair that is too near, by bisection down to `leaves`
 /// midpoints. below(q, threshold, suspected, segment) returns a pair that is too near at q, or
-/// none; if `stretch` is not null, what it asks of a pair is limited to how much nearer the pair
-/// can come on that stretch about q. No pair comes nearer by more than `bound`, m, on the whole
-/// motion, and no point's path bends by more than `bend`, m, on half of it. Throws Stopped.
+/// none; if `segment` is not null, what it asks of a pair is limited to how much nearer the pair
+/// can come on that segment about q. No pair comes nearer by more than `bound`, m, on the whole
+/// motion, and no point's path leaves its tangent by more than `tangent_deviation`, m, on half of
+/// it. Throws Stopped.
 template <class Below>
 std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves,
                                double bound, double tangent_deviation, const Budget& budget,
@@ -105,8 +106,8 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
                        const std::optional<BodyPair>& suspected, const MotionSegment* segment) {
     const auto pair = segment ? query.find_violating_pair_over_motion(*segment, q, threshold)
                               : query.find_violating_pair_incremental(q, threshold, suspected);
-    // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
-    // slack.
+    // The test at ClearanceRule::kMotion only decides whether to bisect further; it proves nothing
+    // about the slack.
     if (slack && !pair && threshold.rule == ClearanceRule::kMidpoint)
       *slack = std::min(*slack, query.slack(threshold));
     return pair;

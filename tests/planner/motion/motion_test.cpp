@@ -81,7 +81,7 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
                    seconds += result.from_second_seed;
                    metrics.insert(problem.cost.metric);
                    sum += result.cost / result.cost_before;
-                   // A second refinement gives the same bits.
+                   // A second refinement gives the same joints, bit for bit.
                    const Refined again = refine(robot, problem, found.trajectory);
                    for (std::size_t k = 0; k < result.rows.size(); ++k)
                      EXPECT_EQ(again.rows[k].q, result.rows[k].q);

@@ -199,8 +199,8 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
   EXPECT_GE(replanned, at_least(2));
 }
 
-/// Six joints, and the turn of the tool about its own axis: all planners find the same, the check
-/// passes it, and the tool stands as the waypoints have it but for the roll.
+/// On arms of six joints whose tool may turn about its own axis, all planners return the same path,
+/// check_trajectory() passes it, and the tool has the waypoints' poses apart from its roll.
 TEST(Arms, SixJointsAndTheRollOfTheTool) {
   for (const char* const name : {"kr6_weld_pipe", "ur5e_deburr_edge"}) {
     Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));

@@ -70,8 +70,8 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
   EXPECT_GE(same_cost, at_least(count / 4));
 }
 
-/// Branches that are each other's mirror image cost the same but for rounding: which one is taken
-/// is no matter of rounding.
+/// Two branches that mirror each other have equal costs up to rounding. The order of answers, not
+/// rounding, decides between them.
 TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
   const std::uint64_t base = seed("Order.Mirrored");
   int solved = 0, rivals = 0, dearer = 0;

@@ -31,8 +31,8 @@ inline constexpr double kLimitTolerance = 1e-9;
 ///
 /// A slot is the number of a node within its layer, in the order that settles ties; a slot may
 /// stand for no node. Configurations are in rad, by joint; lengths are in m. A lattice is immutable
-/// once made, except by take_clearances(), so that threads may share it. A node has the same bits
-/// however it is asked for.
+/// once made, except by take_clearances(), so that threads may share it. Every function that
+/// returns the joints of a node returns the same values, bit for bit.
 class Lattice : public BodyPoseClasses, public LatticeDescription {
  public:
   [[nodiscard]] const Chain& chain() const { return *chain_; }

@@ -19,8 +19,8 @@ struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
   FailureId suspected = kNoFailure;
-  /// True: it is only asked whether the node fails by `suspected`, or by the scene as far as that
-  /// is soon seen. An answer of valid then says nothing.
+  /// True: the answer only has to find whether the node fails by `suspected`, or by a collision
+  /// with the scene that is cheap to find. The answer "valid" then proves nothing.
   bool only_scene = false;
 };
 /// A question whether an edge is valid.

@@ -210,8 +210,9 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int elbow_side_of(int solution) const {
     return solution / windings_ & kElbowBit ? 1 : 0;
   }
-  /// solve() in two steps, with the same bits: lay_out() makes room for the run, and solve_part()
-  /// computes its entries begin ... end - 1 for the IK solutions of one elbow side.
+  /// Together these two give the result of solve(), bit for bit: lay_out() makes room for the run,
+  /// and solve_part() computes its entries begin ... end - 1 for the IK solutions of one elbow
+  /// side.
   void lay_out(int layer, int first, int count, LayerNodes& out) const;
   void solve_part(int side, int begin, int end, LayerNodes& out) const;
   /// Returns false if no node of the layer exists, because its pose is out of reach or joint 4
