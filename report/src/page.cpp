@@ -269,7 +269,9 @@ struct PathEnd {
   const Lattice& lattice;
   const std::vector<int>& path;  ///< slots of the path to the furthest layer, by layer
   const Json& diagnosis;
-  bool turned;  ///< the tool may stand turned
+  /// Rank of the roll at which the map is drawn, that of the path's last node; nullopt if the tool
+  /// may not stand turned.
+  std::optional<int> rank;
 
   /// Returns the first layer that no path reaches.
   [[nodiscard]] int layer() const { return static_cast<int>(map.path.size()); }
@@ -284,15 +286,20 @@ struct PathEnd {
   [[nodiscard]] std::string reason() const { return diagnosis["reason"]; }
 };
 
+/// Returns the rank of the roll of the path's last node, or 0 if the path is empty; nullopt if the
+/// tool may not stand turned.
+std::optional<int> rank_at_end(const Lattice& lattice, const std::vector<int>& path) {
+  if (!may_turn(lattice)) return std::nullopt;
+  if (path.empty()) return 0;
+  return lattice.grid_place(static_cast<int>(path.size()) - 1, path.back()).rank;
+}
+
 /// Returns true if the map draws the node in its cell: at the roll of the path's last node if the
 /// tool may stand turned, else the node that the cell shows.
 bool is_drawn(const PathEnd& end, const Lattice::Node& node, int cell) {
   const LatticeMap& map = end.map;
   const int layer = end.layer();
-  if (end.turned) {
-    const int rank = end.path.empty() ? 0 : end.lattice.grid_place(layer - 1, end.path.back()).rank;
-    return end.lattice.grid_place(layer, node.slot).rank == rank;
-  }
+  if (end.rank) return end.lattice.grid_place(layer, node.slot).rank == *end.rank;
   const std::size_t cells =
       static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
   return map.grid() ||
@@ -386,7 +393,7 @@ Obstruction obstruction(const PathEnd& end, const LatticeMap::Node& node, const 
 /// solved.
 Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
               const std::vector<int>& path, const std::vector<Row>& rows, const Json& diagnosis) {
-  const PathEnd end{map, lattice, path, diagnosis, may_turn(lattice)};
+  const PathEnd end{map, lattice, path, diagnosis, rank_at_end(lattice, path)};
   const int layer = end.layer();
   if (layer >= map.layers) return nullptr;
   const auto past = node_past_end(end);
@@ -405,7 +412,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
                {"pair", std::move(by.pair)},
                {"line", std::move(by.line)},
                {"what", std::move(by.what)}};
-  if (end.turned) json["roll"] = lattice.grid_place(layer, past->slot).roll;
+  if (end.rank) json["roll"] = lattice.grid_place(layer, past->slot).roll;
   return json;
 }
 
