@@ -11,6 +11,7 @@
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "swivel/core/answer/answer_text.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -119,7 +120,7 @@ bool within_limits(const Chain& chain, const Config& q) {
 bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
   const auto as_radians = [&](const TrajectoryRow& row) { return within_limits(chain, row.q); };
   const auto as_degrees = [&](const TrajectoryRow& row) {
-    return within_limits(chain, row.q * (kPi / 180));
+    return within_limits(chain, row.q / kDegrees);
   };
   return !std::all_of(rows.begin(), rows.end(), as_radians) &&
          std::all_of(rows.begin(), rows.end(), as_degrees);
