@@ -48,11 +48,12 @@ std::string dae(const std::string& up, const std::string& unit, const std::strin
   return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset>)" +
-         unit + "<up_axis>" + up + R"(</up_axis></asset>
+         unit + "<up_axis>" + up +
+         R"(</up_axis></asset>
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 0 2</float_array>
-<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>
-<param name="Y" type="float"/>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>)"
+         R"(<param name="Y" type="float"/>
 <param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
