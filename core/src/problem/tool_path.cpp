@@ -13,15 +13,16 @@ namespace swivel {
 
 namespace {
 
-constexpr double kMergedShare =
-    0.5;  // of the tolerances, for what lies between the ends of segments that are made one
+/// Share of the tolerances for what lies between the ends of segments that are made one.
+constexpr double kMergedShare = 0.5;
 constexpr double kSame = 1e-9;  // m and rad: two poses nearer than that are one
-/// How far a waypoint may lie from the straight segment between its neighbours, m and rad, so that
-/// it is no corner. A row of a trajectory may be 1e-6 off the path (check.cpp): one that meets all
-/// waypoints then passes.
+/// How far a waypoint may lie from the straight segment between its neighbours, m and rad, and be
+/// no corner. A row of a trajectory may be 1e-6 off the path (check.cpp), so that a trajectory
+/// which meets all waypoints passes.
 constexpr PathSmoothing kCollinear{5e-7, 5e-7};
+constexpr double kOnLayer = 1e-6;  // m and rad: a place this near to a layer is that layer
 
-/// Axis times angle of the short arc from a to b, in a's frame.
+/// Returns axis times angle, rad, of the short arc from a to b, in a's frame.
 Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
   Quaterniond d = a.conjugate() * b;
   if (d.w() < 0) d.coeffs() = -d.coeffs();
@@ -30,13 +31,13 @@ Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
   return d.vec() * (2 * std::atan2(sine, d.w()) / sine);
 }
 
-/// Axis times angle of the turn from a to b, in a's frame: the short arc. A half turn of a tool
-/// that is free to turn about its z axis, about that axis, is taken right-handed: either way the z
-/// axis stands still. None of any other half turn.
+/// Returns axis times angle, rad, of the turn from a to b, in a's frame: the short arc. A tool that
+/// is free to turn about its z axis makes a half turn about that axis right-handed: either way the
+/// z axis stands still. Returns nothing for any other half turn.
 std::optional<Vector3d> turn_between(const Quaterniond& a, const Quaterniond& b,
                                      bool turns_freely) {
-  constexpr double kAboutZ =
-      1e-6;  // sine of the angle between the axis of the turn and the tool's z axis
+  // the largest sine of the angle between the axis of the turn and the tool's z axis
+  constexpr double kAboutZ = 1e-6;
   const Vector3d turn = short_arc(a, b);
   const double angle = turn.norm();
   if (angle <= kPi - kSame) return turn;
@@ -45,13 +46,13 @@ std::optional<Vector3d> turn_between(const Quaterniond& a, const Quaterniond& b,
 }
 
 /// Cuts 0 ... n - 1 into runs as long as they may be, one after the other: `fits(first, count)`
-/// says whether `count` from `first` on may be one run. Calls `end(first, count)` for each run;
-/// what is left over begins the next one. O(n log n) questions.
+/// says whether `count` from `first` on may be one run. Calls `end(first, count)` for each run,
+/// which returns where the next one begins. Asks O(n log n) questions.
 template <class Fits, class End>
 void cut_into_runs(std::size_t n, const Fits& fits, const End& end) {
   for (std::size_t first = 0; first < n;) {
     const std::size_t all = n - first;
-    std::size_t good = 1, bad = all + 1;  // so many go, and do not
+    std::size_t good = 1, bad = all + 1;  // the most that fit, and the fewest that do not
     while (bad - good > 1) {
       const std::size_t count = bad > all ? std::min(2 * good, all) : (good + bad) / 2;
       (fits(first, count) ? good : bad) = count;
@@ -60,9 +61,10 @@ void cut_into_runs(std::size_t n, const Fits& fits, const End& end) {
   }
 }
 
-/// Whether the poses between the ends of some are within the tolerances of the straight segment
-/// that joins the ends, each where its travel says. `travel` and `position`, `orientation` of pose
-/// k; `turn`: from the first to the last, in the first one's frame.
+/// Returns true if the poses between pose `first` and pose `last` are within tolerances of the
+/// straight segment that joins these two, each where its travel says. `travel`, `position` and
+/// `orientation` return those of pose k; `turn` is the turn from the first to the last, rad, in the
+/// first one's frame.
 template <class Travel, class Position, class Orientation>
 bool straight_between(std::size_t first, std::size_t last, const Travel& travel,
                       const Position& position, const Orientation& orientation,
@@ -82,60 +84,71 @@ bool straight_between(std::size_t first, std::size_t last, const Travel& travel,
   return true;
 }
 
-/// Ends linear in between.
+/// Returns the range whose ends are linear between those of a (t = 0) and b (t = 1).
 Roll between(const Roll& a, const Roll& b, double t) {
   const auto linear = [t](double x, double y) {
-    return x == y ? x : x + t * (y - x);
-  };  // also of infinite ends
+    return x == y ? x : x + t * (y - x);  // equal ends may be infinite
+  };
   return {linear(a.lower, b.lower), linear(a.upper, b.upper)};
 }
 
+/// Returns orientation a turned by a share t of a rotation (axis times angle, rad, in a's frame).
 Quaterniond turned(const Quaterniond& a, const Vector3d& rotation, double t) {
   const double angle = rotation.norm();
   if (angle == 0) return a;
   return (a * Quaterniond(Eigen::AngleAxisd(t * angle, rotation / angle))).normalized();
 }
 
-}  // namespace
+/// A waypoint whose pose differs from the one before: its row in the list of waypoints, and the
+/// travel up to it, m.
+struct Stop {
+  Waypoint waypoint;
+  int row = 0;
+  double travel = 0;
+};
 
-ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
-                   const std::string& source, const Budget& budget,
-                   const std::optional<PathSmoothing>& smooth, bool turns_freely) {
-  constexpr double kMostLayers = 2e6;  // 1 mm over 2 km; each holds about 1 kB
-  const auto pose = [](const Vector3d& p, const Quaterniond& q) {
-    Pose X;
-    X.linear() = q.toRotationMatrix();
-    X.translation() = p;
-    return X;
-  };
-  const auto travel_of = [&](double length, double angle) {
-    return std::max(length, angle * resolution.ds / resolution.dalpha);
-  };
-  if (waypoints.empty()) throw InputError(source, "path: no waypoints: allowed are at least two");
-  // The poses that differ, each with its row and with the travel up to it.
-  struct Stop {
-    Waypoint waypoint;
-    int row = 0;
-    double travel = 0;
-  };
+/// Returns the travel, m, of a way of a length (m) and an angle (rad): what takes more layers
+/// counts.
+double travel_of(double length, double angle, const Resolution& resolution) {
+  return std::max(length, angle * resolution.ds / resolution.dalpha);
+}
+
+Pose pose_of(const Vector3d& position, const Quaterniond& orientation) {
+  Pose X;
+  X.linear() = orientation.toRotationMatrix();
+  X.translation() = position;
+  return X;
+}
+
+Roll window_of(const Waypoint& waypoint) {
+  return waypoint.roll.value_or(PathLayer().window);
+}
+
+/// Narrows the window of a stop to what waypoint `row`, which has the same pose, allows as well.
+/// Throws InputError where the two windows have no roll in common.
+void narrow_window(std::optional<Roll>& window, const Roll& other, std::size_t row,
+                   const std::string& source) {
+  if (!window) window = PathLayer().window;
+  window = Roll{std::max(window->lower, other.lower), std::min(window->upper, other.upper)};
+  if (!(window->lower <= window->upper))
+    throw InputError(source, "path: waypoints " + std::to_string(row - 1) + " and " +
+                                 std::to_string(row) +
+                                 " are one pose, but their rolls have nothing in common: "
+                                 "allowed are roll_min and roll_max that overlap");
+}
+
+/// Lists the waypoints whose poses differ; counts the others in `merged`. Throws InputError where
+/// the tool would turn by 180 deg to a waypoint, or windows of one pose have no roll in common.
+std::vector<Stop> stops_of(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
+                           const std::string& source, bool turns_freely, int& merged) {
   std::vector<Stop> stops{{waypoints[0]}};
   for (std::size_t k = 1; k < waypoints.size(); ++k) {
     const Waypoint &from = stops.back().waypoint, &to = waypoints[k];
     const double length = (to.position - from.position).norm(),
                  angle = short_arc(from.orientation, to.orientation).norm();
     if (length <= kSame && angle <= kSame) {
-      ++merged_;
-      if (to.roll) {  // both hold
-        std::optional<Roll>& window = stops.back().waypoint.roll;
-        if (!window) window = PathLayer().window;
-        window =
-            Roll{std::max(window->lower, to.roll->lower), std::min(window->upper, to.roll->upper)};
-        if (!(window->lower <= window->upper))
-          throw InputError(source, "path: waypoints " + std::to_string(k - 1) + " and " +
-                                       std::to_string(k) +
-                                       " are one pose, but their rolls have nothing in common: "
-                                       "allowed are roll_min and roll_max that overlap");
-      }
+      ++merged;
+      if (to.roll) narrow_window(stops.back().waypoint.roll, *to.roll, k, source);
       continue;
     }
     if (!turn_between(from.orientation, to.orientation, turns_freely))
@@ -144,124 +157,248 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
                       ": turns by 180 deg from the one before: which way is undefined: allowed is "
                       "less, by a waypoint in "
                       "between; or, where it turns about the tool's z axis alone, path.roll: free");
-    stops.push_back({to, static_cast<int>(k), stops.back().travel + travel_of(length, angle)});
+    stops.push_back(
+        {to, static_cast<int>(k), stops.back().travel + travel_of(length, angle, resolution)});
   }
-  // A waypoint with a window of its own bends what the roll may be, if not the path.
-  const auto one_segment = [&](std::size_t first, std::size_t count) {
-    if (waypoints[0].roll) return false;
-    const auto turn = turn_between(stops[first].waypoint.orientation,
-                                   stops[first + count].waypoint.orientation, turns_freely);
-    return turn &&
-           straight_between(
-               first, first + count, [&](std::size_t k) { return stops[k].travel; },
-               [&](std::size_t k) -> const Vector3d& { return stops[k].waypoint.position; },
-               [&](std::size_t k) { return stops[k].waypoint.orientation.toRotationMatrix(); },
-               *turn, kCollinear);
+  return stops;
+}
+
+/// Returns true if the stops between `first` and `last` are no corners: one straight segment leads
+/// through all of them.
+bool one_segment(const std::vector<Stop>& stops, std::size_t first, std::size_t last,
+                 bool turns_freely) {
+  const auto turn = turn_between(stops[first].waypoint.orientation,
+                                 stops[last].waypoint.orientation, turns_freely);
+  return turn &&
+         straight_between(
+             first, last, [&](std::size_t k) { return stops[k].travel; },
+             [&](std::size_t k) -> const Vector3d& { return stops[k].waypoint.position; },
+             [&](std::size_t k) { return stops[k].waypoint.orientation.toRotationMatrix(); }, *turn,
+             kCollinear);
+}
+
+/// The way of a straight segment: its length, m, its turn in the frame of its first pose, and the
+/// angle of that turn, rad.
+struct Way {
+  double length = 0;
+  Vector3d rotation = Vector3d::Zero();
+  double angle = 0;
+  Way(const Waypoint& from, const Waypoint& to, bool turns_freely)
+      : length((to.position - from.position).norm()),
+        rotation(*turn_between(from.orientation, to.orientation, turns_freely)),
+        angle(rotation.norm()) {}
+};
+
+/// Returns into how many steps the resolution cuts a segment, at least one. Throws InputError where
+/// the path, which has `layers` layers before it, would have too many.
+int steps_of(const Way& way, const Resolution& resolution, std::size_t layers,
+             const std::string& source) {
+  constexpr double kMostLayers = 2e6;  // 1 mm over 2 km; each holds about 1 kB
+  const double wanted = std::max({1.0, std::ceil(way.length / resolution.ds - 1e-9),
+                                  std::ceil(way.angle / resolution.dalpha - 1e-9)});
+  if (static_cast<double>(layers) + wanted > kMostLayers)
+    throw InputError(source,
+                     "resolution.ds: " + formatted("%.9g", resolution.ds) +
+                         " cuts the path into more than 2e6 layers: allowed are larger steps");
+  return static_cast<int>(wanted);
+}
+
+/// Appends the layers of a straight segment of `travel` m, which begins at the last layer and is
+/// cut into `steps` steps. Its last layer is the stop `to`.
+void append_layers(const Waypoint& from, const Stop& to, const Way& way, double travel, int steps,
+                   const Budget& budget, std::vector<PathLayer>& layers) {
+  const double s = layers.back().s, begun = layers.back().travel;
+  for (int step = 1; step <= steps; ++step) {
+    if (layers.size() % 1024 == 0) budget.poll();
+    PathLayer& previous = layers.back();
+    previous.step_length = way.length / steps;
+    previous.step_angle = way.angle / steps;
+    previous.step_rotation = way.rotation / steps;
+    const double t = static_cast<double>(step) / steps;
+    if (step == steps)
+      layers.push_back({s + way.length, pose_of(to.waypoint.position, to.waypoint.orientation),
+                        to.row, 0, 0, Vector3d::Zero()});
+    else
+      layers.push_back({s + t * way.length,
+                        pose_of(from.position + t * (to.waypoint.position - from.position),
+                                turned(from.orientation, way.rotation, t)),
+                        -1, 0, 0, Vector3d::Zero()});
+    layers.back().travel = begun + t * travel;
+  }
+  layers.back().window = window_of(to.waypoint);
+}
+
+/// Makes several segments one where a straight segment keeps to their poses within the tolerances:
+/// where waypoints are dense, corners have no room to be rounded.
+template <class Segment>
+class SegmentMerger {
+ public:
+  /// Takes the segments of a path and its last layer.
+  SegmentMerger(const std::vector<Segment>& segments, const PathLayer& last,
+                const PathSmoothing& smooth, bool turns_freely)
+      : segments_(segments),
+        last_(last),
+        within_{kMergedShare * smooth.position, kMergedShare * smooth.angle},
+        turns_freely_(turns_freely) {}
+
+  /// Returns the segments, merged in the order of the path. Throws Stopped.
+  std::vector<Segment> merge(const Budget& budget) {
+    cut_into_runs(
+        segments_.size(),
+        [&](std::size_t first, std::size_t count) { return straight(first, count).has_value(); },
+        [&](std::size_t first, std::size_t count) {
+          budget.poll();
+          merged_.push_back(count > 1 ? *straight(first, count) : segments_[first]);
+          begins_.push_back(first);
+          share_with_short_rest(first + count);
+          return first + count;
+        });
+    return std::move(merged_);
+  }
+
+ private:
+  [[nodiscard]] double travel(std::size_t k) const {
+    return k < segments_.size() ? segments_[k].travel : last_.travel;
+  }
+  [[nodiscard]] const Pose& pose(std::size_t k) const {
+    return k < segments_.size() ? segments_[k].start : last_.tool;
+  }
+
+  /// Returns the straight segment in the place of `count` ones; none where a waypoint between is
+  /// too far from it.
+  [[nodiscard]] std::optional<Segment> straight(std::size_t first, std::size_t count) const {
+    const auto orientation = [&](std::size_t k) -> Eigen::Matrix3d { return pose(k).linear(); };
+    const auto position = [&](std::size_t k) -> Vector3d { return pose(k).translation(); };
+    const auto turn = turn_between(Quaterniond(orientation(first)),
+                                   Quaterniond(orientation(first + count)), turns_freely_);
+    if (!turn || !straight_between(
+                     first, first + count, [&](std::size_t k) { return travel(k); }, position,
+                     orientation, *turn, within_))
+      return std::nullopt;
+    Segment segment = segments_[first];
+    const double span = travel(first + count) - segment.travel;
+    segment.velocity = (position(first + count) - position(first)) / span;
+    segment.rotation = *turn / span;
+    segment.merged = count > 1;
+    return segment;
+  }
+
+  /// Divides the last two merged segments anew, in halves, where the last, which ends before
+  /// segment `end`, is short: a corner beside it would have no room.
+  void share_with_short_rest(std::size_t end) {
+    const std::size_t before = begins_.size() < 2 ? end : begins_[begins_.size() - 2],
+                      middle = (before + end) / 2;
+    if (before == end || 2 * (end - begins_.back()) >= begins_.back() - before) return;
+    const auto one = straight(before, middle - before), other = straight(middle, end - middle);
+    if (!one || !other) return;
+    *(merged_.end() - 2) = *one;
+    merged_.back() = *other;
+    begins_.back() = middle;
+  }
+
+  const std::vector<Segment>& segments_;
+  const PathLayer& last_;
+  PathSmoothing within_;
+  bool turns_freely_;
+  std::vector<Segment> merged_;
+  std::vector<std::size_t> begins_;  // the first segment that each merged one is made of
+};
+
+/// A place on a path: on the step that starts at layer `step`, by a share of it from 0 to below 1;
+/// and how far the tool is from there, m or rad, whichever is more.
+struct PlaceOnPath {
+  int step = 0;
+  double share = 0;
+  double gap = std::numeric_limits<double>::infinity();
+};
+
+/// Returns the place from which on a path is kept: at s = `start_at` (m), where the path only turns
+/// there the place that comes nearest to the pose `tool`, the first of those as near; without
+/// `start_at` layer 0.
+PlaceOnPath start_on(const ToolPath& path, std::optional<double> start_at, const Pose& tool) {
+  PlaceOnPath nearest;
+  const auto try_place = [&](int step, double share) {
+    const Pose pose = share > 0 ? path.at(step, share) : path.layer(step).tool;
+    const double gap =
+        std::max((pose.translation() - tool.translation()).norm(),
+                 Eigen::AngleAxisd(pose.linear().transpose() * tool.linear()).angle());
+    if (gap < nearest.gap - 1e-9) nearest = {step, share, gap};
   };
-  const auto window_of = [](const Waypoint& waypoint) {
-    return waypoint.roll.value_or(PathLayer().window);
+  if (!start_at) {
+    try_place(0, 0);
+    return nearest;
+  }
+  const double s = *start_at;
+  for (int i = 0; i < path.size() && nearest.gap > kOnLayer; ++i)
+    if (std::abs(path.layer(i).s - s) <= kOnLayer) try_place(i, 0);
+  for (int i = 0; i + 1 < path.size() && nearest.gap > kOnLayer; ++i) {
+    const PathLayer& step = path.layer(i);
+    if (step.s > s + kOnLayer || path.layer(i + 1).s < s - kOnLayer) continue;
+    const double turned = Eigen::AngleAxisd(step.tool.linear().transpose() * tool.linear()).angle();
+    const double share =
+        step.step_length > kOnLayer ? (s - step.s) / step.step_length : turned / step.step_angle;
+    if (share > 0 && share < 1) try_place(i, share);
+  }
+  return nearest;
+}
+
+/// Returns a layer at s (m) and a share t of the step between two layers, where the tool stands at
+/// the pose `tool`. For t = 0 that is the first of the two layers, with another pose.
+PathLayer layer_within_step(const PathLayer& from, const PathLayer& to, double s, double t,
+                            const Pose& tool) {
+  PathLayer layer = from;
+  if (t > 0) {
+    layer.s = s;
+    layer.waypoint = -1;
+  }
+  layer.tool = tool;
+  layer.window = between(from.window, to.window, t);
+  layer.travel += t * (to.travel - from.travel);
+  layer.step_length = (to.tool.translation() - tool.translation()).norm();
+  layer.step_rotation = short_arc(Quaterniond(tool.linear()), Quaterniond(to.tool.linear()));
+  layer.step_angle = layer.step_rotation.norm();
+  return layer;
+}
+
+}  // namespace
+
+ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
+                   const std::string& source, const Budget& budget,
+                   const std::optional<PathSmoothing>& smooth, bool turns_freely) {
+  if (waypoints.empty()) throw InputError(source, "path: no waypoints: allowed are at least two");
+  // A waypoint with a window of its own bends what the roll may be, if not the path.
+  const bool windows = waypoints[0].roll.has_value();
+  const std::vector<Stop> stops = stops_of(waypoints, resolution, source, turns_freely, merged_);
+  const auto fits = [&](std::size_t first, std::size_t count) {
+    return !windows && one_segment(stops, first, first + count, turns_freely);
   };
   layers_.push_back(
-      {0.0, pose(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
+      {0.0, pose_of(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
   layers_.back().window = window_of(stops[0].waypoint);
   waypoints_.push_back({0, 0});
-  double s = 0;
-  cut_into_runs(stops.size() - 1, one_segment, [&](std::size_t first, std::size_t count) {
-    const Waypoint &from = stops[first].waypoint, &to = stops[first + count].waypoint;
-    const double length = (to.position - from.position).norm();
-    const Vector3d rotation = *turn_between(from.orientation, to.orientation, turns_freely);
-    const double angle = rotation.norm();
-    const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9),
-                                    std::ceil(angle / resolution.dalpha - 1e-9)});
-    if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
-      throw InputError(source,
-                       "resolution.ds: " + formatted("%.9g", resolution.ds) +
-                           " cuts the path into more than 2e6 layers: allowed are larger steps");
-    const int steps = static_cast<int>(wanted);
-    const double begun = layers_.back().travel, travel = travel_of(length, angle);
+  cut_into_runs(stops.size() - 1, fits, [&](std::size_t first, std::size_t count) {
+    const Stop &from = stops[first], &to = stops[first + count];
+    const Way way(from.waypoint, to.waypoint, turns_freely);
+    const int steps = steps_of(way, resolution, layers_.size(), source);
+    const double begun = layers_.back().travel,
+                 travel = travel_of(way.length, way.angle, resolution);
     segments_.push_back({static_cast<int>(layers_.size()) - 1, begun, layers_.back().tool,
-                         (to.position - from.position) / travel, rotation / travel, 0});
-    for (int step = 1; step <= steps; ++step) {
-      if (layers_.size() % 1024 == 0) budget.poll();
-      PathLayer& previous = layers_.back();
-      previous.step_length = length / steps;
-      previous.step_angle = angle / steps;
-      previous.step_rotation = rotation / steps;
-      const double t = static_cast<double>(step) / steps;
-      if (step == steps)
-        layers_.push_back({s + length, pose(to.position, to.orientation), stops[first + count].row,
-                           0, 0, Vector3d::Zero()});
-      else
-        layers_.push_back({s + t * length,
-                           pose(from.position + t * (to.position - from.position),
-                                turned(from.orientation, rotation, t)),
-                           -1, 0, 0, Vector3d::Zero()});
-      layers_.back().travel = begun + t * travel;
-    }
-    layers_.back().window = window_of(to);
+                         (to.waypoint.position - from.waypoint.position) / travel,
+                         way.rotation / travel, 0});
+    append_layers(from.waypoint, to, way, travel, steps, budget, layers_);
     for (std::size_t k = first + 1; k <= first + count; ++k) {
-      const double share = (stops[k].travel - stops[first].travel) /
-                           (stops[first + count].travel - stops[first].travel);
+      const double share = (stops[k].travel - from.travel) / (to.travel - from.travel);
       waypoints_.push_back({begun + share * travel, stops[k].row});
     }
-    s += length;
     return first + count;
   });
-  if (waypoints[0].roll) spread_windows();
+  if (windows) spread_windows();
   if (layers_.size() < 2)
     throw InputError(source,
                      "path: all waypoints are one pose: allowed are at least two distinct ones");
   if (smooth) {
-    // Where waypoints are dense, corners have no room to be rounded: several segments are made one.
-    std::vector<Segment> merged;
-    const std::size_t n = segments_.size();
-    const auto travel = [&](std::size_t k) {
-      return k < n ? segments_[k].travel : layers_.back().travel;
-    };
-    const auto pose_of = [&](std::size_t k) -> const Pose& {
-      return k < n ? segments_[k].start : layers_.back().tool;
-    };
-    // Straight over `count` segments; none where a waypoint between is too far from it.
-    const auto straight = [&](std::size_t first, std::size_t count) -> std::optional<Segment> {
-      const auto orientation = [&](std::size_t k) -> Eigen::Matrix3d {
-        return pose_of(k).linear();
-      };
-      const auto position = [&](std::size_t k) -> Vector3d { return pose_of(k).translation(); };
-      const auto turn = turn_between(Quaterniond(orientation(first)),
-                                     Quaterniond(orientation(first + count)), turns_freely);
-      const PathSmoothing within{kMergedShare * smooth->position, kMergedShare * smooth->angle};
-      if (!turn ||
-          !straight_between(first, first + count, travel, position, orientation, *turn, within))
-        return std::nullopt;
-      Segment segment = segments_[first];
-      const double span = travel(first + count) - segment.travel;
-      segment.velocity = (position(first + count) - position(first)) / span;
-      segment.rotation = *turn / span;
-      segment.merged = count > 1;
-      return segment;
-    };
-    std::vector<std::size_t> begins;  // the first of those that each is made of
-    const auto fits = [&](std::size_t first, std::size_t count) {
-      return straight(first, count).has_value();
-    };
-    cut_into_runs(n, fits, [&](std::size_t first, std::size_t count) {
-      budget.poll();
-      merged.push_back(count > 1 ? *straight(first, count) : segments_[first]);
-      begins.push_back(first);
-      first += count;
-      // What is left over, before a corner or the end, may be so short that there would be no room
-      // beside it: halves of both.
-      const std::size_t before = begins.size() < 2 ? first : begins[begins.size() - 2],
-                        middle = (before + first) / 2;
-      if (before == first || 2 * (first - begins.back()) >= begins.back() - before) return first;
-      const auto one = straight(before, middle - before), other = straight(middle, first - middle);
-      if (!one || !other) return first;
-      *(merged.end() - 2) = *one;
-      merged.back() = *other;
-      begins.back() = middle;
-      return first;
-    });
-    rounded_ = merged.size() < n;
+    auto merged = SegmentMerger(segments_, layers_.back(), *smooth, turns_freely).merge(budget);
+    rounded_ = merged.size() < segments_.size();
     segments_.swap(merged);
   }
   rounding_ = smooth ? smooth->angle : 0;
@@ -270,10 +407,11 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
 
 void ToolPath::find_corners(const PathSmoothing& smooth) {
   constexpr double kStraight = 1e-9;  // change of velocity that is none: m and rad per metre
-  constexpr double kShortest =
-      0.05e-3;  // m; a corner rounded over less is one that the tool stops at
-  constexpr double kDeviation =
-      3. / 16;  // of reach |b - a|: the integral of the velocity's change up to the corner
+  // m; the tool stops at a corner that would be rounded over less
+  constexpr double kShortest = 0.05e-3;
+  // share of reach |b - a| by which the curve leaves the corner: the integral of the velocity's
+  // change up to it
+  constexpr double kDeviation = 3. / 16;
   for (std::size_t k = 1; k < segments_.size(); ++k) {
     const Segment& before = segments_[k - 1];
     Segment& after = segments_[k];
@@ -324,7 +462,7 @@ int ToolPath::step_at(double travel) const {
   return static_cast<int>(after - layers_.begin()) - 1;
 }
 
-/// From waypoints to the layers in between.
+/// Sets the windows of the layers between waypoints: their ends are linear in between.
 void ToolPath::spread_windows() {
   for (std::size_t a = 0, b = 1; b < layers_.size(); ++b) {
     if (layers_[b].waypoint < 0) continue;
@@ -385,7 +523,6 @@ Pose ToolPath::on_curve(std::size_t k, double travel) const {
 
 void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double tolerance,
                         const std::string& source) {
-  constexpr double kOnLayer = 1e-6;  // m and rad
   const double s = start_at.value_or(0), length = layers_.back().s;
   const auto refuse = [&] {
     const std::string text =
@@ -394,51 +531,17 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
     throw InputError(source, text);
   };
   if (!(s >= 0 && s <= length + kOnLayer)) refuse();
-  const auto gap = [&](const Pose& pose) {
-    return std::max((pose.translation() - tool.translation()).norm(),
-                    Eigen::AngleAxisd(pose.linear().transpose() * tool.linear()).angle());
-  };
-  // The place: on step `first`, by a share `t` of it.
-  int first = 0;
-  double t = 0, least = std::numeric_limits<double>::infinity();
-  const auto try_place = [&](int step, double share) {
-    const double distance = gap(share > 0 ? at(step, share) : layer(step).tool);
-    if (!(distance < least - 1e-9)) return;
-    first = step, t = share, least = distance;
-  };
-  if (!start_at) try_place(0, 0);
-  for (int i = 0; start_at && i < size() && least > kOnLayer; ++i)
-    if (std::abs(layer(i).s - s) <= kOnLayer) try_place(i, 0);
-  for (int i = 0; start_at && i + 1 < size() && least > kOnLayer; ++i) {
-    const PathLayer& step = layer(i);
-    if (step.s > s + kOnLayer || layer(i + 1).s < s - kOnLayer) continue;
-    const double turned = Eigen::AngleAxisd(step.tool.linear().transpose() * tool.linear()).angle();
-    const double share =
-        step.step_length > kOnLayer ? (s - step.s) / step.step_length : turned / step.step_angle;
-    if (share > 0 && share < 1) try_place(i, share);
-  }
+  const auto [first, t, gap] = start_on(*this, start_at, tool);
   if (first + 1 >= size()) refuse();
 
-  const bool aside = least > kOnLayer && least <= tolerance;
+  const bool aside = gap > kOnLayer && gap <= tolerance;
   for (int i = 0; i < first; ++i) before_.push_back(layer(i).tool);
   if (t > 0 || aside) {
     before_.push_back(layer(first).tool);
     begins_on_layer_ = false;
-    PathLayer start = layer(first);
-    if (t > 0) {
-      start.s = s;
-      start.waypoint = -1;
-    }
-    start.tool = aside ? tool : at(first, t);
-    const PathLayer& next = layer(first + 1);
-    start.window = between(start.window, next.window, t);
-    start.travel += t * (next.travel - start.travel);
+    layers_[static_cast<std::size_t>(first)] =
+        layer_within_step(layer(first), layer(first + 1), s, t, aside ? tool : at(first, t));
     begins_aside_ = aside;
-    start.step_length = (next.tool.translation() - start.tool.translation()).norm();
-    start.step_rotation =
-        short_arc(Quaterniond(start.tool.linear()), Quaterniond(next.tool.linear()));
-    start.step_angle = start.step_rotation.norm();
-    layers_[static_cast<std::size_t>(first)] = start;
   }
   layers_.erase(layers_.begin(), layers_.begin() + first);
   for (Segment& segment : segments_) segment.layer -= first;
