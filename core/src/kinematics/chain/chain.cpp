@@ -12,7 +12,7 @@ namespace swivel {
 
 namespace {
 
-/// About the line through p along a.
+/// Returns the turn about the line through p along the unit vector a.
 Chain::Turn turn_about(const Vector3d& a, const Vector3d& p) {
   const Matrix3d along = a * a.transpose(), across = Matrix3d::Identity() - along;
   Matrix3d cross;
@@ -50,14 +50,14 @@ Pose joint_motion(const Joint& joint, double position) {
 [[noreturn]] void fail(const RobotModel& robot, const std::string& what) {
   throw InputError(robot.source, what);
 }
-/// Of what `robot` of a problem says.
+/// Throws RobotKeyError about a key of the section `robot` of a problem.
 [[noreturn]] void fail_key(const RobotModel& robot, const char* key, const std::string& fault,
                            const std::string& entry = {}) {
   throw RobotKeyError(robot.source, key, fault, entry);
 }
 
-/// The way through the tree of links from base to tip: up to the link that both hang from, which
-/// may be the base itself, then down.
+/// The way through the tree of links from base to tip: up to the nearest link that carries both,
+/// which may be the base itself, then down.
 struct KinematicPath {
   std::vector<int> links, joints;  // joint k leads from link k to link k + 1
   std::size_t up = 0;              // so many joints lead from child to parent
@@ -97,18 +97,19 @@ int require_link(const RobotModel& robot, const char* key, const std::string& na
   return link;
 }
 
-/// The joint that leads, through others perhaps, a joint that mimics: position = multiplier *
+/// The joint that leads a joint that mimics, directly or through others: position = multiplier *
 /// leader's + offset.
 struct Lead {
   int leader = -1;
   double multiplier = 1, offset = 0;
 };
-/// By joint; of a joint that mimics none: itself.
+/// Returns the lead of each joint; a joint that mimics none leads itself. Throws InputError where a
+/// joint mimics itself.
 std::vector<Lead> leads_of(const RobotModel& robot) {
   std::vector<Lead> leads(robot.joints.size());
   for (std::size_t j = 0; j < robot.joints.size(); ++j)
     if (!robot.joints[j].mimic) leads[j].leader = static_cast<int>(j);
-  // Leaders may mimic others, in any order of the file: a joint waits for its own.
+  // Leaders may mimic others, in any order of the file: a joint waits for its leader.
   std::vector<std::size_t> waiting;
   for (std::size_t first = 0; first < robot.joints.size(); ++first) {
     for (std::size_t j = first; leads[j].leader < 0;
@@ -146,8 +147,9 @@ std::string limits_allowed(const Joint& joint) {
          formatted("%.9g", joint.upper);
 }
 
-/// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints
-/// follow.
+/// Returns the positions of all joints with the arm at 0: those given by `hold`, else 0 or the
+/// nearest limit; joints that mimic others follow. Throws RobotKeyError where `hold` names a joint
+/// that cannot be held, or a position outside its limits.
 std::vector<double> held_positions(const RobotModel& robot,
                                    const std::map<std::string, double>& hold,
                                    const std::vector<int>& arm, const std::vector<Lead>& leads) {
@@ -192,7 +194,7 @@ std::vector<double> held_positions(const RobotModel& robot,
   return position;
 }
 
-/// Movable joints between base and tip that are none of the arm's, from the base on.
+/// Lists the movable joints between base and tip that are none of the arm's, from the base on.
 std::vector<HeldJoint> held_between(const RobotModel& robot, const KinematicPath& way,
                                     const std::vector<int>& arm,
                                     const std::map<std::string, double>& hold,
@@ -211,8 +213,8 @@ std::vector<HeldJoint> held_between(const RobotModel& robot, const KinematicPath
   return held;
 }
 
-/// A joint of the arm can do no more than what mimics it: limits by position and rates of the
-/// follower are its leader's as well.
+/// Narrows the limits of a joint of the arm, of position and rates, to what a joint that mimics it
+/// can do. Throws InputError where no position is left.
 void narrow(const RobotModel& robot, const Joint& follower, const Lead& lead, JointLimit& limit) {
   const double m = lead.multiplier;
   if (m == 0) return;
@@ -237,8 +239,8 @@ void narrow(const RobotModel& robot, const Joint& follower, const Lead& lead, Jo
   rate(limit.jerk, follower.jerk);
 }
 
-/// A posture is known by its joints up to whole turns of those that have a turn or more: what
-/// follows must then stand as before.
+/// Throws InputError where a follower stands elsewhere after a whole turn of a leader that can make
+/// one: a posture is known by its joints up to whole turns of such joints.
 void require_same_after_a_turn(const RobotModel& robot, const Chain& chain,
                                const Chain::Follower& follower) {
   const JointLimit& limit = chain.limit[static_cast<std::size_t>(follower.leader)];
@@ -251,7 +253,7 @@ void require_same_after_a_turn(const RobotModel& robot, const Chain& chain,
                   "less than a turn, or a multiplier that is a whole number on a joint that turns");
 }
 
-/// Which group each link is of, outwards from the way; joints outside the way that mimic the arm's
+/// Sets the group of each link, outwards from the way. Joints outside the way that mimic the arm's
 /// become followers of the chain.
 void group_links(const RobotModel& robot, const KinematicPath& way, const std::vector<int>& arm,
                  const std::vector<Lead>& leads, ArmModel& model) {
@@ -305,6 +307,139 @@ void group_links(const RobotModel& robot, const KinematicPath& way, const std::v
   }
   for (const Chain::Follower& follower : chain.followers)
     require_same_after_a_turn(robot, chain, follower);
+}
+
+/// Throws InputError where a joint on the way from base to tip is floating or planar.
+void require_joints_of_one_degree(const RobotModel& robot, const KinematicPath& way,
+                                  const std::string& base_link, const std::string& tip_link) {
+  for (const int j : way.joints)
+    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kFree)
+      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' between '" +
+                      base_link + "' and '" + tip_link +
+                      "' is floating or planar: allowed between base_link and tip_link are fixed, "
+                      "revolute, continuous and prismatic");
+}
+
+/// The joints of an arm, from the base on; `seven` is false where there are six and the roll of the
+/// tool takes the place of the seventh.
+struct ArmJoints {
+  std::vector<int> joints;
+  bool seven = true;
+};
+
+/// Chooses the arm's joints: the last seven on the way to the tip that move and are neither held
+/// nor mimic another; with `roll` the last six where no seventh turns. Throws InputError where
+/// there are too few, or one of them is prismatic.
+ArmJoints choose_arm_joints(const RobotModel& robot, const KinematicPath& way,
+                            const std::string& base_link, const std::string& tip_link,
+                            const std::map<std::string, double>& hold,
+                            const std::optional<Roll>& roll) {
+  std::vector<int> arm;
+  for (const int j : way.joints) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    if (joint.movable() && !joint.mimic && hold.count(joint.name) == 0) arm.push_back(j);
+  }
+  // A seventh joint that turns makes the roll one coordinate more.
+  const bool seven =
+      arm.size() >= kDof &&
+      (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type !=
+                    Joint::Type::kPrismatic);
+  const std::size_t joints = seven || !roll ? kDof : kDof - 1;
+  if (!roll && arm.size() == kDof - 1)
+    fail_key(robot, "tip_link",
+             "the arm from '" + base_link + "' to '" + tip_link +
+                 "' has six joints: allowed with a tool that may turn about its own z axis: add "
+                 "`roll: free`, or [lower, upper] "
+                 "in rad, to `path`");
+  if (arm.size() < joints)
+    fail_key(robot, "tip_link",
+             "only " + std::to_string(arm.size()) + " movable joints that are not held between '" +
+                 base_link + "' and '" + tip_link +
+                 "': allowed are at least seven, or six with path.roll");
+  arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
+  for (const int j : arm)
+    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
+      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name +
+                      "' is prismatic: the arm's " + (seven ? "seven" : "six") +
+                      " joints must turn");
+  return {std::move(arm), seven};
+}
+
+/// Throws InputError where a joint on the way from base to tip mimics one of the arm's: the tool
+/// would move by that joint in two places.
+void require_tool_moves_once(const RobotModel& robot, const KinematicPath& way,
+                             const std::vector<int>& arm, const std::vector<Lead>& leads,
+                             const std::string& base_link, const std::string& tip_link) {
+  for (const int j : way.joints) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    const int leader = leads[static_cast<std::size_t>(j)].leader;
+    if (joint.movable() && joint.mimic && is_in(arm, leader))
+      fail(robot, "joint '" + joint.name + "', between '" + base_link + "' and '" + tip_link +
+                      "', mimics '" + robot.joints[static_cast<std::size_t>(leader)].name +
+                      "' of the arm: not supported: the tool would move by that joint in two "
+                      "places; allowed are such joints on "
+                      "links that do not carry the tool");
+  }
+}
+
+/// Returns the poses of all links in the frame of link `base`, with the joints at `position`.
+std::vector<LinkPlacement> place_links(const RobotModel& robot, int base,
+                                       const std::vector<double>& position) {
+  std::vector<LinkPlacement> links(robot.links.size());
+  std::vector<char> known(robot.links.size(), 0);
+  // A file may list a child before its parent: such links wait until the parent is placed.
+  std::vector<int> waiting;
+  for (std::size_t first = 0; first < robot.links.size(); ++first) {
+    for (int link = static_cast<int>(first); !known[static_cast<std::size_t>(link)];) {
+      known[static_cast<std::size_t>(link)] = 1;
+      const int j = robot.links[static_cast<std::size_t>(link)].parent_joint;
+      if (j < 0) break;
+      waiting.push_back(link);
+      link = robot.joints[static_cast<std::size_t>(j)].parent_link;
+    }
+    for (; !waiting.empty(); waiting.pop_back()) {
+      const int j = robot.links[static_cast<std::size_t>(waiting.back())].parent_joint;
+      const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+      const LinkPlacement& parent = links[static_cast<std::size_t>(joint.parent_link)];
+      LinkPlacement& placement = links[static_cast<std::size_t>(waiting.back())];
+      placement.pose =
+          parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
+    }
+  }
+  const Pose root_in_base = links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
+  for (LinkPlacement& placement : links) placement.pose = root_in_base * placement.pose;
+  return links;
+}
+
+/// Sets names, axes and limits of the chain's joints, given the poses of the links with the arm at
+/// 0. A joint that the way passes from child to parent turns the other way.
+void set_chain_joints(const RobotModel& robot, const KinematicPath& way,
+                      const std::vector<int>& arm, ArmModel& model) {
+  Chain& chain = model.chain;
+  for (std::size_t k = 0; k < arm.size(); ++k) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
+    const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
+    chain.joint_names[k] = joint.name;
+    const auto place = static_cast<std::size_t>(
+        std::find(way.joints.begin(), way.joints.end(), arm[k]) - way.joints.begin());
+    chain.axis[k] = (place < way.up ? -1.0 : 1.0) * (frame.linear() * joint.axis).normalized();
+    chain.point[k] = frame.translation();
+    chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
+    chain.limit[k] = {joint.lower,        joint.upper,
+                      joint.velocity,     joint.type == Joint::Type::kContinuous,
+                      joint.acceleration, joint.jerk};
+  }
+}
+
+/// Makes the roll of the tool the seventh joint of an arm of six: X_6(q) Rot(z, -roll) is the
+/// waypoint where X_6 has turned the tool by the roll.
+void add_roll_joint(const RobotModel& robot, const Roll& roll, Chain& chain) {
+  chain.roll = true;
+  chain.joint_names.back() = robot.find_joint("roll") < 0 ? "roll" : "tool_roll";
+  chain.axis.back() = -chain.home.linear().col(2);
+  chain.point.back() = chain.home.translation();
+  chain.turn.back() = turn_about(chain.axis.back(), chain.point.back());
+  chain.limit.back() = {roll.lower, roll.upper, 0, roll.circle()};
 }
 
 }  // namespace
@@ -407,108 +542,23 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link,
   const int base = require_link(robot, "base_link", base_link);
   const int tip = require_link(robot, "tip_link", tip_link);
   const KinematicPath way = kinematic_path_between(robot, base, tip);
-  for (const int j : way.joints)
-    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kFree)
-      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' between '" +
-                      base_link + "' and '" + tip_link +
-                      "' is floating or planar: allowed between base_link and tip_link are fixed, "
-                      "revolute, continuous and prismatic");
-  std::vector<int> arm;
-  for (const int j : way.joints) {
-    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    if (joint.movable() && !joint.mimic && hold.count(joint.name) == 0) arm.push_back(j);
-  }
-  // A seventh joint that turns makes the roll one coordinate more.
-  const bool seven =
-      arm.size() >= kDof &&
-      (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type !=
-                    Joint::Type::kPrismatic);
-  const std::size_t joints = seven || !roll ? kDof : kDof - 1;
-  if (!roll && arm.size() == kDof - 1)
-    fail_key(robot, "tip_link",
-             "the arm from '" + base_link + "' to '" + tip_link +
-                 "' has six joints: allowed with a tool that may turn about its own z axis: add "
-                 "`roll: free`, or [lower, upper] "
-                 "in rad, to `path`");
-  if (arm.size() < joints)
-    fail_key(robot, "tip_link",
-             "only " + std::to_string(arm.size()) + " movable joints that are not held between '" +
-                 base_link + "' and '" + tip_link +
-                 "': allowed are at least seven, or six with path.roll");
-  arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
-  for (const int j : arm)
-    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
-      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name +
-                      "' is prismatic: the arm's " + (seven ? "seven" : "six") +
-                      " joints must turn");
+  require_joints_of_one_degree(robot, way, base_link, tip_link);
+  const ArmJoints arm = choose_arm_joints(robot, way, base_link, tip_link, hold, roll);
   const std::vector<Lead> leads = leads_of(robot);
-  for (const int j : way.joints) {
-    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    const int leader = leads[static_cast<std::size_t>(j)].leader;
-    if (joint.movable() && joint.mimic && is_in(arm, leader))
-      fail(robot, "joint '" + joint.name + "', between '" + base_link + "' and '" + tip_link +
-                      "', mimics '" + robot.joints[static_cast<std::size_t>(leader)].name +
-                      "' of the arm: not supported: the tool would move by that joint in two "
-                      "places; allowed are such joints on "
-                      "links that do not carry the tool");
-  }
-  const std::vector<double> position = held_positions(robot, hold, arm, leads);
+  require_tool_moves_once(robot, way, arm.joints, leads, base_link, tip_link);
+  const std::vector<double> position = held_positions(robot, hold, arm.joints, leads);
 
-  // Parents come before children only by luck in a file: a link waits, with its children so far,
-  // for its parent.
   ArmModel model;
-  model.links.resize(robot.links.size());
-  std::vector<char> known(robot.links.size(), 0);
-  std::vector<int> waiting;
-  for (std::size_t first = 0; first < robot.links.size(); ++first) {
-    for (int link = static_cast<int>(first); !known[static_cast<std::size_t>(link)];) {
-      known[static_cast<std::size_t>(link)] = 1;
-      const int j = robot.links[static_cast<std::size_t>(link)].parent_joint;
-      if (j < 0) break;
-      waiting.push_back(link);
-      link = robot.joints[static_cast<std::size_t>(j)].parent_link;
-    }
-    for (; !waiting.empty(); waiting.pop_back()) {
-      const int j = robot.links[static_cast<std::size_t>(waiting.back())].parent_joint;
-      const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-      const LinkPlacement& parent = model.links[static_cast<std::size_t>(joint.parent_link)];
-      LinkPlacement& placement = model.links[static_cast<std::size_t>(waiting.back())];
-      placement.pose =
-          parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
-    }
-  }
-  const Pose root_in_base =
-      model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
-  for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
-
+  model.links = place_links(robot, base, position);
+  set_chain_joints(robot, way, arm.joints, model);
+  group_links(robot, way, arm.joints, leads, model);
+  model.held = held_between(robot, way, arm.joints, hold, leads, position);
   Chain& chain = model.chain;
-  for (std::size_t k = 0; k < joints; ++k) {
-    const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
-    const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
-    chain.joint_names[k] = joint.name;
-    const auto place = static_cast<std::size_t>(
-        std::find(way.joints.begin(), way.joints.end(), arm[k]) - way.joints.begin());
-    chain.axis[k] = (place < way.up ? -1.0 : 1.0) * (frame.linear() * joint.axis).normalized();
-    chain.point[k] = frame.translation();
-    chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
-    chain.limit[k] = {joint.lower,        joint.upper,
-                      joint.velocity,     joint.type == Joint::Type::kContinuous,
-                      joint.acceleration, joint.jerk};
-  }
-  group_links(robot, way, arm, leads, model);
-  model.held = held_between(robot, way, arm, hold, leads, position);
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
-  if (roll && seven) {
+  if (roll && arm.seven)
     chain.free_roll = roll;
-  } else if (roll) {
-    // X_6(q) Rot(z, -roll) is the waypoint where X_6 has turned the tool by the roll.
-    chain.roll = true;
-    chain.joint_names.back() = robot.find_joint("roll") < 0 ? "roll" : "tool_roll";
-    chain.axis.back() = -chain.home.linear().col(2);
-    chain.point.back() = chain.home.translation();
-    chain.turn.back() = turn_about(chain.axis.back(), chain.point.back());
-    chain.limit.back() = {roll->lower, roll->upper, 0, roll->circle()};
-  }
+  else if (roll)
+    add_roll_joint(robot, *roll, chain);
   return model;
 }
 
