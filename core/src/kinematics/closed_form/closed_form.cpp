@@ -34,6 +34,7 @@ struct Candidates {
   void add(const Candidate& candidate) { at[static_cast<std::size_t>(count++)] = candidate; }
 };
 
+/// Returns the rotation about the unit axis a.
 Matrix3d rotation(const Vector3d& a, const Angle& x) {
   const Vector3d v = (1 - x.cosine) * a, s = x.sine * a;
   const double xy = v.x() * a.y(), xz = v.x() * a.z(), yz = v.y() * a.z();
@@ -49,6 +50,7 @@ Vector3d turned(const Vector3d& a, const Angle& x, const Vector3d& v) {
   return x.cosine * v + x.sine * a.cross(v) + ((1 - x.cosine) * a.dot(v)) * a;
 }
 
+/// Returns the part of v that is perpendicular to the unit axis a.
 Vector3d across_part(const Vector3d& a, const Vector3d& v) {
   return v - a.dot(v) * a;
 }
@@ -72,6 +74,7 @@ void append(Pose& G, const Vector3d& axis, const Vector3d& point, const Angle& x
   G.linear() = R;
 }
 
+/// Returns the common normal of the axis a through p and the axis b through q, both unit vectors.
 CommonNormal common_normal(const Vector3d& p, const Vector3d& a, const Vector3d& q,
                            const Vector3d& b) {
   CommonNormal normal;
@@ -105,8 +108,7 @@ CommonNormal common_normal(const Vector3d& p, const Vector3d& a, const Vector3d&
   return normal;
 }
 
-/// Solves f1(q) = distance y1, f2(q) = sine y2, y1^2 + y2^2 = radius2 for q, y1 and y2, with the
-/// distance and sine of a common normal. `scale2` is the square of the size of the y.
+/// A solution q, y1, y2 of meet().
 struct Meeting {
   Angle q;
   double y1, y2;
@@ -115,6 +117,8 @@ struct Meetings {
   std::array<Meeting, 4> at;
   int count = 0;
 };
+/// Solves f1(q) = distance y1, f2(q) = sine y2, y1^2 + y2^2 = radius2 for q, y1 and y2, with the
+/// distance and sine of a common normal. `scale2` is the square of the size of the y.
 Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double radius2,
               double scale2, double slack) {
   Meetings result;
@@ -122,8 +126,8 @@ Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double
   const auto add = [&](const Angle& q, double y1, double y2) {
     result.at[static_cast<std::size_t>(result.count++)] = {q, y1, y2};
   };
-  // The other coordinate, up to its sign, also where its square is negative by up to the slack; -1
-  // where there is none.
+  // Returns the other coordinate, up to its sign, also where its square is negative by up to the
+  // slack; -1 where there is none.
   const auto other = [&](double y) {
     const double square = radius2 - y * y;
     return square >= -slack * scale2 ? std::sqrt(std::abs(square)) : -1.0;
@@ -171,7 +175,7 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
   const double half = std::sqrt(std::abs(discriminant)), apart = a.cross(target).norm();
   const auto add = [&](const Angle& q4) {
     candidate[3] = q4;
-    // The last joint makes the turn that is really left.
+    // The last joint makes the turn that is left over.
     candidate[5] = turn_between(c, wrist.across, turned(b, -candidate[4], turned(a, -q4, e)));
     result.add(candidate);
   };
@@ -197,7 +201,7 @@ void solve(const SphericalWrist& wrist, const Pose& D, double slack, double alig
   const CommonNormal& normal = wrist.normal;
   const Vector3d& a = wrist.axis[0];
   const Vector3d& b = wrist.axis[1];
-  // Where W must come to, in the frame of axis 1.
+  // The place that W must come to, in the frame of axis 1.
   const Vector3d v = D * wrist.centre - normal.first;
   const double height = a.dot(v), vn = normal.n.dot(v), vm = normal.m.dot(v),
                radius2 = vn * vn + vm * vm;
@@ -222,6 +226,57 @@ void solve(const SphericalWrist& wrist, const Pose& D, double slack, double alig
   }
 }
 
+/// The links of the planar arm of joints 2 to 4: the squares of their lengths, m^2, and the fore
+/// link turned by a quarter turn about the joints' axes.
+struct PlanarLinks {
+  double upper2, fore2;
+  Vector3d cross;
+  explicit PlanarLinks(const ThreeParallel& arm)
+      : upper2(arm.upper.squaredNorm()),
+        fore2(arm.fore.squaredNorm()),
+        cross(arm.axis[1].cross(arm.fore)) {}
+};
+
+/// Adds the solutions of the planar arm for one angle of joint 6, given joints 1 and 5 in
+/// `candidate`. `left` is the displacement that joints 2 to 6 make.
+void add_planar(const ThreeParallel& arm, const PlanarLinks& links, const Pose& left,
+                const Angle& q6, double slack, Candidate& candidate, Candidates& result) {
+  const Vector3d& z = arm.axis[1];
+  candidate[5] = q6;
+  Pose planar = left;
+  append(planar, arm.axis[5], arm.normal.second, -q6);
+  append(planar, arm.axis[4], arm.normal.first, -candidate[4]);
+  // |upper + Rot(z, q_3) fore| is known.
+  const Vector3d reach = across_part(z, planar * arm.point[3] - arm.point[1]);
+  const Wave elbow{(links.upper2 + links.fore2 - reach.squaredNorm()) / 2, arm.upper.dot(arm.fore),
+                   arm.upper.dot(links.cross)};
+  const Angle total = turn_between(z, arm.across, planar.linear() * arm.across);
+  for (const Angle& q3 : roots(elbow, slack)) {
+    const Angle q2 =
+        turn_between(z, arm.upper + q3.cosine * arm.fore + q3.sine * links.cross, reach);
+    const std::array<Angle, 3> turns = {q2, q3, total + -(q2 + q3)};
+    for (std::size_t j = 0; j < 3; ++j)
+      candidate[j + 1] = arm.sign[j + 1] < 0 ? -turns[j] : turns[j];
+    result.add(candidate);
+  }
+}
+
+/// Returns the angle of joint 6 that makes the elbow as near to a right angle as it can, where axis
+/// 6 is parallel to axes 2-4 and turns freely. `wrist` is a point of axis 4 with joint 5 undone.
+Angle squaring_elbow(const ThreeParallel& arm, const PlanarLinks& links, const Pose& left,
+                     const Vector3d& wrist) {
+  const Vector3d &z = arm.axis[1], &a6 = arm.axis[5];
+  const Vector3d arm6 = across_part(a6, wrist - arm.normal.second);
+  const auto planar = [&](const Vector3d& v) { return across_part(z, left.linear() * v); };
+  const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]), c = planar(arm6),
+                 s = -planar(a6.cross(arm6));
+  const Wave bend{f.squaredNorm() + c.squaredNorm() - links.upper2 - links.fore2, 2 * f.dot(c),
+                  2 * f.dot(s)};
+  const Roots square = roots(bend, 0);
+  return square.count > 0 ? square.angle[0]
+                          : Angle::of(-bend.constant * bend.cosine, -bend.constant * bend.sine);
+}
+
 void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned,
            Candidates& result) {
   const CommonNormal& normal = arm.normal;
@@ -237,8 +292,7 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
   const Wave f2 = wave(D.linear() * a6, normal.cosine * arm.along_a);
   const double radius2 = arm.along_n * arm.along_n + arm.along_m * arm.along_m;
   const Meetings meetings = meet(normal, f1, f2, radius2, 1.0, slack);
-  const double upper2 = arm.upper.squaredNorm(), fore2 = arm.fore.squaredNorm();
-  const Vector3d cross = z.cross(arm.fore);
+  const PlanarLinks links(arm);
   for (int k = 0; k < meetings.count; ++k) {
     const Meeting& m = meetings.at[static_cast<std::size_t>(k)];
     Candidate candidate;
@@ -252,41 +306,12 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
     const Vector3d to = turned(a5, -candidate[4], z), from = left.linear().transpose() * z;
     // axis 4, with joint 5 undone
     const Vector3d wrist = normal.first + turned(a5, -candidate[4], arm.point[3] - normal.first);
-    // Adds the solutions of the planar arm for one angle of joint 6.
-    const auto add_planar = [&](const Angle& q6) {
-      candidate[5] = q6;
-      Pose planar = left;
-      append(planar, a6, normal.second, -q6);
-      append(planar, a5, normal.first, -candidate[4]);
-      // |upper + Rot(z, q_3) fore| is known.
-      const Vector3d reach = across_part(z, planar * arm.point[3] - arm.point[1]);
-      const Wave elbow{(upper2 + fore2 - reach.squaredNorm()) / 2, arm.upper.dot(arm.fore),
-                       arm.upper.dot(cross)};
-      const Angle total = turn_between(z, arm.across, planar.linear() * arm.across);
-      for (const Angle& q3 : roots(elbow, slack)) {
-        const Angle q2 = turn_between(z, arm.upper + q3.cosine * arm.fore + q3.sine * cross, reach);
-        const std::array<Angle, 3> turns = {q2, q3, total + -(q2 + q3)};
-        for (std::size_t j = 0; j < 3; ++j)
-          candidate[j + 1] = arm.sign[j + 1] < 0 ? -turns[j] : turns[j];
-        result.add(candidate);
-      }
-    };
     const double apart = across_part(a6, to).norm();
-    if (apart > kAligned) add_planar(turn_between(a6, from, to));
-    if (apart < std::max(kNearlyAligned, aligned)) {
-      // Axis 6 is parallel to axes 2-4 and turns freely: it makes the elbow as near to a right
-      // angle as it can.
-      const Vector3d arm6 = across_part(a6, wrist - normal.second);
-      const auto planar = [&](const Vector3d& v) { return across_part(z, left.linear() * v); };
-      const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]),
-                     c = planar(arm6), s = -planar(a6.cross(arm6));
-      const Wave bend{f.squaredNorm() + c.squaredNorm() - upper2 - fore2, 2 * f.dot(c),
-                      2 * f.dot(s)};
-      const Roots square = roots(bend, 0);
-      add_planar(square.count > 0
-                     ? square.angle[0]
-                     : Angle::of(-bend.constant * bend.cosine, -bend.constant * bend.sine));
-    }
+    if (apart > kAligned)
+      add_planar(arm, links, left, turn_between(a6, from, to), slack, candidate, result);
+    if (apart < std::max(kNearlyAligned, aligned))
+      add_planar(arm, links, left, squaring_elbow(arm, links, left, wrist), slack, candidate,
+                 result);
   }
 }
 

@@ -30,7 +30,7 @@ void cubic_crossings(const Cubic& cubic, int j, double start, double value, cons
   const double b = cubic.m0[j], c = 3 * cubic.d[j] - 2 * cubic.m0[j] - cubic.m1[j],
                d = cubic.m0[j] + cubic.m1[j] - 2 * cubic.d[j];
   const auto f = [&](double u) { return start - value + u * (b + u * (c + u * d)); };
-  // Monotone between the roots of b + 2 c u + 3 d u^2.
+  // f is monotone between the roots of b + 2 c u + 3 d u^2.
   std::array<double, 4> knots{0, 1, 1, 1};
   std::size_t count = 1;
   const double square = c * c - 3 * d * b;
@@ -59,15 +59,38 @@ class Cutter {
  public:
   Cutter(const SelfMotionData& data, const Pose& tool, std::vector<SelfMotionArc>& out)
       : data_(data), tool_(tool), out_(out) {}
+  /// Appends the arcs of a curve that are within the joint limits.
   void cut(const std::vector<Point>& points, bool closed);
 
  private:
+  /// A piece of a curve between two neighbouring crossings; null where the curve itself ends. It
+  /// has the points from `first` to `end` - 1, which are counted on over the end of a closed curve.
+  struct Piece {
+    const Crossing *from = nullptr, *to = nullptr;
+    int first = 0, end = 0;
+  };
+  /// Returns a point of a curve, counted on over its end.
+  static const Point& on(const std::vector<Point>& points, int k) {
+    return points[static_cast<std::size_t>(k % static_cast<int>(points.size()))];
+  }
+  static void add(SelfMotionArc& arc, const Point& p) {
+    arc.q.push_back(p.q);
+    arc.tangent.push_back(p.tangent);
+  }
   void find_crossings(const std::vector<Point>& points, int chords);
   /// Finds the point of a chord at which the crossing's joint stands exactly on its limit, or
   /// another joint on its own, `joint`, where that is passed first. Returns false where Newton
   /// fails.
   bool solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end,
                  int& joint) const;
+  /// Appends a curve that crosses no limit, if it is within them.
+  void keep_whole(const std::vector<Point>& points, bool closed);
+  /// Returns true if a piece is within the joint limits.
+  [[nodiscard]] bool within_limits(const std::vector<Point>& points, const Piece& piece) const;
+  /// Appends the arc of a piece, unless Newton fails at one of its ends.
+  void keep(const std::vector<Point>& points, const Piece& piece);
+  /// Appends an arc with its joints, direction and first point in their normal form, and with the
+  /// lengths up to its points.
   void finish(SelfMotionArc&& arc);
 
   const SelfMotionData& data_;
@@ -184,7 +207,7 @@ void Cutter::finish(SelfMotionArc&& arc) {
   } else if (less(arc.q.back(), arc.q.front())) {
     reverse();
   }
-  // Simpson's rule on the cubics.
+  // The lengths of the cubics, by Simpson's rule.
   double length = 0;
   arc.length.reserve(arc.q.size() + 1);
   arc.length.assign(1, 0);
@@ -201,72 +224,73 @@ void Cutter::finish(SelfMotionArc&& arc) {
   out_.push_back(std::move(arc));
 }
 
+void Cutter::keep_whole(const std::vector<Point>& points, bool closed) {
+  if (!data_.inside(points[0].q)) return;
+  SelfMotionArc arc;
+  arc.closed = closed;
+  arc.q.reserve(points.size());
+  arc.tangent.reserve(points.size());
+  for (const Point& p : points) add(arc, p);
+  finish(std::move(arc));
+}
+
+bool Cutter::within_limits(const std::vector<Point>& points, const Piece& piece) const {
+  if (piece.first < piece.end) return data_.inside(on(points, piece.first).q);
+  // Both ends lie on one chord.
+  const Crossing &from = *piece.from, &to = *piece.to;
+  const Cubic cubic(on(points, from.chord), on(points, from.chord + 1), 1.0);
+  return data_.inside(on(points, from.chord).q + cubic.at((from.u + to.u) / 2));
+}
+
+void Cutter::keep(const std::vector<Point>& points, const Piece& piece) {
+  constexpr double kSame2 = 1e-16;  // rad^2: two points nearer than its root are one
+  const auto coincide = [](const Config& a, const Config& b) {
+    return difference(a, b).squaredNorm() < kSame2;
+  };
+  SelfMotionArc arc;
+  arc.q.reserve(static_cast<std::size_t>(piece.end - piece.first + 2));
+  arc.tangent.reserve(arc.q.capacity());
+  Point p;
+  if (piece.from != nullptr) {
+    if (!solve_end(points, *piece.from, p, arc.limit[0])) return;
+    add(arc, p);
+  }
+  for (int n = piece.first; n < piece.end; ++n) {
+    // Leave out a point that coincides with the end on the limit.
+    if (piece.from != nullptr && n == piece.first && coincide(on(points, n).q, arc.q[0])) continue;
+    add(arc, on(points, n));
+  }
+  if (piece.to != nullptr) {
+    if (!solve_end(points, *piece.to, p, arc.limit[1])) return;
+    if (arc.q.size() > 1 && coincide(arc.q.back(), p.q)) {
+      arc.q.pop_back();
+      arc.tangent.pop_back();
+    }
+    add(arc, p);
+  }
+  if (arc.q.size() > 1) finish(std::move(arc));
+}
+
 void Cutter::cut(const std::vector<Point>& points, bool closed) {
   const int size = static_cast<int>(points.size()), chords = closed ? size : size - 1;
   if (chords < 1) return;
   find_crossings(points, chords);
-  const auto at = [&](int k) -> const Point& { return points[static_cast<std::size_t>(k % size)]; };
-  if (crossings_.empty()) {
-    if (!data_.inside(points[0].q)) return;
-    SelfMotionArc arc;
-    arc.closed = closed;
-    arc.q.reserve(points.size());
-    arc.tangent.reserve(points.size());
-    for (const Point& p : points) {
-      arc.q.push_back(p.q);
-      arc.tangent.push_back(p.tangent);
-    }
-    finish(std::move(arc));
-    return;
-  }
+  if (crossings_.empty()) return keep_whole(points, closed);
   // Take the pieces between two neighbouring crossings; an open curve has one before the first and
   // one after the last as well.
   const int count = static_cast<int>(crossings_.size());
   for (int k = closed ? 0 : -1; k < count; ++k) {
-    const Crossing* from = k >= 0 ? &crossings_[static_cast<std::size_t>(k)] : nullptr;
     const bool last = k + 1 == count;
-    const Crossing* to = !last    ? &crossings_[static_cast<std::size_t>(k + 1)]
-                         : closed ? &crossings_[0]
-                                  : nullptr;
-    if (from != nullptr && from->leaves()) continue;
-    if (to != nullptr && !to->leaves()) continue;
-    // Points from `first` to `end` - 1, counted on over the wrap.
-    const int first = from != nullptr ? from->chord + 1 : 0;
-    const int end = (to != nullptr ? to->chord + 1 : size) + (closed && last ? size : 0);
-    bool within = false;
-    if (first < end) {
-      within = data_.inside(at(first).q);
-    } else {
-      const Cubic cubic(at(from->chord), at(from->chord + 1), 1.0);
-      within = data_.inside(at(from->chord).q + cubic.at((from->u + to->u) / 2));
-    }
-    if (!within) continue;
-    SelfMotionArc arc;
-    arc.q.reserve(static_cast<std::size_t>(end - first + 2));
-    arc.tangent.reserve(arc.q.capacity());
-    Point p;
-    if (from != nullptr) {
-      if (!solve_end(points, *from, p, arc.limit[0])) continue;
-      arc.q.push_back(p.q);
-      arc.tangent.push_back(p.tangent);
-    }
-    for (int n = first; n < end; ++n) {
-      // Leave out a point that coincides with the end on the limit.
-      if (from != nullptr && n == first && difference(at(n).q, arc.q[0]).squaredNorm() < 1e-16)
-        continue;
-      arc.q.push_back(at(n).q);
-      arc.tangent.push_back(at(n).tangent);
-    }
-    if (to != nullptr) {
-      if (!solve_end(points, *to, p, arc.limit[1])) continue;
-      if (arc.q.size() > 1 && difference(arc.q.back(), p.q).squaredNorm() < 1e-16) {
-        arc.q.pop_back();
-        arc.tangent.pop_back();
-      }
-      arc.q.push_back(p.q);
-      arc.tangent.push_back(p.tangent);
-    }
-    if (arc.q.size() > 1) finish(std::move(arc));
+    Piece piece;
+    piece.from = k >= 0 ? &crossings_[static_cast<std::size_t>(k)] : nullptr;
+    piece.to = !last    ? &crossings_[static_cast<std::size_t>(k + 1)]
+               : closed ? &crossings_[0]
+                        : nullptr;
+    if (piece.from != nullptr && piece.from->leaves()) continue;
+    if (piece.to != nullptr && !piece.to->leaves()) continue;
+    piece.first = piece.from != nullptr ? piece.from->chord + 1 : 0;
+    piece.end = (piece.to != nullptr ? piece.to->chord + 1 : size) + (closed && last ? size : 0);
+    if (within_limits(points, piece)) keep(points, piece);
   }
 }
 

@@ -28,8 +28,66 @@ Angle between(const Angle& a, const Angle& b) {
   return Angle::of(sign * (a.cosine + b.cosine), sign * (a.sine + b.sine));
 }
 
-double at(const std::array<double, 3>& row, const Angle& phi) {
+/// Returns the value of a row of a circle at an arm angle.
+double value(const std::array<double, 3>& row, const Angle& phi) {
   return row[0] * phi.sine + row[1] * phi.cosine + row[2];
+}
+
+/// The arm angles at which a joint of a triple comes to an end of its range.
+struct ArcEnds {
+  static constexpr std::size_t kMost = 12;  // three joints, two ends of ranges, two roots
+  struct End {
+    double order;
+    Angle phi;
+  };
+  std::array<End, kMost> at;
+  std::size_t count = 0;
+
+  void add(const Angle& phi) { at[count++] = {order(phi), phi}; }
+
+  /// Adds the arm angles at which the rows p and q of a circle have the direction `end`.
+  void add_meetings(const std::array<double, 3>& p, double p_sign, const std::array<double, 3>& q,
+                    const Angle& end, double sign) {
+    const double c = p_sign * end.sine, s = end.cosine;
+    for (const Angle& phi :
+         roots(Wave{c * p[2] - s * q[2], c * p[1] - s * q[1], c * p[0] - s * q[0]}, 0))
+      if (sign * (p_sign * value(p, phi) * end.cosine + value(q, phi) * end.sine) > -kDoubtful)
+        add(phi);
+  }
+
+  /// Sorts the ends from -pi to pi and drops repeated ones.
+  void sort() {
+    for (std::size_t k = 1; k < count; ++k)  // twelve at most: insertion
+      for (std::size_t j = k; j > 0 && at[j].order < at[j - 1].order; --j)
+        std::swap(at[j], at[j - 1]);
+    const auto same = [](const End& a, const End& b) { return a.phi == b.phi; };
+    count = static_cast<std::size_t>(
+        std::unique(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count), same) -
+        at.begin());
+  }
+
+  /// Returns the number of the end after end k, counter-clockwise.
+  [[nodiscard]] std::size_t next(std::size_t k) const { return k + 1 < count ? k + 1 : 0; }
+};
+
+/// Appends the arcs that the ends cut the circle of arm angles into, as far as they are within the
+/// ranges: `inside[k]` says whether the angles from end k to the next one are.
+void add_arcs(const ArcEnds& ends, const std::array<bool, ArcEnds::kMost>& inside,
+              std::vector<AngleArc>& out) {
+  const std::size_t count = ends.count;
+  if (std::all_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](bool in) { return in; })) {
+    out.push_back({-kPi, kPi});
+    return;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!inside[k] || inside[k > 0 ? k - 1 : count - 1]) continue;  // no arc begins here
+    std::size_t last = k;
+    while (inside[last]) last = ends.next(last);
+    AngleArc arc{ends.at[k].phi.radians(), ends.at[last].phi.radians()};
+    if (arc.end <= arc.begin) arc.end += kTwoPi;
+    out.push_back(arc);
+  }
 }
 
 }  // namespace
@@ -59,66 +117,34 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative,
   const double sign = negative ? -1 : 1;
   const auto &x = circle[0], &y = circle[1], &z = circle[2], &u = circle[3], &v = circle[4];
   const auto allowed = [&](const Angle& phi) {
-    const double cosine = at(x, phi), sine = at(y, phi);
+    const double cosine = value(x, phi), sine = value(y, phi);
     return ranges_[0].holds(sign * cosine, sign * sine) &&
-           ranges_[1].holds(at(z, phi), sign * std::sqrt(cosine * cosine + sine * sine)) &&
-           ranges_[2].holds(-sign * at(u, phi), sign * at(v, phi));
+           ranges_[1].holds(value(z, phi), sign * std::sqrt(cosine * cosine + sine * sine)) &&
+           ranges_[2].holds(-sign * value(u, phi), sign * value(v, phi));
   };
 
-  struct End {
-    double order;
-    Angle phi;
-  };
-  std::array<End, 12> ends;  // three joints, two ends of ranges, two roots
-  std::size_t count = 0;
-  const auto add = [&](const Angle& phi) { ends[count++] = {order(phi), phi}; };
-  // Adds the arm angles at which the rows p and q have the direction `end`.
-  const auto meet = [&](const std::array<double, 3>& p, double p_sign,
-                        const std::array<double, 3>& q, const Angle& end) {
-    const double c = p_sign * end.sine, s = end.cosine;
-    for (const Angle& phi :
-         roots(Wave{c * p[2] - s * q[2], c * p[1] - s * q[1], c * p[0] - s * q[0]}, 0))
-      if (sign * (p_sign * at(p, phi) * end.cosine + at(q, phi) * end.sine) > -kDoubtful) add(phi);
-  };
+  ArcEnds ends;
   for (const auto end : {&AngleRange::lower, &AngleRange::upper}) {
-    if (!ranges_[0].all()) meet(x, 1, y, (ranges_[0].*end)());
-    if (!ranges_[2].all()) meet(u, -1, v, (ranges_[2].*end)());
+    if (!ranges_[0].all()) ends.add_meetings(x, 1, y, (ranges_[0].*end)(), sign);
+    if (!ranges_[2].all()) ends.add_meetings(u, -1, v, (ranges_[2].*end)(), sign);
     if (const Angle& middle = (ranges_[1].*end)();
         !ranges_[1].all() && sign * middle.sine > -kDoubtful)
-      for (const Angle& phi : roots(Wave{z[2] - middle.cosine, z[1], z[0]}, 0)) add(phi);
+      for (const Angle& phi : roots(Wave{z[2] - middle.cosine, z[1], z[0]}, 0)) ends.add(phi);
   }
-  if (count == 0) {
+  if (ends.count == 0) {
     if (allowed({1, 0})) out.push_back({-kPi, kPi});
     return;
   }
-  for (std::size_t k = 1; k < count; ++k)  // twelve at most: insertion
-    for (std::size_t j = k; j > 0 && ends[j].order < ends[j - 1].order; --j)
-      std::swap(ends[j], ends[j - 1]);
-  const auto same = [](const End& a, const End& b) { return a.phi == b.phi; };
-  count = static_cast<std::size_t>(
-      std::unique(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(count), same) -
-      ends.begin());
+  ends.sort();
 
   // All angles between two neighbouring ends are within the ranges, or none is.
-  std::array<bool, 12> inside{};
-  for (std::size_t k = 0; k < count; ++k) {
-    const Angle& a = ends[k].phi;
-    inside[k] = allowed(count == 1 ? Angle{-a.cosine, -a.sine}
-                                   : between(a, ends[k + 1 < count ? k + 1 : 0].phi));
+  std::array<bool, ArcEnds::kMost> inside{};
+  for (std::size_t k = 0; k < ends.count; ++k) {
+    const Angle& a = ends.at[k].phi;
+    inside[k] = allowed(ends.count == 1 ? Angle{-a.cosine, -a.sine}
+                                        : between(a, ends.at[ends.next(k)].phi));
   }
-  if (std::all_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count),
-                  [](bool in) { return in; })) {
-    out.push_back({-kPi, kPi});
-    return;
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!inside[k] || inside[k > 0 ? k - 1 : count - 1]) continue;  // begins here
-    std::size_t last = k;
-    while (inside[last]) last = last + 1 < count ? last + 1 : 0;
-    AngleArc arc{ends[k].phi.radians(), ends[last].phi.radians()};
-    if (arc.end <= arc.begin) arc.end += kTwoPi;
-    out.push_back(arc);
-  }
+  add_arcs(ends, inside, out);
 }
 
 void common_arcs(const std::vector<AngleArc>& a, const std::vector<AngleArc>& b,
