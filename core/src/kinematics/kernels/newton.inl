@@ -104,9 +104,8 @@ inline V dot(const V* a, const V* b) {
 /// eighth of a turn in two parts (Cody & Waite 1980), polynomials of fdlibm's k_sin and k_cos.
 template <class V>
 inline void sine_cosine(V x, V& sine, V& cosine) {
-  constexpr double kHigh = 0x1.921fb544p0,
-                   // two parts of pi/2; the product of the high part with a small integer is exact
-      kLow = 0x1.0b4611a626331p-34;
+  // two parts of pi/2; the product of the high part with a small integer is exact
+  constexpr double kHigh = 0x1.921fb544p0, kLow = 0x1.0b4611a626331p-34;
   const V quarters = (x * (2 / 3.14159265358979323846) + kRound) - kRound;
   const V r = (x - quarters * kHigh) - quarters * kLow, z = r * r;
   const V s =
@@ -167,15 +166,9 @@ inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Sta
                     cross(tz, constant<V>(task.tool[2])));
 }
 
-/// Computes the moves particular + lambda null that close the pose error to first order. Returns 0
-/// in lanes whose Jacobian has lost rank, else 1.
+/// Sets the rows of the Jacobian (columns 0 to 6) and the pose error (column 7).
 template <class V>
-inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
-  Stand<V> stand;
-  V sine[7], cosine[7];
-  for (int k = 0; k < 7; ++k) sine_cosine(V(q[k] + task.chain->link[k].turn), sine[k], cosine[k]);
-  stand_at(task, sine, cosine, stand);
-  V A[6][8];  // the Jacobian and the pose error
+[[gnu::always_inline]] inline void linearise(const Stand<V>& stand, V (&A)[6][8]) {
   for (int k = 0; k < 7; ++k) {
     const Vec3<V> v = cross(stand.axis[k], stand.tool - stand.point[k]);
     A[0][k] = v.x;
@@ -191,10 +184,14 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
   A[3][7] = stand.turn.x;
   A[4][7] = stand.turn.y;
   A[5][7] = stand.turn.z;
+}
 
-  // Gaussian elimination; each row takes the largest column left as its pivot.
-  Column<V> pivot[6];
-  V left[7], whole = V{} + 1.0, taken = V{};
+/// Eliminates by Gauss; each row takes the largest column left as its pivot. `taken` becomes the
+/// sum of the pivots' columns. Returns 0 in lanes whose Jacobian has lost rank, else 1; ends where
+/// all lanes have.
+template <class V>
+[[gnu::always_inline]] inline V eliminate(V (&A)[6][8], Column<V> (&pivot)[6], V& taken) {
+  V left[7], whole = V{} + 1.0;
   for (int c = 0; c < 7; ++c) left[c] = V{} + 1.0;
   for (int r = 0; r < 6; ++r) {
     V size = magnitude(A[r][0]) * left[0], number = V{};
@@ -204,10 +201,7 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
       size = other > size ? other : size;
     }
     whole = size > kRank ? whole : V{};
-    if (!any_above(whole, V{})) {
-      for (int c = 0; c < 7; ++c) particular[c] = null[c] = V{};
-      return whole;
-    }
+    if (!any_above(whole, V{})) return whole;
     pivot[r] = {number};
     taken = taken + number;
     pivot[r].set(left, V{});
@@ -217,6 +211,25 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
       const V factor = pivot[r].of(A[i]);
       for (int c = 0; c < 8; ++c) A[i][c] = A[i][c] - factor * A[r][c];
     }
+  }
+  return whole;
+}
+
+/// Computes the moves particular + lambda null that close the pose error to first order. Returns 0
+/// in lanes whose Jacobian has lost rank, else 1.
+template <class V>
+inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
+  Stand<V> stand;
+  V sine[7], cosine[7];
+  for (int k = 0; k < 7; ++k) sine_cosine(V(q[k] + task.chain->link[k].turn), sine[k], cosine[k]);
+  stand_at(task, sine, cosine, stand);
+  V A[6][8], taken = V{};
+  linearise(stand, A);
+  Column<V> pivot[6];
+  const V whole = eliminate(A, pivot, taken);
+  if (!any_above(whole, V{})) {
+    for (int c = 0; c < 7; ++c) particular[c] = null[c] = V{};
+    return whole;
   }
   const Column<V> free = {21.0 - taken};
   V part[6], kernel[6];  // by pivots
@@ -240,6 +253,33 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
   return whole;
 }
 
+/// Eliminates as above, for one point. `free` becomes the column without a pivot. Returns false
+/// where the Jacobian has lost rank.
+[[gnu::always_inline]] inline bool eliminate(double (&A)[6][8], int (&pivot)[6], int& free) {
+  double left[7] = {1, 1, 1, 1, 1, 1, 1};
+  free = 21;
+  for (int r = 0; r < 6; ++r) {
+    int column = 0;
+    double size = magnitude(A[r][0]) * left[0];
+    for (int c = 1; c < 7; ++c) {
+      const double other = magnitude(A[r][c]) * left[c];
+      column = other > size ? c : column;
+      size = other > size ? other : size;
+    }
+    if (!(size > kRank)) return false;
+    left[column] = 0;
+    pivot[r] = column;
+    free -= column;
+    const double scale = 1.0 / A[r][column];
+    for (double& a : A[r]) a *= scale;
+    for (int i = r + 1; i < 6; ++i) {
+      const double factor = A[i][column];
+      for (int c = 0; c < 8; ++c) A[i][c] = A[i][c] - factor * A[r][c];
+    }
+  }
+  return true;
+}
+
 /// Computes linear() for one point, with vectors along the rows of the matrix.
 template <>
 inline double linear<double>(const NewtonTask& task, const double* q, double* particular,
@@ -250,45 +290,11 @@ inline double linear<double>(const NewtonTask& task, const double* q, double* pa
   for (int k = 0; k < 8; ++k) sine_cosine(angle[k], sine[k], cosine[k]);
   Stand<double> stand;
   stand_at(task, sine, cosine, stand);
-  for (int k = 0; k < 7; ++k) {
-    const Vec3<double> v = cross(stand.axis[k], stand.tool - stand.point[k]);
-    A[0][k] = v.x;
-    A[1][k] = v.y;
-    A[2][k] = v.z;
-    A[3][k] = stand.axis[k].x;
-    A[4][k] = stand.axis[k].y;
-    A[5][k] = stand.axis[k].z;
-  }
-  A[0][7] = stand.miss.x;
-  A[1][7] = stand.miss.y;
-  A[2][7] = stand.miss.z;
-  A[3][7] = stand.turn.x;
-  A[4][7] = stand.turn.y;
-  A[5][7] = stand.turn.z;
-
-  int pivot[6], free = 21;
-  double left[7] = {1, 1, 1, 1, 1, 1, 1};
-  for (int r = 0; r < 6; ++r) {
-    int column = 0;
-    double size = magnitude(A[r][0]) * left[0];
-    for (int c = 1; c < 7; ++c) {
-      const double other = magnitude(A[r][c]) * left[c];
-      column = other > size ? c : column;
-      size = other > size ? other : size;
-    }
-    if (!(size > kRank)) {
-      for (int c = 0; c < 7; ++c) particular[c] = null[c] = 0;
-      return 0;
-    }
-    left[column] = 0;
-    pivot[r] = column;
-    free -= column;
-    const double scale = 1.0 / A[r][column];
-    for (double& a : A[r]) a *= scale;
-    for (int i = r + 1; i < 6; ++i) {
-      const double factor = A[i][column];
-      for (int c = 0; c < 8; ++c) A[i][c] = A[i][c] - factor * A[r][c];
-    }
+  linearise(stand, A);
+  int pivot[6], free;
+  if (!eliminate(A, pivot, free)) {
+    for (int c = 0; c < 7; ++c) particular[c] = null[c] = 0;
+    return 0;
   }
   particular[free] = 0;
   null[free] = 1;
@@ -305,69 +311,95 @@ inline double linear<double>(const NewtonTask& task, const double* q, double* pa
   return 1;
 }
 
-/// Solves as many points as V has lanes, from `at` on; lanes beyond the last point repeat it.
+/// Reads and writes as many points of a task as V has lanes, from point `at` on; lanes beyond the
+/// last point repeat it.
 template <class V>
-void solve_lanes(const NewtonTask& task, int at) {
-  constexpr int kOwn = sizeof(V) / sizeof(double);
-  const auto point_of = [&](int lane) { return at + lane < task.n ? at + lane : task.n - 1; };
-  double lanes[kOwn];
-  const auto gather = [&](const double* from, int stride, int offset) {
-    for (int lane = 0; lane < kOwn; ++lane) lanes[lane] = from[point_of(lane) * stride + offset];
+struct Lanes {
+  static constexpr int kOwn = sizeof(V) / sizeof(double);
+  const NewtonTask& task;
+  int at;
+
+  [[nodiscard]] V gather(const double* from, int stride, int offset) const {
+    double lanes[kOwn];
+    for (int lane = 0; lane < kOwn; ++lane) {
+      const int point = at + lane < task.n ? at + lane : task.n - 1;
+      lanes[lane] = from[point * stride + offset];
+    }
     V value;
     __builtin_memcpy(&value, lanes, sizeof value);
     return value;
-  };
-  const auto scatter = [&](V value, double* to, int offset) {
+  }
+  void scatter(V value, double* to, int offset) const {
+    double lanes[kOwn];
     __builtin_memcpy(lanes, &value, sizeof value);
     for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane)
       to[(at + lane) * 7 + offset] = lanes[lane];
-  };
-  V q[7], particular[7], null[7], found = V{};
-  for (int j = 0; j < 7; ++j) q[j] = gather(task.start, 7, j);
+  }
+};
+
+/// Runs Newton from q, which becomes what it finds, with a joint at its value or by the least
+/// weighted moves. `tangent` becomes the direction of the self-motion there. Returns 1 in lanes
+/// that settle, else 0.
+template <class V>
+[[gnu::always_inline]] inline V run_newton(const NewtonTask& task, const Lanes<V>& lanes, V* q,
+                                           V* tangent) {
+  const bool locked = task.move == NewtonMove::kLocked;
+  const V value = locked ? lanes.gather(task.value, 1, 0) : V{};
+  V particular[7], null[7], found = V{}, going = V{} + 1.0;
+  for (int j = 0; j < 7; ++j) tangent[j] = V{};
+  for (int step = 0; step < task.steps && any_above(going, V{}); ++step) {
+    going = going * linear(task, q, particular, null);
+    V along;
+    if (locked) {
+      const V own = null[task.joint];
+      going = own == 0.0 ? V{} : going;
+      along = ((value - q[task.joint]) - particular[task.joint]) / own;
+    } else {
+      V weighted[7];
+      for (int j = 0; j < 7; ++j) weighted[j] = task.scale2[j] * null[j];
+      along = -(dot(weighted, particular) / dot(weighted, null));
+    }
+    V move[7];
+    for (int j = 0; j < 7; ++j) move[j] = particular[j] + along * null[j];
+    const V length2 = dot(move, move);
+    going = length2 < task.longest * task.longest ? going : V{};
+    for (int j = 0; j < 7; ++j) q[j] = going > 0.0 ? q[j] + move[j] : q[j];
+    if (locked) q[task.joint] = going > 0.0 ? value : q[task.joint];
+    const V settled = length2 < task.settled * task.settled ? going : V{};
+    if (!any_above(settled, V{})) continue;
+    const V length = root(dot(null, null));
+    for (int j = 0; j < 7; ++j) tangent[j] = settled > 0.0 ? null[j] / length : tangent[j];
+    found = found + settled;
+    going = going - settled;
+  }
+  return found;
+}
+
+/// Solves as many points as V has lanes, from `at` on.
+template <class V>
+void solve_lanes(const NewtonTask& task, int at) {
+  const Lanes<V> lanes{task, at};
+  V q[7], found = V{};
+  for (int j = 0; j < 7; ++j) q[j] = lanes.gather(task.start, 7, j);
   if (task.move == NewtonMove::kNone) {
+    V particular[7], null[7];
     found = linear(task, q, particular, null);
     for (int j = 0; j < 7; ++j) {
-      scatter(particular[j], task.particular, j);
-      scatter(null[j], task.null, j);
+      lanes.scatter(particular[j], task.particular, j);
+      lanes.scatter(null[j], task.null, j);
     }
   } else {
-    const bool locked = task.move == NewtonMove::kLocked;
-    const V value = locked ? gather(task.value, 1, 0) : V{};
-    V going = V{} + 1.0, tangent[7];
-    for (int j = 0; j < 7; ++j) tangent[j] = V{};
-    for (int step = 0; step < task.steps && any_above(going, V{}); ++step) {
-      going = going * linear(task, q, particular, null);
-      V along;
-      if (locked) {
-        const V own = null[task.joint];
-        going = own == 0.0 ? V{} : going;
-        along = ((value - q[task.joint]) - particular[task.joint]) / own;
-      } else {
-        V weighted[7];
-        for (int j = 0; j < 7; ++j) weighted[j] = task.scale2[j] * null[j];
-        along = -(dot(weighted, particular) / dot(weighted, null));
-      }
-      V move[7];
-      for (int j = 0; j < 7; ++j) move[j] = particular[j] + along * null[j];
-      const V length2 = dot(move, move);
-      going = length2 < task.longest * task.longest ? going : V{};
-      for (int j = 0; j < 7; ++j) q[j] = going > 0.0 ? q[j] + move[j] : q[j];
-      if (locked) q[task.joint] = going > 0.0 ? value : q[task.joint];
-      const V settled = length2 < task.settled * task.settled ? going : V{};
-      if (!any_above(settled, V{})) continue;
-      const V length = root(dot(null, null));
-      for (int j = 0; j < 7; ++j) tangent[j] = settled > 0.0 ? null[j] / length : tangent[j];
-      found = found + settled;
-      going = going - settled;
-    }
+    V tangent[7];
+    found = run_newton(task, lanes, q, tangent);
     for (int j = 0; j < 7; ++j) {
-      scatter(q[j], task.q, j);
-      scatter(tangent[j], task.null, j);
+      lanes.scatter(q[j], task.q, j);
+      lanes.scatter(tangent[j], task.null, j);
     }
   }
-  __builtin_memcpy(lanes, &found, sizeof found);
-  for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane)
-    task.found[at + lane] = lanes[lane] > 0;
+  double of_lanes[Lanes<V>::kOwn];
+  __builtin_memcpy(of_lanes, &found, sizeof found);
+  for (int lane = 0; lane < Lanes<V>::kOwn && at + lane < task.n; ++lane)
+    task.found[at + lane] = of_lanes[lane] > 0;
 }
 
 void solve(const NewtonTask& task) {
