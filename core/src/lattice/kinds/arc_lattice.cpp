@@ -23,7 +23,7 @@ constexpr double kOnArc = 1e-3;   // rad: on the arc where it was looked for fir
 constexpr double kFill = 1.5;     // spacings: wider gaps are filled
 constexpr double kCrowded = 0.5;  // spacings: nearer images are dropped
 
-/// Where on the arcs of a layer.
+/// A place on the arcs of a layer.
 struct Place {
   int arc = -1, chord = 0;
   double u = 0;       // of the chord
@@ -33,7 +33,7 @@ struct Place {
 
 double difference(double a, double b) {
   const double d = a - b;
-  return std::abs(d) < 3 ? d : wrap_angle(d);  // the same, without its division
+  return std::abs(d) < 3 ? d : wrap_angle(d);  // a small d needs no division
 }
 
 Config difference(const Config& a, const Config& b) {
@@ -47,7 +47,7 @@ double length_at(const SelfMotionArc& arc, int chord, double u) {
   return arc.length[k] + u * (arc.length[k + 1] - arc.length[k]);
 }
 
-/// The nearest point of a chord's cubic; none beyond `within`.
+/// Returns the point of a chord's cubic that is nearest to q; none beyond `within`, rad.
 std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord, const Config& q,
                                 double within) {
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
@@ -79,8 +79,8 @@ struct Box {
   Config middle, radius;
   /// False where the cubic is surely further than `within` from q.
   [[nodiscard]] bool maybe_near(const Config& q, double within) const {
-    for (int j = kDof - 1; j >= 0;
-         --j) {  // the last joints turn most: most chords are told by them
+    // the last joints turn most: they rule out most chords
+    for (int j = kDof - 1; j >= 0; --j) {
       const double apart = std::abs(q[j] - middle[j]), reach = radius[j] + within;
       if (apart > reach && apart < kTwoPi - reach) return false;
     }
@@ -88,7 +88,8 @@ struct Box {
   }
 };
 
-/// A cubic lies in the hull of its four control points (Farin 2002, Bezier's form).
+/// Returns the box about a chord's cubic, which lies in the hull of its four control points (Farin
+/// 2002, Bezier's form).
 Box box_of(const SelfMotionArc& arc, int number, int chord) {
   constexpr double kRounding = 1e-9;  // rad: far above that of a few operations on angles
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
@@ -110,8 +111,8 @@ class Finder {
         boxes_.push_back(box_of(arcs_[static_cast<std::size_t>(number)], number, chord));
     }
   }
-  /// Near where the last question was answered first: nodes are asked about in the order of their
-  /// arcs.
+  /// Returns the place that is nearest to q; none beyond kCatch. Looks first near where the last
+  /// question was answered, since nodes are asked about in the order of their arcs.
   [[nodiscard]] std::optional<Place> find(const Config& q) {
     if (last_.arc >= 0) {
       const SelfMotionArc& arc = arcs_[static_cast<std::size_t>(last_.arc)];
@@ -148,6 +149,7 @@ class Finder {
   Place last_;
 };
 
+/// A node of the layer before, carried on to this one, or a node at a roll that is asked for.
 struct Image {
   Place place;
   Config q;
@@ -155,23 +157,24 @@ struct Image {
   bool asked = false;  // for its roll, however near the arc's end
 };
 
-/// What is carried on from the layer before, of nodes with twins one of two, whose twins come
+/// The nodes of the layer before that are carried on: one of each pair of twins, whose twins come
 /// behind them. The start of a path follows as the last.
 struct Before {
   std::vector<Config> q;
-  std::vector<int> slots;  // of each; -1 where it is carried on alone, since its roll is outside
+  std::vector<int> slots;  // of each; -1 for one that is only carried on, since its roll is outside
                            // the layer's window
   int nodes = 0;           // slots of the layer
   bool start = false;
   [[nodiscard]] int start_slot() const { return nodes; }
-  /// The slot of a node's twin; of the start, one that nothing else has.
+  /// Returns the slot of a node's twin; for the start a slot that nothing else has.
   [[nodiscard]] int flipped_of(int slot) const {
     if (slot < 0) return slot;
     return slot >= nodes ? slot ^ 1 : slot < nodes / 2 ? slot + nodes / 2 : slot - nodes / 2;
   }
 };
 
-/// Adds the points of an arc at which the roll has a value. They take the place of images nearby.
+/// Adds the points of an arc at which the roll has a value, rad. They take the place of images
+/// nearby.
 void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc,
                  int number, double spacing, std::vector<Image>& images) {
   for (int chord = 0; chord < arc.chords(); ++chord) {
@@ -197,21 +200,22 @@ void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const 
   }
 }
 
-/// Fills a layer.
+/// Fills a layer with nodes on its arcs.
 class Layer {
  public:
   Layer(const SelfMotion& motion, const Pose& tool, double spacing)
       : motion_(motion), tool_(tool), spacing_(spacing) {}
-  /// `images` of one arc, in the order of their lengths.
+  /// Appends the nodes of one arc: its `images`, which are in the order of their lengths, less
+  /// those that crowd, and nodes that fill the gaps between them.
   void place(const SelfMotionArc& arc, const std::vector<Image>& images);
-  /// Leaves out the points whose roll the layer does not allow. Returns the slot of each that there
-  /// was, -1: none.
+  /// Leaves out the points whose roll the layer does not allow. Returns the slot of each point that
+  /// there was; -1 for those left out.
   std::vector<int> keep_window(const PathLayer& layer);
   /// Adds the twins of all points.
   void add_flipped(const Before& before);
+  /// Links the points with those of the layer before, `last`, that they continue.
+  void link(const Before& before, std::vector<Point>& last);
   std::vector<Point> points;
-  std::vector<std::pair<int, int>>
-      continued;  // slot of the layer before, and the slot here that continues it
 
  private:
   void add(const Config& q, double length) {
@@ -220,15 +224,29 @@ class Layer {
     points.push_back(point);
     lengths_.push_back(length);
   }
+  /// Lists the images that are not too near to one before them, or to an end of the arc.
+  [[nodiscard]] std::vector<const Image*> uncrowded(const SelfMotionArc& arc,
+                                                    const std::vector<Image>& images) const;
+  /// Appends points between two lengths, at most kFill spacings apart.
   void fill(const SelfMotionArc& arc, double from, double to);
+  /// Appends the ends of an open arc, the images kept, and points that fill the gaps.
+  void fill_open(const SelfMotionArc& arc, const std::vector<const Image*>& kept);
+  /// Appends the images kept of a closed arc and points that fill the gaps, by their lengths.
+  void fill_closed(const SelfMotionArc& arc, const std::vector<const Image*>& kept);
+  /// Links the points of an arc, from slot `first` on, with their neighbours.
+  void link_along_arc(std::size_t first, bool closed);
+  /// Links the slot that an image continues with the point that continues it, of those from slot
+  /// `first` on: the image itself, or what stands in its way.
+  void link_to_source(const SelfMotionArc& arc, std::size_t first, const Image& image);
 
   const SelfMotion& motion_;
   const Pose& tool_;
   double spacing_;
   std::vector<double> lengths_;
+  // slot of the layer before, and the slot here that continues it
+  std::vector<std::pair<int, int>> continued_;
 };
 
-/// Points between two lengths, at most kFill spacings apart.
 void Layer::fill(const SelfMotionArc& arc, double from, double to) {
   const int parts = static_cast<int>(std::ceil((to - from) / (kFill * spacing_) - 1e-9));
   for (int part = 1; part < parts; ++part) {
@@ -243,8 +261,8 @@ void Layer::fill(const SelfMotionArc& arc, double from, double to) {
   }
 }
 
-void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
-  const std::size_t first = points.size();
+std::vector<const Image*> Layer::uncrowded(const SelfMotionArc& arc,
+                                           const std::vector<Image>& images) const {
   const double whole = arc.whole(), least = kCrowded * spacing_;
   std::vector<const Image*> kept;
   for (const Image& image : images) {
@@ -260,64 +278,94 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
     }
     kept.push_back(&image);
   }
-  if (!arc.closed) {
-    add(arc.q.front(), 0);
-    double before = 0;
-    for (const Image* image : kept) {
-      fill(arc, before, image->place.length);
-      add(image->q, image->place.length);
-      before = image->place.length;
-    }
-    fill(arc, before, whole);
-    add(arc.q.back(), whole);
-  } else if (kept.empty()) {
-    add(arc.q.front(), 0);
-    fill(arc, 0, whole);
-  } else {
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      const double at = kept[k]->place.length, next = k + 1 < kept.size()
-                                                          ? kept[k + 1]->place.length
-                                                          : kept[0]->place.length + whole;
-      add(kept[k]->q, at);
-      fill(arc, at, next);
-    }
-    // What was filled across the wrap goes to the front.
-    const auto wrapped =
-        std::find_if(lengths_.begin() + static_cast<std::ptrdiff_t>(first) + 1, lengths_.end(),
-                     [&](double x) { return x < kept[0]->place.length; });
-    const auto by = wrapped - lengths_.begin();
-    std::rotate(points.begin() + static_cast<std::ptrdiff_t>(first), points.begin() + by,
-                points.end());
-    std::rotate(lengths_.begin() + static_cast<std::ptrdiff_t>(first), wrapped, lengths_.end());
+  return kept;
+}
+
+void Layer::fill_open(const SelfMotionArc& arc, const std::vector<const Image*>& kept) {
+  add(arc.q.front(), 0);
+  double before = 0;
+  for (const Image* image : kept) {
+    fill(arc, before, image->place.length);
+    add(image->q, image->place.length);
+    before = image->place.length;
   }
+  fill(arc, before, arc.whole());
+  add(arc.q.back(), arc.whole());
+}
+
+void Layer::fill_closed(const SelfMotionArc& arc, const std::vector<const Image*>& kept) {
+  if (kept.empty()) {
+    add(arc.q.front(), 0);
+    fill(arc, 0, arc.whole());
+    return;
+  }
+  const auto first = static_cast<std::ptrdiff_t>(points.size());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const double at = kept[k]->place.length, next = k + 1 < kept.size()
+                                                        ? kept[k + 1]->place.length
+                                                        : kept[0]->place.length + arc.whole();
+    add(kept[k]->q, at);
+    fill(arc, at, next);
+  }
+  // What was filled across the wrap goes to the front.
+  const auto wrapped = std::find_if(lengths_.begin() + first + 1, lengths_.end(),
+                                    [&](double x) { return x < kept[0]->place.length; });
+  const auto by = wrapped - lengths_.begin();
+  std::rotate(points.begin() + first, points.begin() + by, points.end());
+  std::rotate(lengths_.begin() + first, wrapped, lengths_.end());
+}
+
+void Layer::link_along_arc(std::size_t first, bool closed) {
   const std::size_t end = points.size();
+  const bool round = closed && end > first + 1;
   for (std::size_t k = first; k < end; ++k) {
-    if (k > first || (arc.closed && end > first + 1))
-      points[k].beside[0] = static_cast<int>(k > first ? k - 1 : end - 1);
-    if (k + 1 < end || (arc.closed && end > first + 1))
-      points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
+    if (k > first || round) points[k].beside[0] = static_cast<int>(k > first ? k - 1 : end - 1);
+    if (k + 1 < end || round) points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
   }
-  for (const Image& image : images) {
-    if (image.source < 0) continue;
-    // The node that continues the source: its image, or what stands in its way.
-    const auto begin = lengths_.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto above = static_cast<std::size_t>(
-        std::lower_bound(begin, lengths_.end(), image.place.length) - lengths_.begin());
-    std::size_t nearest = first;
-    double least_gap = -1;
-    for (const std::size_t k :
-         {first, above - 1, above, end - 1}) {  // the ends are neighbours where the arc is closed
-      if (k < first || k >= end) continue;
-      double gap = std::abs(lengths_[k] - image.place.length);
-      if (arc.closed) gap = std::min(gap, whole - gap);
-      if (least_gap < 0 || gap < least_gap) {
-        least_gap = gap;
-        nearest = k;
-      }
+}
+
+void Layer::link_to_source(const SelfMotionArc& arc, std::size_t first, const Image& image) {
+  const std::size_t end = points.size();
+  const auto begin = lengths_.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto above = static_cast<std::size_t>(
+      std::lower_bound(begin, lengths_.end(), image.place.length) - lengths_.begin());
+  std::size_t nearest = first;
+  double least_gap = -1;
+  // the ends of a closed arc are neighbours
+  for (const std::size_t k : {first, above - 1, above, end - 1}) {
+    if (k < first || k >= end) continue;
+    double gap = std::abs(lengths_[k] - image.place.length);
+    if (arc.closed) gap = std::min(gap, arc.whole() - gap);
+    if (least_gap < 0 || gap < least_gap) {
+      least_gap = gap;
+      nearest = k;
     }
-    if (points[nearest].along[0] < 0 || least_gap == 0) points[nearest].along[0] = image.source;
-    continued.emplace_back(image.source, static_cast<int>(nearest));
   }
+  if (points[nearest].along[0] < 0 || least_gap == 0) points[nearest].along[0] = image.source;
+  continued_.emplace_back(image.source, static_cast<int>(nearest));
+}
+
+void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
+  const std::size_t first = points.size();
+  const std::vector<const Image*> kept = uncrowded(arc, images);
+  if (arc.closed)
+    fill_closed(arc, kept);
+  else
+    fill_open(arc, kept);
+  link_along_arc(first, arc.closed);
+  for (const Image& image : images)
+    if (image.source >= 0) link_to_source(arc, first, image);
+}
+
+void Layer::link(const Before& before, std::vector<Point>& last) {
+  for (const auto& [source, slot] : continued_) {
+    if (!before.start)
+      last[static_cast<std::size_t>(source)].along[1] = slot;
+    else if (source == before.start_slot())
+      last[0].along[1] = slot;
+  }
+  if (!before.start) return;
+  for (Point& point : points) point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
 }
 
 std::vector<int> Layer::keep_window(const PathLayer& layer) {
@@ -334,14 +382,14 @@ std::vector<int> Layer::keep_window(const PathLayer& layer) {
   };
   for (Point& point : kept)
     for (int& slot : point.beside) slot = moved(slot);
-  for (auto& [source, slot] : continued) slot = moved(slot);
-  std::erase_if(continued, [](const auto& link) { return link.second < 0; });
+  for (auto& [source, slot] : continued_) slot = moved(slot);
+  std::erase_if(continued_, [](const auto& link) { return link.second < 0; });
   points = std::move(kept);
   return slot_of;
 }
 
 void Layer::add_flipped(const Before& before) {
-  const auto half = points.size(), links = continued.size();
+  const auto half = points.size(), links = continued_.size();
   const auto by = static_cast<int>(half);
   for (std::size_t k = 0; k < half; ++k) {
     Point point = points[k];
@@ -352,7 +400,7 @@ void Layer::add_flipped(const Before& before) {
     points.push_back(point);
   }
   for (std::size_t k = 0; k < links; ++k)
-    continued.emplace_back(before.flipped_of(continued[k].first), continued[k].second + by);
+    continued_.emplace_back(before.flipped_of(continued_[k].first), continued_[k].second + by);
 }
 
 std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
@@ -362,13 +410,84 @@ std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
   return weights;
 }
 
-/// Foot on `axis` nearest `other`, of neighbouring joints, at a displacement of the former.
+/// Returns the point on the axis of joint `axis` that is nearest to that of its neighbour `other`.
 Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
   const Vector3d &a = chain.axis[axis], &b = chain.axis[other], n = a.cross(b),
                  d = chain.point[other] - chain.point[axis];
   const double sine2 = n.squaredNorm();
   if (sine2 < 1e-12) return chain.point[axis];
   return chain.point[axis] + (d.cross(b).dot(n) / sine2) * a;
+}
+
+/// The arcs of a layer, and the images on each of them.
+struct ArcsOfLayer {
+  std::vector<SelfMotionArc> arcs;
+  std::vector<std::vector<Image>> images;
+};
+
+/// Sets the images on the arcs of a layer: nodes `moved` of the layer before, each where it comes
+/// to lie nearest. Returns those that lie on none of the arcs.
+std::vector<Config> place_images(const SelfMotion& motion, const Pose& tool, const Before& before,
+                                 const std::vector<std::optional<Config>>& moved,
+                                 ArcsOfLayer& layer) {
+  layer.images.assign(layer.arcs.size(), {});
+  std::vector<Config> strays;
+  Finder finder(layer.arcs);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    auto q = moved[k];
+    if (!q) continue;
+    int source = before.slots[k];
+    const bool inside = motion.canonical(*q);
+    if (motion.is_flipped(*q)) {  // it came over to the other side, and its twin to this one
+      q = motion.flipped(*q);
+      source = before.flipped_of(source);
+    }
+    const auto place = finder.find(*q);
+    if (!place) {
+      if (inside) strays.push_back(*q);
+      continue;
+    }
+    if (!inside) {
+      q = motion.point(layer.arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u,
+                       tool);
+      if (!q) continue;
+    }
+    layer.images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, source});
+  }
+  return strays;
+}
+
+/// Returns the arcs of a layer with the images of the nodes of the layer before.
+ArcsOfLayer arcs_of(const SelfMotion& motion, const LockMethod& method, const Pose& tool,
+                    const Before& before, SelfMotion::Least least) {
+  // Without a closed form the arcs of the layer before are followed.
+  std::vector<Config> followed;
+  const std::vector<std::optional<Config>> moved = motion.images(before.q, tool, least);
+  for (const auto& q : moved)
+    if (method.best < 0 && q) followed.push_back(*q);
+  ArcsOfLayer layer;
+  layer.arcs = motion.arcs(tool, followed, SelfMotion::Flipped::kOne);
+  std::vector<Config> strays = place_images(motion, tool, before, moved, layer);
+  if (strays.empty()) return layer;
+  // They lie on arcs of which the closed form shows nothing.
+  strays.insert(strays.end(), followed.begin(), followed.end());
+  layer.arcs = motion.arcs(tool, strays, SelfMotion::Flipped::kOne);
+  place_images(motion, tool, before, moved, layer);
+  return layer;
+}
+
+/// Adds images to an arc where the roll costs least, and at the ends of what it may be.
+void add_at_asked_rolls(const Chain& chain, const Problem& problem, const SelfMotion& motion,
+                        const PathLayer& layer, const SelfMotionArc& arc, int number,
+                        std::vector<Image>& images) {
+  const Roll& window = layer.window;
+  const JointLimit& limit = chain.limit.back();
+  const auto add = [&](double roll) {
+    add_at_roll(roll, motion, layer.tool, arc, number, problem.resolution.arc, images);
+  };
+  if (problem.cost.roll > 0) add(0);
+  if (window.lower > limit.lower) add(window.lower);
+  if (window.upper < limit.upper && window.upper > window.lower) add(window.upper);
 }
 
 }  // namespace
@@ -395,71 +514,25 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   Before before;
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
-    const Pose& tool = path.layer(i).tool;
-    // Without a closed form the arcs of the layer before are followed.
-    std::vector<Config> followed;
-    const std::vector<std::optional<Config>> moved = motion.images(before.q, tool, least);
-    for (const auto& q : moved)
-      if (method.best < 0 && q) followed.push_back(*q);
-    std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed, SelfMotion::Flipped::kOne);
-    std::vector<std::vector<Image>> images;
-    std::vector<Config> strays;
-    const auto place_images = [&] {
-      images.assign(arcs.size(), {});
-      strays.clear();
-      Finder finder(arcs);
-      for (std::size_t k = 0; k < moved.size(); ++k) {
-        auto q = moved[k];
-        if (!q) continue;
-        int source = before.slots[k];
-        const bool inside = motion.canonical(*q);
-        if (motion.is_flipped(*q)) {  // it came over to the other side, and its twin to this one
-          q = motion.flipped(*q);
-          source = before.flipped_of(source);
-        }
-        const auto place = finder.find(*q);
-        if (!place) {
-          if (inside) strays.push_back(*q);
-          continue;
-        }
-        if (!inside) {
-          q = motion.point(arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u,
-                           tool);
-          if (!q) continue;
-        }
-        images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, source});
-      }
-    };
-    place_images();
-    if (!strays.empty()) {  // they lie on arcs of which the closed form shows nothing
-      strays.insert(strays.end(), followed.begin(), followed.end());
-      arcs = motion.arcs(tool, strays, SelfMotion::Flipped::kOne);
-      place_images();
-    }
-    Layer layer(motion, tool, problem.resolution.arc);
-    for (std::size_t k = 0; k < arcs.size(); ++k) {
-      // Where the roll costs least, and the ends of what it may be.
-      const Roll& window = path.layer(i).window;
-      const auto add = [&](double roll) {
-        add_at_roll(roll, motion, tool, arcs[k], static_cast<int>(k), problem.resolution.arc,
-                    images[k]);
-      };
-      if (chain.roll && problem.cost.roll > 0) add(0);
-      if (chain.roll && window.lower > chain.limit.back().lower) add(window.lower);
-      if (chain.roll && window.upper < chain.limit.back().upper && window.upper > window.lower)
-        add(window.upper);
-      std::stable_sort(images[k].begin(), images[k].end(), [](const Image& a, const Image& b) {
-        return a.place.length < b.place.length;
-      });
-      layer.place(arcs[k], images[k]);
+    const PathLayer& here = path.layer(i);
+    ArcsOfLayer found = arcs_of(motion, method, here.tool, before, least);
+    Layer layer(motion, here.tool, problem.resolution.arc);
+    for (std::size_t k = 0; k < found.arcs.size(); ++k) {
+      if (chain.roll)
+        add_at_asked_rolls(chain, problem, motion, here, found.arcs[k], static_cast<int>(k),
+                           found.images[k]);
+      std::stable_sort(
+          found.images[k].begin(), found.images[k].end(),
+          [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
+      layer.place(found.arcs[k], found.images[k]);
     }
     std::vector<Config> nodes;
     for (const Point& point : layer.points) nodes.push_back(point.q);
     std::vector<int> slot_of(nodes.size());
     std::iota(slot_of.begin(), slot_of.end(), 0);
-    if (chain.roll) slot_of = layer.keep_window(path.layer(i));
+    if (chain.roll) slot_of = layer.keep_window(here);
     if (twins) layer.add_flipped(before);
-    result.arcs += static_cast<std::int64_t>(arcs.size()) * (twins ? 2 : 1);
+    result.arcs += static_cast<std::int64_t>(found.arcs.size()) * (twins ? 2 : 1);
     const int slots = static_cast<int>(layer.points.size());
     if (i == 0 && problem.start) {
       // The start is the only node of layer 0; the others are transported as if there were none.
@@ -472,18 +545,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       result.points.push_back({start});
       continue;
     }
-    if (i > 0) {
-      auto& last = result.points.back();
-      for (const auto& [source, slot] : layer.continued) {
-        if (!before.start)
-          last[static_cast<std::size_t>(source)].along[1] = slot;
-        else if (source == before.start_slot())
-          last[0].along[1] = slot;
-      }
-    }
-    if (before.start)
-      for (Point& point : layer.points)
-        point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
+    if (i > 0) layer.link(before, result.points.back());
     before = {std::move(nodes), std::move(slot_of), slots, false};
     result.points.push_back(std::move(layer.points));
   }
