@@ -19,10 +19,11 @@ namespace swivel {
 
 namespace {
 
-constexpr double kMostTurning = 5;  // dalpha, that the path may turn from a knot to the next
+// in steps of dalpha: how far the path may turn from a knot to the next
+constexpr double kMostTurning = 5;
 
-/// Planes of layers for a tool that is turned: those of the tool that is not, under the smallest
-/// rotation.
+/// Returns the planes of some layers for a tool that is turned: those of the tool that is not, each
+/// under the smallest rotation.
 std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& planes,
                                 const std::vector<int>& layers, const ToolPath& turned) {
   std::vector<ArmPlane> found;
@@ -33,6 +34,35 @@ std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& 
   return found;
 }
 
+/// Returns the step bounds from knot to knot: the sums of those of the path's steps, which are one
+/// for all steps or one for each.
+std::vector<Config> bounds_between_knots(const std::vector<int>& knots,
+                                         const std::vector<Config>& of_steps) {
+  std::vector<Config> bounds(knots.size() - 1, Config::Zero());
+  for (std::size_t k = 0; k < bounds.size(); ++k)
+    for (int i = knots[k]; i < knots[k + 1]; ++i)
+      bounds[k] += of_steps[of_steps.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+  return bounds;
+}
+
+/// Throws InputError where a lattice with so many nodes, and so many in a layer, needs more memory
+/// than the machine has.
+void require_memory(double nodes_of_layer, std::int64_t nodes, const std::string& source) {
+  const double needed = 24.0 * static_cast<double>(nodes);
+  if (nodes_of_layer > 1e9 || !fits_in_memory(needed))
+    throw InputError(source, "resolution: " + std::to_string(nodes) +
+                                 " nodes of roll and arm angle are more than this machine "
+                                 "has memory for: allowed are larger droll, dphi or knot");
+}
+
+/// Returns by how many of `angles` cells of width dphi (rad) the arm angle may change on a step
+/// that lets it change by `turn` (rad).
+int cells_per_step(int angles, double turn, double dphi) {
+  return static_cast<int>(std::min<double>(
+      angles / 2, std::max<double>(std::min(1, angles / 2), std::floor(turn / dphi + 1e-9))));
+}
+
+/// Returns true if no deviation is above `most`.
 bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& most) {
   return !most ||
          std::all_of(deviation.begin(), deviation.end(), [&](double x) { return x <= *most; });
@@ -84,12 +114,7 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   const TraceSpan span("rolls");
   const Resolution& resolution = problem.resolution;
 
-  std::vector<Config> bounds(static_cast<std::size_t>(layers()) - 1, Config::Zero());
-  for (std::size_t k = 0; k < bounds.size(); ++k)
-    for (int i = knots_[k]; i < knots_[k + 1]; ++i)
-      bounds[k] +=
-          whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-  set_row_step_bounds(std::move(bounds));
+  set_row_step_bounds(bounds_between_knots(knots_, whole_step_bounds_));
 
   const Roll& range = *chain.free_roll;
   circle_ = range.circle();
@@ -118,25 +143,17 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
                                                 planes_at(arm, planes_, knots_, *start_path_));
   }
   width_ = at_roll(0).width();
-  const double needed = 24.0 * static_cast<double>(nodes());
-  if (static_cast<double>(rolls()) * width_ > 1e9 || !fits_in_memory(needed))
-    throw InputError(problem.source, "resolution: " + std::to_string(nodes()) +
-                                         " nodes of roll and arm angle are more than this machine "
-                                         "has memory for: allowed are larger droll, dphi or knot");
+  require_memory(static_cast<double>(rolls()) * width_, nodes(), problem.source);
 
-  const int angles = at_roll(0).angles();
   for (int k = 0; k + 1 < layers(); ++k) {
     Window& window = windows_.emplace_back();
-    window.phi = static_cast<int>(std::min<double>(
-        angles / 2,
-        std::max<double>(std::min(1, angles / 2),
-                         std::floor(limits_.arm_slope * way(k) / resolution.dphi + 1e-9))));
+    window.phi = cells_per_step(at_roll(0).angles(), limits_.arm_slope * way(k), resolution.dphi);
     widest_ = std::max(widest_, window.phi);
   }
   find_near(problem);
 }
 
-/// Of the knots at both ends of a step, m.
+/// Returns the travel from the knot at which a step starts to that at which it ends, m.
 double RollLattice::way(int step) const {
   return path_->layer(step + 1).travel - path_->layer(step).travel;
 }

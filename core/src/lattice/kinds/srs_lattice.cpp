@@ -21,13 +21,13 @@ namespace swivel {
 
 namespace {
 
-constexpr double kSliver =
-    1e-3;  // rad, what a range may have beyond whole turns without another image
+// rad, what a range may have beyond whole turns without another image
+constexpr double kSliver = 1e-3;
 constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
 constexpr double kMostWindings = 1024;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
 constexpr std::size_t kLastJoint = kDof - 1;
-/// Of groups of links, as of shares_body_poses().
+/// Bits of groups of links, as shares_body_poses() takes them.
 constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000,
                    kTool = 0b10000000;
 
@@ -35,13 +35,14 @@ int wrapped_index(long long j, int n) {
   return static_cast<int>(((j % n) + n) % n);
 }
 
-/// Least k with q + 2 pi k >= base; as the kernels compute it.
+/// Returns q + 2 pi k, with the least whole k that makes it at least `base`; as the kernels compute
+/// it.
 double image_from(double q, double base) {
   return q + kTwoPi * std::ceil((base - q) / kTwoPi);
 }
 
-/// Where the turn of a wide joint begins that its angles are given in: the one about 0, or the
-/// nearest that leaves 31 turns to both limits.
+/// Returns where the turn begins, rad, in which the angles of a wide joint are given: the turn
+/// about 0, or the nearest that leaves 31 turns to both limits.
 double turn_within(const JointLimit& limit) {
   constexpr double kFromLimits = (kMostTurns / 2 - 1) * kTwoPi;
   return std::clamp(-kPi, limit.lower + kFromLimits, limit.upper - kFromLimits - kTwoPi);
@@ -54,6 +55,143 @@ std::uint64_t next_id() {
 
 std::string gigabytes(double bytes) {
   return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB";
+}
+
+/// Returns the number of windings of a node, given the images of each joint. Throws InputError
+/// where images begin too far from 0, or there are too many windings.
+template <class Images>
+int count_windings(const std::array<Images, kDof>& images, const Chain& chain,
+                   const std::string& source) {
+  double windings = 1;
+  std::string wound;  // the joints that have more than one image
+  for (std::size_t j = 0; j < kDof; ++j) {
+    if (!(std::abs(images[j].base) <= kFarthest))
+      throw InputError(
+          source,
+          "joint '" + chain.joint_names[j] +
+              "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
+    if (images[j].count > 1)
+      wound += (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " +
+               std::to_string(images[j].count);
+    windings *= images[j].count;
+  }
+  if (windings > kMostWindings) {
+    const std::string number = formatted("%.4g", windings);
+    throw InputError(source, "joint limits allow " + number + " windings (" + wound +
+                                 "): allowed are 1024: narrow these limits in the URDF, or "
+                                 "widen them to more than 64 turns, so that the joint "
+                                 "counts as continuous");
+  }
+  return static_cast<int>(windings);
+}
+
+/// Throws InputError where a lattice of `layers` layers of `width` nodes needs more memory than the
+/// machine has.
+void require_memory(double width, int layers, const std::string& source) {
+  const double needed = width * layers * 17.0;  // cost-to-go, states, search
+  if (width > 1e8 || !fits_in_memory(needed))
+    throw InputError(source, "resolution: " + std::to_string(layers) + " layers x " +
+                                 std::to_string(static_cast<long long>(width)) + " nodes need " +
+                                 gigabytes(needed) + ", this machine has " +
+                                 gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
+}
+
+/// Returns by how many of `angles` cells the arm angle may change on a step.
+int cells_per_step(int angles, const Limits& limits, const Resolution& resolution) {
+  const int window = static_cast<int>(std::min<double>(
+      angles / 2,
+      std::max(1.0, std::floor(limits.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
+  return std::max(window, angles > 1 ? 1 : 0);
+}
+
+/// Sets the sines and cosines of the grid angles, three times around the circle.
+void fill_grid_angles(int angles, std::vector<double>& sine, std::vector<double>& cosine) {
+  sine.resize(static_cast<std::size_t>(3 * angles));
+  cosine.resize(sine.size());
+  for (int j = 0; j < angles; ++j)
+    for (const int k : {j, j + angles, j + 2 * angles}) {
+      const double phi_j = -kPi + kTwoPi * j / angles;
+      sine[static_cast<std::size_t>(k)] = std::sin(phi_j);
+      cosine[static_cast<std::size_t>(k)] = std::cos(phi_j);
+    }
+}
+
+/// Allots arrays of n numbers each, one after the other.
+struct Allotment {
+  std::size_t n = 0, used = 0;
+  /// Returns where the first of so many arrays begins.
+  std::size_t operator()(int arrays = 1) {
+    const std::size_t offset = used;
+    used += static_cast<std::size_t>(arrays) * n;
+    return offset;
+  }
+};
+
+/// Returns how many arrays the IK solutions of branches `moved` (bits) have of their own: joints
+/// and a mask each.
+std::size_t own_arrays(std::uint8_t moved, int windings) {
+  return static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings) *
+         (kDof + 1);
+}
+
+/// The arrays of one elbow side, by the sign of the triples.
+struct ElbowArrays {
+  std::array<std::array<std::size_t, kDof>, 2> joint{};  // [sign]: of the first image
+  std::array<std::array<std::size_t, 2>, 2> mask{};      // [sign][triple]
+};
+
+/// Allots one array for each joint, sign of its triple and image, and a mask for each triple and
+/// sign; with windings, which have masks of their own, the masks of triples are `never`.
+template <class Images>
+ElbowArrays allot_elbow(const std::array<Images, kDof>& images, bool windings, std::size_t never,
+                        Allotment& allot) {
+  ElbowArrays arrays;
+  for (std::size_t sign = 0; sign < 2; ++sign) {
+    for (std::size_t j = 0; j < kDof; ++j)
+      arrays.joint[sign][j] =
+          j == kElbowJoint && sign == 1 ? arrays.joint[0][j] : allot(images[j].count);
+    for (std::size_t& triple : arrays.mask[sign]) triple = windings ? never : allot();
+  }
+  return arrays;
+}
+
+/// Gives an IK solution arrays of its own: joints, and a mask beside one that is `free`. `span` is
+/// widened to hold them.
+template <class Offsets, class Span>
+void allot_own(std::size_t free, Allotment& allot, Offsets& offsets, Span& span) {
+  if (span.end == 0) span.begin = allot.used;
+  for (std::size_t& joint : offsets.q) joint = allot();
+  offsets.mask = {allot(), free};
+  span.end = allot.used;
+}
+
+/// Sets entries begin ... end - 1 of the arrays of all images but the first, of the joints whose
+/// first images' arrays lie at `offsets`, a whole turn from image to image.
+template <class Images>
+void fill_images(const std::array<Images, kDof>& images,
+                 const std::array<std::size_t, kDof>& offsets, std::size_t n, int begin, int end,
+                 double* data) {
+  for (std::size_t j = 0; j < kDof; ++j)
+    for (std::size_t image = 1; image < static_cast<std::size_t>(images[j].count); ++image) {
+      const double* from = data + offsets[j];
+      double* to = data + offsets[j] + image * n;
+      for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
+    }
+}
+
+/// Sets a winding's mask over entries begin ... begin + length - 1 of its IK solution: 0 where the
+/// masks of both triples are 0 and all joints are within their limits, else infinity.
+template <class Images>
+void fill_winding_mask(const LayerNodes& nodes, int solution,
+                       const std::array<Images, kDof>& images, const double* shoulder,
+                       const double* wrist, int begin, std::size_t length, double* mask) {
+  for (std::size_t k = 0; k < length; ++k) {
+    double excess = shoulder[k] + wrist[k];
+    for (int j = 0; j < kDof; ++j)
+      excess = std::max(excess, nodes.q(solution, j)[static_cast<std::size_t>(begin) + k] -
+                                    images[static_cast<std::size_t>(j)].upper);
+    mask[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
+  }
 }
 
 }  // namespace
@@ -70,81 +208,43 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   if (last_joint_)
     continuous_[kLastJoint] = true;  // whatever the arm angle, it stays within its limits
   const Resolution& resolution = problem.resolution;
-  const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
-  double windings = 1;
-  std::string wound;  // the joints that have more than one image
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
-    Images& images = images_[j];
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     if (last_joint_ && j == kLastJoint) {
-      images = {*last_joint_ - kPi, std::numeric_limits<double>::infinity(), 1};
+      images_[j] = {*last_joint_ - kPi, kUnbounded, 1};
     } else if (continuous_[j]) {
-      images = {limit.continuous ? -kPi : turn_within(limit),
-                std::numeric_limits<double>::infinity(), 1};
+      images_[j] = {limit.continuous ? -kPi : turn_within(limit), kUnbounded, 1};
     } else {
       const double lower = limit.lower + limits_.joint_margin,
                    upper = limit.upper - limits_.joint_margin;
       const auto joint = static_cast<Eigen::Index>(j);
-      images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower,
-                              arm.fit_error[joint]);
+      images_[j] = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower,
+                                  arm.fit_error[joint]);
     }
-    if (!(std::abs(images.base) <= kFarthest))
-      throw InputError(
-          problem.source,
-          "joint '" + chain.joint_names[j] +
-              "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
-    if (images.count > 1)
-      wound +=
-          (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
-    windings *= images.count;
   }
-  if (windings > kMostWindings) {
-    const std::string number = formatted("%.4g", windings);
-    throw InputError(problem.source, "joint limits allow " + number + " windings (" + wound +
-                                         "): allowed are 1024: narrow these limits in the URDF, or "
-                                         "widen them to more than 64 turns, so that the joint "
-                                         "counts as continuous");
-  }
-  windings_ = static_cast<int>(windings);
+  windings_ = count_windings(images_, chain, problem.source);
 
   tracks_ = 2;
   for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
   tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(solutions());
 
-  const double width = wanted * kBranches * windings_;
-  const double needed = width * layers() * 17.0;  // cost-to-go, states, search
-  if (width > 1e8 || !fits_in_memory(needed))
-    throw InputError(problem.source, "resolution: " + std::to_string(layers()) + " layers x " +
-                                         std::to_string(static_cast<long long>(width)) +
-                                         " nodes need " + gigabytes(needed) +
-                                         ", this machine has " + gigabytes(machine_memory()) +
-                                         ": allowed are larger ds or dphi");
+  const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
+  require_memory(wanted * kBranches * windings_, layers(), problem.source);
   angles_ = static_cast<int>(wanted);
-  window_ = static_cast<int>(std::min<double>(
-      angles_ / 2,
-      std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
-  window_ = std::max(window_, angles_ > 1 ? 1 : 0);
-
-  sine_.resize(static_cast<std::size_t>(3 * angles_));
-  cosine_.resize(sine_.size());
-  for (int j = 0; j < angles_; ++j)
-    for (const int k : {j, j + angles_, j + 2 * angles_}) {
-      const double phi_j = -kPi + kTwoPi * j / angles_;
-      sine_[static_cast<std::size_t>(k)] = std::sin(phi_j);
-      cosine_[static_cast<std::size_t>(k)] = std::cos(phi_j);
-    }
+  window_ = cells_per_step(angles_, limits_, resolution);
+  fill_grid_angles(angles_, sine_, cosine_);
+  if (planes_.empty()) planes_ = carried_planes(arm, path, budget);
 
   const auto m = static_cast<std::size_t>(layers());
-  if (planes_.empty()) planes_ = carried_planes(arm, path, budget);
   reach_.reserve(m);
   circles_.reserve(m);  // half a kilobyte each: touched as they come
   for (int i = 0; i < layers(); ++i) {
     if (i % 64 == 0) budget.poll(Stage::kLattice, i, layers());
-    const Pose& tool = path.layer(i).tool;
     reach_.push_back(reach_status(arm, plane(i).reach));
     const bool reachable = reach_.back() == ReachStatus::kReachable;
     auto& circles = circles_.emplace_back();
-    if (reachable) circles = elbow_circles(arm, plane(i), tool);
+    if (reachable) circles = elbow_circles(arm, plane(i), path.layer(i).tool);
     const Images& images = images_[kElbowJoint];
     for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle
       elbow_alive_.push_back(reachable && image_from(circle.q4, images.base) <= images.upper);
@@ -166,7 +266,7 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
     }
     return planes;
   }
-  std::optional<ArmPlane> last;  // of the whole path's layers
+  std::optional<ArmPlane> last;  // of the layers of the whole path so far
   const auto carried = [&](const Pose& tool) {
     return last ? carry_plane(arm, *last, tool) : first_plane(arm, tool);
   };
@@ -191,7 +291,8 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
   Images images;
   images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
   const double length = images.count * kTwoPi;
-  // What is wider by the fit error at both ends must not be another image of what is there already.
+  // The range is wider by the fit error at both ends, which must not add another image of an angle
+  // that it has already.
   const double slack = std::max(0.0, (length - (upper - lower)) / 2);
   images.base = lower - kLimitTolerance - std::min(fit_error, slack);
   images.upper = upper + kLimitTolerance + fit_error;
@@ -297,17 +398,9 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   out.count_ = count;
   out.arrays_ = {};
   out.offsets_.resize(static_cast<std::size_t>(solutions()));
-  constexpr std::size_t kOwn = kDof + 1;  // joints and a mask
-  const auto own =
-      static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings_) * kOwn;
-  const auto needed = static_cast<Eigen::Index>((tracks_ + own) * n);
+  const auto needed = static_cast<Eigen::Index>((tracks_ + own_arrays(moved, windings_)) * n);
   if (out.data_.size() < needed) out.data_.setZero(needed);
-  std::size_t used = 0;
-  const auto allot = [&](int arrays = 1) {
-    const std::size_t offset = used;
-    used += static_cast<std::size_t>(arrays) * n;
-    return offset;
-  };
+  Allotment allot{n};
   const std::size_t free = allot(), never = allot();
   std::fill_n(out.data_.data() + free, n, 0.0);
   std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
@@ -318,21 +411,15 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
-    const std::size_t begin = used;
-    // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with
-    // windings, per IK solution.
-    std::array<std::array<std::size_t, kDof>, 2> track{};
-    std::array<std::array<std::size_t, 2>, 2> mask{};  // [sign][triple]
-    if (alive)
-      for (std::size_t sign = 0; sign < 2; ++sign) {
-        for (std::size_t j = 0; j < kDof; ++j)
-          track[sign][j] = j == kElbowJoint && sign == 1 ? track[0][j] : allot(images_[j].count);
-        for (std::size_t& triple : mask[sign]) triple = windings_ == 1 ? allot() : never;
-        out.shared_[static_cast<std::size_t>(elbow)][sign] = {track[sign], mask[sign], alive};
-      }
-    for (int winding = 0, first_solution = elbow ? kElbowBit * windings_ : 0;
-         winding < 4 * windings_; ++winding) {
-      const int solution = first_solution + winding, branch = solution / windings_;
+    const std::size_t begin = allot.used;
+    ElbowArrays arrays;
+    if (alive) arrays = allot_elbow(images_, windings_ > 1, never, allot);
+    for (std::size_t sign = 0; alive && sign < 2; ++sign)
+      out.shared_[static_cast<std::size_t>(elbow)][sign] = {arrays.joint[sign], arrays.mask[sign],
+                                                            alive};
+    const int first_solution = elbow ? kElbowBit * windings_ : 0;
+    for (int solution = first_solution; solution < first_solution + 4 * windings_; ++solution) {
+      const int branch = solution / windings_;
       LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
       offsets.alive = alive;
       offsets.mask = {never, free};
@@ -340,27 +427,21 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
       const std::size_t shoulder = branch & kShoulderBit ? 1 : 0,
                         wrist = branch & kWristBit ? 1 : 0;
       if (windings_ == 1)
-        offsets.mask = {mask[shoulder][0], mask[wrist][1]};
+        offsets.mask = {arrays.mask[shoulder][0], arrays.mask[wrist][1]};
       else
         offsets.mask = {allot(), free};
       for (int j = 0; j < kDof; ++j)
         offsets.q[static_cast<std::size_t>(j)] =
-            track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
+            arrays.joint[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
             static_cast<std::size_t>(winding_images(solution % windings_, j)) * n;
     }
-    out.arrays_[static_cast<std::size_t>(elbow)][0] = {begin, used};
+    out.arrays_[static_cast<std::size_t>(elbow)][0] = {begin, allot.used};
   }
-  if (!moved) return;
-  used = tracks_ * n;
-  for (int solution = 0; solution < solutions(); ++solution) {
-    if (!(moved >> (solution / windings_) & 1)) continue;
-    LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
-    LayerNodes::Span& arrays = out.arrays_[static_cast<std::size_t>(elbow_side_of(solution))][1];
-    if (arrays.end == 0) arrays.begin = used;
-    for (std::size_t& joint : offsets.q) joint = allot();
-    offsets.mask = {allot(), free};
-    arrays.end = used;
-  }
+  allot.used = tracks_ * n;
+  for (int solution = 0; moved && solution < solutions(); ++solution)
+    if (moved >> (solution / windings_) & 1)
+      allot_own(free, allot, out.offsets_[static_cast<std::size_t>(solution)],
+                out.arrays_[static_cast<std::size_t>(elbow_side_of(solution))][1]);
 }
 
 void SrsLattice::lay_out_start(LayerNodes& out) const {
@@ -405,8 +486,8 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
   double* const data = out.data_.data();
   const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[static_cast<std::size_t>(elbow)];
   const bool shares_masks = windings_ == 1;
-  std::vector<double>
-      unlimited;  // masks of singularity alone, where the limits are each winding's own
+  // masks of singularity alone, where each winding has limits of its own
+  std::vector<double> unlimited;
   if (!shares_masks) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
   for (int triple = 0; triple < 2; ++triple) {
     const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
@@ -428,14 +509,8 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
               *last_joint_);
   std::fill(data + sign[0].q[kElbowJoint] + begin, data + sign[0].q[kElbowJoint] + end,
             image_from(circle.q4, images_[kElbowJoint].base));
-  const std::size_t n = static_cast<std::size_t>(out.count_);
   for (std::size_t s = 0; s < 2 && !shares_masks; ++s)
-    for (std::size_t j = 0; j < kDof; ++j)
-      for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image) {
-        const double* from = data + sign[s].q[j];
-        double* to = data + sign[s].q[j] + image * n;
-        for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
-      }
+    fill_images(images_, sign[s].q, static_cast<std::size_t>(out.count_), begin, end, data);
   for (int solution = first_solution;
        solution < first_solution + 4 * windings_ && out.layout_.moved; ++solution)
     if (out.layout_.moved >> (solution / windings_) & 1) copy_shared(solution, begin, end, out);
@@ -443,16 +518,10 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
   for (int solution = first_solution; solution < first_solution + 4 * windings_ && !shares_masks;
        ++solution) {
     const int branch = solution / windings_;
-    const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
-    const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
-    double* mask = data + out.offsets_[static_cast<std::size_t>(solution)].mask[0] + begin;
-    for (std::size_t k = 0; k < length; ++k) {
-      double excess = shoulder[k] + wrist[k];
-      for (int j = 0; j < kDof; ++j)
-        excess = std::max(excess, out.q(solution, j)[static_cast<std::size_t>(begin) + k] -
-                                      images_[static_cast<std::size_t>(j)].upper);
-      mask[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
-    }
+    fill_winding_mask(out, solution, images_,
+                      unlimited.data() + (branch & kShoulderBit ? length : 0),
+                      unlimited.data() + (branch & kWristBit ? 3 : 2) * length, begin, length,
+                      data + out.at(solution).mask[0] + begin);
   }
   for (const OffGridNode& moved : this->off_grid_nodes(out.layer_)) {
     const int solution = solution_of(moved.slot);
@@ -632,8 +701,8 @@ unsigned SrsLattice::manipulability_groups() const {
 }
 
 bool SrsLattice::all_below_manipulability(int layer, const Config& q) const {
-  constexpr double kBand =
-      1e-10;  // determinants of lengths of metres, which rounding changes by 1e-12
+  // determinants of lengths of metres, which rounding changes by 1e-12
+  constexpr double kBand = 1e-10;
   const auto J = chain_->jacobian(q);
   const Eigen::Matrix<double, 6, 6> G = J * J.transpose();
   const double found = G.determinant(),
