@@ -640,7 +640,7 @@ class Samples {
       const Pose tool = motion_->chain().tool((out.rows[k - 1].row.q + out.rows[k].row.q) / 2);
       const Pose there = path.at_travel(middle);
       Vector3d off = tool.translation() - there.translation();
-      // What is along the path only shifts the time.
+      // The part along the path only shifts the time.
       const Vector3d way = tool_[k].translation() - tool_[k - 1].translation();
       if (way.norm() > 1e-12) off -= off.dot(way) / way.squaredNorm() * way;
       strayed_[k] = off.norm();
@@ -740,8 +740,8 @@ class Samples {
   }
 
   void report_slow(TimedPath& out, std::size_t k, std::size_t end, bool starts, bool stops) const {
-    // Of a stretch that starts or stops the tool only the part after its first and before its last
-    // fastest moment counts.
+    // A stretch that starts or stops the tool counts only after its first and before its last
+    // fastest moment.
     const auto rises = [&](std::size_t i) { return asked_[i + 1].share > asked_[i].share; };
     std::size_t first = k, last = end - 1;
     if (starts)
@@ -804,6 +804,51 @@ std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath&
          formatted("' reaches it at s = %.4f m", most.s);
 }
 
+/// The places at which a motion rests: the travel of the start, of each corner that the tool stops
+/// at, and of the end, m; and the layers of these corners.
+struct Rests {
+  std::vector<double> travel;
+  std::vector<int> layer;
+};
+
+/// Returns the places at which a motion rests. Counts the corners that it rounds in `out`, with the
+/// most by which it leaves the path there.
+Rests rests_along(const PathMotion& motion, TimedPath& out) {
+  const ToolPath& path = motion.path();
+  Rests rests{{0}, {}};
+  for (const ToolPath::Corner& corner : path.corners()) {
+    if (corner.reach > 0) {
+      ++out.rounded;
+      out.rounded_position = std::max(out.rounded_position, corner.position);
+      out.rounded_angle = std::max(out.rounded_angle, corner.angle);
+      continue;
+    }
+    rests.travel.push_back(path.layer(corner.layer).travel);
+    rests.layer.push_back(corner.layer);
+  }
+  rests.travel.push_back(motion.length());
+  return rests;
+}
+
+/// Takes samples of a motion and slows it down until they keep all rates: where it is too fast, and
+/// after kLocalRounds rounds as a whole. Returns why there is no such motion, if there is none.
+std::optional<NoMotion> slow_down_to_rates(Samples& samples, std::vector<RestToRest>& pieces,
+                                           TimedPath& out) {
+  constexpr int kLocalRounds = 12, kRounds = 32;
+  constexpr double kJump = 100;  // an excess so large is a jump of the joints that was not seen
+  for (int round = 1;; ++round) {
+    if (auto failure = samples.take(out)) return failure;
+    const auto [slower, worst] = samples.measure_peaks(out);
+    if (slower <= 1) return std::nullopt;
+    if (round == kRounds || slower > kJump)
+      return NoMotion{worst, "the joints would have to jump between layers"};
+    if (round <= kLocalRounds)
+      samples.slow_down(out);
+    else
+      for (RestToRest& piece : pieces) piece.stretch(slower * (1 + 1e-6));
+  }
+}
+
 }  // namespace
 
 const char* to_string(JointRate rate) {
@@ -819,28 +864,15 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates,
     result.failure = motion.jumps().front();
     return result;
   }
-  const ToolPath& path = motion.path();
   TimedPath out;
   out.rate = options.rate;
   out.speed = options.speed;
   out.roll = motion.chain().roll;
-  std::vector<double> rests{0};
-  std::vector<int> at;
-  for (const ToolPath::Corner& corner : path.corners()) {
-    if (corner.reach > 0) {
-      ++out.rounded;
-      out.rounded_position = std::max(out.rounded_position, corner.position);
-      out.rounded_angle = std::max(out.rounded_angle, corner.angle);
-      continue;
-    }
-    rests.push_back(path.layer(corner.layer).travel);
-    at.push_back(corner.layer);
-  }
-  rests.push_back(motion.length());
+  const Rests rests = rests_along(motion, out);
   std::vector<RestToRest> pieces;
-  for (std::size_t k = 1; k < rests.size(); ++k) {
+  for (std::size_t k = 1; k < rests.travel.size(); ++k) {
     std::vector<PathSample> places;
-    result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]),
+    result.failure = survey(motion, places_between(motion, rests.travel[k - 1], rests.travel[k]),
                             options.chord.has_value(), places);
     if (result.failure) return result;
     pieces.emplace_back(rates, options, std::move(places));
@@ -849,26 +881,13 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates,
     out.ideal += pieces.back().ideal();
   }
   Samples samples(motion, rates, options, pieces, budget);
-  constexpr int kLocalRounds = 12, kRounds = 32;
-  constexpr double kJump = 100;  // an excess so large is a jump of the joints that was not seen
-  for (int round = 1;; ++round) {
-    result.failure = samples.take(out);
-    if (result.failure) return result;
-    const auto [slower, worst] = samples.measure_peaks(out);
-    if (slower <= 1) break;
-    if (round == kRounds || slower > kJump) {
-      result.failure = NoMotion{worst, "the joints would have to jump between layers"};
-      return result;
-    }
-    if (round <= kLocalRounds)
-      samples.slow_down(out);
-    else
-      for (RestToRest& piece : pieces) piece.stretch(slower * (1 + 1e-6));
-  }
+  result.failure = slow_down_to_rates(samples, pieces, out);
+  if (result.failure) return result;
   double t = 0;
   for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
     t += pieces[k].duration();
-    out.stops.push_back({path.layer(at[k]).s, t, path.layer(at[k]).waypoint});
+    const PathLayer& stop = motion.path().layer(rests.layer[k]);
+    out.stops.push_back({stop.s, t, stop.waypoint});
   }
   if (!options.chord) samples.measure_between(out);
   samples.find_slow(out);
