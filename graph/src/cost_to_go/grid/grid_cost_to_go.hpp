@@ -57,6 +57,8 @@ class GridCostToGo final : public CostToGo {
   struct MiddleRanges;
   struct Workspace;
   struct ChangedAngles;
+  class RemovalSweep;
+  class ReachSweep;
   using ColumnSet = std::vector<std::uint8_t>;  // [column], 0: not in it
   /// A set of angles: bit k of a column is its k-th angle. It serves as the set of columns that
   /// hold any, too.

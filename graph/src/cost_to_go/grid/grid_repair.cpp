@@ -17,7 +17,7 @@ double& GridCostToGo::value_at(int layer, int slot) {
 }
 
 /// Calls visit(b, rest, delta) for the nodes b of the next layer that lie in the window of a node
-/// and whose cost-to-go `rest` passes worth() when it is their turn.
+/// and whose cost-to-go `rest` passes worth() when they are looked at.
 template <class Worth, class Visit>
 void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth,
                                   const Visit& visit) {
@@ -133,7 +133,7 @@ void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
 }
 
 /// What has changed of one elbow side's values on the way down: angles of the layer after, of any
-/// solution, and of this one.
+/// of its solutions, and of this layer.
 struct alignas(64) GridCostToGo::ChangedAngles {
   AngleSet after, here;
   AngleSet dependent, needed;  // angles here that may change, and those after that decide
@@ -150,123 +150,169 @@ struct alignas(64) GridCostToGo::ChangedAngles {
   }
 };
 
+/// Goes down the layers from the last one with something pending, and repairs the values that
+/// depend on removed nodes and edges and on raised costs.
+class GridCostToGo::RemovalSweep {
+ public:
+  explicit RemovalSweep(GridCostToGo& of)
+      : of_(of), lattice_(*of.lattice_), verdicts_(of.verdicts_), pending_(of.verdicts_.pending) {
+    for (ChangedAngles& changed : changes_)
+      changed.after = changed.here = AngleSet(static_cast<std::size_t>(of.tile_columns()), 0);
+  }
+
+  void run() {
+    for (int layer = last_pending(); layer >= 0;) {
+      int end = layer;  // end of the layers that elbow sides go through alone
+      while (end >= 0 && layer - end < kMostAlone && goes_alone(end)) --end;
+      if (end < layer) {
+        repair_sides_alone(layer, end);
+      } else {
+        --end;
+        repair_sides_together(layer);
+      }
+      const bool goes_on = changes_[0].any_after || changes_[1].any_after;
+      layer = goes_on ? end : last_pending();  // nothing changes until there
+    }
+  }
+
+ private:
+  [[nodiscard]] int last_pending() const {
+    return pending_.empty() ? -1 : pending_.rbegin()->first;
+  }
+  [[nodiscard]] ChangedAngles& changes(int side) {
+    return changes_[static_cast<std::size_t>(side)];
+  }
+  [[nodiscard]] int side_of(int slot) const {
+    return lattice_.elbow_side_of(lattice_.solution_of(slot));
+  }
+
+  /// Returns true if each elbow side can go through a layer by itself.
+  [[nodiscard]] bool goes_alone(int layer) const {
+    const auto now = pending_.find(layer);
+    return (layer > 0 || !lattice_.has_start()) &&
+           (now == pending_.end() || now->second.tails.empty()) &&
+           (layer == of_.goal_ || of_.elbow_sides_part(layer));
+  }
+
+  /// Sets the value of a node and notes that it has changed.
+  void set(int layer, int slot, double value) {
+    if (of_.at(layer, slot) == value) return;
+    of_.value_at(layer, slot) = value;
+    ChangedAngles& changed = changes(side_of(slot));
+    const int angle = lattice_.angle_of(slot);
+    changed.here[static_cast<std::size_t>(angle / kTileWidth)] |=
+        static_cast<std::uint8_t>(1 << angle % kTileWidth);
+    changed.any_here = true;
+  }
+
+  /// Adds their costs to nodes that cost more now. They are first computed with the layer after as
+  /// it was; where that changed too, they are relaxed next.
+  void raise(int side, int layer, const Verdicts::Pending& now) {
+    for (const int slot : now.raised)
+      if (side_of(slot) == side)
+        if (const double value = of_.at(layer, slot); value != kUnreachable)
+          set(layer, slot, verdicts_.cost(layer, slot) + value);
+  }
+  void remove(int side, int layer, const Verdicts::Pending& now) {
+    for (const int slot : now.nodes)
+      if (side_of(slot) == side && of_.at(layer, slot) != kUnreachable)
+        set(layer, slot, kUnreachable);
+  }
+
+  /// Finds what depends on the changes of the layer after, and loads what of that layer it depends
+  /// on.
+  void load_after(int side, int layer) {
+    ChangedAngles& changed = changes(side);
+    Workspace& after = of_.workspace(layer + 1);
+    of_.widen(changed.after, changed.dependent);
+    of_.widen(changed.dependent, changed.needed);
+    of_.load_tiles(side, layer + 1, changed.needed, after);
+    of_.publish_values(side, after);
+  }
+  void relax_loaded(int side, int layer) {
+    Workspace& here = of_.workspace(layer);
+    of_.relax(side, layer, here, of_.workspace(layer + 1));
+    of_.apply_masks(side, here);
+    of_.add_node_costs(side, here);
+  }
+  /// Stores the values of what was loaded and notes which of them have changed.
+  void settle(int side, int layer) {
+    ChangedAngles& changed = changes(side);
+    of_.prune_above_limit(side, of_.workspace(layer));
+    if (of_.renew_tiles(side, of_.workspace(layer), changed.dependent, changed.here))
+      changed.any_here = true;
+  }
+
+  /// Repairs the layers from `layer` down to before `end`, each elbow side by itself.
+  void repair_sides_alone(int layer, int end) {
+    of_.budget_.poll();
+    of_.by_elbow_side([&](int side) {
+      ChangedAngles& changed = changes(side);
+      for (int here = layer; here > end; --here) {
+        const auto now = pending_.find(here);
+        if (now != pending_.end()) raise(side, here, now->second);
+        if (changed.any_after) {
+          load_after(side, here);
+          of_.load_tiles(side, here, changed.dependent, of_.workspace(here),
+                         &of_.workspace(here + 1).half(side).reached);
+          relax_loaded(side, here);
+          settle(side, here);
+        }
+        if (now != pending_.end()) remove(side, here, now->second);
+        changed.next_layer();
+      }
+    });
+    pending_.erase(pending_.upper_bound(end), pending_.end());
+  }
+
+  /// Repairs a layer from which edges may lead to the other elbow side.
+  void repair_sides_together(int layer) {
+    changes_[0].add(changes_[1]);
+    changes_[1].add(changes_[0]);
+    const auto now = pending_.find(layer);
+    for (int side = 0; side < SrsLattice::kElbowSides && now != pending_.end(); ++side)
+      raise(side, layer, now->second);
+    if (changes_[0].any_after) relax_together(layer);
+    if (now != pending_.end()) {
+      for (int side = 0; side < SrsLattice::kElbowSides; ++side) remove(side, layer, now->second);
+      for (const int slot : now->second.tails) {
+        of_.budget_.poll();
+        if (layer < of_.goal_ && of_.at(layer, slot) != kUnreachable)
+          set(layer, slot, of_.relax_one(layer, slot));
+      }
+      pending_.erase(now);
+    }
+    for (ChangedAngles& changed : changes_) changed.next_layer();
+  }
+  void relax_together(int layer) {
+    if (layer == 0 && lattice_.has_start()) {
+      const int slot = lattice_.start_slot();
+      if (of_.at(0, slot) != kUnreachable) set(0, slot, of_.relax_one(0, slot));
+      return;
+    }
+    of_.by_elbow_side([&](int side) {
+      load_after(side, layer);
+      of_.load_tiles(side, layer, changes(side).dependent, of_.workspace(layer));
+    });
+    of_.by_elbow_side([&](int side) { relax_loaded(side, layer); });
+    of_.relax_removed(layer);
+    for (int side = 0; side < SrsLattice::kElbowSides; ++side) settle(side, layer);
+  }
+
+  GridCostToGo& of_;
+  const SrsLattice& lattice_;
+  Verdicts& verdicts_;
+  decltype(Verdicts::pending)& pending_;
+  std::array<ChangedAngles, SrsLattice::kElbowSides> changes_;
+};
+
 void GridCostToGo::propagate_removals() {
   const TraceSpan span("repair");
   forget_joints();
   auto& pending = verdicts_.pending;
   while (!pending.empty() && pending.rbegin()->first > goal_)
     pending.erase(std::prev(pending.end()));
-  std::array<ChangedAngles, SrsLattice::kElbowSides> changes;
-  for (ChangedAngles& changed : changes)
-    changed.after = changed.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
-  const auto set = [&](int layer, int slot, double value) {
-    if (at(layer, slot) == value) return;
-    value_at(layer, slot) = value;
-    ChangedAngles& changed =
-        changes[static_cast<std::size_t>(lattice_->elbow_side_of(lattice_->solution_of(slot)))];
-    const int angle = lattice_->angle_of(slot);
-    changed.here[static_cast<std::size_t>(angle / kTileWidth)] |=
-        static_cast<std::uint8_t>(1 << angle % kTileWidth);
-    changed.any_here = true;
-  };
-  const auto on_elbow_side = [&](int side, int slot) {
-    return lattice_->elbow_side_of(lattice_->solution_of(slot)) == side;
-  };
-  // Nodes that cost more now are first computed with the layer after as it was; where that changed
-  // too, they are relaxed next.
-  const auto raise = [&](int side, int layer, const Verdicts::Pending& now) {
-    for (const int slot : now.raised)
-      if (on_elbow_side(side, slot))
-        if (const double value = at(layer, slot); value != kUnreachable)
-          set(layer, slot, verdicts_.cost(layer, slot) + value);
-  };
-  const auto remove = [&](int side, int layer, const Verdicts::Pending& now) {
-    for (const int slot : now.nodes)
-      if (on_elbow_side(side, slot) && at(layer, slot) != kUnreachable)
-        set(layer, slot, kUnreachable);
-  };
-  // Find what depends on the changes of the layer after, and what of that layer it depends on.
-  const auto load_after = [&](int side, int layer, ChangedAngles& changed) {
-    widen(changed.after, changed.dependent);
-    widen(changed.dependent, changed.needed);
-    load_tiles(side, layer + 1, changed.needed, workspace(layer + 1));
-    publish_values(side, workspace(layer + 1));
-  };
-  const auto relax_loaded = [&](int side, int layer) {
-    relax(side, layer, workspace(layer), workspace(layer + 1));
-    apply_masks(side, workspace(layer));
-    add_node_costs(side, workspace(layer));
-  };
-  const auto settle = [&](int side, int layer, ChangedAngles& changed) {
-    prune_above_limit(side, workspace(layer));
-    if (renew_tiles(side, workspace(layer), changed.dependent, changed.here))
-      changed.any_here = true;
-  };
-  const auto goes_alone = [&](int layer) {
-    const auto now = pending.find(layer);
-    return (layer > 0 || !lattice_->has_start()) &&
-           (now == pending.end() || now->second.tails.empty()) &&
-           (layer == goal_ || elbow_sides_part(layer));
-  };
-  for (int layer = pending.empty() ? -1 : pending.rbegin()->first; layer >= 0;) {
-    int end = layer;  // end of the layers that elbow sides go through alone
-    while (end >= 0 && layer - end < kMostAlone && goes_alone(end)) --end;
-    if (end < layer) {
-      budget_.poll();
-      by_elbow_side([&](int side) {
-        ChangedAngles& changed = changes[static_cast<std::size_t>(side)];
-        for (int here = layer; here > end; --here) {
-          const auto now = pending.find(here);
-          if (now != pending.end()) raise(side, here, now->second);
-          if (changed.any_after) {
-            load_after(side, here, changed);
-            load_tiles(side, here, changed.dependent, workspace(here),
-                       &workspace(here + 1).half(side).reached);
-            relax_loaded(side, here);
-            settle(side, here, changed);
-          }
-          if (now != pending.end()) remove(side, here, now->second);
-          changed.next_layer();
-        }
-      });
-      pending.erase(pending.upper_bound(end), pending.end());
-    } else {
-      --end;
-      changes[0].add(changes[1]);
-      changes[1].add(changes[0]);
-      const bool any = changes[0].any_after;
-      const auto now = pending.find(layer);
-      for (int side = 0; side < SrsLattice::kElbowSides && now != pending.end(); ++side)
-        raise(side, layer, now->second);
-      if (any && layer == 0 && lattice_->has_start()) {
-        const int slot = lattice_->start_slot();
-        if (at(0, slot) != kUnreachable) set(0, slot, relax_one(0, slot));
-      } else if (any) {
-        by_elbow_side([&](int side) {
-          ChangedAngles& changed = changes[static_cast<std::size_t>(side)];
-          load_after(side, layer, changed);
-          load_tiles(side, layer, changed.dependent, workspace(layer));
-        });
-        by_elbow_side([&](int side) { relax_loaded(side, layer); });
-        relax_removed(layer);
-        for (int side = 0; side < SrsLattice::kElbowSides; ++side)
-          settle(side, layer, changes[static_cast<std::size_t>(side)]);
-      }
-      if (now != pending.end()) {
-        for (int side = 0; side < SrsLattice::kElbowSides; ++side) remove(side, layer, now->second);
-        for (const int slot : now->second.tails) {
-          budget_.poll();
-          if (layer < goal_ && at(layer, slot) != kUnreachable)
-            set(layer, slot, relax_one(layer, slot));
-        }
-        pending.erase(now);
-      }
-      for (ChangedAngles& changed : changes) changed.next_layer();
-    }
-    layer = end;
-    if (!changes[0].any_after && !changes[1].any_after)
-      layer = pending.empty() ? -1 : pending.rbegin()->first;  // nothing until there
-  }
+  RemovalSweep(*this).run();
 }
 
 // --- reach
@@ -294,7 +340,7 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
   return best;
 }
 
-/// Makes as many rows as so many layers need, and one more.
+/// Makes as many rows of costs as `layers` layers need, and one more.
 void GridCostToGo::begin_reach_rows(int layers) {
   const auto rows = static_cast<std::size_t>((layers + Reach::kStride - 1) / Reach::kStride) + 1;
   reach_.rows.resize(rows * static_cast<std::size_t>(lattice_->width()),
@@ -315,41 +361,86 @@ void GridCostToGo::keep_reach(int side, int layer, float* kept) {
           static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
 }
 
-int GridCostToGo::deepest_reachable() {
-  if (knows_reach()) return reach_.deepest;
-  const TraceSpan span("reach");
-  reach_.known = false;
-  reach_.rows.clear();
-  const int n = lattice_->angles();
-  forget_joints();
-  by_elbow_side([&](int side) {
-    begin_with_all(side, 0, workspace(0));
-    publish_values(side, workspace(0));
-  });
-  if (!workspace(0).reaches_any()) return -1;
-  std::array<int, SrsLattice::kElbowSides> deepest{0, 0};
-  // costs of these layers' nodes
-  std::vector<float> ended(static_cast<std::size_t>(lattice_->width()));
-  const auto row_of = [&](int layer) {
+/// Goes up the layers from layer 0, whose nodes are in its workspace, as far as paths reach, and
+/// keeps what nodes cost from there.
+class GridCostToGo::ReachSweep {
+ public:
+  explicit ReachSweep(GridCostToGo& of)
+      : of_(of), lattice_(*of.lattice_), ended_(static_cast<std::size_t>(of.lattice_->width())) {}
+
+  void run() {
+    of_.begin_reach_rows(0);
+    for (int layer = 1, end = 0;
+         layer < lattice_.layers() && of_.workspace(layer - 1).reaches_any(); layer = end) {
+      of_.budget_.poll();
+      end = layer + 1;
+      const bool alone = goes_alone(layer);
+      while (alone && end < lattice_.layers() && end - layer < kMostAlone && goes_alone(end)) ++end;
+      of_.begin_reach_rows(end - 1);
+      const auto* removed = of_.verdicts_.removed_edges(layer - 1);
+      const bool from_start = layer == 1 && lattice_.has_start();
+      of_.by_elbow_side([&](int side) {
+        for (int at = layer; at < end; ++at) {
+          if ((at - 1) % Reach::kStride == 0) of_.keep_reach(side, at - 1, row_of(at - 1));
+          if (!from_start) step(side, at);
+          if (alone) finish(side, at);
+        }
+      });
+      if (alone) continue;
+      if (from_start)
+        step_from_start();
+      else if (removed)
+        step_again(layer, *removed);
+      for (int side = 0; side < SrsLattice::kElbowSides; ++side) finish(side, layer);
+      of_.collect_counts();
+    }
+  }
+
+  /// Returns the deepest layer that paths reach.
+  [[nodiscard]] int deepest() const { return std::max(deepest_[0], deepest_[1]); }
+
+  /// Keeps what the nodes of the deepest layer cost, and returns the least of that.
+  double keep_deepest() {
+    const int layer = deepest();
+    const bool to_the_end = layer == lattice_.layers() - 1;
+    float* const row = row_of(layer);
+    for (int side = 0; side < SrsLattice::kElbowSides; ++side) {
+      const int first = of_.first_solution(side) * lattice_.angles(), width = lattice_.width() / 2;
+      if (to_the_end || deepest_[static_cast<std::size_t>(side)] < layer)
+        of_.keep_reach(side, layer, row);
+      else
+        std::copy_n(ended_.begin() + first, width, row + first);
+    }
+    return *std::min_element(row, row + lattice_.width());
+  }
+
+ private:
+  [[nodiscard]] float* row_of(int layer) {
     const int row = (layer + Reach::kStride - 1) / Reach::kStride;
-    return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
-  };
-  const auto keep_every_few = [&](int side, int layer) {
-    if (layer % Reach::kStride == 0) keep_reach(side, layer, row_of(layer));
-  };
-  const auto step = [&](int side, int layer) {
-    Workspace &here = workspace(layer), &before = workspace(layer - 1);
-    begin(side, layer, here);
-    reach_back(side, layer - 1, before, here);
-    relax(side, layer - 1, here, before);
-    apply_masks(side, here);
-  };
-  // Recomputes the cost of a node where the step that it came by is removed, or where the layer
-  // before is the start alone.
-  const auto step_one = [&](int layer, int slot) {
-    Workspace& here = workspace(layer);
-    const Tile tile{lattice_->solution_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
-    const int side = lattice_->elbow_side_of(tile.solution);
+    return of_.reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_.width();
+  }
+
+  /// Returns true if each elbow side can step to a layer by itself.
+  [[nodiscard]] bool goes_alone(int layer) const {
+    return (layer > 1 || !lattice_.has_start()) && of_.elbow_sides_part(layer - 1);
+  }
+
+  /// Computes the costs of one elbow side's nodes from those of the layer before.
+  void step(int side, int layer) {
+    Workspace &here = of_.workspace(layer), &before = of_.workspace(layer - 1);
+    of_.begin(side, layer, here);
+    of_.reach_back(side, layer - 1, before, here);
+    of_.relax(side, layer - 1, here, before);
+    of_.apply_masks(side, here);
+  }
+
+  /// Recomputes the cost of a node where the step that it came by is removed, or where the layer
+  /// before is the start alone.
+  void step_one(int layer, int slot) {
+    const int n = lattice_.angles();
+    Workspace& here = of_.workspace(layer);
+    const Tile tile{lattice_.solution_of(slot), lattice_.angle_of(slot) / kTileWidth, true};
+    const int side = lattice_.elbow_side_of(tile.solution);
     std::vector<Tile>& tiles = here.half(side).tiles;
     double* row = here.row.data() + tile.solution * n;
     const auto place = std::lower_bound(tiles.begin(), tiles.end(), tile);
@@ -357,76 +448,68 @@ int GridCostToGo::deepest_reachable() {
       std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
       tiles.insert(place, tile);
     }
-    solve_columns(here, side, tile.column, tile.column + 1);
-    row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, workspace(layer - 1));
-  };
-  const auto step_from_start = [&] {
-    const SrsLattice::Run run = lattice_->run_after(0, lattice_->start_slot());
-    for (int side = 0; side < SrsLattice::kElbowSides; ++side) begin(side, 1, workspace(1));
-    for (int solution = 0; solution < lattice_->solutions(); ++solution)
+    of_.solve_columns(here, side, tile.column, tile.column + 1);
+    row[lattice_.angle_of(slot)] = of_.relax_one_forward(layer, slot, of_.workspace(layer - 1));
+  }
+
+  /// Computes the costs of layer 1 where layer 0 is the start alone.
+  void step_from_start() {
+    const int n = lattice_.angles();
+    const SrsLattice::Run run = lattice_.run_after(0, lattice_.start_slot());
+    for (int side = 0; side < SrsLattice::kElbowSides; ++side) of_.begin(side, 1, of_.workspace(1));
+    for (int solution = 0; solution < lattice_.solutions(); ++solution)
       for (int k = 0; k < run.count; ++k) step_one(1, solution * n + (run.first + k) % n);
-  };
-  const auto step_again = [&](int layer, const Verdicts::RemovedEdges& removed) {
-    const Workspace& before = workspace(layer - 1);
+  }
+
+  /// Recomputes the costs of the nodes of a layer that came by edges which are removed.
+  void step_again(int layer, const Verdicts::RemovedEdges& removed) {
+    const Workspace& before = of_.workspace(layer - 1);
     const auto gives_value = [&](const Verdicts::HalfEdge& edge, double value) {
-      const int n_padded = n + 2 * lattice_->window(), solution = lattice_->solution_of(edge.other);
-      const int place = solution * n_padded + lattice_->window() + lattice_->angle_of(edge.other);
+      const int n_padded = lattice_.angles() + 2 * lattice_.window(),
+                solution = lattice_.solution_of(edge.other);
+      const int place = solution * n_padded + lattice_.window() + lattice_.angle_of(edge.other);
       return edge.cost + before.value[static_cast<std::size_t>(place)] == value;
     };
     for (const auto& [b, edges] : removed.heads)
-      if (workspace(layer).find(*lattice_, b) &&
+      if (of_.workspace(layer).find(lattice_, b) &&
           std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
-            return gives_value(edge, workspace(layer).row[static_cast<std::size_t>(b)]);
+            return gives_value(edge, of_.workspace(layer).row[static_cast<std::size_t>(b)]);
           }))
         step_one(layer, b);
-  };
-  const auto goes_alone = [&](int layer) {
-    return (layer > 1 || !lattice_->has_start()) && elbow_sides_part(layer - 1);
-  };
-  const auto finish = [&](int side, int layer) {
-    publish_values(side, workspace(layer));
-    int& last = deepest[static_cast<std::size_t>(side)];
-    if (!workspace(layer).half(side).solutions.empty())
+  }
+
+  /// Makes a layer's costs those that the next layer reads. Keeps the costs of the layer before
+  /// where an elbow side ends there.
+  void finish(int side, int layer) {
+    of_.publish_values(side, of_.workspace(layer));
+    int& last = deepest_[static_cast<std::size_t>(side)];
+    if (!of_.workspace(layer).half(side).solutions.empty())
       last = layer;
     else if (last == layer - 1)
-      keep_reach(side, last, ended.data());
-  };
-  begin_reach_rows(0);
-  for (int layer = 1, end = 0; layer < lattice_->layers() && workspace(layer - 1).reaches_any();
-       layer = end) {
-    budget_.poll();
-    end = layer + 1;
-    const bool alone = goes_alone(layer);
-    while (alone && end < lattice_->layers() && end - layer < kMostAlone && goes_alone(end)) ++end;
-    begin_reach_rows(end - 1);
-    const auto* removed = verdicts_.removed_edges(layer - 1);
-    const bool from_start = layer == 1 && lattice_->has_start();
-    by_elbow_side([&](int side) {
-      for (int at = layer; at < end; ++at) {
-        keep_every_few(side, at - 1);
-        if (!from_start) step(side, at);
-        if (alone) finish(side, at);
-      }
-    });
-    if (alone) continue;
-    if (from_start)
-      step_from_start();
-    else if (removed)
-      step_again(layer, *removed);
-    for (int side = 0; side < SrsLattice::kElbowSides; ++side) finish(side, layer);
-    collect_counts();
+      of_.keep_reach(side, last, ended_.data());
   }
-  reach_.deepest = std::max(deepest[0], deepest[1]);
-  const bool to_the_end = reach_.deepest == lattice_->layers() - 1;
-  float* const row = row_of(reach_.deepest);
-  for (int side = 0; side < SrsLattice::kElbowSides; ++side) {
-    const int first = first_solution(side) * n, width = lattice_->width() / 2;
-    if (to_the_end || deepest[static_cast<std::size_t>(side)] < reach_.deepest)
-      keep_reach(side, reach_.deepest, row);
-    else
-      std::copy_n(ended.begin() + first, width, row + first);
-  }
-  reach_.best = *std::min_element(row, row + lattice_->width());
+
+  GridCostToGo& of_;
+  const SrsLattice& lattice_;
+  std::array<int, SrsLattice::kElbowSides> deepest_{0, 0};
+  std::vector<float> ended_;  // costs of the nodes of the layer at which each elbow side ends
+};
+
+int GridCostToGo::deepest_reachable() {
+  if (knows_reach()) return reach_.deepest;
+  const TraceSpan span("reach");
+  reach_.known = false;
+  reach_.rows.clear();
+  forget_joints();
+  by_elbow_side([&](int side) {
+    begin_with_all(side, 0, workspace(0));
+    publish_values(side, workspace(0));
+  });
+  if (!workspace(0).reaches_any()) return -1;
+  ReachSweep sweep(*this);
+  sweep.run();
+  reach_.deepest = sweep.deepest();
+  reach_.best = sweep.keep_deepest();
   reach_.known = true;
   reach_.removed = verdicts_.removed();
   return reach_.deepest;
