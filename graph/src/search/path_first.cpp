@@ -298,71 +298,75 @@ class Search {
       return std::find(keys.begin(), keys.end(), key) != keys.end();
     }
   };
-  void expand_failed_region(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
-    const auto add = [&](int layer, int slot, FailureId failure) {
+  /// Adds the neighbours of a failing node that are not known to the frontier of its region.
+  void add_neighbours(const Failure& x, std::deque<Failure>& frontier) const {
+    const auto add = [&](int layer, int slot) {
       if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown)
-        frontier.push_back({layer, slot, failure});
+        frontier.push_back({layer, slot, x.failure});
     };
-    const auto add_neighbours = [&](const Failure& x) {
-      for (const int by : {-1, 1})
-        if (x.layer + by <= cost_to_go_.goal_layer())
-          add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.slot, by), x.failure);
-      for (const int by : {1, -1})
-        for (const int slot : {lattice_.neighbour_in_redundancy(x.layer, x.slot, by),
-                               lattice_.neighbour_in_roll(x.layer, x.slot, by)})
-          add(x.layer, slot, x.failure);
-    };
-    for (const Failure& node : failed) add_neighbours(node);
-    // While one wave is asked about, the next is made: a wave takes about half of the frontier, so
-    // that there mostly is another.
-    const auto most = [&] {
-      constexpr std::size_t kFewest = 16;
-      const std::size_t at_once = options_.overlap_region_questions
-                                      ? std::max(kFewest, frontier.size() / 2)
-                                      : kRegionQuestionsAtOnce;
-      return std::min(
-          {at_once, kRegionQuestionsAtOnce, static_cast<std::size_t>(region_questions_left_)});
-    };
-    const auto fill = [&](Wave& wave, const Wave& asked) {
-      for (const std::size_t enough = most();
-           !frontier.empty() && wave.questions.size() < enough;) {
-        const auto [layer, slot, failure] = frontier.front();
-        frontier.pop_front();
-        if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
-        if (wave.has(key(layer, slot)) || asked.has(key(layer, slot))) continue;
-        if (cost_to_go_.at(layer, slot) == kUnreachable) {
-          deferred_.push_back({layer, slot, failure});
-          continue;
-        }
-        if (const auto known = clear_of_scene_.find(key(layer, slot));
-            known != clear_of_scene_.end() && known->second == failure)
-          continue;
-        wave.questions.push_back(
-            {layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
-        wave.keys.push_back(key(layer, slot));
+    for (const int by : {-1, 1})
+      if (x.layer + by <= cost_to_go_.goal_layer())
+        add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.slot, by));
+    for (const int by : {1, -1})
+      for (const int slot : {lattice_.neighbour_in_redundancy(x.layer, x.slot, by),
+                             lattice_.neighbour_in_roll(x.layer, x.slot, by)})
+        add(x.layer, slot);
+  }
+  /// Returns how many neighbours the next wave has at most. While one wave is asked about, the next
+  /// is made: a wave takes about half of the frontier, so that there mostly is another.
+  [[nodiscard]] std::size_t most_in_wave(const std::deque<Failure>& frontier) const {
+    constexpr std::size_t kFewest = 16;
+    const std::size_t at_once = options_.overlap_region_questions
+                                    ? std::max(kFewest, frontier.size() / 2)
+                                    : kRegionQuestionsAtOnce;
+    return std::min(
+        {at_once, kRegionQuestionsAtOnce, static_cast<std::size_t>(region_questions_left_)});
+  }
+  /// Takes neighbours from the frontier into a wave, but for those that are known, or in the wave
+  /// `asked`. Defers those that no path reaches.
+  void fill(Wave& wave, const Wave& asked, std::deque<Failure>& frontier) {
+    for (const std::size_t enough = most_in_wave(frontier);
+         !frontier.empty() && wave.questions.size() < enough;) {
+      const auto [layer, slot, failure] = frontier.front();
+      frontier.pop_front();
+      if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
+      if (wave.has(key(layer, slot)) || asked.has(key(layer, slot))) continue;
+      if (cost_to_go_.at(layer, slot) == kUnreachable) {
+        deferred_.push_back({layer, slot, failure});
+        continue;
       }
-      region_questions_left_ -= static_cast<int>(wave.questions.size());
-      wave.answers.assign(wave.questions.size(), {});
-    };
-    const auto take_wave = [&](Wave& wave) {
-      for (const Failure& node : take(wave.questions, wave.answers)) add_neighbours(node);
-      wave.clear();
-    };
+      if (const auto known = clear_of_scene_.find(key(layer, slot));
+          known != clear_of_scene_.end() && known->second == failure)
+        continue;
+      wave.questions.push_back(
+          {layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
+      wave.keys.push_back(key(layer, slot));
+    }
+    region_questions_left_ -= static_cast<int>(wave.questions.size());
+    wave.answers.assign(wave.questions.size(), {});
+  }
+  /// Notes the answers to a wave and clears it. The frontier grows around the nodes that failed.
+  void take_wave(Wave& wave, std::deque<Failure>& frontier) {
+    for (const Failure& node : take(wave.questions, wave.answers)) add_neighbours(node, frontier);
+    wave.clear();
+  }
+  void expand_failed_region(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
+    for (const Failure& node : failed) add_neighbours(node, frontier);
     Wave before, now, next;
-    for (fill(now, before); !now.questions.empty();) {
+    for (fill(now, before, frontier); !now.questions.empty();) {
       if (options_.overlap_region_questions)
         validity_.nodes_overlapped(now.questions, now.answers, [&] {
           const TraceSpan span("neighbours");
-          take_wave(before);
-          fill(next, now);
+          take_wave(before, frontier);
+          fill(next, now, frontier);
         });
       else
         validity_.nodes(now.questions, now.answers);
       std::swap(before, now);
       std::swap(now, next);  // which leaves it empty
       if (!now.questions.empty()) continue;
-      take_wave(before);
-      fill(now, before);
+      take_wave(before, frontier);
+      fill(now, before, frontier);
     }
   }
 
@@ -488,8 +492,8 @@ class Search {
   std::vector<Failure> failed_on_path_;  // in this round
   int region_questions_left_ = 0;        // questions about neighbours left in this round
   static constexpr std::size_t kRegionQuestionsAtOnce = 32;
-  // By key(): the failure that expand_failed_region() asked about last, of nodes that the scene did
-  // not block.
+  // The failure that expand_failed_region() asked about last, by key(), for nodes that the scene
+  // did not block.
   std::unordered_map<std::int64_t, FailureId> clear_of_scene_;
   static constexpr double kMuchDearer = 1.2;
   double first_cost_ = 0;          // cost of the first path

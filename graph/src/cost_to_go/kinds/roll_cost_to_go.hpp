@@ -43,6 +43,19 @@ class RollCostToGo final : public LayerValues {
   };
   void runs_of(const LayerNodes& nodes, int solution);
   void take_around(const Values& values);
+  /// A node whose value has changed, and the value before.
+  struct Change {
+    int slot;
+    double before;
+  };
+  /// Solves a layer as a whole. Appends the nodes whose values change to `changed`.
+  void renew_layer(int layer, std::vector<Change>& changed);
+  /// Appends the nodes of a layer whose values may come from nodes `ahead` of the next one, by the
+  /// values that these had before they changed.
+  void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale);
+  /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
+  /// to `changed`.
+  void renew_nodes(int layer, const std::vector<int>& stale, std::vector<Change>& changed);
   /// Calls visit(slot b, its joints) for the nodes b of a neighbouring layer that a node may be
   /// joined to, removed or not, whose worth(b) is true.
   template <class Worth, class Visit>
