@@ -142,6 +142,53 @@ double squared_gap(const Triangle& t, const Vector3d& center, const Vector3d& ha
   return (low - half).cwiseMax(-high - half).cwiseMax(0).squaredNorm();
 }
 
+/// Two boxes of two trees that are still to be looked into: their nodes, a lower bound of the
+/// squared distance of what they hold, and the squared distance of their centres, m^2.
+struct OpenPair {
+  int a, b;
+  float bound, between;
+  /// Orders by the bound. All boxes that overlap have the bound 0: among these the ones whose
+  /// centres are nearest are the likeliest to hold triangles that touch.
+  [[nodiscard]] bool before(const OpenPair& other) const {
+    return bound < other.bound || (bound == other.bound && between < other.between);
+  }
+};
+
+/// The pairs of boxes that a search is still to look into, the next one last.
+template <std::size_t kMost>
+struct PairStack {
+  std::array<OpenPair, kMost> at;
+  std::size_t open = 0;
+  [[gnu::always_inline]] OpenPair pop() { return at[--open]; }
+  /// Adds a pair in its order among those from place `others` on.
+  [[gnu::always_inline]] void push(const OpenPair& pair, std::size_t others) {
+    std::size_t place = open++;
+    for (; place > others && !pair.before(at[place - 1]); --place) at[place] = at[place - 1];
+    at[place] = pair;
+  }
+};
+
+/// Calls meet(k, j, moved) for triangles k of leaf m and j of leaf n that may be nearer than
+/// sqrt(least), until it returns true. `others` are the triangles of n's tree, which lies at `pose`
+/// in m's frame; `moved` is triangle j in that frame, `back` the rotation from it. Returns true
+/// where meet() did.
+template <class Node, class Meet>
+[[gnu::always_inline]] inline bool meet_leaves(const Node& m, const Node& n,
+                                               const std::vector<Triangle>& others,
+                                               const Pose& pose, const Matrix3d& back,
+                                               const double& least, const Meet& meet) {
+  const Vector3d there = back * (m.center - pose.translation()),
+                 half_there = back.cwiseAbs() * m.half;  // around m's box
+  for (int j = n.begin; j < n.end; ++j) {
+    if (squared_gap(others[j], there, half_there) >= least) continue;
+    const Triangle moved = others[j].moved(pose);
+    if (squared_gap(moved, m.center, m.half) >= least) continue;
+    for (int k = m.begin; k < m.end; ++k)
+      if (meet(k, j, moved)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
@@ -306,17 +353,7 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   const BoxPairBound bound(pose, reach_ + other.reach_),
       bound_from_other(pose.inverse(Eigen::Isometry), reach_ + other.reach_);
   const Matrix3d back = pose.linear().transpose();
-  struct Open {
-    int a, b;
-    float bound, between;
-    /// Orders by the bound. All boxes that overlap have the bound 0: among these the ones whose
-    /// centres are nearest are the likeliest to hold triangles that touch.
-    [[nodiscard]] bool before(const Open& other) const {
-      return bound < other.bound || (bound == other.bound && between < other.between);
-    }
-  };
-  std::array<Open, 4 * kDeepest> stack;  // three more for each two levels of either tree
-  std::size_t open = 0;
+  PairStack<4 * kDeepest> stack;  // three more for each two levels of either tree
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
   const auto meet = [&](int own, int others, const Triangle& moved) {
@@ -328,23 +365,15 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     return least < squared_enough;
   };
   if (meet(first.a, first.b, other.triangles_[first.b].moved(pose))) return std::sqrt(least);
-  stack[open++] = {0, 0, bound.squared(single_[0], other.single_[0], static_cast<float>(least)), 0};
-  while (open > 0) {
-    const Open here = stack[--open];
+  stack.push({0, 0, bound.squared(single_[0], other.single_[0], static_cast<float>(least)), 0}, 0);
+  while (stack.open > 0) {
+    const OpenPair here = stack.pop();
     if (here.bound >= least) continue;
     const Node &m = nodes_[here.a], &n = other.nodes_[here.b];
     if (m.right == 0 && n.right == 0) {
       if (bound.further(leaves_[m.place], other.leaves_[n.place], static_cast<float>(least)))
         continue;
-      const Vector3d there = back * (m.center - pose.translation()),
-                     half_there = back.cwiseAbs() * m.half;  // around m's box
-      for (int j = n.begin; j < n.end; ++j) {
-        if (squared_gap(other.triangles_[j], there, half_there) >= least) continue;
-        const Triangle moved = other.triangles_[j].moved(pose);
-        if (squared_gap(moved, m.center, m.half) >= least) continue;
-        for (int k = m.begin; k < m.end; ++k)
-          if (meet(k, j, moved)) return std::sqrt(least);
-      }
+      if (meet_leaves(m, n, other.triangles_, pose, back, least, meet)) return std::sqrt(least);
       continue;
     }
     // The larger box is quartered.
@@ -354,16 +383,13 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     const BoxPairBound::FourGaps gaps =
         part_a ? bound.squared_of_four(parts, other.single_[here.b])
                : bound_from_other.squared_of_four(parts, single_[here.a]);
-    const std::size_t others = open;
+    const std::size_t others = stack.open;
     for (int k = 0; k < parts.count; ++k) {
       const int node = parts.node[static_cast<std::size_t>(k)];
-      const Open part{part_a ? node : here.a, part_a ? here.b : node, gaps.bound[k],
-                      gaps.between[k]};
+      const OpenPair part{part_a ? node : here.a, part_a ? here.b : node, gaps.bound[k],
+                          gaps.between[k]};
       if (part.bound >= least) continue;
-      std::size_t place = open++;  // the first to look into last
-      for (; place > others && !part.before(stack[place - 1]); --place)
-        stack[place] = stack[place - 1];
-      stack[place] = part;
+      stack.push(part, others);  // the first to look into last
     }
   }
   return std::sqrt(least);
