@@ -177,10 +177,15 @@ class DaeReader {
     return at->second;
   }
 
-  void read_faces(const Element& faces, std::string_view kind, Surface& surface,
-                  std::map<const Element*, std::pair<std::int64_t, std::int64_t>>& placed) {
+  /// The inputs of some faces: every `stride` indices of a <p> belong to one corner, and the one at
+  /// `offset` names a point of the <source> of positions, which is null if there is none.
+  struct Positions {
     std::size_t stride = 0, offset = 0;
     const Element* source = nullptr;
+  };
+
+  Positions positions_of(const Element& faces) const {
+    Positions found;
     for (auto* input = faces.FirstChildElement("input"); input != nullptr;
          input = input->NextSiblingElement("input")) {
       constexpr std::size_t kMostInputs = 64;
@@ -188,90 +193,125 @@ class DaeReader {
       if (here >= kMostInputs)
         fail(*input, "has offset " + std::to_string(here),
              "at most " + std::to_string(kMostInputs - 1));
-      stride = std::max(stride, here + 1);
+      found.stride = std::max(found.stride, here + 1);
       const char* const semantic = input->Attribute("semantic");
       if (semantic == nullptr || std::string_view(semantic) != "VERTEX") continue;
-      offset = here;
+      found.offset = here;
       const Element& vertices = target(*input, "source", "vertices");
       for (auto* e = vertices.FirstChildElement("input"); e != nullptr;
            e = e->NextSiblingElement("input"))
         if (const char* s = e->Attribute("semantic");
             s != nullptr && std::string_view(s) == "POSITION")
-          source = &target(*e, "source", "source");
+          found.source = &target(*e, "source", "source");
     }
-    const std::size_t count = size_attribute(faces, "count", 0);
-    if (count == 0 && faces.FirstChildElement("p") == nullptr) return;
-    if (source == nullptr)
-      fail(faces, "has no positions", "an input VERTEX with vertices of POSITION");
-    if (!placed.contains(source)) placed[source] = read_positions(*source, surface);
-    const std::int64_t first = placed[source].first, points = placed[source].second;
+    return found;
+  }
 
-    std::size_t found = 0;
-    std::vector<std::int64_t> corners;
-    const auto read_p = [&](const Element& p) {
-      corners.clear();
-      Words words(p.GetText() == nullptr ? "" : p.GetText(), p.GetLineNum());
-      std::size_t k = 0;
-      for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++k) {
-        const auto value = to_number<std::int64_t>(word);
-        if (!value) fail(p, "holds '" + std::string(word) + "'", "whole numbers");
-        if (k % stride != offset) continue;
-        if (*value < 0 || *value >= points)
-          fail(p, "names vertex " + std::to_string(*value) + " of " + std::to_string(points),
-               "an index of its source, from 0");
-        corners.push_back(first + *value);
-      }
-      if (k % stride != 0)
-        fail(p, "has " + std::to_string(k) + " indices", "a multiple of " + std::to_string(stride));
-    };
+  /// Returns the numbers of corners of the polygons of a <polylist>.
+  std::vector<double> polygon_sizes(const Element& faces) const {
+    const Element* const vcount = faces.FirstChildElement("vcount");
+    if (vcount == nullptr) fail(faces, "has no <vcount>", "<vcount> and <p>");
+    std::vector<double> sizes = numbers(*vcount);
+    const Element* const p = faces.FirstChildElement("p");
+    if (p != nullptr && p->NextSiblingElement("p") != nullptr)
+      fail(faces, "has several <p>", "one <p>, whose corners <vcount> counts");
+    return sizes;
+  }
+
+  /// Reads the points of the surface that a <p> names, whose source has `points` points, from
+  /// `first` on of the surface.
+  void read_corners(const Element& p, const Positions& positions, std::int64_t first,
+                    std::int64_t points, std::vector<std::int64_t>& corners) const {
+    corners.clear();
+    Words words(p.GetText() == nullptr ? "" : p.GetText(), p.GetLineNum());
+    std::size_t k = 0;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++k) {
+      const auto value = to_number<std::int64_t>(word);
+      if (!value) fail(p, "holds '" + std::string(word) + "'", "whole numbers");
+      if (k % positions.stride != positions.offset) continue;
+      if (*value < 0 || *value >= points)
+        fail(p, "names vertex " + std::to_string(*value) + " of " + std::to_string(points),
+             "an index of its source, from 0");
+      corners.push_back(first + *value);
+    }
+    if (k % positions.stride != 0)
+      fail(p, "has " + std::to_string(k) + " indices",
+           "a multiple of " + std::to_string(positions.stride));
+  }
+
+  /// Adds the polygons of a <p> to a surface. Returns how many faces it has, as the attribute
+  /// `count` counts them.
+  std::size_t add_faces(const Element& faces, std::string_view kind, const Element& p,
+                        const std::vector<std::int64_t>& corners, const std::vector<double>& sizes,
+                        Surface& surface) const {
+    if (kind == "triangles") return add_triangles(faces, p, corners, surface);
+    if (kind == "polylist") return add_polygons(faces, p, corners, sizes, surface);
+    if (kind == "polygons")
+      surface.add_polygon(corners, p.GetLineNum());
+    else
+      add_strip_or_fan(faces, kind == "tristrips", corners, surface);
+    return 1;
+  }
+  std::size_t add_triangles(const Element& faces, const Element& p,
+                            const std::vector<std::int64_t>& corners, Surface& surface) const {
+    if (corners.size() % 3 != 0)
+      fail(p, "has " + std::to_string(corners.size()) + " corners", "three for each triangle");
+    for (std::size_t k = 0; k < corners.size(); k += 3)
+      surface.add_polygon(std::span(corners).subspan(k, 3), faces.GetLineNum());
+    return corners.size() / 3;
+  }
+  std::size_t add_polygons(const Element& faces, const Element& p,
+                           const std::vector<std::int64_t>& corners,
+                           const std::vector<double>& sizes, Surface& surface) const {
+    std::size_t next = 0;
+    for (const double size : sizes) {
+      if (!(size >= 0) || size != std::floor(size) ||
+          !(size <= static_cast<double>(corners.size() - next)))
+        fail(faces, "has a polygon of more corners than <p> holds",
+             "the same number of corners in <vcount> and <p>");
+      surface.add_polygon(std::span(corners).subspan(next, size), p.GetLineNum());
+      next += size;
+    }
+    if (next != corners.size())
+      fail(p, "has " + std::to_string(corners.size()) + " corners of " + std::to_string(next),
+           "as many as <vcount> says");
+    return sizes.size();
+  }
+  void add_strip_or_fan(const Element& faces, bool strip, const std::vector<std::int64_t>& corners,
+                        Surface& surface) const {
     const auto add = [&](std::int64_t a, std::int64_t b, std::int64_t c) {
       surface.add_polygon(std::array{a, b, c}, faces.GetLineNum());
     };
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const bool odd = k % 2 != 0;
+      if (!strip)
+        add(corners[0], corners[k - 1], corners[k]);
+      else
+        add(corners[odd ? k - 1 : k - 2], corners[odd ? k - 2 : k - 1], corners[k]);
+    }
+  }
+
+  /// Adds the faces of a <triangles>, <polylist>, <polygons>, <tristrips> or <trifans>, its `kind`,
+  /// to a surface, and their points unless they are `placed` already.
+  void read_faces(const Element& faces, std::string_view kind, Surface& surface,
+                  std::map<const Element*, std::pair<std::int64_t, std::int64_t>>& placed) {
+    const Positions positions = positions_of(faces);
+    const std::size_t count = size_attribute(faces, "count", 0);
+    if (count == 0 && faces.FirstChildElement("p") == nullptr) return;
+    const Element* const source = positions.source;
+    if (source == nullptr)
+      fail(faces, "has no positions", "an input VERTEX with vertices of POSITION");
+    if (!placed.contains(source)) placed[source] = read_positions(*source, surface);
+    const auto [first, points] = placed[source];
     if (faces.FirstChildElement("ph") != nullptr)
       fail(faces, "has polygons with holes", "polygons without");
     std::vector<double> sizes;
-    if (kind == "polylist") {
-      const Element* const vcount = faces.FirstChildElement("vcount");
-      if (vcount == nullptr) fail(faces, "has no <vcount>", "<vcount> and <p>");
-      sizes = numbers(*vcount);
-      const Element* const p = faces.FirstChildElement("p");
-      if (p != nullptr && p->NextSiblingElement("p") != nullptr)
-        fail(faces, "has several <p>", "one <p>, whose corners <vcount> counts");
-    }
+    if (kind == "polylist") sizes = polygon_sizes(faces);
+    std::size_t found = 0;
+    std::vector<std::int64_t> corners;
     for (auto* p = faces.FirstChildElement("p"); p != nullptr; p = p->NextSiblingElement("p")) {
-      read_p(*p);
-      if (kind == "triangles") {
-        if (corners.size() % 3 != 0)
-          fail(*p, "has " + std::to_string(corners.size()) + " corners", "three for each triangle");
-        for (std::size_t k = 0; k < corners.size(); k += 3, ++found)
-          add(corners[k], corners[k + 1], corners[k + 2]);
-      } else if (kind == "polylist") {
-        std::size_t next = 0;
-        for (const double size : sizes) {
-          if (!(size >= 0) || size != std::floor(size) ||
-              !(size <= static_cast<double>(corners.size() - next)))
-            fail(faces, "has a polygon of more corners than <p> holds",
-                 "the same number of corners in <vcount> and <p>");
-          surface.add_polygon(std::span(corners).subspan(next, size), p->GetLineNum());
-          next += size;
-          ++found;
-        }
-        if (next != corners.size())
-          fail(*p, "has " + std::to_string(corners.size()) + " corners of " + std::to_string(next),
-               "as many as <vcount> says");
-      } else if (kind == "polygons") {
-        surface.add_polygon(corners, p->GetLineNum());
-        ++found;
-      } else {
-        for (std::size_t k = 2; k < corners.size(); ++k) {
-          const bool strip = kind == "tristrips", odd = k % 2 != 0;
-          if (!strip)
-            add(corners[0], corners[k - 1], corners[k]);
-          else
-            add(corners[odd ? k - 1 : k - 2], corners[odd ? k - 2 : k - 1], corners[k]);
-        }
-        ++found;
-      }
+      read_corners(*p, positions, first, points, corners);
+      found += add_faces(faces, kind, *p, corners, sizes, surface);
     }
     if (faces.Attribute("count") != nullptr && found != count)
       fail(faces, "has " + std::to_string(found) + " of " + std::to_string(count),
