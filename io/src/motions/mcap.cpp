@@ -114,91 +114,122 @@ std::uint64_t nanoseconds(double t) {
   return static_cast<std::uint64_t>(stamp.sec) * 1'000'000'000u + stamp.nanosec;
 }
 
+constexpr std::uint16_t kSchemaId = 1, kChannelId = 0;
+
+std::string schema_record() {
+  return record(kSchema, Bytes()
+                             .add(kSchemaId)
+                             .counted("sensor_msgs/msg/JointState")
+                             .counted("ros2msg")
+                             .counted(kJointState));
+}
+
+std::string channel_record() {
+  return record(
+      kChannel,
+      Bytes().add(kChannelId).add(kSchemaId).counted("/joint_states").counted("cdr").counted(""));
+}
+
+/// The one chunk of a file: its records, where in it the messages begin, by time, and the times of
+/// the first and the last of them, ns.
+struct Chunk {
+  std::string records;
+  Bytes index;
+  std::uint64_t begin = 0, end = 0;
+  [[nodiscard]] std::uint64_t size() const { return records.size(); }
+};
+
+Chunk chunk_of(const TimedPath& motion, const JointNames& joint_names,
+               const std::string& frame_id) {
+  Chunk chunk;
+  chunk.begin = nanoseconds(motion.rows.front().t);
+  chunk.end = nanoseconds(motion.rows.back().t);
+  chunk.records = schema_record() + channel_record();
+  std::uint32_t sequence = 0;
+  for (const TimedRow& row : motion.rows) {
+    const std::uint64_t time = nanoseconds(row.t);
+    chunk.index.add(time).add(chunk.size());
+    chunk.records += record(kMessage, Bytes()
+                                          .add(kChannelId)
+                                          .add(sequence++)
+                                          .add(time)
+                                          .add(time)
+                                          .raw(joint_state(motion, row, joint_names, frame_id)));
+  }
+  return chunk;
+}
+
+std::string chunk_record(const Chunk& chunk) {
+  return record(kChunk, Bytes()
+                            .add(chunk.begin)
+                            .add(chunk.end)
+                            .add(chunk.size())
+                            .add(std::uint32_t{0})
+                            .counted("")
+                            .add(chunk.size())
+                            .raw(chunk.records));
+}
+
+std::string statistics_record(const Chunk& chunk, std::uint64_t messages) {
+  return record(kStatistics, Bytes()
+                                 .add(messages)
+                                 .add(std::uint16_t{1})  // schemas
+                                 .add(std::uint32_t{1})  // channels
+                                 .add(std::uint32_t{0})  // attachments
+                                 .add(std::uint32_t{0})  // metadata
+                                 .add(std::uint32_t{1})  // chunks
+                                 .add(chunk.begin)
+                                 .add(chunk.end)
+                                 .counted(Bytes().add(kChannelId).add(messages).text()));
+}
+
+/// Returns the record that tells where in the file the chunk begins, and where the index of its
+/// messages begins and ends.
+std::string chunk_index_record(const Chunk& chunk, std::uint64_t chunk_at, std::uint64_t index_at,
+                               std::uint64_t index_end) {
+  return record(kChunkIndex, Bytes()
+                                 .add(chunk.begin)
+                                 .add(chunk.end)
+                                 .add(chunk_at)
+                                 .add(index_at - chunk_at)
+                                 .counted(Bytes().add(kChannelId).add(index_at).text())
+                                 .add(index_end - index_at)
+                                 .counted("")
+                                 .add(chunk.size())
+                                 .add(chunk.size()));
+}
+
 }  // namespace
 
 std::string to_mcap(const TimedPath& motion, const JointNames& joint_names,
                     const std::string& frame_id) {
-  constexpr std::uint16_t kSchemaId = 1, kChannelId = 0;
   const std::string magic(kMcapMagic);
-  const std::uint64_t begin = nanoseconds(motion.rows.front().t),
-                      end = nanoseconds(motion.rows.back().t);
-  const std::string schema = record(kSchema, Bytes()
-                                                 .add(kSchemaId)
-                                                 .counted("sensor_msgs/msg/JointState")
-                                                 .counted("ros2msg")
-                                                 .counted(kJointState));
-  const std::string channel = record(
-      kChannel,
-      Bytes().add(kChannelId).add(kSchemaId).counted("/joint_states").counted("cdr").counted(""));
-
-  std::string chunk = schema + channel;
-  Bytes index;
-  std::uint32_t sequence = 0;
-  for (const TimedRow& row : motion.rows) {
-    const std::uint64_t time = nanoseconds(row.t);
-    index.add(time).add(static_cast<std::uint64_t>(chunk.size()));
-    chunk += record(kMessage, Bytes()
-                                  .add(kChannelId)
-                                  .add(sequence++)
-                                  .add(time)
-                                  .add(time)
-                                  .raw(joint_state(motion, row, joint_names, frame_id)));
-  }
-
+  const Chunk chunk = chunk_of(motion, joint_names, frame_id);
   std::string file = magic + record(kHeader, Bytes().counted("ros2").counted("swivel"));
   const std::uint64_t chunk_at = file.size();
-  const auto chunk_size = static_cast<std::uint64_t>(chunk.size());
-  file += record(kChunk, Bytes()
-                             .add(begin)
-                             .add(end)
-                             .add(chunk_size)
-                             .add(std::uint32_t{0})
-                             .counted("")
-                             .add(chunk_size)
-                             .raw(chunk));
+  file += chunk_record(chunk);
   const std::uint64_t index_at = file.size();
-  file += record(kMessageIndex, Bytes().add(kChannelId).counted(index.text()));
+  file += record(kMessageIndex, Bytes().add(kChannelId).counted(chunk.index.text()));
   const std::uint64_t index_end = file.size();
   file += record(kDataEnd, Bytes().add(std::uint32_t{0}));
 
+  // The summary: groups of records, and where each group lies.
+  std::string offsets;
   const std::uint64_t summary_at = file.size();
-  file += schema;
-  const std::uint64_t channels_at = file.size();
-  file += channel;
-  const std::uint64_t statistics_at = file.size();
-  file += record(
-      kStatistics,
-      Bytes()
-          .add(static_cast<std::uint64_t>(motion.rows.size()))
-          .add(std::uint16_t{1})  // schemas
-          .add(std::uint32_t{1})  // channels
-          .add(std::uint32_t{0})  // attachments
-          .add(std::uint32_t{0})  // metadata
-          .add(std::uint32_t{1})  // chunks
-          .add(begin)
-          .add(end)
-          .counted(
-              Bytes().add(kChannelId).add(static_cast<std::uint64_t>(motion.rows.size())).text()));
-  const std::uint64_t chunk_indexes_at = file.size();
-  file += record(kChunkIndex, Bytes()
-                                  .add(begin)
-                                  .add(end)
-                                  .add(chunk_at)
-                                  .add(index_at - chunk_at)
-                                  .counted(Bytes().add(kChannelId).add(index_at).text())
-                                  .add(index_end - index_at)
-                                  .counted("")
-                                  .add(chunk_size)
-                                  .add(chunk_size));
-  const std::uint64_t offsets_at = file.size();
-  const auto group = [&](Opcode opcode, std::uint64_t from, std::uint64_t to) {
-    file += record(kSummaryOffset,
-                   Bytes().add(static_cast<std::uint8_t>(opcode)).add(from).add(to - from));
+  const auto add_group = [&](Opcode opcode, const std::string& records) {
+    const std::uint64_t from = file.size();
+    file += records;
+    offsets += record(kSummaryOffset, Bytes()
+                                          .add(static_cast<std::uint8_t>(opcode))
+                                          .add(from)
+                                          .add(std::uint64_t{records.size()}));
   };
-  group(kSchema, summary_at, channels_at);
-  group(kChannel, channels_at, statistics_at);
-  group(kStatistics, statistics_at, chunk_indexes_at);
-  group(kChunkIndex, chunk_indexes_at, offsets_at);
+  add_group(kSchema, schema_record());
+  add_group(kChannel, channel_record());
+  add_group(kStatistics, statistics_record(chunk, motion.rows.size()));
+  add_group(kChunkIndex, chunk_index_record(chunk, chunk_at, index_at, index_end));
+  const std::uint64_t offsets_at = file.size();
+  file += offsets;
   file += record(kFooter, Bytes().add(summary_at).add(offsets_at).add(std::uint32_t{0}));
   return file + magic;
 }
