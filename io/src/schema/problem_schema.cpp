@@ -8,11 +8,6 @@ namespace {
 
 using Keys = std::vector<Schema::Key>;
 
-Keys join(Keys first, const Keys& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
 Schema numbers(std::size_t count, const Range& range) {
   return list(number(range), count);
 }
@@ -173,68 +168,82 @@ Schema resolution() {
       });
 }
 
-Schema limits() {
+Keys clearance_limits() {
+  const Limits d;
+  return {
+      {"clearance", number(kExtent), "m", otherwise(d.clearance),
+       "distance kept between bodies at the layers of the path"},
+      {"self_clearance", or_null(number(kExtent)), "m", in_words("`clearance`"),
+       "the same between bodies of the robot; without an SRDF a pair keeps at most half of its "
+       "median clearance over sampled "
+       "postures"},
+      {"edges", one_of({"continuous", "nodes"}), "", otherwise("continuous"),
+       "`continuous`: motions between layers are proved to keep `edge_clearance`, not sampled; "
+       "`nodes`: only the layers are "
+       "tested"},
+      {"edge_clearance", or_null(number(kExtent)), "m",
+       in_words("half of what is kept at the layers"),
+       "distance kept between layers; without an SRDF a pair of the robot keeps at most a "
+       "quarter of its median. For paths "
+       "that are "
+       "refined or timed the default is `clearance`, where `self_clearance` is not set"},
+      {"edge_tolerance", number(kPositive), "m", otherwise(d.edge_tolerance),
+       "how finely that is proved; smaller refuses fewer motions that are just free, and takes "
+       "longer"},
+  };
+}
+
+Keys joint_and_path_limits() {
+  const Limits d;
+  return {
+      {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin),
+       "distance kept from both limits of each joint"},
+      {"soft_limits", one_of({"true", "false"}), "", otherwise("true"),
+       "joints keep the soft limits of their `<safety_controller>` in the URDF, where these "
+       "are narrower"},
+      {"joint_step", number(kPositive), "rad", otherwise(d.joint_step),
+       "largest move of a joint between neighbouring layers, whatever their distance: a "
+       "smaller `ds` allows more"},
+      {"arm_slope", number(kPositive), "rad/m", otherwise(d.arm_slope),
+       "largest change of the arm angle along the path"},
+      {"roll_slope", number(kPositive), "rad/m", otherwise(d.roll_slope),
+       "the same of `path.roll`"},
+      {"manipulability", number(kNonNegative), "", otherwise(d.manipulability),
+       "least sqrt(det(J Jᵀ)), with J in m and rad at the tool"},
+      {"tool_path_error", or_null(number(kPositive)), "m", otherwise(d.tool_path_error),
+       "how far the tool may leave its path between layers"},
+      {"tool_angle_error", or_null(number(kPositive)), "rad", otherwise(d.tool_angle_error),
+       "the same for its orientation"},
+      {"step_error", or_null(number(kPositive)), "rad", otherwise(d.step_error),
+       "largest second-order estimate of the joint-space step, the paper's Eq. 15"},
+  };
+}
+
+Keys speed_limits() {
   const Limits d;
   const auto rate = [](const char* what) {
     return std::string("largest ") + what +
            " of [motions](#motion): one number, or one for each joint (that of a roll is not "
            "looked at)";
   };
-  return section(
-      "limits",
-      {
-          {"clearance", number(kExtent), "m", otherwise(d.clearance),
-           "distance kept between bodies at the layers of the path"},
-          {"self_clearance", or_null(number(kExtent)), "m", in_words("`clearance`"),
-           "the same between bodies of the robot; without an SRDF a pair keeps at most half of its "
-           "median clearance over sampled "
-           "postures"},
-          {"edges", one_of({"continuous", "nodes"}), "", otherwise("continuous"),
-           "`continuous`: motions between layers are proved to keep `edge_clearance`, not sampled; "
-           "`nodes`: only the layers are "
-           "tested"},
-          {"edge_clearance", or_null(number(kExtent)), "m",
-           in_words("half of what is kept at the layers"),
-           "distance kept between layers; without an SRDF a pair of the robot keeps at most a "
-           "quarter of its median. For paths "
-           "that are "
-           "refined or timed the default is `clearance`, where `self_clearance` is not set"},
-          {"edge_tolerance", number(kPositive), "m", otherwise(d.edge_tolerance),
-           "how finely that is proved; smaller refuses fewer motions that are just free, and takes "
-           "longer"},
-          {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin),
-           "distance kept from both limits of each joint"},
-          {"soft_limits", one_of({"true", "false"}), "", otherwise("true"),
-           "joints keep the soft limits of their `<safety_controller>` in the URDF, where these "
-           "are narrower"},
-          {"joint_step", number(kPositive), "rad", otherwise(d.joint_step),
-           "largest move of a joint between neighbouring layers, whatever their distance: a "
-           "smaller `ds` allows more"},
-          {"arm_slope", number(kPositive), "rad/m", otherwise(d.arm_slope),
-           "largest change of the arm angle along the path"},
-          {"roll_slope", number(kPositive), "rad/m", otherwise(d.roll_slope),
-           "the same of `path.roll`"},
-          {"manipulability", number(kNonNegative), "", otherwise(d.manipulability),
-           "least sqrt(det(J Jᵀ)), with J in m and rad at the tool"},
-          {"tool_path_error", or_null(number(kPositive)), "m", otherwise(d.tool_path_error),
-           "how far the tool may leave its path between layers"},
-          {"tool_angle_error", or_null(number(kPositive)), "rad", otherwise(d.tool_angle_error),
-           "the same for its orientation"},
-          {"step_error", or_null(number(kPositive)), "rad", otherwise(d.step_error),
-           "largest second-order estimate of the joint-space step, the paper's Eq. 15"},
-          {"tool_speed", or_null(number(kPositive)), "m/s", otherwise(d.tool_speed),
-           "the joints must follow at this speed within the velocities of the URDF"},
-          {"tool_turn_speed", or_null(number(kPositive)), "rad/s", otherwise(d.tool_turn_speed),
-           "the same where the tool turns"},
-          {"joint_speed", of_joints(kPositive), "rad/s", in_words("`velocity` of the URDF"),
-           rate("speed")},
-          {"joint_acceleration", of_joints(kPositive), "rad/s²",
-           in_words("the smaller of `acceleration` and `deceleration` of the URDF; else 10, with a "
-                    "warning"),
-           rate("acceleration")},
-          {"joint_jerk", of_joints(kPositive), "rad/s³",
-           in_words("`jerk` of the URDF; else 100, with a warning"), rate("jerk")},
-      });
+  return {
+      {"tool_speed", or_null(number(kPositive)), "m/s", otherwise(d.tool_speed),
+       "the joints must follow at this speed within the velocities of the URDF"},
+      {"tool_turn_speed", or_null(number(kPositive)), "rad/s", otherwise(d.tool_turn_speed),
+       "the same where the tool turns"},
+      {"joint_speed", of_joints(kPositive), "rad/s", in_words("`velocity` of the URDF"),
+       rate("speed")},
+      {"joint_acceleration", of_joints(kPositive), "rad/s²",
+       in_words("the smaller of `acceleration` and `deceleration` of the URDF; else 10, with a "
+                "warning"),
+       rate("acceleration")},
+      {"joint_jerk", of_joints(kPositive), "rad/s³",
+       in_words("`jerk` of the URDF; else 100, with a warning"), rate("jerk")},
+  };
+}
+
+Schema limits() {
+  return section("limits", join(join(clearance_limits(), joint_and_path_limits()), speed_limits()));
 }
 
 Schema cost() {

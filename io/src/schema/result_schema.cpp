@@ -15,7 +15,7 @@ Schema::Key key(const char* name, Schema value, const char* meaning, const char*
   return {name, std::move(value), unit, required(), meaning};
 }
 
-/// One that some results do not have.
+/// Returns a key that some results do not have.
 Schema::Key key_of_some(const char* name, Schema value, const char* meaning,
                         const char* unit = "") {
   return {name, std::move(value), unit, optional(), meaning};
@@ -162,8 +162,23 @@ Schema time_ms() {
                             });
 }
 
-Schema diagnosis() {
+Schema empty_layers() {
   const auto two_layers = [] { return list(integer(), 2); };
+  return list(section(
+      "", {key("layers", two_layers(), "first and last"), key("s", numbers(2), "of these", "m"),
+           key("waypoints", or_null(two_layers()), "of these; `null` where there is no waypoint"),
+           key("reason", text(), "why they are empty, in words"),
+           key("cause", cause(), "at the layer that misses least"),
+           key("most", or_null(number()), "the most that one misses by", "of the cause")}));
+}
+
+Schema unreachable_layer() {
+  return or_null(
+      section("", {key("layer", integer(), "its number"), key("s", number(), "along the path", "m"),
+                   key("waypoint", or_null(integer()), "`null` between waypoints")}));
+}
+
+Schema diagnosis() {
   return section(
       "diagnosis",
       {
@@ -187,15 +202,7 @@ Schema diagnosis() {
           key("without_it_s", or_null(number()), "the same along the path", "m"),
           key("together", list(cause()),
               "causes that must go besides, where no single thing helps"),
-          key("empty_layers",
-              list(section("", {key("layers", two_layers(), "first and last"),
-                                key("s", numbers(2), "of these", "m"),
-                                key("waypoints", or_null(two_layers()),
-                                    "of these; `null` where there is no waypoint"),
-                                key("reason", text(), "why they are empty, in words"),
-                                key("cause", cause(), "at the layer that misses least"),
-                                key("most", or_null(number()), "the most that one misses by",
-                                    "of the cause")})),
+          key("empty_layers", empty_layers(),
               "runs of layers without a valid node: `layers`, `s` and `waypoints` (first and last; "
               "`null` where there is no "
               "waypoint), "
@@ -207,11 +214,7 @@ Schema diagnosis() {
               "how far \"no path\" goes: at this resolution; `exact_tool`: at any resolution with "
               "which a layer lies there; at "
               "every resolution"),
-          key("unreachable",
-              or_null(section(
-                  "",
-                  {key("layer", integer(), "its number"), key("s", number(), "along the path", "m"),
-                   key("waypoint", or_null(integer()), "`null` between waypoints")})),
+          key("unreachable", unreachable_layer(),
               "why more than this resolution: a layer whose pose no joints within their limits "
               "reach, at any arm angle (`layer`, "
               "`s`, "
@@ -247,12 +250,40 @@ Schema refinement() {
       });
 }
 
-Schema motion() {
+Schema peaks_of_motion() {
   const auto peaks = [] {
     return list(
         section("", {key("joint", text(), "its name"), key("ratio", number(), "of what it can do"),
                      key("t", number(), "when", "s"), key("s", number(), "where", "m")}));
   };
+  return section(
+      "", {key("speed", peaks(), "of each joint"), key("acceleration", peaks(), "of each joint"),
+           key("jerk", peaks(), "of each joint")});
+}
+
+Schema slow_stretches() {
+  return list(section(
+      "",
+      {key("s", numbers(2), "from, to", "m"), key("t", numbers(2), "from, to", "s"),
+       key("share", number(), "of the speed at its slowest"),
+       key("joint", text(), "which bounds it"),
+       key("reason", one_of({"speed", "acceleration", "jerk"}), "which of its rates"),
+       key("singular", or_null(one_of({"shoulder", "elbow", "wrist"})), "what is nearly singular"),
+       key("singular_angle_deg", or_null(number()), "how nearly", "degrees")}));
+}
+
+Schema corners_of_motion() {
+  return section(
+      "",
+      {key("rounded", integer(), "how many"), key("position", number(), "the most", "m"),
+       key("angle", number(), "the most", "rad"),
+       key("stops",
+           list(section("", {key("waypoint", or_null(integer()), "row of the path, from 0"),
+                             key("s", number(), "where", "m"), key("t", number(), "when", "s")})),
+           "where the tool must rest")});
+}
+
+Schema motion() {
   return section(
       "motion",
       {
@@ -271,40 +302,19 @@ Schema motion() {
           key_of_some(
               "ideal", number(),
               "the same at the speed asked for throughout, less where `chord` asks for less", "s"),
-          key_of_some("peaks",
-                      section("", {key("speed", peaks(), "of each joint"),
-                                   key("acceleration", peaks(), "of each joint"),
-                                   key("jerk", peaks(), "of each joint")}),
+          key_of_some("peaks", peaks_of_motion(),
                       "`speed`, `acceleration`, `jerk`: for each joint the largest difference "
                       "between samples over what it can do, "
                       "`ratio`, "
                       "with `t` and `s`"),
           key_of_some(
-              "slow",
-              list(section(
-                  "",
-                  {key("s", numbers(2), "from, to", "m"), key("t", numbers(2), "from, to", "s"),
-                   key("share", number(), "of the speed at its slowest"),
-                   key("joint", text(), "which bounds it"),
-                   key("reason", one_of({"speed", "acceleration", "jerk"}), "which of its rates"),
-                   key("singular", or_null(one_of({"shoulder", "elbow", "wrist"})),
-                       "what is nearly singular"),
-                   key("singular_angle_deg", or_null(number()), "how nearly", "degrees")})),
+              "slow", slow_stretches(),
               "stretches below the speed asked for, starting and stopping aside: `s` and `t` "
               "(from, to), `share` of the speed at "
               "its slowest, the `joint` and which of its rates is the `reason`; `singular` "
               "(shoulder, elbow, wrist) with "
               "`singular_angle_deg` where one is within 0.3 rad of being singular, else `null`"),
-          key_of_some("corners",
-                      section("", {key("rounded", integer(), "how many"),
-                                   key("position", number(), "the most", "m"),
-                                   key("angle", number(), "the most", "rad"),
-                                   key("stops",
-                                       list(section("", {key("waypoint", or_null(integer()),
-                                                             "row of the path, from 0"),
-                                                         key("s", number(), "where", "m"),
-                                                         key("t", number(), "when", "s")})),
-                                       "where the tool must rest")}),
+          key_of_some("corners", corners_of_motion(),
                       "how many are `rounded` and by how much the curve leaves the polyline there "
                       "(`position`, m, `angle`, rad); `stops` "
                       "(`waypoint`, `s`, `t`) where the tool must rest"),
@@ -381,92 +391,111 @@ Schema robot_pairs() {
                           "near by design")});
 }
 
+Schema min_margin() {
+  return or_null(section("", {key("margin", number(), "what is left of it", "m"),
+                              key("clearance", number(), "of the pair", "m"),
+                              key("required", number(), "what it must keep", "m"),
+                              key("bodies", bodies(), "their names"),
+                              key("row", integer(), "of the trajectory, from 0")}));
+}
+
+Schema deepest_contact() {
+  return or_null(section(
+      "",
+      {key("depth", number(), "found at a row or between two: the bodies are at least so deep",
+           "m"),
+       key("at_most", or_null(number()),
+           "proved for all rows and moves between them; `null` where a pair is of "
+           "two meshes, or of one "
+           "that is not closed",
+           "m"),
+       key("allowed", or_null(number()), "the depth that `allow` gives; `null`: however deep", "m"),
+       key("bodies", bodies(), "their names"),
+       key("row", integer(), "of the trajectory, from 0: at it, or on the way to the next")}));
+}
+
+/// Returns the keys that say what the answer is, and what finding it took.
+std::vector<Schema::Key> answer_keys() {
+  return {
+      key("schema_version", integer(kResultVersions),
+          "1; it rises when a key goes or changes its meaning, not when one is new"),
+      key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}),
+          "or `error`, where the program failed: then there is `message` besides, and nothing "
+          "else"),
+      key("summary", summary(), "the answer at a glance, [below](#summary)"),
+      key("cost", or_null(number()),
+          "of the trajectory's rows; like all that describes one, `null` unless solved"),
+      key("checked", or_null(boolean()),
+          "whether the trajectory, and the motion that was made of it, passed what `check` "
+          "asks; `false` with `--no-check`. "
+          "One that "
+          "does not pass is an internal error, exit code 5, and nothing is written"),
+      key("planner", text(), "which of the planners"),
+      key("threads", integer(), "that worked"),
+      key("lattice", lattice(), "its size, [below](#lattice)"),
+      key("counters", counters(), "work done, [below](#counters)"),
+      key("time_ms", time_ms(), "where time went, [below](#times)", "ms"),
+  };
+}
+
+/// Returns the keys that say how good the trajectory is.
+std::vector<Schema::Key> measure_keys() {
+  return {
+      key("tool_path_error_mm",
+          section("", {key("mean", or_null(number()), "over the steps", "mm"),
+                       key("max", or_null(number()), "over the steps", "mm")}),
+          "`mean`, `max` between layers", "mm"),
+      key("min_clearance", or_null(number()),
+          "least over the rows; `null` too where nothing is near", "m"),
+      key("min_margin", min_margin(),
+          "the row and pair that come nearest to what the pair must keep: `margin`, "
+          "`clearance`, `required`, `bodies`, `row`",
+          "m"),
+      key("deepest_contact", deepest_contact(),
+          "the deepest [contact](model.md#contact) of bodies that a scene object's `allow` "
+          "names: `depth`, `at_most`, "
+          "`allowed`, "
+          "`bodies`, `row`; `null` where none was found to touch",
+          "m"),
+      key("min_manipulability", or_null(number()), "least over the rows"),
+      key("arm_angle", list(or_null(number())), "conventional arm angle of each row", "rad"),
+  };
+}
+
+/// Returns the keys of the parts of a result: what was made of the trajectory, why there is none,
+/// and its rows.
+std::vector<Schema::Key> part_keys() {
+  return {
+      key("refinement", or_null(refinement()), "`null` without `--refine`; [below](#refinement)"),
+      key("motion", or_null(motion()), "`null` without `--speed`; [below](#motion-in-the-result)"),
+      key("diagnosis", or_null(diagnosis()), "`null` unless infeasible; [below](#diagnosis)"),
+      key("advice", or_null(advice()),
+          "with `--advise`, of problems that have no path; else `null`: what was tried, what "
+          "helps first, [below](#advice)"),
+      key("certificate", or_null(certificate()),
+          "with `--certificate`, of problems that have no path; else `null`; "
+          "[below](#certificate)"),
+      key("trajectory", rows(), "rows of `s`, `phi`, `branch`, `joints`"),
+      key("partial", rows(),
+          "where there is no answer: the same rows from the first on, as far as they are known "
+          "to be valid; maybe none"),
+      key("robot_pairs", robot_pairs(),
+          "`dropped`: pairs that touch in every sampled posture, not kept apart; `reduced`: "
+          "pairs near by design, with "
+          "`median`, "
+          "`clearance`, `edge_clearance` (m); `info PROBLEM --pairs` lists all"),
+      key("held", held(),
+          "joints between base and tip that move and are not planned: `joint`, `position` "
+          "(`unit`), whether `robot.hold` has "
+          "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said "
+          "with them there"),
+      key("warnings", list(text()), "e.g. open meshes, merged waypoints"),
+      key("joint_names", list(text(), kDof), "base to tip"),
+  };
+}
+
 Schema plan_result() {
-  return section(
-      "result",
-      {
-          key("schema_version", integer(kResultVersions),
-              "1; it rises when a key goes or changes its meaning, not when one is new"),
-          key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}),
-              "or `error`, where the program failed: then there is `message` besides, and nothing "
-              "else"),
-          key("summary", summary(), "the answer at a glance, [below](#summary)"),
-          key("cost", or_null(number()),
-              "of the trajectory's rows; like all that describes one, `null` unless solved"),
-          key("checked", or_null(boolean()),
-              "whether the trajectory, and the motion that was made of it, passed what `check` "
-              "asks; `false` with `--no-check`. "
-              "One that "
-              "does not pass is an internal error, exit code 5, and nothing is written"),
-          key("planner", text(), "which of the planners"),
-          key("threads", integer(), "that worked"),
-          key("lattice", lattice(), "its size, [below](#lattice)"),
-          key("counters", counters(), "work done, [below](#counters)"),
-          key("time_ms", time_ms(), "where time went, [below](#times)", "ms"),
-          key("tool_path_error_mm",
-              section("", {key("mean", or_null(number()), "over the steps", "mm"),
-                           key("max", or_null(number()), "over the steps", "mm")}),
-              "`mean`, `max` between layers", "mm"),
-          key("min_clearance", or_null(number()),
-              "least over the rows; `null` too where nothing is near", "m"),
-          key("min_margin",
-              or_null(section("", {key("margin", number(), "what is left of it", "m"),
-                                   key("clearance", number(), "of the pair", "m"),
-                                   key("required", number(), "what it must keep", "m"),
-                                   key("bodies", bodies(), "their names"),
-                                   key("row", integer(), "of the trajectory, from 0")})),
-              "the row and pair that come nearest to what the pair must keep: `margin`, "
-              "`clearance`, `required`, `bodies`, `row`",
-              "m"),
-          key("deepest_contact",
-              or_null(section(
-                  "", {key("depth", number(),
-                           "found at a row or between two: the bodies are at least so deep", "m"),
-                       key("at_most", or_null(number()),
-                           "proved for all rows and moves between them; `null` where a pair is of "
-                           "two meshes, or of one "
-                           "that is not closed",
-                           "m"),
-                       key("allowed", or_null(number()),
-                           "the depth that `allow` gives; `null`: however deep", "m"),
-                       key("bodies", bodies(), "their names"),
-                       key("row", integer(),
-                           "of the trajectory, from 0: at it, or on the way to the next")})),
-              "the deepest [contact](model.md#contact) of bodies that a scene object's `allow` "
-              "names: `depth`, `at_most`, "
-              "`allowed`, "
-              "`bodies`, `row`; `null` where none was found to touch",
-              "m"),
-          key("min_manipulability", or_null(number()), "least over the rows"),
-          key("arm_angle", list(or_null(number())), "conventional arm angle of each row", "rad"),
-          key("refinement", or_null(refinement()),
-              "`null` without `--refine`; [below](#refinement)"),
-          key("motion", or_null(motion()),
-              "`null` without `--speed`; [below](#motion-in-the-result)"),
-          key("diagnosis", or_null(diagnosis()), "`null` unless infeasible; [below](#diagnosis)"),
-          key("advice", or_null(advice()),
-              "with `--advise`, of problems that have no path; else `null`: what was tried, what "
-              "helps first, [below](#advice)"),
-          key("certificate", or_null(certificate()),
-              "with `--certificate`, of problems that have no path; else `null`; "
-              "[below](#certificate)"),
-          key("trajectory", rows(), "rows of `s`, `phi`, `branch`, `joints`"),
-          key("partial", rows(),
-              "where there is no answer: the same rows from the first on, as far as they are known "
-              "to be valid; maybe none"),
-          key("robot_pairs", robot_pairs(),
-              "`dropped`: pairs that touch in every sampled posture, not kept apart; `reduced`: "
-              "pairs near by design, with "
-              "`median`, "
-              "`clearance`, `edge_clearance` (m); `info PROBLEM --pairs` lists all"),
-          key("held", held(),
-              "joints between base and tip that move and are not planned: `joint`, `position` "
-              "(`unit`), whether `robot.hold` has "
-              "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said "
-              "with them there"),
-          key("warnings", list(text()), "e.g. open meshes, merged waypoints"),
-          key("joint_names", list(text(), kDof), "base to tip"),
-      });
+  return section("result", join(join(answer_keys(), measure_keys()), part_keys()));
 }
 
 Schema campaign_summary() {

@@ -88,6 +88,12 @@ Schema section(std::string name, std::vector<Schema::Key> keys,
   return schema;
 }
 
+std::vector<Schema::Key> join(std::vector<Schema::Key> first,
+                              const std::vector<Schema::Key>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 Schema or_null(Schema schema) {
   schema.nullable = true;
   return schema;

@@ -107,6 +107,9 @@ struct Schema::Key {
 /// Returns the schema of a section with these keys; `name` is that of its table, or empty.
 [[nodiscard]] Schema section(std::string name, std::vector<Schema::Key> keys,
                              std::vector<Schema::Choice> choices = {});
+/// Returns the keys of one list and then those of another.
+[[nodiscard]] std::vector<Schema::Key> join(std::vector<Schema::Key> first,
+                                            const std::vector<Schema::Key>& second);
 /// Returns the schema with null allowed as well.
 [[nodiscard]] Schema or_null(Schema schema);
 /// Returns the first schema with the second allowed instead.
