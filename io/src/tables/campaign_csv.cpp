@@ -63,6 +63,50 @@ std::string unlike(std::string_view found, const RunSettings& wanted) {
   return "begun with " + other->name + " " + *other->first + ", this is " + *other->second;
 }
 
+constexpr const char* kFirstRows =
+    "the first rows of this campaign and shard; remove the file to start anew";
+
+/// Locks a file for this process. Returns false where another has locked it, or has removed it in
+/// between.
+bool locks(int descriptor, const fs::path& file) {
+  struct stat opened {
+  }, named{};
+  return flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fstat(descriptor, &opened) == 0 &&
+         stat(file.c_str(), &named) == 0 && opened.st_ino == named.st_ino;
+}
+
+/// The lines of a file that is being written, without a torn one at its end: the first one, and
+/// where the last one ends.
+struct CompleteLines {
+  std::size_t end = 0;
+  std::string first;
+  explicit CompleteLines(const std::string& text)
+      : end(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1),
+        first(text.substr(0, std::min(end, text.find('\n') + 1))) {}
+};
+
+/// Why a file is not taken up: the place, what is wrong there, and what is allowed.
+struct Refusal {
+  std::string where, what, allowed;
+};
+
+/// Returns why the first two lines of a file of rows, settings and header, are not those of a
+/// campaign; nothing if they are, or are not yet written.
+std::optional<Refusal> refusal_of(std::string_view text, const CompleteLines& lines,
+                                  const std::string& file, const RunSettings& settings,
+                                  const std::string& header) {
+  const std::string_view mark = kSettingsMark;
+  if (!text.substr(0, mark.size()).starts_with(mark.substr(0, text.size())))
+    return Refusal{file + ":1", "does not say which campaign it is of", kFirstRows};
+  if (const std::string other = lines.first.empty() ? "" : unlike(lines.first, settings);
+      !other.empty())
+    return Refusal{file + ":1", other,
+                   "a file of the same problem and settings; remove it to start anew"};
+  if (lines.end > lines.first.size() && !text.substr(lines.first.size()).starts_with(header))
+    return Refusal{file + ":2", "another header", kFirstRows};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string episode_header(const std::vector<std::string>& coordinates) {
@@ -130,49 +174,35 @@ CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, con
   }
   descriptor_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(errno);
-  const auto refuse = [this](const std::string& where, const std::string& what,
-                             const std::string& allowed) {
+  const auto refuse = [this](const Refusal& refusal) {
     close(descriptor_);
-    bad_input(where, what, allowed);
+    bad_input(refusal.where, refusal.what, refusal.allowed);
   };
-  struct stat opened {
-  }, named{};
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor_, &opened) != 0 ||
-      stat(part_.c_str(), &named) != 0 ||
-      opened.st_ino != named.st_ino)  // or has removed it in between
-    refuse(part_.string(), "another campaign is writing it",
-           "one campaign at a time for one results file");
+  if (!locks(descriptor_, part_))
+    refuse({part_.string(), "another campaign is writing it",
+            "one campaign at a time for one results file"});
 
   const std::string text = read_file(part_, "CSV file", kMostTableBytes);
-  const std::string mine =
-      "the first rows of this campaign and shard; remove the file to start anew";
   const std::string header = episode_header(coordinates_), preamble = line_of(settings) + header;
-  const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  const std::string first = text.substr(0, std::min(complete, text.find('\n') + 1));
-  const std::string_view mark = kSettingsMark;
-  if (!std::string_view(text).substr(0, mark.size()).starts_with(mark.substr(0, text.size())))
-    refuse(part_.string() + ":1", "does not say which campaign it is of", mine);
-  if (const std::string other = first.empty() ? "" : unlike(first, settings); !other.empty())
-    refuse(part_.string() + ":1", other,
-           "a file of the same problem and settings; remove it to start anew");
-  if (complete > first.size() && !std::string_view(text).substr(first.size()).starts_with(header))
-    refuse(part_.string() + ":2", "another header", mine);
+  const CompleteLines lines(text);
+  if (const auto refusal = refusal_of(text, lines, part_.string(), settings, header))
+    refuse(*refusal);
 
-  const std::size_t begin = complete > first.size() ? preamble.size() : 0;
+  const std::size_t begin = lines.end > lines.first.size() ? preamble.size() : 0;
   ends_.push_back(begin);
   if (begin > 0) try {
       read_lines(
-          std::string_view(text).substr(0, complete), begin, part_.string(), 3, mine,
+          std::string_view(text).substr(0, lines.end), begin, part_.string(), 3, kFirstRows,
           [&](std::string_view line) { return episode_row(line, coordinates_.size()); },
           [&](const EpisodeRow& row, const std::string& where, std::size_t end) {
             const std::size_t k = rows_.size();
             if (k >= shard.size(episodes))
-              bad_input(where, "more rows than the shard has episodes", mine);
+              bad_input(where, "more rows than the shard has episodes", kFirstRows);
             if (row.episode != shard.episode(k))
               bad_input(where,
                         "episode " + std::to_string(row.episode) + " where the shard has " +
                             std::to_string(shard.episode(k)),
-                        mine);
+                        kFirstRows);
             rows_.push_back(row);
             ends_.push_back(end);
           });
