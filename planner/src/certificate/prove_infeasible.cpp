@@ -19,6 +19,7 @@ namespace swivel {
 
 namespace {
 
+/// Adds a slot, which follows those added before, to ranges of slots.
 void add(std::vector<InfeasibilityCertificate::Range>& ranges, int slot) {
   if (!ranges.empty() && ranges.back().last + 1 == slot)
     ranges.back().last = slot;
@@ -26,6 +27,7 @@ void add(std::vector<InfeasibilityCertificate::Range>& ranges, int slot) {
     ranges.push_back({slot, slot});
 }
 
+/// Finds the certificate of a plan that found no path, from the verdicts of its search.
 class Finder {
  public:
   Finder(const PlanView& view, const Verdicts& verdicts, const std::shared_ptr<StateCheck>& check,
@@ -37,6 +39,8 @@ class Finder {
         witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()),
                    DistanceProofs::kOn, check, budget) {}
 
+  /// Returns the certificate without the settings of the problem. Throws InvalidArgument if there
+  /// is a path, and Stopped.
   InfeasibilityCertificate find() {
     InfeasibilityCertificate certificate;
     certificate.layers = lattice_.layers();
@@ -163,13 +167,20 @@ class Finder {
     return found;
   }
 
-  /// Returns the certificate's layer after `layer`. On entry `nodes` and `reached` are those of
-  /// `layer`, on return those of the next layer.
-  [[nodiscard]] InfeasibilityCertificate::Layer next(int layer, Nodes& nodes,
-                                                     std::vector<char>& reached) {
-    Nodes ahead = nodes_of(layer + 1);
-    std::vector<char> reached_ahead(ahead.at.size(), 0), met(ahead.at.size(), 0);
-    std::map<int, std::vector<int>> removed;  // removed edges: tails by head
+  /// What the edges from the reached nodes of a layer do to the nodes of the next layer.
+  struct Step {
+    std::vector<char> reached;                ///< by slot: an edge reaches the node
+    std::vector<char> met;                    ///< by slot: an edge is allowed, but there is no node
+    std::map<int, std::vector<int>> removed;  ///< removed edges: tails by head
+  };
+
+  /// Follows the edges from the nodes `reached` of a layer to the next layer, whose nodes are
+  /// `ahead`.
+  [[nodiscard]] Step step_from(int layer, const Nodes& nodes, const std::vector<char>& reached,
+                               Nodes& ahead) const {
+    Step step;
+    step.reached.assign(ahead.at.size(), 0);
+    step.met.assign(ahead.at.size(), 0);
     std::vector<Lattice::SlotRun> runs;
     for (const Lattice::Node& a : nodes.list) {
       if (!reached[index(a.slot)]) continue;
@@ -179,31 +190,46 @@ class Finder {
       for (const Lattice::SlotRun& run : runs)
         for (int b = run.first; b < run.last; ++b) {
           const Lattice::Node* const head = ahead.at[index(b)];
-          if (met[index(b)] || reached_ahead[index(b)]) continue;
+          if (step.met[index(b)] || step.reached[index(b)]) continue;
           if (head != nullptr && !lattice_.step_allowed(layer, lattice_.delta(a.q, head->q)))
             continue;
           if (!has_row(layer + 1, b, ahead))
-            met[index(b)] = 1;
+            step.met[index(b)] = 1;
           else if (lists(removed_here, b))
-            removed[b].push_back(a.slot);
+            step.removed[b].push_back(a.slot);
           else
-            reached_ahead[index(b)] = 1;
+            step.reached[index(b)] = 1;
         }
     }
-    InfeasibilityCertificate::Layer found = layer_of(layer + 1, ahead, reached_ahead, met);
+    return step;
+  }
+
+  /// Returns the removed edges from `tails` of a layer to head b, those that follow each other with
+  /// the same witness together. `witness` is the one of the edge before, on return that of the last
+  /// edge.
+  [[nodiscard]] std::vector<InfeasibilityCertificate::Edges> edges_to(int layer, int b,
+                                                                      const std::vector<int>& tails,
+                                                                      int& witness) {
+    std::vector<InfeasibilityCertificate::Edges> edges;
+    for (const int a : tails) {
+      witness = witnesses_.of_edge(layer, a, b, witness);
+      require(witness >= 0, layer, "an edge");
+      if (edges.empty() || edges.back().witness != witness)
+        edges.push_back({{a, a}, {b, b}, witness, 0});
+      edges.back().tails.last = a;
+      ++edges.back().count;
+    }
+    return edges;
+  }
+
+  /// Adds to a layer of the certificate the removed edges into its nodes that are not reached.
+  /// Edges to a head continue those to the head before if they have the same tails and witness.
+  void add_removed_edges(int layer, const Step& step, InfeasibilityCertificate::Layer& found) {
     std::vector<InfeasibilityCertificate::Edges> last;  // of the head before
     int witness = -1;
-    for (const auto& [b, tails] : removed) {
-      if (reached_ahead[index(b)]) continue;
-      std::vector<InfeasibilityCertificate::Edges> here;
-      for (const int a : tails) {
-        witness = witnesses_.of_edge(layer, a, b, witness);
-        require(witness >= 0, layer, "an edge");
-        if (here.empty() || here.back().witness != witness)
-          here.push_back({{a, a}, {b, b}, witness, 0});
-        here.back().tails.last = a;
-        ++here.back().count;
-      }
+    for (const auto& [b, tails] : step.removed) {
+      if (step.reached[index(b)]) continue;
+      std::vector<InfeasibilityCertificate::Edges> here = edges_to(layer, b, tails, witness);
       for (InfeasibilityCertificate::Edges& edges : here) {
         const auto same = std::find_if(
             last.begin(), last.end(), [&](const InfeasibilityCertificate::Edges& other) {
@@ -223,11 +249,22 @@ class Finder {
           return std::tuple(x.heads.first, x.tails.first) <
                  std::tuple(y.heads.first, y.tails.first);
         });
+  }
+
+  /// Returns the certificate's layer after `layer`. On entry `nodes` and `reached` are those of
+  /// `layer`, on return those of the next layer.
+  [[nodiscard]] InfeasibilityCertificate::Layer next(int layer, Nodes& nodes,
+                                                     std::vector<char>& reached) {
+    Nodes ahead = nodes_of(layer + 1);
+    Step step = step_from(layer, nodes, reached, ahead);
+    InfeasibilityCertificate::Layer found = layer_of(layer + 1, ahead, step.reached, step.met);
+    add_removed_edges(layer, step, found);
     nodes = std::move(ahead);
-    reached.swap(reached_ahead);
+    reached.swap(step.reached);
     return found;
   }
 
+  /// Throws std::logic_error unless a witness was found for what the search removed.
   static void require(bool holds, int layer, const char* what) {
     if (!holds)
       throw std::logic_error("layer " + std::to_string(layer) + ": nothing removes " + what +
