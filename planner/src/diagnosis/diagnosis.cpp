@@ -401,86 +401,143 @@ void add_empty(const Lattice& lattice, int layer, const Cause& cause,
 
 }  // namespace
 
+namespace {
+
+/// Finds out why no path goes on from the furthest layer, step by step.
+class Diagnoser {
+ public:
+  Diagnoser(const Lattice& lattice, const World& world, const EdgeRule& rule, const SlotPath& path,
+            const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check)
+      : lattice_(lattice),
+        path_(path),
+        budget_(budget),
+        check_(check),
+        deepest_(static_cast<int>(path.size()) - 1),
+        next_(deepest_ + 1),
+        inspector_(lattice, world, rule, budget, check),
+        diagnosis_(diagnosis) {}
+
+  /// Fills the diagnosis. `layers`: also list the layers without a valid node. Throws Stopped.
+  void run(bool layers) {
+    diagnosis_.complete = false;
+    note_place();
+    note_unreachable();
+    diagnosis_.layers_known = next_;  // the layers before have a node: a path passes through them
+    inspect_next_layer();
+    find_cause();
+    inspector_.begin_layers();
+    if (!empty_ && (layers || !answered_)) edges_ = inspector_.removed_edges(deepest_, left_);
+    // The check was not called about what other rules refuse.
+    if (check_ && diagnosis_.cause.kind != Cause::Kind::kCheck) {
+      diagnosis_.without_it.reset();
+      diagnosis_.without_it_s.reset();
+    }
+    if (!empty_ && !answered_)
+      diagnosis_.cause = edges_.empty() ? of_kind(Cause::Kind::kArmSlope) : edges_.most_frequent();
+    diagnosis_.layers_known = next_ + 1;
+    diagnosis_.complete = !layers || list_layers();
+  }
+
+ private:
+  /// Notes where paths end, and between which waypoints.
+  void note_place() {
+    const ToolPath& tool_path = lattice_.path();
+    if (deepest_ >= 0) {
+      diagnosis_.reached_layer = deepest_;
+      diagnosis_.reached_s = tool_path.layer(deepest_).s;
+    }
+    diagnosis_.at_s = tool_path.layer(next_).s;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity(), kBefore = 1e-8;  // m
+    const double travel = tool_path.layer(next_).travel;
+    diagnosis_.waypoints = {tool_path.waypoints_along(-kInfinity, travel - kBefore)[1],
+                            tool_path.waypoints_along(travel, kInfinity)[0]};
+  }
+
+  /// Notes a layer that is proved out of reach: the first waypoint, or else the first layer.
+  void note_unreachable() {
+    for (int layer = 0;
+         layer < lattice_.layers() && diagnosis_.holds() != Diagnosis::Holds::kEveryResolution;
+         ++layer) {
+      if (layer % 64 == 0) budget_.poll();
+      const PathLayer& at = lattice_.path().layer(layer);
+      if ((!diagnosis_.unreachable || at.waypoint >= 0) && lattice_.proved_unreachable(layer))
+        diagnosis_.unreachable = {layer, at.s, at.waypoint};
+    }
+  }
+
+  /// Lists the valid nodes of the layer that no path reaches, and finds out why there are none.
+  void inspect_next_layer() {
+    removed_ = inspector_.blocked(next_, left_);
+    if (left_.empty())
+      empty_ = removed_.empty() ? inspector_.kinematic_cause(next_) : removed_.most_frequent();
+  }
+
+  /// Finds the constraint that blocks every path. If none is found, the cause is why the next layer
+  /// is empty, or stays open.
+  void find_cause() {
+    constexpr double kMost = 0.5e6;  // us
+    std::optional<ConstraintRemoval::Answer> answer;
+    if (!lattice_.out_of_reach(next_))
+      answer = ConstraintRemoval(lattice_, inspector_.constraints(), path_, budget_).find(kMost);
+    answered_ = answer.has_value();
+    if (answer) {
+      diagnosis_.cause = answer->cause;
+      diagnosis_.without_it = answer->without_it;
+      if (answer->without_it)
+        diagnosis_.without_it_s = lattice_.path().layer(*answer->without_it).s;
+      diagnosis_.together = std::move(answer->together);
+    } else if (empty_) {
+      diagnosis_.cause = *empty_;
+    }
+    // No node is listed that continues the path.
+    if (!diagnosis_.without_it && deepest_ >= 0 &&
+        lattice_.neighbour_along_path(deepest_, path_.back(), 1) < 0)
+      if (const auto limit =
+              inspector_.limit_ahead(deepest_, *lattice_.exact_config(deepest_, path_.back())))
+        diagnosis_.cause = *limit, answered_ = true;
+  }
+
+  /// Lists what removes nodes and edges behind the furthest layer, and the layers without a valid
+  /// node. Returns false if the estimated time is up before all layers were looked at.
+  bool list_layers() {
+    if (empty_) add_empty(lattice_, next_, *empty_, diagnosis_.empty_layers);
+    removed_.add(edges_);
+    if (deepest_ >= 0) {
+      inspector_.add_missing(next_, removed_);
+      diagnosis_.removed = removed_.list();
+    }
+    int hint = left_.empty() ? -1 : left_.front().slot;
+    for (int layer = next_ + 1; layer < lattice_.layers(); ++layer) {
+      if (!inspector_.affordable()) return false;
+      if (const auto cause = inspector_.why_empty(layer, hint)) {
+        add_empty(lattice_, layer, *cause, diagnosis_.empty_layers);
+        hint = -1;
+      }
+      diagnosis_.layers_known = layer + 1;
+    }
+    return true;
+  }
+
+  const Lattice& lattice_;
+  const SlotPath& path_;
+  const Budget& budget_;
+  const std::shared_ptr<StateCheck>& check_;
+  const int deepest_, next_;  ///< the furthest layer that a path reaches, and the layer after it
+  Inspector inspector_;
+  Diagnosis& diagnosis_;
+  std::vector<Lattice::Node> left_;  ///< valid nodes of layer next_
+  Counts removed_, edges_;           ///< what removes nodes of layer next_, and edges to them
+  std::optional<Cause> empty_;       ///< set if layer next_ has no valid node
+  bool answered_ = false;            ///< the cause is a constraint that blocks every path
+};
+
+}  // namespace
+
 void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule,
               const SlotPath& path, bool layers, const Budget& budget, Diagnosis& diagnosis,
               const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("diagnosis");
-  const int deepest = static_cast<int>(path.size()) - 1, next = deepest + 1;
-  diagnosis.complete = false;
-  if (deepest >= 0) {
-    diagnosis.reached_layer = deepest;
-    diagnosis.reached_s = lattice.path().layer(deepest).s;
-  }
-  const ToolPath& tool_path = lattice.path();
-  diagnosis.at_s = tool_path.layer(next).s;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kBefore = 1e-8;  // m
-  const double travel = tool_path.layer(next).travel;
-  diagnosis.waypoints = {tool_path.waypoints_along(-kInfinity, travel - kBefore)[1],
-                         tool_path.waypoints_along(travel, kInfinity)[0]};
-  for (int layer = 0;
-       layer < lattice.layers() && diagnosis.holds() != Diagnosis::Holds::kEveryResolution;
-       ++layer) {
-    if (layer % 64 == 0) budget.poll();
-    const PathLayer& at = tool_path.layer(layer);
-    if ((!diagnosis.unreachable || at.waypoint >= 0) && lattice.proved_unreachable(layer))
-      diagnosis.unreachable = {layer, at.s, at.waypoint};
-  }
-  diagnosis.layers_known = next;  // the layers before have a node: a path passes through them
-  Inspector inspector(lattice, world, rule, budget, check);
-
-  std::vector<Lattice::Node> left;
-  Counts removed = inspector.blocked(next, left);
-  const std::optional<Cause> empty = !left.empty() ? std::nullopt
-                                     : removed.empty()
-                                         ? std::optional(inspector.kinematic_cause(next))
-                                         : std::optional(removed.most_frequent());
-  constexpr double kMost = 0.5e6;  // us
-  std::optional<ConstraintRemoval::Answer> answer;
-  if (!lattice.out_of_reach(next))
-    answer = ConstraintRemoval(lattice, inspector.constraints(), path, budget).find(kMost);
-  if (answer) {
-    diagnosis.cause = answer->cause;
-    diagnosis.without_it = answer->without_it;
-    if (answer->without_it) diagnosis.without_it_s = tool_path.layer(*answer->without_it).s;
-    diagnosis.together = std::move(answer->together);
-  } else if (empty) {
-    diagnosis.cause = *empty;
-  }
-  // No node is listed that continues the path.
-  if (!diagnosis.without_it && deepest >= 0 &&
-      lattice.neighbour_along_path(deepest, path.back(), 1) < 0)
-    if (const auto limit =
-            inspector.limit_ahead(deepest, *lattice.exact_config(deepest, path.back())))
-      diagnosis.cause = *limit, answer.emplace();
-  inspector.begin_layers();
-  Counts edges;
-  if (!empty && (layers || !answer)) edges = inspector.removed_edges(deepest, left);
-  // The check was not called about what other rules refuse.
-  if (check && diagnosis.cause.kind != Cause::Kind::kCheck) {
-    diagnosis.without_it.reset();
-    diagnosis.without_it_s.reset();
-  }
-  if (!empty && !answer)
-    diagnosis.cause = edges.empty() ? of_kind(Cause::Kind::kArmSlope) : edges.most_frequent();
-  diagnosis.layers_known = next + 1;
-  if (layers) {
-    if (empty) add_empty(lattice, next, *empty, diagnosis.empty_layers);
-    removed.add(edges);
-    if (deepest >= 0) {
-      inspector.add_missing(next, removed);
-      diagnosis.removed = removed.list();
-    }
-    int hint = left.empty() ? -1 : left.front().slot;
-    for (int layer = next + 1; layer < lattice.layers(); ++layer) {
-      if (!inspector.affordable()) return;
-      if (const auto cause = inspector.why_empty(layer, hint)) {
-        add_empty(lattice, layer, *cause, diagnosis.empty_layers);
-        hint = -1;
-      }
-      diagnosis.layers_known = layer + 1;
-    }
-  }
-  diagnosis.complete = true;
+  Diagnoser(lattice, world, rule, path, budget, diagnosis, check).run(layers);
 }
 
 SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer,
