@@ -32,7 +32,8 @@ double ms_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
-/// A joint's limits and the manipulability at a sample. Limits are narrower by `inside`, rad.
+/// Returns which joint limit a sample exceeds, or that its manipulability is too low; none if it
+/// keeps both. Limits are narrower by `inside`, rad.
 std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits,
                                         const TrajectoryRow& row, double inside = 0) {
   constexpr double kLimit = 1e-9;  // rad
@@ -49,12 +50,13 @@ std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits
   return std::nullopt;
 }
 
+/// What is wrong with a motion, and the sample at which it is.
 struct Fault {
   NoMotion what;
   std::size_t row = 0;
 };
 
-/// What is wrong with a motion first.
+/// Returns the first fault of a motion; none if it has none. Throws Stopped.
 std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& problem,
                                  const std::vector<TimedRow>& rows, const Budget& budget) {
   std::vector<Config> samples;
@@ -74,7 +76,7 @@ std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& prob
   return Fault{std::move(fault), found->row};
 }
 
-/// Where on the path s is, m of travel; none where the path only turns there.
+/// Returns the travel at s, m; none if the path only turns there.
 std::optional<double> travel_at(const ToolPath& path, double s) {
   for (int i = 0; i + 1 < path.size(); ++i) {
     const PathLayer &from = path.layer(i), &to = path.layer(i + 1);
@@ -96,9 +98,9 @@ class Bisection {
         world_(robot.world(), of_samples, budget),
         query_(world_) {}
 
-  /// In the middle of the samples at fault, one after the other, from this one on: the posture
-  /// nearest to the sample there that keeps what is asked, and a little more. None where there is
-  /// none, or one is there already.
+  /// Takes the samples at fault that follow each other from `first` on, and returns the posture
+  /// nearest to their middle one that keeps limits and clearance, and a little more. None if there
+  /// is none, or if one was returned for that place before.
   std::optional<BetweenRow> posture(const std::vector<TimedRow>& rows, std::size_t first) {
     constexpr double kFarthest = 0.5, kSame = 1e-6;  // rad, m
     std::size_t last = first;
@@ -117,8 +119,8 @@ class Bisection {
 
  private:
   bool allowed(const Config& q) {
-    constexpr double kInside = 1e-4,
-                     kClear = 1e-4;  // rad, m: so that samples beside are allowed as well
+    // rad and m, so that the samples beside are allowed as well
+    constexpr double kInside = 1e-4, kClear = 1e-4;
     TrajectoryRow row;
     row.q = q;
     return !fault_of_joints(*chain_, problem_->limits, row, kInside) &&
@@ -133,9 +135,9 @@ class Bisection {
   std::vector<double> found_;  // m of travel
 };
 
-/// What rows say, moved off the ends of the range and of the waypoints' windows where the spline
-/// through it would leave them: as far as it does, again and again. Where a window is no wider than
-/// its own bends that does not end, and they stay outside a little.
+/// Returns the rolls of the rows, rad, moved so that the spline through them stays within the range
+/// and the waypoints' windows: where it leaves them, the rolls beside are moved by as much, again
+/// and again. In a window no wider than the spline's own bends it may stay outside a little.
 std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
                                      const std::vector<TrajectoryRow>& rows) {
   constexpr int kMost = 40;
@@ -174,12 +176,12 @@ std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
   return rolls;
 }
 
-/// Whether the check finds that the tool leaves the tolerances of its path between the samples of a
-/// motion.
+/// Returns true if the tool leaves the tolerances of its path between the samples of a motion, as
+/// check_motion() finds.
 bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion,
                     const Budget& budget) {
-  constexpr double kShare = 0.5;  // of the true distance: what is measured half way between samples
-                                  // beside a corner, at least
+  // Beside a corner, the distance half way between samples is at least this share of the largest.
+  constexpr double kShare = 0.5;
   const Limits& limits = problem.limits;
   if (!(limits.tool_path_error && motion.between_position > kShare * *limits.tool_path_error) &&
       !(limits.tool_angle_error && motion.between_angle > kShare * *limits.tool_angle_error))
@@ -189,8 +191,8 @@ bool strays_between(const PreparedRobot& robot, const Problem& problem, const Ti
   return check.worst_path_error > 0 || check.worst_path_angle > 0;  // of moves that fail
 }
 
-/// time_path(), slower where the tool would leave the path's tolerances between samples, as at few
-/// samples a second; no motion where it would do so all the same.
+/// Returns the motion of time_path(). If the tool would leave the path's tolerances between
+/// samples, as it may at few samples a second, returns a slower one, or none if that does so too.
 TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& problem,
                                     const PathMotion& motion, const JointRates& rates,
                                     const TimingOptions& options, const Budget& budget) {
@@ -213,8 +215,8 @@ TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& p
           "the tool would leave its path's tolerances between samples: a higher rate brings less"}};
 }
 
-/// The timing asked for, the tool no faster than limits.tool_speed and limits.tool_turn_speed
-/// allow; what was lowered is told.
+/// Returns the timing options with the tool no faster than limits.tool_speed and
+/// limits.tool_turn_speed allow. Adds a warning for each speed that is lowered.
 TimingOptions within_limits(TimingOptions options, const Limits& limits,
                             std::vector<std::string>& warnings) {
   const auto lower = [&](double& asked, const std::optional<double>& limit, const char* format) {
@@ -232,8 +234,129 @@ TimingOptions within_limits(TimingOptions options, const Limits& limits,
   return options;
 }
 
-/// `between_layers`: where the motion through the rows is at fault between them, it may be led
-/// through postures of its own there.
+/// Throws InvalidArgument unless the numbers of the options are finite and positive.
+void require_positive(const TimingOptions& options) {
+  const auto positive = [](double value, const char* name) {
+    if (!(value > 0) || !std::isfinite(value))
+      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " +
+                            formatted("%.9g", value) + ": allowed is a finite number > 0");
+  };
+  positive(options.speed, "speed");
+  positive(options.turn_speed.value_or(1), "turn_speed");
+  positive(options.rate, "rate");
+  positive(options.chord.value_or(1), "chord");
+}
+
+/// Times the rows of a path, and proves the motion's samples. Tries several motions through the
+/// rows, the smoothest first, until one is without fault.
+class RowTimer {
+ public:
+  RowTimer(const PreparedRobot& robot, const Problem& problem,
+           const std::vector<TrajectoryRow>& rows, const TimingOptions& asked, const Budget& budget)
+      : robot_(robot),
+        problem_(problem),
+        rows_(rows),
+        budget_(budget),
+        options_(within_limits(asked, problem.limits, lowered_)),
+        path_(problem_path(problem, robot.arm().chain, budget, PathSmoothing{})),
+        rates_(joint_rates(robot.arm().chain, problem.limits, problem.source)),
+        of_samples_(problem_of_samples(problem)) {}
+
+  /// Returns the motion, or the fault of the last that was tried. `between_layers`: where the
+  /// motion is at fault between the rows, it may be led through other postures there.
+  MotionResult run(bool between_layers) {
+    constexpr double kFarOff = 0.03;  // rad
+    Tried tried = attempt(kApart, kOffLimits);
+    Tried smoothest = between_layers && tried.at_fault ? tried : Tried{};
+    // A motion through every row is less smooth, so it comes second.
+    if (tried.failure && !tried.all_rows && !tried.jumps) tried = attempt(0, kOffLimits);
+    // The third keeps as far off limits as splines through a jagged path overshoot.
+    if (tried.failure && !tried.failure->too_near && !tried.jumps && !robot_.arm_class().srs) {
+      if (const Tried last = attempt(kApart, kFarOff); !last.failure) tried = last;
+    }
+    if (tried.failure && smoothest.at_fault)
+      tried = lead_between(std::move(smoothest), *tried.failure);
+    result_.failure = std::move(tried.failure);
+    if (result_.motion)
+      result_.motion->warnings.insert(result_.motion->warnings.begin(), lowered_.begin(),
+                                      lowered_.end());
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr double kApart = 0.005, kOffLimits = 1e-3;  // m, rad
+
+  /// A motion that was tried.
+  struct Tried {
+    std::optional<NoMotion> failure;
+    bool all_rows = false, jumps = false;  ///< goes through every row; changes the branch at once
+    std::vector<TimedRow> samples;         ///< of a motion at fault
+    std::optional<std::size_t> at_fault;   ///< the sample at fault
+  };
+
+  /// Times a motion through rows that are at least `apart` apart (m) and through the postures
+  /// `between`, `off_limits` inside joint limits (rad). Sets the result's motion if it is without
+  /// fault.
+  Tried attempt(double apart, double off_limits, const std::vector<BetweenRow>& between = {}) {
+    auto start = std::chrono::steady_clock::now();
+    const auto motion = make_path_motion(robot_.arm().chain, robot_.arm_class(), path_, rows_,
+                                         apart, problem_.limits.joint_margin + off_limits, between);
+    TimingResult timed =
+        time_within_tolerances(robot_, problem_, *motion, rates_, options_, budget_);
+    result_.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
+    Tried tried{std::move(timed.failure),
+                motion->knots().size() == rows_.size(),
+                !motion->jumps().empty(),
+                {},
+                {}};
+    if (timed.motion) {
+      if (const auto fault = first_fault(robot_, of_samples_, timed.motion->rows, budget_)) {
+        tried.failure = fault->what;
+        tried.at_fault = fault->row;
+        tried.samples = std::move(timed.motion->rows);
+      }
+    }
+    result_.check_ms += ms_since(start);
+    if (!tried.failure) result_.motion = std::move(timed.motion);
+    return tried;
+  }
+
+  /// Leads a motion that is at fault through other postures between the rows, one after the other.
+  /// Returns the last motion that was tried. `failure` is what the result would be without.
+  Tried lead_between(Tried tried, const NoMotion& failure) {
+    constexpr std::size_t kMost = 64;
+    Bisection bisection(robot_, of_samples_, path_, budget_);
+    std::vector<BetweenRow> between;
+    while (tried.at_fault && between.size() < kMost) {
+      const auto one = bisection.posture(tried.samples, *tried.at_fault);
+      if (!one) break;
+      between.push_back(*one);
+      tried = attempt(kApart, kOffLimits, between);
+    }
+    if (!tried.failure) {
+      const std::string text =
+          formatted("at s = %.4f m the motion would be at fault between layers (", failure.s);
+      result_.motion->warnings.push_back(text + failure.reason + "): it is led through " +
+                                         std::to_string(between.size()) + " other posture" +
+                                         (between.size() == 1 ? "" : "s") + " there");
+    }
+    return tried;
+  }
+
+  const PreparedRobot& robot_;
+  const Problem& problem_;
+  const std::vector<TrajectoryRow>& rows_;
+  const Budget& budget_;
+  std::vector<std::string> lowered_;  ///< warnings about speeds that were lowered
+  const TimingOptions options_;
+  const ToolPath path_;
+  const JointRates rates_;
+  const Problem of_samples_;
+  MotionResult result_;
+};
+
+/// Times a trajectory as time_trajectory() says. `between_layers`: where the motion is at fault
+/// between the rows, it may be led through other postures there.
 MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
                        const std::vector<TrajectoryRow>& rows, const TimingOptions& asked,
                        bool between_layers, const Budget& budget) {
@@ -245,83 +368,8 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
                                     problem_path(problem, robot.arm().chain, budget), rows);
     return time_rows(robot, turned, rows, asked, between_layers, budget);
   }
-  const auto positive = [&](double value, const char* name) {
-    if (!(value > 0) || !std::isfinite(value))
-      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " +
-                            formatted("%.9g", value) + ": allowed is a finite number > 0");
-  };
-  positive(asked.speed, "speed");
-  positive(asked.turn_speed.value_or(1), "turn_speed");
-  positive(asked.rate, "rate");
-  positive(asked.chord.value_or(1), "chord");
-  std::vector<std::string> lowered;
-  const TimingOptions options = within_limits(asked, problem.limits, lowered);
-  const Chain& chain = robot.arm().chain;
-  const ToolPath path = problem_path(problem, chain, budget, PathSmoothing{});
-  const JointRates rates = joint_rates(chain, problem.limits, problem.source);
-  const Problem of_samples = problem_of_samples(problem);
-  MotionResult result;
-  struct Tried {
-    std::optional<NoMotion> failure;
-    bool all_rows = false, jumps = false;
-    std::vector<TimedRow> samples;  // the one at fault with what comes before it and after
-    std::optional<std::size_t> at_fault;
-  };
-  const auto try_it = [&](double apart, double off_limits,
-                          const std::vector<BetweenRow>& between = {}) {
-    auto start = std::chrono::steady_clock::now();
-    const auto motion = make_path_motion(chain, robot.arm_class(), path, rows, apart,
-                                         problem.limits.joint_margin + off_limits, between);
-    TimingResult timed = time_within_tolerances(robot, problem, *motion, rates, options, budget);
-    result.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-    Tried tried{std::move(timed.failure),
-                motion->knots().size() == rows.size(),
-                !motion->jumps().empty(),
-                {},
-                {}};
-    if (timed.motion) {
-      if (const auto fault = first_fault(robot, of_samples, timed.motion->rows, budget)) {
-        tried.failure = fault->what;
-        tried.at_fault = fault->row;
-        tried.samples = std::move(timed.motion->rows);
-      }
-    }
-    result.check_ms += ms_since(start);
-    if (!tried.failure) result.motion = std::move(timed.motion);
-    return tried;
-  };
-  constexpr double kApart = 0.005, kOffLimits = 1e-3, kFarOff = 0.03;  // m, rad
-  Tried tried = try_it(kApart, kOffLimits);
-  Tried bisected = between_layers && tried.at_fault ? tried : Tried{};
-  // Through every row only where the smoother motion will not do.
-  if (tried.failure && !tried.all_rows && !tried.jumps) tried = try_it(0, kOffLimits);
-  // Rows as far off limits as splines through a jagged path overshoot.
-  if (tried.failure && !tried.failure->too_near && !tried.jumps && !robot.arm_class().srs) {
-    if (const Tried last = try_it(kApart, kFarOff); !last.failure) tried = last;
-  }
-  if (tried.failure && bisected.at_fault) {
-    constexpr std::size_t kMost = 64;
-    Bisection bisection(robot, of_samples, path, budget);
-    std::vector<BetweenRow> between;
-    while (bisected.at_fault && between.size() < kMost) {
-      const auto one = bisection.posture(bisected.samples, *bisected.at_fault);
-      if (!one) break;
-      between.push_back(*one);
-      bisected = try_it(kApart, kOffLimits, between);
-    }
-    if (!bisected.failure) {
-      const std::string text = formatted(
-          "at s = %.4f m the motion would be at fault between layers (", tried.failure->s);
-      result.motion->warnings.push_back(text + tried.failure->reason + "): it is led through " +
-                                        std::to_string(between.size()) + " other posture" +
-                                        (between.size() == 1 ? "" : "s") + " there");
-    }
-    tried = std::move(bisected);
-  }
-  result.failure = std::move(tried.failure);
-  if (result.motion)
-    result.motion->warnings.insert(result.motion->warnings.begin(), lowered.begin(), lowered.end());
-  return result;
+  require_positive(asked);
+  return RowTimer(robot, problem, rows, asked, budget).run(between_layers);
 }
 
 }  // namespace
@@ -334,7 +382,7 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
 
 namespace {
 
-/// Refuses steps from a branch to another, whatever made the lattice cross a singularity there.
+/// Refuses every step from one branch to another.
 class KeepsBranch final : public StateCheck {
  public:
   explicit KeepsBranch(const SrsArm& arm) : arm_(&arm) {}
@@ -353,12 +401,14 @@ class KeepsBranch final : public StateCheck {
   const SrsArm* arm_;
 };
 
+/// Returns true if the rows are not all on one branch.
 bool changes_branch(const std::vector<TrajectoryRow>& rows) {
   return std::any_of(rows.begin(), rows.end(),
                      [&](const TrajectoryRow& row) { return row.branch != rows[0].branch; });
 }
 
-/// A path that never changes branch, where there is one: else the one there is.
+/// Returns the cheapest path. With `one_branch`, returns the cheapest that never changes branch if
+/// there is one.
 PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool one_branch) {
   PlanResult found = planner.plan(options);
   if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) ||
@@ -379,7 +429,7 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
   return other;
 }
 
-/// The lattice's path stays, and nothing is made of it.
+/// Notes that time ran out: the lattice's path stays, without refinement and motion.
 void stop(MotionPlan& plan, bool refined, bool timed) {
   plan.stopped = true;
   const double cost = plan.result.cost;
@@ -389,8 +439,8 @@ void stop(MotionPlan& plan, bool refined, bool timed) {
   if (timed) plan.motion.emplace().failure = NoMotion{0, "stopped"};
 }
 
-/// Proves what was made of the lattice's path, which was proved itself. What is not proved in time
-/// is not made.
+/// Proves the refined path and the motion; the lattice's path is proved already. If time runs out,
+/// they are dropped. Throws std::logic_error if one fails.
 void check(const PlanView& view, const Budget& budget, MotionPlan& plan) {
   const bool refined = plan.refinement && plan.refinement->refined,
              timed = plan.motion && plan.motion->motion;
@@ -405,7 +455,7 @@ void check(const PlanView& view, const Budget& budget, MotionPlan& plan) {
   plan.result.time_ms["check"] += ms_since(start);
 }
 
-/// Puts refined rows in the place of the lattice's.
+/// Replaces the trajectory of the result by the refined one, if the path was refined.
 void take(const Refined& refined, const PlanView& view, PlanResult& result) {
   if (!refined.refined) return;
   result.trajectory = refined.rows;
@@ -418,9 +468,10 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
 MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
                        const std::optional<TimingOptions>& timing) {
   const Budget budget = options.budget();
-  const bool own_cost = refined && options.hooks.cost;  // off the lattice it is not known
+  // The caller's own cost is not known off the lattice.
+  const bool own_cost = refined && options.hooks.cost;
   refined = refined && !own_cost;
-  // Of the path that is executed, later.
+  // The refined path is measured later, in place of the lattice's.
   PlanOptions first = options;
   if (refined) first.evidence.tool_path_error = first.evidence.postures = false;
   MotionPlan plan;
