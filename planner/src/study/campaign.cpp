@@ -6,7 +6,10 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/parallel/executor.hpp"
@@ -42,6 +45,90 @@ class InOrder {
   const std::function<void(const EpisodeRow&)>& row_done_;
 };
 
+/// Plans the episodes of a campaign one by one, on several threads.
+class EpisodePlanner {
+ public:
+  /// Prepares `workers` planners.
+  EpisodePlanner(const std::shared_ptr<const PreparedRobot>& prepared, const Problem& problem,
+                 const CampaignOptions& options, int workers,
+                 const std::function<void(const EpisodeRow&)>& row_done)
+      : problem_(problem),
+        options_(options),
+        single_(options.plan),
+        in_order_(options.skip, row_done),
+        next_(options.skip) {
+    single_.threads = 1;
+    single_.evidence = {.tool_path_error = true};  // a column
+    single_.progress = nullptr;
+    for (int worker = 0; worker < workers; ++worker) planners_.emplace_back(prepared, problem);
+  }
+
+  /// Plans the next episode with the planner of a worker and delivers its row; does nothing once
+  /// the campaign has stopped. Several workers may call it at a time.
+  void plan_next(int worker) {
+    if (stopped_ || single_.budget().cancelled()) return;
+    const std::uint64_t k = next_++;
+    const std::uint64_t episode = options_.shard.episode(k);
+    try {
+      const auto result = plan(k, episode, planners_[static_cast<std::size_t>(worker)]);
+      if (!result) return;
+      // The plan was stopped, maybe with its verdict known and its columns not.
+      if (!answered(*result)) {
+        stopped_ = true;
+        return;
+      }
+      if (options_.planned) options_.planned(episode, *result);
+      add(k, EpisodeRow(episode, *result, problem_));
+    } catch (const InputError& error) {
+      stopped_ = true;
+      throw InputError(std::string(error.what()) + " (episode " + std::to_string(episode) + ")");
+    } catch (...) {
+      stopped_ = true;
+      throw;
+    }
+  }
+
+ private:
+  /// Returns the answer of an episode. An internal error, which must not take the other episodes
+  /// with it, becomes the row of the episode; returns none then.
+  std::optional<PlanResult> plan(std::uint64_t k, std::uint64_t episode, Planner& planner) {
+    try {
+      planner.set_problem(episode_problem(problem_, options_.seed, episode));
+      return planner.plan(single_);
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      add(k, EpisodeRow(episode, error.what()));
+      return std::nullopt;
+    }
+  }
+
+  /// Returns true if the verdict and all columns of the row are known.
+  static bool answered(const PlanResult& result) {
+    return result.status == PlanStatus::kSolved
+               ? result.evidence.tool_path_error
+               : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
+  }
+
+  void add(std::uint64_t k, EpisodeRow row) {
+    row.offsets = episode_offsets(problem_.vary, options_.seed, row.episode);
+    in_order_.add(k, std::move(row));
+  }
+
+  const Problem& problem_;
+  const CampaignOptions& options_;
+  PlanOptions single_;             ///< of one episode
+  std::vector<Planner> planners_;  ///< by worker
+  InOrder in_order_;
+  /// Number of the next episode in the shard. Episodes come from a counter and not from the
+  /// executor's index, which starts threads far apart: rows would wait for long, and be lost if the
+  /// process is killed.
+  std::atomic<std::uint64_t> next_;
+  std::atomic<bool> stopped_{false};
+};
+
 }  // namespace
 
 void run_campaign(const PreparedRobot& robot, const Problem& problem,
@@ -59,61 +146,10 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem,
     throw InputError("episodes: too many for one shard: allowed are 2147483647");
   if (options.skip >= size) return;
 
-  PlanOptions single = options.plan;
-  single.threads = 1;
-  single.evidence = {.tool_path_error = true};  // a column
-  single.progress = nullptr;
-
   Executor executor(options.plan.threads);
-  std::vector<Planner> planners;  // by worker
-  for (int worker = 0; worker < executor.threads(); ++worker)
-    planners.emplace_back(prepared, problem);
-  InOrder in_order(options.skip, row_done);
-  const auto add = [&](std::uint64_t k, EpisodeRow row) {
-    row.offsets = episode_offsets(problem.vary, options.seed, row.episode);
-    in_order.add(k, std::move(row));
-  };
-  // Episodes come from a counter and not from the executor's index, which starts threads far apart:
-  // rows would wait for long, and be lost if the process is killed.
-  std::atomic<std::uint64_t> next{options.skip};
-  std::atomic<bool> stopped{false};
-  executor.for_each(static_cast<int>(size - options.skip), [&](int, int worker) {
-    if (stopped || single.budget().cancelled()) return;
-    const std::uint64_t k = next++;
-    const std::uint64_t episode = options.shard.episode(k);
-    try {
-      PlanResult result;
-      try {
-        Planner& planner = planners[static_cast<std::size_t>(worker)];
-        planner.set_problem(episode_problem(problem, options.seed, episode));
-        result = planner.plan(single);
-      } catch (const InputError&) {
-        throw;
-      } catch (const std::bad_alloc&) {
-        throw;
-      } catch (const std::exception& error) {  // must not take the other episodes with it
-        add(k, EpisodeRow(episode, error.what()));
-        return;
-      }
-      const bool answered =
-          result.status == PlanStatus::kSolved
-              ? result.evidence.tool_path_error
-              : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
-      // The plan was stopped, maybe with its verdict known and its columns not.
-      if (!answered) {
-        stopped = true;
-        return;
-      }
-      if (options.planned) options.planned(episode, result);
-      add(k, EpisodeRow(episode, result, problem));
-    } catch (const InputError& error) {
-      stopped = true;
-      throw InputError(std::string(error.what()) + " (episode " + std::to_string(episode) + ")");
-    } catch (...) {
-      stopped = true;
-      throw;
-    }
-  });
+  EpisodePlanner planner(prepared, problem, options, executor.threads(), row_done);
+  executor.for_each(static_cast<int>(size - options.skip),
+                    [&](int, int worker) { planner.plan_next(worker); });
 }
 
 }  // namespace swivel

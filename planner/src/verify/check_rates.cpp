@@ -115,6 +115,101 @@ bool ascend(const std::vector<TimedRow>& rows,
   return all;
 }
 
+/// Examines the rates of a motion, sample by sample, and notes the largest.
+class RateCheck {
+ public:
+  RateCheck(const Chain& chain, const JointRates& rates, const std::vector<TimedRow>& rows,
+            const std::function<void(const std::string&)>& fail)
+      : chain_(chain), rates_(rates), samples_(rows), fail_(fail) {
+    motion_.duration = rows.back().t - rows.front().t;
+  }
+
+  /// Examines speed, acceleration and jerk of the joints, and what the rows state of them.
+  void examine_joints() {
+    for (std::ptrdiff_t k = -1; k < samples_.size(); ++k) {
+      examine_joints_at(k);
+      if (k >= 0) examine_stated_rates(k);
+    }
+  }
+
+  /// Examines the tool's speeds. `tools` holds its pose at each row, base frame.
+  void examine_tool(const std::vector<Pose>& tools, const Limits& limits) {
+    for (std::ptrdiff_t k = 1; k < samples_.size(); ++k) {
+      const double dt = samples_.step(k);
+      const Pose &from = tools[static_cast<std::size_t>(k - 1)],
+                 &to = tools[static_cast<std::size_t>(k)];
+      motion_.tool_speed =
+          std::max(motion_.tool_speed, (to.translation() - from.translation()).norm() / dt);
+      motion_.turn_speed =
+          std::max(motion_.turn_speed,
+                   Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle() / dt);
+    }
+    if (limits.tool_speed && !(motion_.tool_speed <= 1.001 * *limits.tool_speed))
+      fail_(formatted("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g",
+                      motion_.tool_speed, *limits.tool_speed));
+    if (limits.tool_turn_speed && !(motion_.turn_speed <= 1.001 * *limits.tool_turn_speed))
+      fail_(formatted("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g",
+                      motion_.turn_speed, *limits.tool_turn_speed));
+  }
+
+  /// Returns the largest rates found.
+  [[nodiscard]] const CheckResult::Motion& motion() const { return motion_; }
+
+ private:
+  /// Examines the speed from sample k on, the acceleration at it and the jerk after it.
+  void examine_joints_at(std::ptrdiff_t k) {
+    const char* const names[] = {"speed", "acceleration", "jerk"};
+    const Config* const bounds[] = {&rates_.speed, &rates_.acceleration, &rates_.jerk};
+    const double t = samples_.at(k).t;
+    const Config by_order[] = {samples_.speed(k + 1), samples_.acceleration(k), samples_.jerk(k)};
+    for (std::size_t order = 0; order < 3; ++order)
+      for (int j = 0; j < kDof; ++j) {
+        const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
+        if (!(ratio <= 1 + 1e-6))
+          fail_(formatted("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t,
+                          names[order], name_of(j), ratio) +
+                (order > 0 ? gap_words(k) : ""));
+        if (ratio > motion_.peaks[order].ratio) motion_.peaks[order] = {ratio, j, t};
+      }
+  }
+
+  /// Returns the words that tell of a gap in time beside sample k; "" if there is none.
+  [[nodiscard]] std::string gap_words(std::ptrdiff_t k) const {
+    const double usual = samples_.usual_step(),
+                 longest = std::max({samples_.step(k), samples_.step(k + 1), samples_.step(k + 2)});
+    return longest > 1.5 * usual
+               ? formatted(", at a gap in time: %.6g s, where rows are %.6g s apart", longest,
+                           usual)
+               : "";
+  }
+
+  /// Compares the speeds and accelerations that row k states with those of its positions.
+  void examine_stated_rates(std::ptrdiff_t k) {
+    const double dt =
+        std::min(std::max(samples_.step(k), samples_.step(k + 1)), samples_.usual_step(k));
+    const Config v = samples_.mean_speed(k), a = samples_.acceleration(k);
+    const TimedRow& row = samples_.at(k);
+    for (int j = 0; j < kDof; ++j) {
+      if (!(std::abs(row.v[j] - v[j]) <= rates_.acceleration[j] * dt + 1e-6) ||
+          !(std::abs(row.a[j] - a[j]) <= rates_.jerk[j] * dt + 1e-3))
+        fail_(
+            formatted("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its "
+                      "positions say %.6g and %.6g",
+                      row.t, name_of(j), row.v[j], row.a[j], v[j], a[j]));
+    }
+  }
+
+  [[nodiscard]] const char* name_of(int joint) const {
+    return chain_.joint_names[static_cast<std::size_t>(joint)].c_str();
+  }
+
+  const Chain& chain_;
+  const JointRates& rates_;
+  const Samples samples_;
+  const std::function<void(const std::string&)>& fail_;
+  CheckResult::Motion motion_;
+};
+
 }  // namespace
 
 std::optional<CheckResult::Motion> examine_rates(
@@ -123,63 +218,10 @@ std::optional<CheckResult::Motion> examine_rates(
     const std::function<void(const std::string&)>& fail) {
   const JointRates rates = joint_rates(chain, limits, source);
   if (!ascend(rows, fail)) return std::nullopt;
-  const Samples samples(rows);
-  const std::ptrdiff_t n = samples.size();
-  const double usual = samples.usual_step();
-  CheckResult::Motion motion;
-  motion.duration = rows.back().t - rows.front().t;
-  const char* const names[] = {"speed", "acceleration", "jerk"};
-  const Config* const bounds[] = {&rates.speed, &rates.acceleration, &rates.jerk};
-  for (std::ptrdiff_t k = -1; k < n; ++k) {
-    const double t = samples.at(k).t;
-    const Config by_order[] = {samples.speed(k + 1), samples.acceleration(k), samples.jerk(k)};
-    for (std::size_t order = 0; order < 3; ++order)
-      for (int j = 0; j < kDof; ++j) {
-        const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
-        if (!(ratio <= 1 + 1e-6)) {
-          const double longest =
-              std::max({samples.step(k), samples.step(k + 1), samples.step(k + 2)});
-          fail(formatted("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t,
-                         names[order], chain.joint_names[static_cast<std::size_t>(j)].c_str(),
-                         ratio) +
-               (order > 0 && longest > 1.5 * usual
-                    ? formatted(", at a gap in time: %.6g s, where rows are %.6g s apart", longest,
-                                usual)
-                    : ""));
-        }
-        if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, t};
-      }
-    if (k < 0) continue;
-    const double dt =
-        std::min(std::max(samples.step(k), samples.step(k + 1)), samples.usual_step(k));
-    const Config v = samples.mean_speed(k), a = samples.acceleration(k);
-    const TimedRow& row = samples.at(k);
-    for (int j = 0; j < kDof; ++j) {
-      if (!(std::abs(row.v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
-          !(std::abs(row.a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
-        fail(
-            formatted("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its "
-                      "positions say %.6g and %.6g",
-                      t, chain.joint_names[static_cast<std::size_t>(j)].c_str(), row.v[j], row.a[j],
-                      v[j], a[j]));
-    }
-  }
-  for (std::ptrdiff_t k = 1; k < n; ++k) {
-    const double dt = samples.step(k);
-    const Pose &from = tools[static_cast<std::size_t>(k - 1)],
-               &to = tools[static_cast<std::size_t>(k)];
-    motion.tool_speed =
-        std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
-    motion.turn_speed = std::max(
-        motion.turn_speed, Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle() / dt);
-  }
-  if (limits.tool_speed && !(motion.tool_speed <= 1.001 * *limits.tool_speed))
-    fail(formatted("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed,
-                   *limits.tool_speed));
-  if (limits.tool_turn_speed && !(motion.turn_speed <= 1.001 * *limits.tool_turn_speed))
-    fail(formatted("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g",
-                   motion.turn_speed, *limits.tool_turn_speed));
-  return motion;
+  RateCheck check(chain, rates, rows, fail);
+  check.examine_joints();
+  check.examine_tool(tools, limits);
+  return check.motion();
 }
 
 std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows) {
