@@ -87,89 +87,100 @@ void ConstraintRemoval::see(Pass& pass, int removal, int layer, const Constraint
   witness.measured += cause.kind == Cause::Kind::kPair || cause.kind == Cause::Kind::kContact;
 }
 
+ConstraintSet ConstraintRemoval::reach(int layer, int slot, ConstraintSet bits) {
+  ConstraintSet& reached = layers_[index(layer % 2)].reached[index(slot)];
+  const ConstraintSet fresh = bits & ~reached;
+  reached |= bits;
+  return fresh;
+}
+
+void ConstraintRemoval::reach_first_layer(Pass& pass) {
+  for (int slot = 0; slot < lattice_.slots(0) && pass.whole; ++slot) {
+    if (!affordable()) pass.whole = false;
+    const Constraints::Node& node = at(0, slot);
+    if (!node.exists) continue;
+    const ConstraintSet bits = exists(node.violated);
+    reach(0, slot, bits);
+    blame(pass, node.violated);
+    if (bits != kAlways) for_each_bit(bits, [&](int c) { see(pass, c, 0, node); });
+  }
+}
+
+void ConstraintRemoval::see_edge(Pass& pass, int removal, int layer, ConstraintSet violated, int a,
+                                 const Config& qa, int b, const Config& qb) {
+  ++pass.votes[index(removal)];
+  Witness& witness = pass.witness[index(removal)];
+  if (witness.found && std::abs(layer - deepest_) > std::abs(witness.layer - 1 - deepest_)) return;
+  if (witness.layer != layer + 1) witness.measured = 0;
+  if (witness.found && witness.measured >= kMostMeasured) return;
+  Cause cause = constraints_.measured(std::countr_zero(constraints_.left(violated, waived_)), layer,
+                                      a, qa, b, qb);
+  if (constraints_.is_object(removal)) cause.object = constraints_.cause(removal).object;
+  if (!witness.found || witness.layer != layer + 1 || misses_less(cause, witness.cause))
+    witness = {true, layer + 1, cause, witness.measured};
+  witness.measured += cause.kind == Cause::Kind::kPair;
+}
+
+void ConstraintRemoval::move(Pass& pass, int layer, int a, int b) {
+  const ConstraintSet open = layers_[index(layer % 2)].reached[index(a)] &
+                             ~layers_[index((layer + 1) % 2)].reached[index(b)];
+  if (open == 0) return;
+  const Constraints::Node& tail = at(layer, a);
+  const Constraints::Node& head = at(layer + 1, b);
+  if (!head.exists) return;
+  if (open & kWithAll) blame(pass, head.violated);
+  const ConstraintSet own = exists(head.violated), wanted = open & own;
+  if (wanted == 0) return;
+  const ConstraintSet violated =
+      constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval);
+  if (open & kWithAll) blame(pass, violated);
+  const ConstraintSet on_edge = exists(violated), fresh = reach(layer + 1, b, wanted & on_edge);
+  if (own != kAlways) for_each_bit(fresh & own, [&](int c) { see(pass, c, layer + 1, head); });
+  if (on_edge == kAlways) return;
+  for_each_bit(fresh & on_edge,
+               [&](int c) { see_edge(pass, c, layer, violated, a, tail.q, b, head.q); });
+}
+
+void ConstraintRemoval::move_on(Pass& pass, int layer, bool any_slope) {
+  const std::vector<ConstraintSet>& reached = layers_[index(layer % 2)].reached;
+  // Moves on the same IK solution come first: where they exist, most other edges need no query.
+  const int slots = lattice_.slots(layer);
+  for (int a = 0; a < slots; ++a)
+    if (reached[index(a)] != 0)
+      if (const int b = lattice_.neighbour_along_path(layer, a, 1); b >= 0) move(pass, layer, a, b);
+  std::vector<Lattice::SlotRun> runs;
+  for (int a = 0; a < slots && pass.whole; ++a) {
+    if (reached[index(a)] == 0) continue;
+    budget_.poll();
+    if (!affordable()) pass.whole = false;
+    if (any_slope)
+      runs.assign(1, {0, lattice_.slots(layer + 1)});
+    else
+      lattice_.successors(layer, a, runs);
+    for (const Lattice::SlotRun& run : runs)
+      for (int b = run.first; b < run.last; ++b) move(pass, layer, a, b);
+  }
+}
+
 ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waived,
                                                     bool any_slope) {
   Pass pass;
   pass.furthest.fill(-1);
   waived_ = waived;
   enter(from);
-  const auto reach = [&](int layer, int slot, ConstraintSet bits) {
-    ConstraintSet& reached = layers_[index(layer % 2)].reached[index(slot)];
-    const ConstraintSet fresh = bits & ~reached;
-    reached |= bits;
-    return fresh;
-  };
-  if (from <= 0) {
-    for (int slot = 0; slot < lattice_.slots(0) && pass.whole; ++slot) {
-      if (!affordable()) pass.whole = false;
-      const Constraints::Node& node = at(0, slot);
-      if (!node.exists) continue;
-      const ConstraintSet bits = exists(node.violated);
-      reach(0, slot, bits);
-      blame(pass, node.violated);
-      if (bits != kAlways) for_each_bit(bits, [&](int c) { see(pass, c, 0, node); });
-    }
-  }
-  std::vector<Lattice::SlotRun> runs;
+  if (from <= 0) reach_first_layer(pass);
   for (int layer = std::max(0, from);; ++layer) {
-    Layer& here = layers_[index(layer % 2)];
     if (layer <= deepest_) {
       static_cast<void>(at(layer, path_[index(layer)]));
       reach(layer, path_[index(layer)], kAlways);
     }
     ConstraintSet any = 0;
-    for (const ConstraintSet bits : here.reached) any |= bits;
+    for (const ConstraintSet bits : layers_[index(layer % 2)].reached) any |= bits;
     for_each_bit(any, [&](int c) { pass.furthest[index(c)] = layer; });
     if (any == 0 || layer >= wanted_ || !pass.whole) return pass;
     if (any & kWithAll) pass.blamed.fill(0);
     enter(layer + 1);
-    Layer& next = layers_[index((layer + 1) % 2)];
-    const auto move = [&](int a, int b) {
-      const ConstraintSet open = here.reached[index(a)] & ~next.reached[index(b)];
-      if (open == 0) return;
-      const Constraints::Node& tail = at(layer, a);
-      const Constraints::Node& head = at(layer + 1, b);
-      if (!head.exists) return;
-      if (open & kWithAll) blame(pass, head.violated);
-      const ConstraintSet own = exists(head.violated), wanted = open & own;
-      if (wanted == 0) return;
-      const ConstraintSet violated =
-          constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval);
-      if (open & kWithAll) blame(pass, violated);
-      const ConstraintSet on_edge = exists(violated), fresh = reach(layer + 1, b, wanted & on_edge);
-      if (own != kAlways) for_each_bit(fresh & own, [&](int c) { see(pass, c, layer + 1, head); });
-      if (on_edge == kAlways) return;
-      for_each_bit(fresh & on_edge, [&](int c) {
-        ++pass.votes[index(c)];
-        Witness& witness = pass.witness[index(c)];
-        if (witness.found && std::abs(layer - deepest_) > std::abs(witness.layer - 1 - deepest_))
-          return;
-        if (witness.layer != layer + 1) witness.measured = 0;
-        if (witness.found && witness.measured >= kMostMeasured) return;
-        Cause cause = constraints_.measured(std::countr_zero(constraints_.left(violated, waived_)),
-                                            layer, a, tail.q, b, head.q);
-        if (constraints_.is_object(c)) cause.object = constraints_.cause(c).object;
-        if (!witness.found || witness.layer != layer + 1 || misses_less(cause, witness.cause))
-          witness = {true, layer + 1, cause, witness.measured};
-        witness.measured += cause.kind == Cause::Kind::kPair;
-      });
-    };
-    // Moves on the same IK solution come first: where they exist, most other edges need no query.
-    const int slots = lattice_.slots(layer);
-    for (int a = 0; a < slots; ++a)
-      if (here.reached[index(a)] != 0)
-        if (const int b = lattice_.neighbour_along_path(layer, a, 1); b >= 0) move(a, b);
-    for (int a = 0; a < slots && pass.whole; ++a) {
-      if (here.reached[index(a)] == 0) continue;
-      budget_.poll();
-      if (!affordable()) pass.whole = false;
-      if (any_slope)
-        runs.assign(1, {0, lattice_.slots(layer + 1)});
-      else
-        lattice_.successors(layer, a, runs);
-      for (const Lattice::SlotRun& run : runs)
-        for (int b = run.first; b < run.last; ++b) move(a, b);
-    }
+    move_on(pass, layer, any_slope);
   }
 }
 

@@ -72,6 +72,17 @@ class ConstraintRemoval {
   void enter(int layer);
   void blame(Pass& pass, ConstraintSet violated) const;
   void see(Pass& pass, int removal, int layer, const Constraints::Node& node);
+  /// Counts an edge from qa at slot a of `layer` to qb at slot b of the next layer, which exists
+  /// without the constraint `removal`, and keeps it as the witness if it is a better one.
+  void see_edge(Pass& pass, int removal, int layer, ConstraintSet violated, int a, const Config& qa,
+                int b, const Config& qb);
+  /// Marks a node as reached without each constraint of `bits`; returns those that are new there.
+  ConstraintSet reach(int layer, int slot, ConstraintSet bits);
+  void reach_first_layer(Pass& pass);
+  /// Follows the edge from slot a of `layer` to slot b of the next layer.
+  void move(Pass& pass, int layer, int a, int b);
+  /// Follows all edges from the reached nodes of `layer`; with `any_slope`, those to all slots.
+  void move_on(Pass& pass, int layer, bool any_slope);
   /// What a constraint removes. Kinds are tried in this order.
   enum class What { kOnNodes, kObject, kOnMoves };
   [[nodiscard]] What what(int constraint) const;
