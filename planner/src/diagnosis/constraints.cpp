@@ -377,6 +377,36 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
   }
 }
 
+/// Measures a violation of a lattice that has rows between its layers.
+void Constraints::measure_by_rows(Cause& cause, int constraint, int layer, int a, const Config& qa,
+                                  int b, const Config& qb) const {
+  if (cause.kind == Cause::Kind::kLimit) {
+    const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, qa, b, qb);
+    const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
+    const int k = constraint / 2;
+    cause.unwinds = interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep;
+    cause.value =
+        cause.unwinds ? from[k] + wrap_angle(interpolated.q[k] - from[k]) : interpolated.q[k];
+  }
+  cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
+}
+
+/// Names the joint of a move by `delta` that moves furthest, or furthest for its speed, and
+/// measures its move.
+void Constraints::measure_step(Cause& cause, int layer, const Config& delta) const {
+  const Config& bound = lattice_.row_step_bound(layer);
+  // the roll has a limit of its own
+  const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;
+  Eigen::Index k = 0;
+  if (cause.kind == Cause::Kind::kJointStep)
+    delta.head(joints).cwiseAbs().maxCoeff(&k);
+  else
+    delta.head(joints).cwiseAbs().cwiseQuotient(bound.head(joints)).maxCoeff(&k);
+  cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
+  cause.value = std::abs(delta[k]);
+  if (cause.kind == Cause::Kind::kSpeed) cause.limit = bound[k];
+}
+
 Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b,
                             const Config& qb) {
   Cause cause = this->cause(constraint);
@@ -393,15 +423,7 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
     return cause;
   }
   if (lattice_.has_layers_between()) {
-    if (cause.kind == Cause::Kind::kLimit) {
-      const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, qa, b, qb);
-      const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
-      const int k = constraint / 2;
-      cause.unwinds = interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep;
-      cause.value =
-          cause.unwinds ? from[k] + wrap_angle(interpolated.q[k] - from[k]) : interpolated.q[k];
-    }
-    cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
+    measure_by_rows(cause, constraint, layer, a, qa, b, qb);
     return cause;
   }
   const Config delta = lattice_.delta(qa, qb);
@@ -410,20 +432,9 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
   };
   switch (cause.kind) {
     case Cause::Kind::kJointStep:
-    case Cause::Kind::kSpeed: {
-      const Config& bound = lattice_.row_step_bound(layer);
-      // the roll has a limit of its own
-      const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;
-      Eigen::Index k = 0;
-      if (cause.kind == Cause::Kind::kJointStep)
-        delta.head(joints).cwiseAbs().maxCoeff(&k);
-      else
-        delta.head(joints).cwiseAbs().cwiseQuotient(bound.head(joints)).maxCoeff(&k);
-      cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
-      cause.value = std::abs(delta[k]);
-      if (cause.kind == Cause::Kind::kSpeed) cause.limit = bound[k];
+    case Cause::Kind::kSpeed:
+      measure_step(cause, layer, delta);
       break;
-    }
     // The joint has run out of turns. A node beyond the joint's limits cannot end a move.
     case Cause::Kind::kLimit:
       cause.unwinds = true;

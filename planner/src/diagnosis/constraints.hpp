@@ -143,6 +143,9 @@ class Constraints {
                       Violations& found);
   [[nodiscard]] std::optional<double> clearance(const BodyPair& pair, const Config& q, double most);
   void measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb);
+  void measure_by_rows(Cause& cause, int constraint, int layer, int a, const Config& qa, int b,
+                       const Config& qb) const;
+  void measure_step(Cause& cause, int layer, const Config& delta) const;
 
   const Lattice& lattice_;
   const World& world_;
