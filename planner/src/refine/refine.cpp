@@ -392,16 +392,9 @@ bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixe
   return true;
 }
 
-/// Returns a path of a lattice that is up to four times as coarse along the path and finer in its
-/// coordinate, with a row at each layer of the problem; its nodes are valid, its edges need not be.
-/// None if there is no such path, if even its optimum without obstacles is not cheaper than
-/// `to_beat`, or if a layer has no valid node nearby.
-std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot,
-                                                      const Problem& problem,
-                                                      const Redundancy& redundancy,
-                                                      RefinementChecker& checker,
-                                                      const SmoothObjective& objective,
-                                                      double to_beat, const Budget& budget) {
+/// Returns the problem on a lattice that is up to four times as coarse along the path and finer in
+/// its coordinate; none if it would be hardly coarser.
+std::optional<Problem> coarser(const Problem& problem) {
   Problem coarse = problem;
   // Steps longer than 20 mm reach so many angles that the search takes longer than it is worth.
   constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
@@ -417,11 +410,16 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   coarse.limits.tool_angle_error.reset();
   coarse.limits.step_error.reset();
   coarse.limits.joint_step *= times;
-  const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
-  // Each waypoint is a layer: where waypoints are dense, the nodes are those of the first path,
-  // unless the grid is finer.
-  if (!redundancy.has_grid() && 4 * path.size() > 3 * redundancy.lattice().layers())
-    return std::nullopt;
+  return coarse;
+}
+
+/// Plans the coarse problem and returns its path with a row at each layer of the redundancy's
+/// lattice; none if there is no such path.
+std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobot& robot,
+                                                              const Problem& coarse,
+                                                              const Redundancy& redundancy,
+                                                              const ToolPath& path,
+                                                              const Budget& budget) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
@@ -447,21 +445,52 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
     row.branch = found.trajectory[0].branch;
     rows.push_back(row);
   }
+  return rows;
+}
 
-  const auto solver = redundancy.solver(rows);
+/// Returns the cost of the smoothest path near the rows, obstacles aside.
+double cost_without_obstacles(const LayerSolver& solver, const Lattice& lattice,
+                              const SmoothObjective& objective, bool fixed_start,
+                              const std::vector<TrajectoryRow>& rows, const Budget& budget) {
   std::vector<double> x;
   std::vector<CoordinateBox> boxes;
   for (const TrajectoryRow& row : rows) {
     x.push_back(row.phi);
     boxes.push_back({row.phi - kFarthest, row.phi + kFarthest});
   }
-  if (problem.start) boxes[0] = {x[0], x[0]};
-  x = smooth_minimum(*solver, objective, boxes, std::move(x), budget);
+  if (fixed_start) boxes[0] = {x[0], x[0]};
+  x = smooth_minimum(solver, objective, boxes, std::move(x), budget);
   std::vector<TrajectoryRow> best = rows;
   for (std::size_t i = 0; i < x.size(); ++i)
-    best[i].q = solver->joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
-  if (cost_of(lattice, best) >= to_beat) return std::nullopt;
-  if (!move_clear(*solver, checker, problem.start.has_value(), rows)) return std::nullopt;
+    best[i].q = solver.joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
+  return cost_of(lattice, best);
+}
+
+/// Returns a path of a lattice that is up to four times as coarse along the path and finer in its
+/// coordinate, with a row at each layer of the problem; its nodes are valid, its edges need not be.
+/// None if there is no such path, if even its optimum without obstacles is not cheaper than
+/// `to_beat`, or if a layer has no valid node nearby.
+std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot,
+                                                      const Problem& problem,
+                                                      const Redundancy& redundancy,
+                                                      RefinementChecker& checker,
+                                                      const SmoothObjective& objective,
+                                                      double to_beat, const Budget& budget) {
+  const auto coarse = coarser(problem);
+  if (!coarse) return std::nullopt;
+  const ToolPath path = problem_path(*coarse, robot.arm().chain, budget);
+  // Each waypoint is a layer: where waypoints are dense, the nodes are those of the first path,
+  // unless the grid is finer.
+  if (!redundancy.has_grid() && 4 * path.size() > 3 * redundancy.lattice().layers())
+    return std::nullopt;
+  auto rows = rows_of_coarse_plan(robot, *coarse, redundancy, path, budget);
+  if (!rows) return std::nullopt;
+  const auto solver = redundancy.solver(*rows);
+  const bool fixed_start = problem.start.has_value();
+  if (cost_without_obstacles(*solver, redundancy.lattice(), objective, fixed_start, *rows,
+                             budget) >= to_beat)
+    return std::nullopt;
+  if (!move_clear(*solver, checker, fixed_start, *rows)) return std::nullopt;
   return rows;
 }
 
