@@ -141,21 +141,26 @@ class Adviser {
     }
   }
 
+  /// Proposes what may help against bodies that come too near or touch.
+  void by_contact(const Cause& cause) {
+    if (cause.kind == Cause::Kind::kPair && cause.limit && *cause.limit < 0)
+      deepen(cause);
+    else if (cause.kind == Cause::Kind::kPair)
+      relax(Change::kClearance);
+    if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+    free_roll();
+    for (const std::string& body : cause.bodies) {
+      move(body);
+      if (is_object(body) && body != problem_.path_frame)
+        try_once({.change = Change::kWithoutObject, .object = body});
+    }
+  }
+
   void by_cause(const Cause& cause) {
     switch (cause.kind) {
       case Cause::Kind::kPair:
       case Cause::Kind::kContact:
-        if (cause.kind == Cause::Kind::kPair && cause.limit && *cause.limit < 0)
-          deepen(cause);
-        else if (cause.kind == Cause::Kind::kPair)
-          relax(Change::kClearance);
-        if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
-        free_roll();
-        for (const std::string& body : cause.bodies) {
-          move(body);
-          if (is_object(body) && body != problem_.path_frame)
-            try_once({.change = Change::kWithoutObject, .object = body});
-        }
+        by_contact(cause);
         break;
       case Cause::Kind::kLimit:
         if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
@@ -225,13 +230,8 @@ class Adviser {
     return std::chrono::duration<double>(trial_end_ - Clock::now()).count();
   }
 
-  /// Plans the problem with the change. The outcome is kUnknown if the time is up.
-  void plan_changed(Advice& advice) {
-    advice.outcome = Outcome::kUnknown;
-    advice.cost.reset();
-    advice.reached_s.reset();
-    options_.timeout_s = seconds_left();
-    if (!(*options_.timeout_s > 0)) return;
+  /// Returns the problem with the change.
+  [[nodiscard]] Problem changed_problem(const Advice& advice) const {
     Problem changed = problem_;
     switch (advice.change) {
       case Change::kFreeStart:
@@ -265,6 +265,17 @@ class Adviser {
       default:
         place_of(advice.change).set(changed.limits, *advice.to);
     }
+    return changed;
+  }
+
+  /// Plans the problem with the change. The outcome is kUnknown if the time is up.
+  void plan_changed(Advice& advice) {
+    advice.outcome = Outcome::kUnknown;
+    advice.cost.reset();
+    advice.reached_s.reset();
+    options_.timeout_s = seconds_left();
+    if (!(*options_.timeout_s > 0)) return;
+    Problem changed = changed_problem(advice);
     PlanResult found;
     try {
       if (advice.change == Change::kFreeRoll) {  // another arm: its roll has other limits
