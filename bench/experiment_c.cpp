@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Experiment C of the paper: the door at random poses, by every method of Table I and by the
 // planners that the paper has not.
-//   experiment_c OUT.json [EPISODES]    default 100; every method on each episode
+//   experiment_c OUT.json [EPISODES]
+// EPISODES defaults to 100. All methods run one after the other on each episode.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -138,8 +139,8 @@ json sample(const PreparedRobot& robot, const Problem& problem, bool possible,
 }
 #endif
 
-json run(const Problem& base, std::uint64_t episodes) {
-  const PreparedRobot robot(base);
+/// Lists the rows of the table for the planners: each planner at each of its settings.
+std::vector<Method> planned_methods() {
   std::vector<Method> planned;
   const bench::Setting* const settings = bench::kSettings;
   for (const PlannerKind planner :
@@ -154,46 +155,68 @@ json run(const Problem& base, std::uint64_t episodes) {
                        .setting = "#4",
                        .threads = planner == PlannerKind::kParallel ? 2 : 1,
                        .edges = EdgeMode::kContinuous});
+  return planned;
+}
+
+/// The rows of the table whose methods begin at a start of their own.
+struct StartedMethods {
   Method jacobian{.name = "jacobian", .setting = ""},
       null_space{.name = "null_space", .setting = ""};
   Method projected{.name = "ompl_projected", .setting = ""},
       tangent_bundle{.name = "ompl_tangent_bundle", .setting = ""};
+};
+
+/// Plans an episode by each method and appends what it found.
+void run_planned(const PreparedRobot& robot, const Problem& problem, std::vector<Method>& planned) {
+  for (Method& method : planned) {
+    const auto* const setting =
+        std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
+                     [&](const bench::Setting& s) { return s.name == method.setting; });
+    method.episodes.push_back(to_json(plan_at(robot, problem, planner_from_string(method.name),
+                                              *setting, method.edges, method.threads),
+                                      problem));
+  }
+}
+
+/// Runs episode k by each method that begins at a start, and appends what it did.
+void run_started(const PreparedRobot& robot, const Problem& problem,
+                 [[maybe_unused]] std::uint64_t k, StartedMethods& methods) {
+  Problem started = problem;
+  started.start = first_start(robot, problem);
+  const bool possible = started.start && plan_at(robot, started, PlannerKind::kLazy,
+                                                 bench::kSettings[3], EdgeMode::kNodes, 1)
+                                                 .status == PlanStatus::kSolved;
+  methods.jacobian.episodes.push_back(
+      track(robot, started, possible,
+            [](const auto& r, const auto& p) { return baselines::track_jacobian(r, p); }));
+  methods.null_space.episodes.push_back(
+      track(robot, started, possible,
+            [](const auto& r, const auto& p) { return baselines::track_null_space(r, p); }));
+#ifdef SWIVEL_OMPL
+  if (k < kSampledEpisodes) {
+    methods.projected.episodes.push_back(
+        sample(robot, started, possible, baselines::Manifold::kProjected));
+    methods.tangent_bundle.episodes.push_back(
+        sample(robot, started, possible, baselines::Manifold::kTangentBundle));
+  }
+#endif
+}
+
+json run(const Problem& base, std::uint64_t episodes) {
+  const PreparedRobot robot(base);
+  std::vector<Method> planned = planned_methods();
+  StartedMethods started;
   for (std::uint64_t k = 0; k < episodes; ++k) {
     const Problem problem = episode_problem(base, kSeed, k);
-    for (Method& method : planned) {
-      const auto* const setting =
-          std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
-                       [&](const bench::Setting& s) { return s.name == method.setting; });
-      method.episodes.push_back(to_json(plan_at(robot, problem, planner_from_string(method.name),
-                                                *setting, method.edges, method.threads),
-                                        problem));
-    }
-    Problem started = problem;
-    started.start = first_start(robot, problem);
-    const bool possible =
-        started.start &&
-        plan_at(robot, started, PlannerKind::kLazy, settings[3], EdgeMode::kNodes, 1).status ==
-            PlanStatus::kSolved;
-    jacobian.episodes.push_back(track(robot, started, possible, [](const auto& r, const auto& p) {
-      return baselines::track_jacobian(r, p);
-    }));
-    null_space.episodes.push_back(track(robot, started, possible, [](const auto& r, const auto& p) {
-      return baselines::track_null_space(r, p);
-    }));
-#ifdef SWIVEL_OMPL
-    if (k < kSampledEpisodes) {
-      projected.episodes.push_back(
-          sample(robot, started, possible, baselines::Manifold::kProjected));
-      tangent_bundle.episodes.push_back(
-          sample(robot, started, possible, baselines::Manifold::kTangentBundle));
-    }
-#endif
+    run_planned(robot, problem, planned);
+    run_started(robot, problem, k, started);
     std::fprintf(stderr, "\repisode %llu of %llu", static_cast<unsigned long long>(k + 1),
                  static_cast<unsigned long long>(episodes));
   }
   std::fprintf(stderr, "\n");
-  planned.insert(planned.begin(), {std::move(jacobian), std::move(null_space), std::move(projected),
-                                   std::move(tangent_bundle)});
+  planned.insert(planned.begin(),
+                 {std::move(started.jacobian), std::move(started.null_space),
+                  std::move(started.projected), std::move(started.tangent_bundle)});
   json rows = json::array();
   for (const Method& method : planned)
     rows.push_back({{"method", method.name},
