@@ -135,7 +135,7 @@ void add(const std::string& name, Body body) {
   benchmark::RegisterBenchmark(name.c_str(), body);
 }
 
-/// Calls body(item) with one item of the pool after the other; counts one item of work each.
+/// Calls body(item) with the pool's items one after the other; each call is one item of work.
 template <class Pool, class Body>
 void cycle(benchmark::State& state, const Pool& pool, Body body) {
   std::size_t k = 0;
@@ -220,7 +220,8 @@ void add_search(Fixture& c) {
   });
 }
 
-void add_collision(Fixture& c, const std::filesystem::path& problems) {
+/// Adds the distance tests of a capsule and each other shape.
+void add_pairs(const Fixture& c, const std::filesystem::path& problems) {
   const auto door = [](const Problem& problem) { return problem.scene.front().shape; };
   const std::pair<const char*, Shape> shapes[] = {
       {"sphere", Sphere{0.1}},
@@ -256,6 +257,10 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
           static_cast<double>(undecided) / static_cast<double>(state.iterations());
     });
   }
+}
+
+/// Adds the collision queries of postures and motions.
+void add_queries(Fixture& c) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   add("posture/kept",
@@ -289,7 +294,8 @@ int main(int argc, char** argv) {
   Fixture c(problems / "experiment_c.yaml");
   add_kinematics(c);
   add_search(c);
-  add_collision(c, problems);
+  add_pairs(c, problems);
+  add_queries(c);
   for (const auto& [key, value] : bench::context()) benchmark::AddCustomContext(key, value);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
