@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -145,6 +146,87 @@ void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const
   result.finished = true;
 }
 
+/// Returns true if the joints keep their limits, the place is on the path, and no pair of bodies
+/// violates its clearance.
+bool is_valid(const Eigen::VectorXd& x, const Chain& chain, const Problem& problem,
+              World::Query& query) {
+  constexpr double kSlack = 1e-9;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    const double margin = problem.limits.joint_margin - kSlack;
+    if (!limit.continuous && (x[j] < limit.lower + margin || x[j] > limit.upper - margin))
+      return false;
+  }
+  return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack &&
+         !query.find_violating_pair(joints(x), ClearanceRule::kNode);
+}
+
+/// Returns the space of the joints and the path parameter, within their limits.
+std::shared_ptr<ob::RealVectorStateSpace> ambient_space(const Chain& chain) {
+  auto ambient = std::make_shared<ob::RealVectorStateSpace>(kDof + 1);
+  ob::RealVectorBounds bounds(kDof + 1);
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    bounds.setLow(static_cast<unsigned>(j), limit.continuous ? -kPi : limit.lower);
+    bounds.setHigh(static_cast<unsigned>(j), limit.continuous ? kPi : limit.upper);
+  }
+  bounds.setLow(kPlace, 0);
+  bounds.setHigh(kPlace, kLength);
+  ambient->setBounds(bounds);
+  return ambient;
+}
+
+/// The states that satisfy the constraint, and how OMPL tests them.
+struct ConstrainedSpace {
+  std::shared_ptr<ob::ConstrainedStateSpace> space;
+  std::shared_ptr<ob::ConstrainedSpaceInformation> information;
+};
+
+/// Makes the space of a manifold, ready for planners. `valid` must outlive it.
+ConstrainedSpace make_space(Manifold manifold, const Chain& chain,
+                            const std::shared_ptr<OnPath>& constraint,
+                            const std::function<bool(const Eigen::VectorXd&)>& valid) {
+  const auto ambient = ambient_space(chain);
+  ConstrainedSpace made;
+  if (manifold == Manifold::kProjected) {
+    made.space = std::make_shared<ob::ProjectedStateSpace>(ambient, constraint);
+    made.information = std::make_shared<ob::ConstrainedSpaceInformation>(made.space);
+  } else {
+    made.space = std::make_shared<ob::TangentBundleStateSpace>(ambient, constraint);
+    made.information = std::make_shared<ob::TangentBundleSpaceInformation>(made.space);
+  }
+  made.space->setDelta(kStep);
+  made.information->setStateValidityChecker([&valid](const ob::State* state) {
+    return valid(*state->as<ob::ConstrainedStateSpace::StateType>());
+  });
+  made.information->setMotionValidator(std::make_shared<Forwards>(made.information.get()));
+  made.information->setup();
+  return made;
+}
+
+/// Returns the valid states at the end of the path, one for each slot of the lattice's last layer.
+std::vector<Eigen::VectorXd> valid_ends(const SrsLattice& lattice,
+                                        const std::function<bool(const Eigen::VectorXd&)>& valid) {
+  std::vector<Eigen::VectorXd> ends;
+  for (int slot = 0; slot < lattice.width(); ++slot)
+    if (const auto q = lattice.exact_config(lattice.layers() - 1, slot))
+      if (const auto x = coordinates(*q, kLength); valid(x)) ends.push_back(x);
+  return ends;
+}
+
+/// Returns the states of a solution, interpolated, on the manifold.
+std::vector<Eigen::VectorXd> rows_of_solution(const ob::ProblemDefinition& definition,
+                                              const OnPath& constraint) {
+  auto& found = *definition.getSolutionPath()->as<ompl::geometric::PathGeometric>();
+  found.interpolate();
+  std::vector<Eigen::VectorXd> rows;
+  for (const ob::State* state : found.getStates()) {
+    rows.emplace_back(*state->as<ob::ConstrainedStateSpace::StateType>());
+    constraint.project(rows.back());  // a tangent bundle's states lie beside the manifold
+  }
+  return rows;
+}
+
 }  // namespace
 
 ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& problem,
@@ -157,45 +239,12 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   const World world(robot.world(), problem);
   World::Query query(world, DistanceProofs::kOn);
   const auto constraint = std::make_shared<OnPath>(chain, path);
-  const auto valid = [&](const Eigen::VectorXd& x) {
-    constexpr double kSlack = 1e-9;
-    for (int j = 0; j < kDof; ++j) {
-      const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-      const double margin = problem.limits.joint_margin - kSlack;
-      if (!limit.continuous && (x[j] < limit.lower + margin || x[j] > limit.upper - margin))
-        return false;
-    }
-    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack &&
-           !query.find_violating_pair(joints(x), ClearanceRule::kNode);
+  const std::function<bool(const Eigen::VectorXd&)> valid = [&](const Eigen::VectorXd& x) {
+    return is_valid(x, chain, problem, query);
   };
-
-  const auto ambient = std::make_shared<ob::RealVectorStateSpace>(kDof + 1);
-  ob::RealVectorBounds bounds(kDof + 1);
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-    bounds.setLow(static_cast<unsigned>(j), limit.continuous ? -kPi : limit.lower);
-    bounds.setHigh(static_cast<unsigned>(j), limit.continuous ? kPi : limit.upper);
-  }
-  bounds.setLow(kPlace, 0);
-  bounds.setHigh(kPlace, kLength);
-  ambient->setBounds(bounds);
-
-  std::shared_ptr<ob::ConstrainedStateSpace> space;
-  std::shared_ptr<ob::ConstrainedSpaceInformation> information;
-  if (manifold == Manifold::kProjected) {
-    space = std::make_shared<ob::ProjectedStateSpace>(ambient, constraint);
-    information = std::make_shared<ob::ConstrainedSpaceInformation>(space);
-  } else {
-    space = std::make_shared<ob::TangentBundleStateSpace>(ambient, constraint);
-    information = std::make_shared<ob::TangentBundleSpaceInformation>(space);
-  }
-  space->setDelta(kStep);
-  information->setStateValidityChecker([&](const ob::State* state) {
-    return valid(*state->as<ob::ConstrainedStateSpace::StateType>());
-  });
-  information->setMotionValidator(std::make_shared<Forwards>(information.get()));
-  information->setup();
-
+  const ConstrainedSpace made = make_space(manifold, chain, constraint, valid);
+  const auto& space = made.space;
+  const auto& information = made.information;
   const auto state_of = [&](const Eigen::VectorXd& x) {
     ob::ScopedState<> state(space);
     state->as<ob::ConstrainedStateSpace::StateType>()->copy(x);
@@ -207,10 +256,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   definition->addStartState(state_of(coordinates(*problem.start, 0)));
   const auto goals = std::make_shared<ob::GoalStates>(information);
   const SrsLattice lattice(chain, robot.srs(), path, problem);
-  std::vector<Eigen::VectorXd> ends;
-  for (int slot = 0; slot < lattice.width(); ++slot)
-    if (const auto q = lattice.exact_config(lattice.layers() - 1, slot))
-      if (const auto x = coordinates(*q, kLength); valid(x)) ends.push_back(x);
+  const std::vector<Eigen::VectorXd> ends = valid_ends(lattice, valid);
   const std::size_t every = std::max<std::size_t>(1, ends.size() / kGoals);
   for (std::size_t k = 0; k < ends.size(); k += every) goals->addState(state_of(ends[k]));
   const auto elapsed = [&] {
@@ -233,14 +279,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
     result.reason = "time";
     return result;
   }
-  auto& found = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
-  found.interpolate();
-  std::vector<Eigen::VectorXd> rows;
-  for (const ob::State* state : found.getStates()) {
-    rows.emplace_back(*state->as<ob::ConstrainedStateSpace::StateType>());
-    constraint->project(rows.back());  // a tangent bundle's states lie beside the manifold
-  }
-  examine(rows, chain, *constraint, problem, valid, result);
+  examine(rows_of_solution(*definition, *constraint), chain, *constraint, problem, valid, result);
   return result;
 }
 
