@@ -2,10 +2,13 @@
 #include "output/self_time_output.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "swivel/core/base/self_times.hpp"
+#include "swivel/parallel/executor.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
@@ -34,6 +37,15 @@ void print_self_times(const Timeline& timeline) {
   for (std::size_t k = 0; k < shown; ++k) print(times[k].stage, times[k]);
   if (shown < times.size())
     print(std::to_string(times.size() - shown) + " other stages", sum_from(shown));
+  std::int64_t indices = 0, arena_ns = 0;
+  for (const Timeline::Event& event : timeline.events())
+    if (std::string_view(event.name) == Executor::kHelperSpan) {
+      ++indices;
+      arena_ns += event.end_ns - event.begin_ns;
+    }
+  if (indices > 0)
+    complain("  %lld parts of shared loops ran in TBB's arena, in %.1f ms\n",
+             static_cast<long long>(indices), ms(arena_ns));
 }
 
 }  // namespace swivel::cli

@@ -9,10 +9,14 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "swivel/core/base/timeline.hpp"
+#include "swivel/parallel/executor.hpp"
 
 namespace swivel::detail {
 
@@ -84,6 +88,9 @@ struct Helpers::State {
       const int index = first.load() + static_cast<int>(worker == 0 ? --left.last : left.first++);
       if (!open.compare_exchange_weak(word, left.word())) continue;
       try {
+        // The span ends before `done` counts the index: none is open once the loop has ended.
+        std::optional<TraceSpan> span;
+        if (worker > 0) span.emplace(Executor::kHelperSpan);
         call(index, worker);
       } catch (...) {
         const std::lock_guard lock(failure_mutex);

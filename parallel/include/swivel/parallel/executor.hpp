@@ -11,6 +11,9 @@ namespace swivel {
 /// If the program limits TBB by a tbb::global_control, fewer threads help.
 class Executor {
  public:
+  /// Name of the spans of a Timeline in which a helper runs one index.
+  static constexpr const char* kHelperSpan = "in TBB's arena";
+
   /// Creates an executor of `threads` threads, the caller's included; if threads < 1, as many as
   /// the machine has cores. No thread is started yet.
   explicit Executor(int threads);
