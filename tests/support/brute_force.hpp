@@ -150,8 +150,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
                      [](const auto& node) { return node.has_value(); }))
       answer.empty.push_back(static_cast<int>(i));
   std::vector<char> reached(nodes[0].size(), 0);
-  for (std::size_t slot = 0; slot < reached.size(); ++slot)
-    reached[slot] = nodes[0][slot].has_value();
+  for (std::size_t first = 0; first < reached.size(); ++first)
+    reached[first] = nodes[0][first].has_value();
   for (std::size_t i = 0;
        i < layers && std::find(reached.begin(), reached.end(), 1) != reached.end(); ++i) {
     answer.deepest = static_cast<int>(i);

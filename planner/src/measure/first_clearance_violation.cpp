@@ -221,9 +221,9 @@ class OpenParts {
   }
   bool closes(std::size_t pair, std::size_t k, double from, double to, double clear_from,
               double clear_to) {
-    constexpr double kShortest = 1. / 8;  // of the move; FCL decides what is left
+    constexpr double kLeastPart = 1. / 8;  // of the move; FCL decides what is left
     if (reaches(pair, k, to - from, clear_from, clear_to)) return true;
-    if (to - from <= kShortest) return false;
+    if (to - from <= kLeastPart) return false;
     const double middle = (from + to) / 2;
     const Config q = (*joints_)[k] + middle * ((*joints_)[k + 1] - (*joints_)[k]);
     const double clear = clear_at(pair, q, travel(pair, k, k + 1));

@@ -22,8 +22,6 @@
 
 namespace swivel {
 
-namespace {
-
 /// The nearest approach of paths, by their margin; where one object alone moves, of pairs without
 /// it once for each path, and with it on the rows that it may have come near to since.
 class LeastMargins {
@@ -85,6 +83,8 @@ class LeastMargins {
   std::map<std::vector<double>, Path> paths_;  // by the joints of all rows
   std::size_t rows_ = 0;                       // of all paths
 };
+
+namespace {
 
 /// The number of the object that is moved, where the path stays.
 std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {

@@ -210,10 +210,10 @@ class Completion {
     const double layer = std::round(place_[k]);
     if (place_[k] == layer || !places_.fits_at(tools_[k], layer)) return;
     const auto is_near = [&](std::size_t other) {
-      constexpr double kNear = 4 * PlacesOnPath::kOnPath;
-      return (tools_[k].translation() - tools_[other].translation()).norm() < kNear &&
+      constexpr double kSamePlace = 4 * PlacesOnPath::kOnPath;
+      return (tools_[k].translation() - tools_[other].translation()).norm() < kSamePlace &&
              Eigen::AngleAxisd(tools_[k].linear().transpose() * tools_[other].linear()).angle() <
-                 kNear;
+                 kSamePlace;
     };
     const bool at_end =
         (k == 0 && layer == 0) || (k + 1 == rows_.size() && layer == path_.size() - 1);
