@@ -65,8 +65,11 @@ export async function withBrowser({ packages, shots }, test) {
       },
     };
   };
-  const shoot = async (page, name, options) =>
-    shots && (await page.screenshot({ path: join(shots, name), ...options }));
+  const shoot = async (page, name, options) => {
+    if (!shots) return;
+    await page.waitForTimeout(800); // at rest the arm is drawn with more pixels
+    await page.screenshot({ path: join(shots, name), ...options });
+  };
   try {
     await test({ browser, folder, open, shoot });
   } finally {

@@ -54,22 +54,11 @@ const told = async (page) => Number((await page.textContent('#readout')).match(/
 /** A group of a regular expression: what the page says of the distance of two bodies that fail. */
 const kDistances =
   '(at least [\\d.]+ mm inside each other|[\\d.]+ mm apart, asked 5 mm|they touch)';
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const dark = (page) => page.evaluate(() => document.documentElement.dataset.theme === 'dark');
 
 /** Milliseconds from the start of loading to the first picture of the arm. */
-async function openings(open, html, count) {
-  const times = [];
-  for (let k = 0; k < count; ++k) {
-    const { page, close } = await open(html, { viewport: wide });
-    await drawn(page);
-    times.push(
-      await page.evaluate(() => performance.getEntriesByName('first picture')[0].startTime),
-    );
-    await close();
-  }
-  return times;
-}
+const firstPicture = (page) =>
+  page.evaluate(() => performance.getEntriesByName('first picture')[0].startTime);
 
 /**
  * Frames a second while the arm moves, once the page has found how many pixels this machine can
@@ -321,7 +310,6 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     );
     await checkNearest(page, data);
     await slide(page, Math.floor(rows.length / 2));
-    await page.waitForTimeout(800); // at rest it is drawn with more pixels
     await shoot(page, `report_${name}.png`);
     await checkSelfMotion(page, data);
     await slide(page, Math.floor(rows.length / 2));
@@ -329,12 +317,11 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     await checkExports(page, name, data.map.panels.length);
     await page.keyboard.press('t');
     assert.equal(await dark(page), name !== 'b');
+    const opening = await firstPicture(page);
     const rate = name === 'c' ? await playback(page) : null;
+    await page.setViewportSize(phone);
+    await assertFits(page, phone.width);
     await close();
-    const narrow = await open(html, { viewport: phone, colorScheme: 'dark' });
-    await drawn(narrow.page);
-    await assertFits(narrow.page, phone.width);
-    await narrow.close();
     if (name === 'c') {
       // Without WebGL all but the arm is there; an address may name the place to open at.
       const flat = await open(html, {
@@ -361,14 +348,13 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       );
       await flat.page.close(); // three.js reports the missing context as an error
     }
-    const times = await openings(open, html, name === 'c' ? 5 : 1);
     console.log(
       `experiment ${name}: ${(bytes / 1e6).toFixed(2)} MB, first picture after ` +
-        `${median(times).toFixed(0)} ms (median of ${times.length})` +
+        `${opening.toFixed(0)} ms` +
         `${rate === null ? '' : `, ${rate.toFixed(0)} frames a second`}`,
     );
     // Not the aim, 2 s and 30 frames: this must hold on any machine, however busy.
-    assert.ok(median(times) < 10_000);
+    assert.ok(opening < 10_000);
     assert.ok(rate === null || rate > 3);
   }
 
@@ -503,7 +489,6 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     assert.equal(svg.name, 'experiment_b_motion.svg');
     assert.ok((await elements(page, svg.bytes.toString())).path >= 4);
     await assertFits(page, wide.width);
-    await page.waitForTimeout(800);
     await shoot(page, 'report_motion.png', { fullPage: true });
     await close();
   }
@@ -607,15 +592,12 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     }
     await assertFits(page, viewport.width);
     if (name === 'a_start') {
-      const other = await open(html, { viewport: wide, colorScheme: 'dark' });
-      await drawn(other.page);
-      assert.ok(await dark(other.page));
-      await assertFits(other.page, wide.width);
-      await other.page.keyboard.press('End'); // back onto the path
-      await checkHover(other.page, data);
-      await other.close();
+      await page.setViewportSize(wide);
+      await assertFits(page, wide.width);
+      await page.keyboard.press('End'); // back onto the path
+      await checkHover(page, data);
+      await page.setViewportSize(phone);
     }
-    await page.waitForTimeout(800);
     if (reached) await shoot(page, name === 'c' ? 'report_blocked.png' : 'report_phone.png');
     // Nothing to play or plot.
     else
