@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds lines of sources that are wider than 100 columns, and functions longer than 60 lines.
+Sources are files with an extension or a name of SOURCES, and files that begin with `#!`.
 
 layout_test.py SOURCE [--functions]      prints file:line and what was found; exit code 1 where a
 line is too wide, with --functions also where a function of C++ is too long
@@ -12,7 +13,9 @@ import sys
 MOST_LINES = 60
 MOST_COLUMNS = 100
 CPP = (".hpp", ".cpp", ".inl")
-SOURCES = (*CPP, ".py", ".js", ".mjs", ".css", ".cmake", "CMakeLists.txt")
+SOURCES = (*CPP, ".py", ".js", ".mjs", ".css", ".cmake", "CMakeLists.txt", "docs/Doxyfile")
+# Inputs of the fuzzers are no sources, whatever their first bytes are.
+CORPUS = re.compile(r"(^|/)corpus/")
 # Lists of what a binding has are no algorithm, however long.
 LISTS = ("python/src/",)
 # Strings, characters and comments, of which braces do not count. Raw strings first.
@@ -69,18 +72,26 @@ def functions(text):
                 head = at + 1
 
 
+def is_source(name, content):
+    """Tells whether the file of this name and these bytes is a source."""
+    return name.endswith(SOURCES) or (content[:2] == b"#!" and not CORPUS.search(name))
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     judge_functions = "--functions" in sys.argv
     files = subprocess.run(
-        ["git", "ls-files"], cwd=root, capture_output=True, text=True, check=True
-    ).stdout.split()
-    faults = long = bodies = 0
+        ["git", "ls-files", "-z"], cwd=root, capture_output=True, text=True, check=True
+    ).stdout.split("\0")
+    faults = long = bodies = scripts = 0
     for name in files:
         path = root / name
-        if not name.endswith(SOURCES) or not path.is_file():
+        content = path.read_bytes() if path.is_file() else b""
+        if not is_source(name, content):
             continue
-        text = path.read_text()
+        scripts += not name.endswith(SOURCES)
+        # Each byte that is no UTF-8 counts as one column.
+        text = content.decode(errors="surrogateescape")
         for number, line in enumerate(text.split("\n"), 1):
             if len(line) > MOST_COLUMNS:
                 print(f"{name}:{number}: {len(line)} columns; at most {MOST_COLUMNS}")
@@ -94,7 +105,7 @@ def main():
                 if judge_functions:
                     print(f"{name}:{number}: a function of {lines} lines; at most {MOST_LINES}")
     print(f"{faults} lines too wide, {long} of {bodies} functions too long")
-    if bodies < 1000:
+    if bodies < 1000 or scripts < 10:
         sys.exit("too few were read")
     sys.exit(faults > 0 or (judge_functions and long > 0))
 
