@@ -58,13 +58,15 @@ struct SearchOutcome {
 
 /// How path_first() searches. Changes the work, never the answer.
 struct PathFirstOptions {
-  int batch = 1;  ///< questions asked at once; answers, not their timing, decide what follows
+  /// Questions asked at once; answers, not their timing, decide what follows. search_lazily()
+  /// (planner/src/plan/search.cpp) sets 8, 16 or 32 and says why.
+  int batch = 1;
   /// A path that has failed is asked about further until the round has asked so many questions,
   /// which take about as long as a repair and the next path.
   int min_questions_per_iteration = 64;
-  /// Most questions in a round about the neighbours of failed nodes: `grow`, and one more for every
-  /// `nodes_per_region_question` nodes of the lattice, since an obstacle blocks more nodes of a
-  /// finer lattice, and a round costs more.
+  /// Most questions in a round about the neighbours of failed nodes: `region_questions`, and one
+  /// more for every `nodes_per_region_question` nodes of the lattice, since an obstacle blocks more
+  /// nodes of a finer lattice, and a round costs more.
   int region_questions = 64, nodes_per_region_question = 64;
   /// True: neighbours are asked about on other threads while the caller takes the answers about
   /// those before them.

@@ -36,7 +36,9 @@ class Verdicts {
   void keep_node(int layer, int slot);
   /// Removes a node.
   void remove_node(int layer, int slot) { remove_nodes(layer, {&slot, 1}); }
-  /// Removes nodes of a layer. Those removed already are left out.
+  /// Removes nodes of a layer. Those removed already are left out. A removal makes stale the
+  /// cost-to-go of the nodes of earlier layers whose best paths led through one of these;
+  /// CostToGo::repair() makes it exact again. Verdicts about other nodes stay.
   void remove_nodes(int layer, std::span<const int> slots);
 
   /// Returns what is known of the edge from slot a of `layer` to slot b of the next.
