@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 #include "robots.hpp"
 #include "swivel/io/motions/motion.hpp"
@@ -187,68 +188,83 @@ const char* const kObj =
     "3/1/1 4/1/1\n"
     "f -5 -4 \\\n -3 -1 -2\nf 1//1 2//1 3//1\nl 1 2\np 1\n";
 
-}  // namespace
+/// Returns a reader's call: it writes a text into the file `name` of the folder, which it keeps a
+/// reference to, and passes the file's path to `call`.
+template <class Call>
+std::function<void(const std::string&)> at(const TempFolder& folder, const char* name, Call call) {
+  return [&folder, name, call](const std::string& text) { call(folder.write(name, text)); };
+}
 
-std::vector<Reader> readers(const TempFolder& folder) {
-  const auto at = [&folder](const char* name, auto call) {
-    return [&folder, name, call](const std::string& text) { call(folder.write(name, text)); };
-  };
-  const auto mesh = [](const fs::path& file) {
-    io::MeshCache cache;
-    (void)io::load_mesh(file, Vector3d::Ones(), cache);
-  };
+/// Returns the readers of problems, robots and tool paths.
+std::vector<Reader> problem_readers(const TempFolder& folder) {
   std::vector<Reader> all;
   all.push_back(
       {"problem",
        {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
        kYamlWords,
-       at("problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
-  all.push_back({"urdf",
-                 {io::test::arm_urdf(), data("robots/iiwa14.urdf")},
-                 kXmlWords,
-                 at("robot.urdf", [](const fs::path& file) { (void)io::load_robot(file); })});
+       at(folder, "problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
+  all.push_back(
+      {"urdf",
+       {io::test::arm_urdf(), data("robots/iiwa14.urdf")},
+       kXmlWords,
+       at(folder, "robot.urdf", [](const fs::path& file) { (void)io::load_robot(file); })});
   all.push_back({"srdf",
                  {data("robots/iiwa14.srdf"),
                   "<robot name='a'><disable_default_collisions link='link_1'/><enable_collisions "
                   "link1='link_1' link2='link_2'/></robot>"},
                  kXmlWords,
-                 at("robot.srdf", [](const fs::path& file) {
+                 at(folder, "robot.srdf", [](const fs::path& file) {
                    (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file);
                  })});
   all.push_back({"path",
                  {first_lines(data("paths/door_polish.csv"), 30),
                   "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
                  {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\""},
-                 at("path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
-  const std::array<std::string, kDof> joints{"a", "b", "c", "d", "e", "f", "g,\"h\""};
+                 at(folder, "path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
+  return all;
+}
+
+/// Returns a plan of five rows for joints of these names.
+PlanResult short_plan(const io::JointNames& joints) {
   PlanResult result;
   result.joint_names = joints;
   for (int k = 0; k < 5; ++k)
     result.trajectory.push_back({0.1 * k, 0.2, k, Config::Constant(0.1 * k)});
+  return result;
+}
+
+/// Returns a motion along the rows of a plan, one row every 0.1 s.
+TimedPath motion_along(const PlanResult& plan) {
+  TimedPath motion;
+  for (int k = 0; k < 5; ++k)
+    motion.rows.push_back({0.1 * k, plan.trajectory[static_cast<std::size_t>(k)],
+                           Config::Constant(1), Config::Constant(0.1 * k)});
+  return motion;
+}
+
+/// Returns the readers of trajectories and motions in every format.
+std::vector<Reader> motion_readers(const TempFolder& folder) {
+  const io::JointNames joints{"a", "b", "c", "d", "e", "f", "g,\"h\""};
+  const auto at_motion = [&](const char* file) {
+    return at(folder, file,
+              [joints](const fs::path& path) { (void)io::load_trajectory_file(path, joints); });
+  };
+  const PlanResult result = short_plan(joints);
   io::write_trajectory(folder.path() / "good.csv", result);
+  std::vector<Reader> all;
   all.push_back({"trajectory",
                  {TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,"},
-                 at("trajectory.csv", [joints](const fs::path& file) {
-                   (void)io::load_trajectory_file(file, joints);
-                 })});
-  TimedPath motion;
-  for (int k = 0; k < 5; ++k)
-    motion.rows.push_back({0.1 * k, result.trajectory[static_cast<std::size_t>(k)],
-                           Config::Constant(1), Config::Constant(0.1 * k)});
+                 at_motion("trajectory.csv")});
+  const TimedPath motion = motion_along(result);
   const std::string timed = io::to_timed_csv(motion, joints);
   all.push_back({"motion",
                  {timed, TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,", first_lines(timed, 1)},
-                 at("motion.csv", [joints](const fs::path& file) {
-                   (void)io::load_trajectory_file(file, joints);
-                 })});
+                 at_motion("motion.csv")});
   const auto message = [&](const char* name, const char* file, std::string seed,
                            std::vector<std::string> words) {
-    all.push_back(
-        {name, {std::move(seed)}, std::move(words), at(file, [joints](const fs::path& path) {
-           (void)io::load_trajectory_file(path, joints);
-         })});
+    all.push_back({name, {std::move(seed)}, std::move(words), at_motion(file)});
   };
   // What is changed in the frame's name is read as before.
   const std::string frame(2000, 'x');
@@ -266,8 +282,11 @@ std::vector<Reader> readers(const TempFolder& folder) {
           {little_endian(0, 8), little_endian(1, 2), little_endian(7, 4),
            little_endian(~std::uint64_t{0}, 8), little_endian(0x7FFFFFFF, 4), "\x03", "\x04",
            "\x05", "\x06", "\x0F", "cdr", "zstd", "sensor_msgs/msg/JointState"});
-  const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}},
-                                 {{"arm.urdf", 0x0123456789abcdef}}};
+  return all;
+}
+
+/// Returns the reader of a campaign that was broken off, of 100 episodes with these settings.
+Reader campaign_reader(const TempFolder& folder, const io::RunSettings& settings) {
   {
     io::CampaignFile part(folder.path() / "good_results.csv", settings, {}, 100);
     EpisodeRow row;
@@ -282,26 +301,34 @@ std::vector<Reader> readers(const TempFolder& folder) {
       part.append(row);
     }
   }
-  all.push_back({"campaign",
-                 {TempFolder::read(folder.path() / "good_results.csv.part")},
-                 {",", "\"", "\n", "0,solved,", "{", "}", "# swivel campaign "},
-                 at("results.csv.part", [&folder, settings](const fs::path&) {
-                   (void)io::CampaignFile(folder.path() / "results.csv", settings, {}, 100);
-                 })});
+  return {"campaign",
+          {TempFolder::read(folder.path() / "good_results.csv.part")},
+          {",", "\"", "\n", "0,solved,", "{", "}", "# swivel campaign "},
+          at(folder, "results.csv.part", [&folder, settings](const fs::path&) {
+            (void)io::CampaignFile(folder.path() / "results.csv", settings, {}, 100);
+          })};
+}
+
+/// Returns the reader of shards, of a campaign and of a table of places.
+Reader shard_reader(const TempFolder& folder, const io::RunSettings& settings) {
   const auto shard = [&](const char* command, std::uint64_t total) {
     return io::to_line({command, settings, {}, total, "p.yaml", "swivel plan p.yaml"});
   };
   const std::string long_text(1000, 'x');  // what is changed in a text is read as before
   PlacementRow cell;
   cell.by = long_text;
-  all.push_back(
-      {"shard",
-       {shard("campaign", 2) +
-            io::to_csv(std::vector{EpisodeRow(0, "a \"b\", c"), EpisodeRow(1, long_text)}, {}),
-        shard("place", 1) + io::to_csv(std::vector{cell})},
-       {",", "\"", "\n", "1,solved,", "{", "}", "# swivel place ", "1/2", "18446744073709551615"},
-       at("shard.csv",
-          [](const fs::path& file) { (void)io::join_shards({io::load_shard(file)}); })});
+  return {
+      "shard",
+      {shard("campaign", 2) +
+           io::to_csv(std::vector{EpisodeRow(0, "a \"b\", c"), EpisodeRow(1, long_text)}, {}),
+       shard("place", 1) + io::to_csv(std::vector{cell})},
+      {",", "\"", "\n", "1,solved,", "{", "}", "# swivel place ", "1/2", "18446744073709551615"},
+      at(folder, "shard.csv",
+         [](const fs::path& file) { (void)io::join_shards({io::load_shard(file)}); })};
+}
+
+/// Returns the reader of certificates that a problem has no path.
+Reader certificate_reader(const TempFolder& folder) {
   InfeasibilityCertificate certificate;
   certificate.layers = 99;
   certificate.first_layer = 3;
@@ -322,27 +349,50 @@ std::vector<Reader> readers(const TempFolder& folder) {
   std::string noted =
       io::to_json(certificate);  // what is changed in a key that nobody reads is read as before
   noted.insert(1, "\"note\":\"" + std::string(2 * noted.size(), 'x') + "\",");
-  all.push_back(
-      {"certificate",
-       {io::to_json(certificate), noted},
-       {"0", "1", "[", "]", "null", "-1", "1e999", "\"limit\"", "[0,1,2],", "\"layers\":["},
-       at("certificate.json", [](const fs::path& file) { (void)io::load_certificate(file); })});
+  return {"certificate",
+          {io::to_json(certificate), noted},
+          {"0", "1", "[", "]", "null", "-1", "1e999", "\"limit\"", "[0,1,2],", "\"layers\":["},
+          at(folder, "certificate.json",
+             [](const fs::path& file) { (void)io::load_certificate(file); })};
+}
+
+/// Returns the readers of meshes.
+std::vector<Reader> mesh_readers(const TempFolder& folder) {
+  const auto mesh = [](const fs::path& file) {
+    io::MeshCache cache;
+    (void)io::load_mesh(file, Vector3d::Ones(), cache);
+  };
+  std::vector<Reader> all;
   all.push_back({"stl",
                  {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()},
                  {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n",
                   "endloop\n", "endfacet\n", "endsolid\n"},
-                 at("a.stl", mesh)});
+                 at(folder, "a.stl", mesh)});
   all.push_back({"obj",
                  {kObj},
                  {"f 1 2 3\n", "v 1 2 3\n", " 1", " -1", "/", "\\\n", "f"},
-                 at("a.obj", mesh)});
+                 at(folder, "a.obj", mesh)});
   all.push_back(
       {"ply",
        {kPly, binary_ply(false), binary_ply(true)},
        {"element face 1000\n", "element vertex 1\n", "property list uchar int vertex_indices\n",
         "property double x\n", "end_header\n", "comment ", "3 0 1 2\n"},
-       at("a.ply", mesh)});
-  all.push_back({"dae", {kDae}, kXmlWords, at("a.dae", mesh)});
+       at(folder, "a.ply", mesh)});
+  all.push_back({"dae", {kDae}, kXmlWords, at(folder, "a.dae", mesh)});
+  return all;
+}
+
+}  // namespace
+
+std::vector<Reader> readers(const TempFolder& folder) {
+  std::vector<Reader> all = problem_readers(folder);
+  std::ranges::move(motion_readers(folder), std::back_inserter(all));
+  const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}},
+                                 {{"arm.urdf", 0x0123456789abcdef}}};
+  all.push_back(campaign_reader(folder, settings));
+  all.push_back(shard_reader(folder, settings));
+  all.push_back(certificate_reader(folder));
+  std::ranges::move(mesh_readers(folder), std::back_inserter(all));
   return all;
 }
 

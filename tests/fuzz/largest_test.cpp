@@ -59,18 +59,10 @@ std::string dae_of_doubling_nodes() {
   return text + "<node id='n16'>";
 }
 
-std::vector<Large> large_files() {
-  const std::string path = "x,y,z,qw,qx,qy,qz\n", row = "0,0,0,1,0,0,0\n",
-                    nodes_end = "</node></library_nodes></COLLADA>";
-  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n",
-                    certificate = R"({"format":"swivel certificate 1","x":[)";
-  const std::string vertices =
-      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
-  const std::string input = "<input semantic='VERTEX' source='#v'/>";
-  const std::vector<std::string> dae = dae_around_faces();
-  std::string zeros;
-  for (int k = 0; k < 500'000; ++k) zeros += "0 ";
-  std::vector<Large> all{
+/// Returns the large problems, robots and tool paths.
+std::vector<Large> large_problems() {
+  const std::string path = "x,y,z,qw,qx,qy,qz\n", row = "0,0,0,1,0,0,0\n";
+  return {
       {"problem", "[", "1,", "1]", 4 * kMiB},
       {"problem", "", "a: 1\n", "", 4 * kMiB},
       {"problem", "[", "!t 1,", "1]", 4 * kMiB},
@@ -82,6 +74,12 @@ std::vector<Large> large_files() {
       {"path", "", ",", "", 256 * kMiB},
       {"path", path + row, "0,0,0,1,0,0,0,", "", 256 * kMiB},
       {"path", path, "\"\"", "", 256 * kMiB},
+  };
+}
+
+/// Returns the large motions.
+std::vector<Large> large_motions() {
+  return {
       {"motion", "", "a,", "a", 256 * kMiB},
       {"motion_json", R"({"header":[)", "{},", "1]}", 256 * kMiB},
       {"motion_json", R"({"points":[)",
@@ -94,9 +92,25 @@ std::vector<Large> large_files() {
       {"mcap", "\x89MCAP0\r\n", std::string("\0\0\0\0\0\0\0\0\0", 9), "", 256 * kMiB},
       {"mcap", "\x89MCAP0\r\n", std::string("\4\x0c\0\0\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\0\0", 21), "",
        256 * kMiB},
+  };
+}
+
+/// Returns the large certificates.
+std::vector<Large> large_certificates() {
+  const std::string certificate = R"({"format":"swivel certificate 1","x":[)";
+  return {
       {"certificate", "[", "{},", "1]", 32 * kMiB},
       {"certificate", certificate, "{\"a\":1},", "1]}", 32 * kMiB},
       {"certificate", certificate, "\"\",", "1]}", 32 * kMiB},
+  };
+}
+
+/// Returns the large meshes but for those of COLLADA.
+std::vector<Large> large_meshes() {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const std::string vertices =
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  return {
       {"stl", "solid\nfacet", "a", "", 256 * kMiB},
       {"stl", "solid\nfacet n\nouter loop\nvertex 0 0 ", "1", "", 256 * kMiB},
       {"obj", corners + "f", " 1", "", 256 * kMiB},
@@ -116,6 +130,17 @@ std::vector<Large> large_files() {
            "element face 1\nproperty list uint uchar vertex_index\nend_header\n" +
            std::string(36, '\0') + std::string("\0\0\0\2", 4),
        "\1", "", 256 * kMiB},
+  };
+}
+
+/// Returns the large meshes of COLLADA.
+std::vector<Large> large_dae_files() {
+  const std::string input = "<input semantic='VERTEX' source='#v'/>",
+                    nodes_end = "</node></library_nodes></COLLADA>";
+  const std::vector<std::string> dae = dae_around_faces();
+  std::string zeros;
+  for (int k = 0; k < 500'000; ++k) zeros += "0 ";
+  return {
       {"dae", "<COLLADA>", "<p/>", "</COLLADA>", 32 * kMiB},
       {"dae", dae[0] + "<polygons>" + input + "<p>", "0 1 2 ", "</p></polygons>" + dae[1],
        32 * kMiB},
@@ -125,6 +150,13 @@ std::vector<Large> large_files() {
       {"dae", dae_of_doubling_nodes(), "<scale>1 1 1</scale>", nodes_end, 32 * kMiB},
       {"dae", dae_of_doubling_nodes() + "<scale>1 1", " ", "1</scale>" + nodes_end, 32 * kMiB},
   };
+}
+
+std::vector<Large> large_files() {
+  std::vector<Large> all;
+  for (const auto& files :
+       {large_problems(), large_motions(), large_certificates(), large_meshes(), large_dae_files()})
+    all.insert(all.end(), files.begin(), files.end());
   return all;
 }
 
