@@ -119,6 +119,54 @@ std::pair<std::size_t, std::size_t> line(const std::string& text, Random& random
   return {begin, std::min(text.find('\n', begin), text.size() - 1) + 1 - begin};
 }
 
+/// Flips one bit of the byte at `at`; the end of the text has none.
+void flip_bit(std::string& text, std::size_t at, Random& random) {
+  if (at < text.size()) text[at] = static_cast<char>(text[at] ^ (1 << random.below(8)));
+}
+
+/// Replaces the byte at `at` by any byte; the end of the text has none.
+void replace_byte(std::string& text, std::size_t at, Random& random) {
+  if (at < text.size()) text[at] = static_cast<char>(random.below(256));
+}
+
+/// Repeats the `size` bytes at `at` side by side.
+void repeat(std::string& text, std::size_t at, std::size_t size, Random& random) {
+  const std::string part = text.substr(at, std::min<std::size_t>(size, 2000));
+  for (std::size_t times = length(300, random) + 1; times > 0; --times) text.insert(at, part);
+}
+
+/// Inserts a part of another file at `at`, or puts it in the place of the `size` bytes there.
+void splice(std::string& text, std::size_t at, std::size_t size, const std::string& other,
+            Random& random) {
+  const std::size_t from = place(other, random);
+  text.replace(at, random.coin() ? size : 0,
+               other.substr(from, length(other.size() - from, random)));
+}
+
+/// Inserts the opening word `open` many times at `at`, so that what it opens is nested.
+void nest(std::string& text, std::size_t at, const std::string& open, Random& random) {
+  std::string many;
+  for (std::size_t times = length(20'000, random) + 1; times > 0; --times) many += open;
+  text.insert(at, many);
+}
+
+/// Overwrites the four bytes at `at` by a binary count, index or number.
+void overwrite_count(std::string& text, std::size_t at, Random& random) {
+  const std::uint32_t values[] = {0,       1,          0x7fffffff, 0x80000000, 0xffffffff,
+                                  0x10000, 0x7f800000, 0x7fc00000, 0x01000000};
+  const std::uint32_t value = values[random.below(9)];
+  for (std::size_t k = 0; k < 4 && at + k < text.size(); ++k)
+    text[at + k] = static_cast<char>(value >> 8 * k);
+}
+
+/// Moves a line to another place, or copies it there.
+void move_line(std::string& text, Random& random) {
+  const auto [a, n] = line(text, random);
+  const std::string taken = text.substr(a, n);
+  if (random.coin()) text.erase(a, n);
+  text.insert(text.empty() ? 0 : line(text, random).first, taken);
+}
+
 }  // namespace
 
 std::string Mutator::input(std::uint64_t seed_value) const {
@@ -145,63 +193,32 @@ void Mutator::change_some(std::string& text, Random& random) const {
 void Mutator::change(std::string& text, Random& random) const {
   const std::size_t at = place(text, random), size = length(text.size() - at, random);
   switch (mild_ ? 10 + random.below(10) : random.below(14)) {
-    case 0:  // a bit
-      if (at < text.size()) text[at] = static_cast<char>(text[at] ^ (1 << random.below(8)));
-      return;
-    case 1:  // a byte
-      if (at < text.size()) text[at] = static_cast<char>(random.below(256));
-      return;
+    case 0:
+      return flip_bit(text, at, random);
+    case 1:
+      return replace_byte(text, at, random);
     case 2:
       text.resize(at);
       return;
     case 3:
       text.erase(at, size);
       return;
-    case 4:  // repeated side by side
-    {
-      const std::string part = text.substr(at, std::min<std::size_t>(size, 2000));
-      for (std::size_t times = length(300, random) + 1; times > 0; --times) text.insert(at, part);
-      return;
-    }
-    case 5:  // a part of another file
-    {
-      const std::string& other = one_of(seeds_, random);
-      const std::size_t from = place(other, random);
-      text.replace(at, random.coin() ? size : 0,
-                   other.substr(from, length(other.size() - from, random)));
-      return;
-    }
-    case 6:  // nested
-    {
-      const std::string& open = one_of(words_, random);
-      std::string many;
-      for (std::size_t times = length(20'000, random) + 1; times > 0; --times) many += open;
-      text.insert(at, many);
-      return;
-    }
+    case 4:
+      return repeat(text, at, size, random);
+    case 5:
+      return splice(text, at, size, one_of(seeds_, random), random);
+    case 6:
+      return nest(text, at, one_of(words_, random), random);
     case 7:
       text.insert(at, one_of(words_, random));
       return;
     case 8:
       text.insert(at, one_of(kAnyWords, random));
       return;
-    case 9:  // four bytes of a binary count or index
-    {
-      const std::uint32_t values[] = {0,       1,          0x7fffffff, 0x80000000, 0xffffffff,
-                                      0x10000, 0x7f800000, 0x7fc00000, 0x01000000};
-      const std::uint32_t value = values[random.below(9)];
-      for (std::size_t k = 0; k < 4 && at + k < text.size(); ++k)
-        text[at + k] = static_cast<char>(value >> 8 * k);
-      return;
-    }
-    case 10:  // lines change places, or one is there twice
-    {
-      const auto [a, n] = line(text, random);
-      const std::string taken = text.substr(a, n);
-      if (random.coin()) text.erase(a, n);
-      text.insert(text.empty() ? 0 : line(text, random).first, taken);
-      return;
-    }
+    case 9:
+      return overwrite_count(text, at, random);
+    case 10:
+      return move_line(text, random);
     default:  // numbers are what matters most in these formats
     {
       const auto [begin, n] = number(text, random);
