@@ -54,86 +54,110 @@ class Table final : public Validity {
   std::int64_t waves_ = 0;
 };
 
-TEST(PathFirst, SeesThatALayerIsBarred) {
-  const std::uint64_t base = seed("PathFirst.BarredLayer");
+/// Returns a problem of 70 to 99 steps between two random poses near one another.
+Problem random_problem(const TestRobot& robot, const Chain& chain, Random& random) {
+  Problem problem = problem_for(robot);
+  const Config q0 = random_config(chain, random);
+  Config q1 = q0;
+  for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
+  problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
+  const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+  problem.resolution = {.ds = length / (70 + random.below(30)),
+                        .dphi = robot.name == "windings" ? 0.4 : 0.15,
+                        .dalpha = 10};
+  return problem;
+}
+
+/// Lets fail a layer but for at most a few of its nodes, one node in fifty of the others, and in
+/// every other problem a block of them. Returns at most how many nodes of the layer do
+/// not fail: 0 where it is barred.
+int bar_a_layer(Table& table, const SrsLattice& lattice, Random& random) {
+  const int layer = random.below(lattice.layers()), left = random.coin() ? 0 : 1 + random.below(3);
+  const int angles = random.coin() ? lattice.angles() / 3 : 0,
+            angle = random.below(lattice.angles());
+  const int first = random.below(lattice.layers()), last = first + lattice.layers() / 4;
+  const auto blocked = [&](int k, int slot) {
+    return k >= first && k <= last &&
+           (lattice.angle_of(slot) - angle + lattice.angles()) % lattice.angles() < angles;
+  };
+  for (int k = 0; k < lattice.layers(); ++k)
+    for (int slot = 0; slot < lattice.slots(k); ++slot)
+      table.fails(k, slot) = k == layer || blocked(k, slot) || random.coin(0.02);
+  std::vector<Lattice::Node> nodes;
+  lattice.layer_nodes(layer, nodes);
+  for (int k = 0; k < left && !nodes.empty(); ++k)
+    table.fails(
+        layer, nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].slot) =
+        0;
+  return left;
+}
+
+/// Counts what the searches met.
+struct Searches {
   int barred = 0, gaps = 0, solved = 0;
   std::int64_t rounds_of_barred = 0, waves = 0;
+};
+
+/// Removes the nodes that the table lets fail, sweeps the whole lattice and expects of every way to
+/// search what the sweep says. `left` is the number that bar_a_layer() returned.
+void expect_outcome_of_whole_sweep(const Lattice& lattice, Table& table, int left,
+                                   const std::string& what, Searches& searches) {
+  const auto truth = make_cost_to_go(lattice);
+  for (int k = 0; k < lattice.layers(); ++k)
+    for (int slot = 0; slot < lattice.slots(k); ++slot)
+      if (table.fails(k, slot)) truth->verdicts().remove_node(k, slot);
+  truth->sweep(lattice.layers() - 1);
+  std::int64_t expansions = 0;
+  const SlotPath expected = best_path(*truth, expansions);
+  const auto unbarred = make_cost_to_go(lattice);
+  unbarred->sweep(lattice.layers() - 1);
+  const bool only_by_table = unbarred->best() != kUnreachable;
+
+  for (const PathFirstOptions& options : {PathFirstOptions{.batch = 1},
+                                          {.batch = 32},
+                                          {.batch = 32, .overlap_region_questions = true}}) {
+    const auto cost_to_go = make_cost_to_go(lattice, Pruning::kByBound);
+    cost_to_go->sweep(lattice.layers() - 1);
+    SearchCounters counters;
+    const SearchOutcome found = path_first(*cost_to_go, table, options, counters);
+    const std::int64_t rounds = counters.iterations;
+    ASSERT_EQ(found.path, expected) << what;
+    if (expected.empty()) {
+      ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, options, counters),
+                truth->deepest_reachable())
+          << what;
+    } else {
+      ASSERT_EQ(found.cost, truth->at(0, expected.front())) << what;
+    }
+    if (!only_by_table) continue;
+    (left == 0 ? searches.barred : searches.gaps) += 1;
+    searches.solved += !expected.empty();
+    if (left == 0) searches.rounds_of_barred += rounds;
+  }
+  searches.waves += table.waves();
+}
+
+TEST(PathFirst, SeesThatALayerIsBarred) {
+  const std::uint64_t base = seed("PathFirst.BarredLayer");
+  Searches searches;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(20); ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial));
-      Problem problem = problem_for(robot);
-      const Config q0 = random_config(arm.chain, random);
-      Config q1 = q0;
-      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
-      problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
-      const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-      problem.resolution = {.ds = length / (70 + random.below(30)),
-                            .dphi = robot.name == "windings" ? 0.4 : 0.15,
-                            .dalpha = 10};
+      const Problem problem = random_problem(robot, arm.chain, random);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " " + robot.name +
-                               " trial " + std::to_string(trial);
-
-      // A layer but for at most a few of its nodes, one node in fifty of the others, and in every
-      // other problem a block of them.
-      const int layer = random.below(lattice.layers()),
-                left = random.coin() ? 0 : 1 + random.below(3);
       Table table(lattice);
-      const int angles = random.coin() ? lattice.angles() / 3 : 0,
-                angle = random.below(lattice.angles());
-      const int first = random.below(lattice.layers()), last = first + lattice.layers() / 4;
-      const auto blocked = [&](int k, int slot) {
-        return k >= first && k <= last &&
-               (lattice.angle_of(slot) - angle + lattice.angles()) % lattice.angles() < angles;
-      };
-      for (int k = 0; k < lattice.layers(); ++k)
-        for (int slot = 0; slot < lattice.slots(k); ++slot)
-          table.fails(k, slot) = k == layer || blocked(k, slot) || random.coin(0.02);
-      std::vector<Lattice::Node> nodes;
-      lattice.layer_nodes(layer, nodes);
-      for (int k = 0; k < left && !nodes.empty(); ++k)
-        table.fails(
-            layer,
-            nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].slot) = 0;
-
-      const auto truth = make_cost_to_go(lattice);
-      for (int k = 0; k < lattice.layers(); ++k)
-        for (int slot = 0; slot < lattice.slots(k); ++slot)
-          if (table.fails(k, slot)) truth->verdicts().remove_node(k, slot);
-      truth->sweep(lattice.layers() - 1);
-      std::int64_t expansions = 0;
-      const SlotPath expected = best_path(*truth, expansions);
-      const auto unbarred = make_cost_to_go(lattice);
-      unbarred->sweep(lattice.layers() - 1);
-      const bool only_by_table = unbarred->best() != kUnreachable;
-
-      for (const PathFirstOptions& options : {PathFirstOptions{.batch = 1},
-                                              {.batch = 32},
-                                              {.batch = 32, .overlap_region_questions = true}}) {
-        const auto cost_to_go = make_cost_to_go(lattice, Pruning::kByBound);
-        cost_to_go->sweep(lattice.layers() - 1);
-        SearchCounters counters;
-        const SearchOutcome found = path_first(*cost_to_go, table, options, counters);
-        const std::int64_t rounds = counters.iterations;
-        ASSERT_EQ(found.path, expected) << what;
-        if (expected.empty()) {
-          ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, options, counters),
-                    truth->deepest_reachable())
-              << what;
-        } else {
-          ASSERT_EQ(found.cost, truth->at(0, expected.front())) << what;
-        }
-        if (!only_by_table) continue;
-        (left == 0 ? barred : gaps) += 1;
-        solved += !expected.empty();
-        if (left == 0) rounds_of_barred += rounds;
-      }
-      waves += table.waves();
+      const int left = bar_a_layer(table, lattice, random);
+      expect_outcome_of_whole_sweep(lattice, table, left,
+                                    "SWIVEL_TEST_SEED=" + std::to_string(base) + " " + robot.name +
+                                        " trial " + std::to_string(trial),
+                                    searches);
+      if (HasFatalFailure()) return;
     }
   }
+  const auto& [barred, gaps, solved, rounds_of_barred, waves] = searches;
   std::printf(
       "%d searches of a barred layer in %lld rounds, %d of one with gaps, %d solved, %lld waves "
       "beside work\n",

@@ -81,63 +81,90 @@ struct PlainLattice {
   const Verdicts& verdicts_;
 };
 
+/// Returns a problem of some four steps between two random poses near one another.
+Problem random_problem(const TestRobot& robot, const Chain& chain, Random& random) {
+  const Config q0 = random_config(chain, random);
+  Config q1 = q0;
+  for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.25, 0.25);
+  Problem problem = problem_for(robot);
+  problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
+  const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+  problem.resolution = {.ds = length / 4,
+                        .dphi = robot.name == "windings" ? 0.5 : random.uniform(0.2, 0.35),
+                        .dalpha = 10};
+  problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
+  problem.limits.joint_step = random.uniform(0.3, 0.6);
+  problem.cost.metric = random.coin() ? CostMetric::kL2 : CostMetric::kMax;
+  if (random.coin(0.2))
+    problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
+  if (random.coin(0.3)) problem.start = q0;
+  return problem;
+}
+
+/// Counts what the rounds met.
+struct Rounds {
+  int found = 0, none = 0, ties = 0, chosen = 0, changed = 0, followed = 0;
+};
+
+/// Removes a node of the path or an edge of it, drawn by `random`, and repairs the values.
+void remove_from(const SlotPath& path, CostToGo& cost_to_go, Random& random) {
+  const int layer = random.below(cost_to_go.lattice().layers() - 1);
+  if (random.coin())
+    cost_to_go.verdicts().remove_node(layer, path[layer]);
+  else
+    cost_to_go.remove_edge(layer, path[layer], path[layer + 1]);
+  cost_to_go.repair();
+}
+
+/// Expects the best path to be that of the plain descent, in up to eight rounds with a removal
+/// after each of them.
+void expect_plain_paths(const Lattice& lattice, CostToGo& cost_to_go, Random& random,
+                        const std::string& trial, Rounds& rounds) {
+  PathCache earlier;
+  for (int round = 0; round < 8; ++round) {
+    const std::string what = trial + " round " + std::to_string(round);
+    const SlotPath wanted =
+        PlainLattice(lattice, cost_to_go.verdicts()).descend(rounds.ties, rounds.chosen);
+    std::int64_t expansions = 0;
+    ASSERT_EQ(best_path(cost_to_go, expansions), wanted) << what;
+    ++(wanted.empty() ? rounds.none : rounds.found);
+    if (wanted.empty()) break;
+    ASSERT_EQ(expansions, lattice.layers()) << what;  // no vertex beside the path
+    std::int64_t fewer = 0;
+    ASSERT_EQ(best_path(cost_to_go, fewer, &earlier), wanted) << what;
+    ASSERT_LE(fewer, expansions) << what;
+    rounds.followed += fewer < expansions;
+    earlier.add(wanted, cost_to_go);
+    const double before = cost_to_go.best();
+    remove_from(wanted, cost_to_go, random);
+    rounds.changed += cost_to_go.best() != before;
+  }
+}
+
 TEST(BestPath, IsThatOfAPlainDescent) {
   const std::uint64_t base = seed("BestPath");
   const auto robots = all_robots();
-  int found = 0, none = 0, ties = 0, chosen = 0, changed = 0, followed = 0;
+  Rounds rounds;
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + trial);
     const TestRobot& robot = robots[trial % robots.size()];
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
-    const Config q0 = random_config(arm.chain, random);
-    Config q1 = q0;
-    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.25, 0.25);
-    Problem problem = problem_for(robot);
-    problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
-    const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-    problem.resolution = {.ds = length / 4,
-                          .dphi = robot.name == "windings" ? 0.5 : random.uniform(0.2, 0.35),
-                          .dalpha = 10};
-    problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
-    problem.limits.joint_step = random.uniform(0.3, 0.6);
-    problem.cost.metric = random.coin() ? CostMetric::kL2 : CostMetric::kMax;
-    if (random.coin(0.2))
-      problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
-    if (random.coin(0.3)) problem.start = q0;
+    Problem problem = random_problem(robot, arm.chain, random);
     problem.resolution.arcs = trial % 2 == 1;
     const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
     const SrsLattice lattice(arm.chain, srs, path, problem);
     const auto cost_to_go =
         make_cost_to_go(lattice, random.coin() ? Pruning::kNone : Pruning::kByBound);
     cost_to_go->sweep(lattice.layers() - 1);
-    PathCache earlier;
-    for (int round = 0; round < 8; ++round) {
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                               std::to_string(trial) + " robot " + robot.name + " round " +
-                               std::to_string(round);
-      const SlotPath wanted = PlainLattice(lattice, cost_to_go->verdicts()).descend(ties, chosen);
-      std::int64_t expansions = 0;
-      ASSERT_EQ(best_path(*cost_to_go, expansions), wanted) << what;
-      ++(wanted.empty() ? none : found);
-      if (wanted.empty()) break;
-      ASSERT_EQ(expansions, lattice.layers()) << what;  // no vertex beside the path
-      std::int64_t fewer = 0;
-      ASSERT_EQ(best_path(*cost_to_go, fewer, &earlier), wanted) << what;
-      ASSERT_LE(fewer, expansions) << what;
-      followed += fewer < expansions;
-      earlier.add(wanted, *cost_to_go);
-      const double before = cost_to_go->best();
-      const int layer = random.below(lattice.layers() - 1);
-      if (random.coin())
-        cost_to_go->verdicts().remove_node(layer, wanted[layer]);
-      else
-        cost_to_go->remove_edge(layer, wanted[layer], wanted[layer + 1]);
-      cost_to_go->repair();
-      changed += cost_to_go->best() != before;
-    }
+    expect_plain_paths(lattice, *cost_to_go, random,
+                       "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                           std::to_string(trial) + " robot " + robot.name,
+                       rounds);
+    if (HasFatalFailure()) return;
   }
+  const auto& [found, none, ties, chosen, changed, followed] = rounds;
   std::printf(
       "%d paths, %d lattices without one; %d ties, %d starts chosen among them, %d removals "
       "changed the optimum, %d paths went on "
