@@ -77,159 +77,204 @@ ParallelFor shared_by_threads() {
           }};
 }
 
-/// A third of the problems are also swept by threads: the same values, the same counts.
-TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
-  Random random(seed("Bounded"));
-  Random beyond(seed(
-      "Bounded.Deepest"));  // its own, so that the problems are the same however many rounds it has
+/// The costs-to-go of one lattice: swept whole, bounded, and in some problems bounded by threads.
+struct Sweeps {
+  Sweeps(const SrsLattice& of, bool by_threads)
+      : lattice(of),
+        shares(by_threads),
+        whole(of),
+        bounded(of, Pruning::kByBound),
+        shared(of, Pruning::kByBound) {
+    if (shares) {
+      shared.share(shared_by_threads());
+      shared.sweep(lattice.layers() - 1);
+    }
+    whole.sweep(lattice.layers() - 1);
+    bounded.sweep(lattice.layers() - 1);
+  }
+  [[nodiscard]] std::vector<GridCostToGo*> all() {
+    std::vector<GridCostToGo*> swept{&whole, &bounded};
+    if (shares) swept.push_back(&shared);
+    return swept;
+  }
+
+  const SrsLattice& lattice;
+  bool shares;
+  GridCostToGo whole, bounded, shared;
+};
+
+/// Counts what the problems of a test met.
+struct BoundedCounts {
   int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0, met = 0,
       apart = 0, longest = 0, followed = 0;
   std::int64_t whole_ik = 0, bounded_ik = 0, whole_deepest_ik = 0, bounded_deepest_ik = 0,
                compared = 0;
   double tightest = 0;
-  for (const TestRobot& robot : all_robots()) {
-    const ArmModel arm = arm_of(robot);
-    const SrsArm srs = fit_srs(arm.chain, robot.name);
-    for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
-      // Some of more layers than elbow sides go through at once.
-      const int waypoints = problems % 8 == 0 ? 66 + random.below(80) : 2 + random.below(30);
-      const Problem problem = random_problem(robot, arm.chain, random, waypoints);
-      const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
-      const SrsLattice lattice(arm.chain, srs, path, problem);
-      GridCostToGo whole(lattice), bounded(lattice, Pruning::kByBound),
-          shared(lattice, Pruning::kByBound);
-      const bool shares = problems % 3 == 0;
-      std::vector<GridCostToGo*> all{&whole, &bounded};
-      if (shares) {
-        all.push_back(&shared);
-        shared.share(shared_by_threads());
-        shared.sweep(lattice.layers() - 1);
-      }
-      const auto expect_shared_is_bounded = [&] {
-        if (!shares) return;
-        ASSERT_EQ(shared.ik_nodes(), bounded.ik_nodes());
-        ASSERT_EQ(shared.edges(), bounded.edges());
-        for (int layer = 0; layer < lattice.layers(); ++layer)
-          for (int slot = 0; slot < lattice.width(); ++slot)
-            ASSERT_EQ(shared.at(layer, slot), bounded.at(layer, slot));
-        ++compared;
-      };
-      whole.sweep(lattice.layers() - 1);
-      bounded.sweep(lattice.layers() - 1);
-      ++problems;
-      for (int step = 0; step + 1 < lattice.layers(); ++step)
-        (lattice.may_change_elbow_side(step) ? met : apart) += 1;
-      longest = std::max(longest, lattice.layers());
-      whole_ik += whole.ik_nodes();
-      bounded_ik += bounded.ik_nodes();
+};
 
-      expect_shared_is_bounded();
-      const ChordLowerBound bound(lattice);
-      const auto come = cost_to_come(whole);
-      ASSERT_LE(bound.best(), whole.best());
-      for (int layer = 0; layer < lattice.layers(); ++layer)
-        for (int slot = 0; const float* row = bound.row(layer) ? bound.row(layer) + slot : nullptr;
-             ++slot) {
-          if (slot == lattice.width()) break;
-          const double cost = come[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
-          ASSERT_LE(*row, cost) << robot.name << " trial " << trial << " layer " << layer
-                                << " slot " << slot;
-          if (cost != kUnreachable && cost > 0) {
-            ++bounds;
-            tightest = std::max(tightest, *row / cost);
-          }
-        }
+/// Counts a problem, its steps with and without a change of the elbow side, its layers and the
+/// nodes that the first sweeps solved.
+void count_problem(const Sweeps& sweeps, BoundedCounts& counts) {
+  ++counts.problems;
+  for (int step = 0; step + 1 < sweeps.lattice.layers(); ++step)
+    (sweeps.lattice.may_change_elbow_side(step) ? counts.met : counts.apart) += 1;
+  counts.longest = std::max(counts.longest, sweeps.lattice.layers());
+  counts.whole_ik += sweeps.whole.ik_nodes();
+  counts.bounded_ik += sweeps.bounded.ik_nodes();
+}
 
-      PathCache of_bounded, of_shared;
-      for (int round = 0; round < 12; ++round) {
-        const std::string what = robot.name + " trial " + std::to_string(trial) + " round " +
-                                 std::to_string(round) + " metric " +
-                                 std::to_string(static_cast<int>(problem.cost.metric));
-        ++rounds;
-        ASSERT_EQ(bounded.best(), whole.best()) << what;
-        std::int64_t expansions = 0, same_expansions = 0, fewer = 0, as_few = 0;
-        const SlotPath best = best_path(whole, expansions);
-        ASSERT_EQ(best_path(bounded, same_expansions), best) << what;
-        ASSERT_EQ(expansions, same_expansions) << what;
-        ASSERT_EQ(best_path(bounded, fewer, &of_bounded), best) << what;
-        ASSERT_LE(fewer, expansions) << what;
-        followed += fewer < expansions;
-        of_bounded.add(best, bounded);
-        if (shares) {
-          ASSERT_EQ(best_path(shared, same_expansions), best);
-          ASSERT_EQ(best_path(shared, as_few, &of_shared), best);
-          ASSERT_EQ(as_few, fewer) << what;
-          of_shared.add(best, shared);
-        }
-        if (best.empty()) {
-          ++ended;
-          break;
-        }
-        for (int layer = 0; layer < lattice.layers(); ++layer)
-          ASSERT_EQ(bounded.at(layer, best[static_cast<std::size_t>(layer)]),
-                    whole.at(layer, best[static_cast<std::size_t>(layer)]));
-        const double before = whole.best();
-        const int layer = random.below(lattice.layers()),
-                  slot = best[static_cast<std::size_t>(layer)];
-        const int kind = random.below(4);
-        const int reach = random.below(lattice.angles() / 2);
-        for (GridCostToGo* cost_to_go : all) {
-          if (kind == 0 && layer > 0) {
-            cost_to_go->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
-          } else if (kind == 1) {
-            std::vector<int> same_poses;
-            lattice.slots_with_same_body_poses(layer, slot, 1u << 4, same_poses);
-            for (const int like : same_poses) cost_to_go->verdicts().remove_node(layer, like);
-          } else {  // a blob of arm angles, over some layers
-            for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
-              for (int k = -reach; k <= reach; ++k) {
-                const int n = lattice.angles(), j = ((lattice.angle_of(slot) + k) % n + n) % n;
-                cost_to_go->verdicts().remove_node(i, lattice.solution_of(slot) * n + j);
-              }
-          }
-          cost_to_go->repair();
-        }
-        changed += whole.best() != before;
-        expect_shared_is_bounded();
-        ASSERT_FALSE(HasFatalFailure());
-      }
-      if (whole.best() == kUnreachable) {
-        const int deepest = whole.deepest_reachable();
-        ASSERT_EQ(bounded.deepest_reachable(), deepest);
-        if (shares) {
-          ASSERT_EQ(shared.deepest_reachable(), deepest);
-        }
-        if (deepest < 0) continue;
-        whole_deepest_ik -= whole.ik_nodes();
-        bounded_deepest_ik -= bounded.ik_nodes();
-        for (GridCostToGo* cost_to_go : all) cost_to_go->sweep(deepest);
-        whole_deepest_ik += whole.ik_nodes();
-        bounded_deepest_ik += bounded.ik_nodes();
-        expect_shared_is_bounded();
-        ASSERT_EQ(bounded.best(), whole.best());
-        for (int round = 0; round < 4 && whole.best() != kUnreachable; ++round) {
-          std::int64_t expansions = 0;
-          const SlotPath best = best_path(whole, expansions);
-          ASSERT_EQ(best_path(bounded, expansions), best);
-          if (shares) {
-            ASSERT_EQ(best_path(shared, expansions), best);
-          }
-          const int layer = beyond.below(deepest + 1);
-          for (GridCostToGo* cost_to_go : all) {
-            cost_to_go->verdicts().remove_node(layer, best[static_cast<std::size_t>(layer)]);
-            cost_to_go->repair();
-          }
-          ASSERT_EQ(bounded.best(), whole.best());
-          expect_shared_is_bounded();
-          ++to_deepest;
-        }
-        ASSERT_EQ(bounded.deepest_reachable(), whole.deepest_reachable());
+/// Expects the table that threads swept, where there is one, to be the bounded one.
+void expect_shared_is_bounded(Sweeps& sweeps, BoundedCounts& counts) {
+  if (!sweeps.shares) return;
+  ASSERT_EQ(sweeps.shared.ik_nodes(), sweeps.bounded.ik_nodes());
+  ASSERT_EQ(sweeps.shared.edges(), sweeps.bounded.edges());
+  for (int layer = 0; layer < sweeps.lattice.layers(); ++layer)
+    for (int slot = 0; slot < sweeps.lattice.width(); ++slot)
+      ASSERT_EQ(sweeps.shared.at(layer, slot), sweeps.bounded.at(layer, slot));
+  ++counts.compared;
+}
+
+/// Expects no lower bound to exceed the cost from layer 0 to its node.
+void expect_bounds_below_costs(Sweeps& sweeps, const std::string& trial, BoundedCounts& counts) {
+  const SrsLattice& lattice = sweeps.lattice;
+  const ChordLowerBound bound(lattice);
+  const auto come = cost_to_come(sweeps.whole);
+  ASSERT_LE(bound.best(), sweeps.whole.best());
+  for (int layer = 0; layer < lattice.layers(); ++layer)
+    for (int slot = 0; const float* row = bound.row(layer) ? bound.row(layer) + slot : nullptr;
+         ++slot) {
+      if (slot == lattice.width()) break;
+      const double cost = come[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+      ASSERT_LE(*row, cost) << trial << " layer " << layer << " slot " << slot;
+      if (cost != kUnreachable && cost > 0) {
+        ++counts.bounds;
+        counts.tightest = std::max(counts.tightest, *row / cost);
       }
     }
+}
+
+/// Keeps the paths of earlier rounds, for the bounded table and for the one of threads.
+struct EarlierPaths {
+  PathCache of_bounded, of_shared;
+};
+
+/// Expects every table to have the whole sweep's best path, searched anew or along earlier ones,
+/// and stores it in `best`.
+void expect_same_best_path(Sweeps& sweeps, EarlierPaths& earlier, const std::string& what,
+                           SlotPath& best, BoundedCounts& counts) {
+  ASSERT_EQ(sweeps.bounded.best(), sweeps.whole.best()) << what;
+  std::int64_t expansions = 0, same_expansions = 0, fewer = 0, as_few = 0;
+  best = best_path(sweeps.whole, expansions);
+  ASSERT_EQ(best_path(sweeps.bounded, same_expansions), best) << what;
+  ASSERT_EQ(expansions, same_expansions) << what;
+  ASSERT_EQ(best_path(sweeps.bounded, fewer, &earlier.of_bounded), best) << what;
+  ASSERT_LE(fewer, expansions) << what;
+  counts.followed += fewer < expansions;
+  earlier.of_bounded.add(best, sweeps.bounded);
+  if (sweeps.shares) {
+    ASSERT_EQ(best_path(sweeps.shared, same_expansions), best);
+    ASSERT_EQ(best_path(sweeps.shared, as_few, &earlier.of_shared), best);
+    ASSERT_EQ(as_few, fewer) << what;
+    earlier.of_shared.add(best, sweeps.shared);
   }
+  for (int layer = 0; !best.empty() && layer < sweeps.lattice.layers(); ++layer)
+    ASSERT_EQ(sweeps.bounded.at(layer, best[static_cast<std::size_t>(layer)]),
+              sweeps.whole.at(layer, best[static_cast<std::size_t>(layer)]));
+}
+
+/// Removes from every table an edge of the path, the nodes with the body poses of one of its
+/// nodes, or nodes about one of them, and repairs the tables.
+void remove_about(const SlotPath& path, Sweeps& sweeps, Random& random) {
+  const SrsLattice& lattice = sweeps.lattice;
+  const int layer = random.below(lattice.layers()), slot = path[static_cast<std::size_t>(layer)];
+  const int kind = random.below(4);
+  const int reach = random.below(lattice.angles() / 2);
+  for (GridCostToGo* cost_to_go : sweeps.all()) {
+    if (kind == 0 && layer > 0) {
+      cost_to_go->remove_edge(layer - 1, path[static_cast<std::size_t>(layer) - 1], slot);
+    } else if (kind == 1) {
+      std::vector<int> same_poses;
+      lattice.slots_with_same_body_poses(layer, slot, 1u << 4, same_poses);
+      for (const int like : same_poses) cost_to_go->verdicts().remove_node(layer, like);
+    } else {  // a blob of arm angles, over some layers
+      for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
+        for (int k = -reach; k <= reach; ++k) {
+          const int n = lattice.angles(), j = ((lattice.angle_of(slot) + k) % n + n) % n;
+          cost_to_go->verdicts().remove_node(i, lattice.solution_of(slot) * n + j);
+        }
+    }
+    cost_to_go->repair();
+  }
+}
+
+/// Expects the tables to agree in up to twelve rounds with removals after each of them; `trial`
+/// tells the problem.
+void expect_same_paths_under_removals(Sweeps& sweeps, CostMetric metric, const std::string& trial,
+                                      Random& random, BoundedCounts& counts) {
+  EarlierPaths earlier;
+  for (int round = 0; round < 12; ++round) {
+    ++counts.rounds;
+    SlotPath best;
+    expect_same_best_path(sweeps, earlier,
+                          trial + " round " + std::to_string(round) + " metric " +
+                              std::to_string(static_cast<int>(metric)),
+                          best, counts);
+    if (::testing::Test::HasFatalFailure()) return;
+    if (best.empty()) {
+      ++counts.ended;
+      break;
+    }
+    const double before = sweeps.whole.best();
+    remove_about(best, sweeps, random);
+    counts.changed += sweeps.whole.best() != before;
+    expect_shared_is_bounded(sweeps, counts);
+    ASSERT_FALSE(::testing::Test::HasFatalFailure());
+  }
+}
+
+/// Expects the tables to agree about the deepest layer that can be reached where no path is left,
+/// and about the paths to it under removals that `beyond` draws.
+void expect_same_paths_to_deepest_layer(Sweeps& sweeps, Random& beyond, BoundedCounts& counts) {
+  const bool shares = sweeps.shares;
+  GridCostToGo &whole = sweeps.whole, &bounded = sweeps.bounded, &shared = sweeps.shared;
+  const int deepest = whole.deepest_reachable();
+  ASSERT_EQ(bounded.deepest_reachable(), deepest);
+  if (shares) {
+    ASSERT_EQ(shared.deepest_reachable(), deepest);
+  }
+  if (deepest < 0) return;
+  counts.whole_deepest_ik -= whole.ik_nodes();
+  counts.bounded_deepest_ik -= bounded.ik_nodes();
+  for (GridCostToGo* cost_to_go : sweeps.all()) cost_to_go->sweep(deepest);
+  counts.whole_deepest_ik += whole.ik_nodes();
+  counts.bounded_deepest_ik += bounded.ik_nodes();
+  expect_shared_is_bounded(sweeps, counts);
+  ASSERT_EQ(bounded.best(), whole.best());
+  for (int round = 0; round < 4 && whole.best() != kUnreachable; ++round) {
+    std::int64_t expansions = 0;
+    const SlotPath best = best_path(whole, expansions);
+    ASSERT_EQ(best_path(bounded, expansions), best);
+    if (shares) {
+      ASSERT_EQ(best_path(shared, expansions), best);
+    }
+    const int layer = beyond.below(deepest + 1);
+    for (GridCostToGo* cost_to_go : sweeps.all()) {
+      cost_to_go->verdicts().remove_node(layer, best[static_cast<std::size_t>(layer)]);
+      cost_to_go->repair();
+    }
+    ASSERT_EQ(bounded.best(), whole.best());
+    expect_shared_is_bounded(sweeps, counts);
+    ++counts.to_deepest;
+  }
+  ASSERT_EQ(bounded.deepest_reachable(), whole.deepest_reachable());
+}
+
+/// Prints what was met and expects enough of each kind.
+void expect_enough(const BoundedCounts& counts) {
   const auto share = [](std::int64_t some, std::int64_t all) {
     return 100.0 * static_cast<double>(some) / static_cast<double>(all);
   };
+  const double deepest_share = share(counts.bounded_deepest_ik, counts.whole_deepest_ik);
   std::printf(
       "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from "
       "paths to the deepest layer; %d "
@@ -238,24 +283,55 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       "%lld tables by threads the same; families meet at %d steps, not at %d; up to %d layers; %d "
       "paths went on as an earlier "
       "one\n",
-      problems, rounds, changed, ended, to_deepest, bounds, tightest, share(bounded_ik, whole_ik),
-      share(bounded_deepest_ik, whole_deepest_ik), static_cast<long long>(compared), met, apart,
-      longest, followed);
-  EXPECT_GE(followed, at_least(rounds / 20));
-  EXPECT_GE(met, at_least(20));
-  EXPECT_GE(apart, at_least(200));
-  EXPECT_GT(longest, 64);
+      counts.problems, counts.rounds, counts.changed, counts.ended, counts.to_deepest,
+      counts.bounds, counts.tightest, share(counts.bounded_ik, counts.whole_ik), deepest_share,
+      static_cast<long long>(counts.compared), counts.met, counts.apart, counts.longest,
+      counts.followed);
+  EXPECT_GE(counts.followed, at_least(counts.rounds / 20));
+  EXPECT_GE(counts.met, at_least(20));
+  EXPECT_GE(counts.apart, at_least(200));
+  EXPECT_GT(counts.longest, 64);
   if (at_least(1) > 0) {
-    EXPECT_LT(share(bounded_deepest_ik, whole_deepest_ik),
-              65);  // about 80 where the costs of the reach are lost
+    EXPECT_LT(deepest_share, 65);  // about 80 where the costs of the reach are lost
   }
-  EXPECT_GE(compared, at_least(problems + 1));
-  EXPECT_GE(rounds, at_least(3 * problems + 1));
-  EXPECT_GE(changed, at_least(problems + 1));
-  EXPECT_GE(ended, at_least(4));
-  EXPECT_GE(to_deepest, at_least(10));
-  EXPECT_GE(bounds, at_least(1001));
-  EXPECT_GT(tightest, 0.99);
+  EXPECT_GE(counts.compared, at_least(counts.problems + 1));
+  EXPECT_GE(counts.rounds, at_least(3 * counts.problems + 1));
+  EXPECT_GE(counts.changed, at_least(counts.problems + 1));
+  EXPECT_GE(counts.ended, at_least(4));
+  EXPECT_GE(counts.to_deepest, at_least(10));
+  EXPECT_GE(counts.bounds, at_least(1001));
+  EXPECT_GT(counts.tightest, 0.99);
+}
+
+/// A third of the problems are also swept by threads: the same values, the same counts.
+TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
+  Random random(seed("Bounded"));
+  Random beyond(seed(
+      "Bounded.Deepest"));  // its own, so that the problems are the same however many rounds it has
+  BoundedCounts counts;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
+      // Some of more layers than elbow sides go through at once.
+      const int waypoints = counts.problems % 8 == 0 ? 66 + random.below(80) : 2 + random.below(30);
+      const Problem problem = random_problem(robot, arm.chain, random, waypoints);
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+      const SrsLattice lattice(arm.chain, srs, path, problem);
+      const std::string what = robot.name + " trial " + std::to_string(trial);
+      Sweeps sweeps(lattice, counts.problems % 3 == 0);
+      count_problem(sweeps, counts);
+      expect_shared_is_bounded(sweeps, counts);
+      expect_bounds_below_costs(sweeps, what, counts);
+      if (HasFatalFailure()) return;
+      expect_same_paths_under_removals(sweeps, problem.cost.metric, what, random, counts);
+      if (HasFatalFailure()) return;
+      if (sweeps.whole.best() == kUnreachable)
+        expect_same_paths_to_deepest_layer(sweeps, beyond, counts);
+      if (HasFatalFailure()) return;
+    }
+  }
+  expect_enough(counts);
 }
 
 /// Relaxes pair by pair, as the definition says. Partners of node k are those from k on, or with
@@ -297,87 +373,112 @@ std::vector<const RelaxKernels*> vector_units() {
   return units;
 }
 
-TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
-  Random random(seed("RelaxKernels"));
-  const std::vector<const RelaxKernels*> units = vector_units();
-  int runs = 0, reached = 0, barred = 0, idle_runs = 0;
-  for (int trial = 0; trial < trials(4000); ++trial) {
-    const int n = 1 + random.below(40), offsets = 1 + random.below(9);
-    const auto length = static_cast<std::size_t>(n + offsets);
+/// A random task about pairs of neighbouring nodes, and the coarse task about the same nodes in
+/// single precision. The tasks point into the vectors.
+struct NeighbourCase {
+  explicit NeighbourCase(Random& random) {
+    task.n = 1 + random.below(40);
+    task.offsets = 1 + random.below(9);
+    const auto length = static_cast<std::size_t>(task.n + task.offsets);
     const auto random_values = [&](auto sample) {
       std::vector<double> values(length);
       for (double& x : values) x = sample();
       return values;
     };
-    std::array<std::vector<double>, kDof> from, to;
-    const bool idle = random.coin(0.1);  // no joint has a weight: every move costs nothing
+    idle = random.coin(0.1);
     const double spread = random.coin() ? 7 : 0.5;  // moves beyond the bounds, or within
     for (auto* joints : {&from, &to})
       for (auto& joint : *joints)
         joint = random_values([&] { return random.uniform(-spread, spread); });
     const double unit = random.coin() ? 1 : std::exp2(random.below(41) - 20);
-    const auto value = random_values(
+    value = random_values(
         [&] { return random.coin(0.2) ? kUnreachable : unit * random.uniform(0, 5); });
-    RelaxTask<double> task{.n = n,
-                           .offsets = offsets,
-                           .from = {},
-                           .to = {},
-                           .value = value.data(),
-                           .best = nullptr,
-                           .scale = {},
-                           .bound = {},
-                           .turn = {},
-                           .unit = unit,
-                           .metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax,
-                           .wraps = random.coin()};
-    RelaxTask<float> coarse{.n = n,
-                            .offsets = offsets,
-                            .from = {},
-                            .to = {},
-                            .value = nullptr,
-                            .best = nullptr,
-                            .scale = {},
-                            .bound = {},
-                            .turn = {},
-                            .unit = static_cast<float>(unit),
-                            .metric = task.metric,
-                            .wraps = task.wraps};
-    std::array<std::vector<float>, kDof> chord_from, chord_to;
-    const std::vector<float> coarse_value(value.begin(), value.end());
+    task.value = value.data();
+    task.unit = unit;
+    task.metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax;
+    task.wraps = random.coin();
+    for (std::size_t j = 0; j < kDof; ++j) {
+      task.from[j] = from[j].data();
+      task.to[j] = to[j].data();
+      task.scale[j] = idle || random.coin(0.2) ? 0 : unit * random.uniform(0, 3);
+      task.bound[j] = random.uniform(1, 9);
+      task.turn[j] = task.wraps && random.coin() ? kTwoPi : 0;
+    }
+    round_to_coarse();
+  }
+  NeighbourCase(const NeighbourCase&) = delete;
+  NeighbourCase& operator=(const NeighbourCase&) = delete;
+
+  std::array<std::vector<double>, kDof> from, to;
+  std::vector<double> value;
+  RelaxTask<double> task{};
+  std::array<std::vector<float>, kDof> chord_from, chord_to;
+  std::vector<float> coarse_value;
+  RelaxTask<float> coarse{};
+  bool idle = false;  ///< no joint has a weight: every move costs nothing
+
+ private:
+  /// Makes the coarse task of the other one: without bounds, its numbers rounded to floats.
+  void round_to_coarse() {
+    coarse.n = task.n;
+    coarse.offsets = task.offsets;
+    coarse.unit = static_cast<float>(task.unit);
+    coarse.metric = task.metric;
+    coarse.wraps = task.wraps;
+    coarse_value.assign(value.begin(), value.end());
+    coarse.value = coarse_value.data();
     for (std::size_t j = 0; j < kDof; ++j) {
       chord_from[j].assign(from[j].begin(), from[j].end());
       chord_to[j].assign(to[j].begin(), to[j].end());
-      task.from[j] = from[j].data();
-      task.to[j] = to[j].data();
       coarse.from[j] = chord_from[j].data();
       coarse.to[j] = chord_to[j].data();
-      task.scale[j] = idle || random.coin(0.2) ? 0 : unit * random.uniform(0, 3);
       coarse.scale[j] = static_cast<float>(task.scale[j]);
-      task.bound[j] = random.uniform(1, 9);
-      task.turn[j] = task.wraps && random.coin() ? kTwoPi : 0;
       coarse.turn[j] = static_cast<float>(task.turn[j]);
     }
-    coarse.value = coarse_value.data();
-    idle_runs += idle;
-    std::vector<std::vector<double>> best;
-    std::vector<std::vector<float>> coarse_best;
-    const std::vector<double> plain = relaxed_plainly(task);
-    for (const double found : plain) (found == kUnreachable ? barred : reached) += 1;
-    for (const RelaxKernels* kernels : units) {
-      best.emplace_back(static_cast<std::size_t>(n), kUnreachable);
-      coarse_best.emplace_back(static_cast<std::size_t>(n), std::numeric_limits<float>::infinity());
-      task.best = best.back().data();
-      coarse.best = coarse_best.back().data();
-      kernels->relax(task);
-      kernels->coarse(coarse);
-      ASSERT_EQ(best.back(), plain);
-      ASSERT_EQ(coarse_best.back(), coarse_best.front());
-      ++runs;
-    }
-    // A coarse step allows every step, so it is nowhere dearer, and single precision loses little.
-    for (std::size_t k = 0; k < best[0].size(); ++k)
-      ASSERT_LE(coarse_best[0][k], best[0][k] + 1e-4 * unit);
   }
+};
+
+/// Counts runs of vector units, and nodes that are reached or not.
+struct RelaxCounts {
+  int runs = 0, reached = 0, barred = 0;
+};
+
+/// Expects the plain values of every vector unit, and of all the same coarse ones.
+void expect_plain_bits(NeighbourCase& c, const std::vector<const RelaxKernels*>& units,
+                       RelaxCounts& counts) {
+  const auto n = static_cast<std::size_t>(c.task.n);
+  std::vector<std::vector<double>> best;
+  std::vector<std::vector<float>> coarse_best;
+  const std::vector<double> plain = relaxed_plainly(c.task);
+  for (const double found : plain) (found == kUnreachable ? counts.barred : counts.reached) += 1;
+  for (const RelaxKernels* kernels : units) {
+    best.emplace_back(n, kUnreachable);
+    coarse_best.emplace_back(n, std::numeric_limits<float>::infinity());
+    c.task.best = best.back().data();
+    c.coarse.best = coarse_best.back().data();
+    kernels->relax(c.task);
+    kernels->coarse(c.coarse);
+    ASSERT_EQ(best.back(), plain);
+    ASSERT_EQ(coarse_best.back(), coarse_best.front());
+    ++counts.runs;
+  }
+  // A coarse step allows every step, so it is nowhere dearer, and single precision loses little.
+  for (std::size_t k = 0; k < best[0].size(); ++k)
+    ASSERT_LE(coarse_best[0][k], best[0][k] + 1e-4 * c.task.unit);
+}
+
+TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
+  Random random(seed("RelaxKernels"));
+  const std::vector<const RelaxKernels*> units = vector_units();
+  RelaxCounts counts;
+  int idle_runs = 0;
+  for (int trial = 0; trial < trials(4000); ++trial) {
+    NeighbourCase some(random);
+    idle_runs += some.idle;
+    expect_plain_bits(some, units, counts);
+    if (HasFatalFailure()) return;
+  }
+  const auto& [runs, reached, barred] = counts;
   std::printf("%zu units, %d runs, %d nodes reached, %d not\n", units.size(), runs, reached,
               barred);
   EXPECT_GT(reached, runs);
@@ -423,26 +524,20 @@ TEST(Kernels, RangesAreOfTheNodesWithAValue) {
   EXPECT_GT(empty, ranges / 100);
 }
 
-/// Nodes in runs along which joints change little, as on arcs, or anywhere; partners near some of
-/// them.
-TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
-  Random random(seed("RelaxAll"));
-  const std::vector<const RelaxKernels*> units = vector_units();
-  int runs = 0, reached = 0, barred = 0, turned = 0;
-  for (int trial = 0; trial < trials(4000); ++trial) {
-    const int n = 1 + random.below(60), partners = 1 + random.below(random.coin(0.1) ? 600 : 40);
+/// A random task about nodes that each meet all partners: nodes in runs along which joints change
+/// little, as on arcs, or anywhere; partners near some of them. The task points into the vectors.
+struct ReachCase {
+  explicit ReachCase(Random& random) {
+    task.n = 1 + random.below(60);
+    task.offsets = 1 + random.below(random.coin(0.1) ? 600 : 40);
     const double turns = random.coin() ? kPi : 20;  // joints go so far from 0
-    std::array<std::vector<double>, kDof> from, to;
     const double spacing = random.uniform(0, 0.5);
-    for (int k = 0; k < n; ++k) {
+    for (int k = 0; k < task.n; ++k) {
       const bool jump = k == 0 || random.coin(0.1);
       for (auto& joint : from)
         joint.push_back(jump ? random.uniform(-turns, turns)
                              : joint.back() + random.uniform(-spacing, spacing));
     }
-    RelaxTask<double> task{};
-    task.n = n;
-    task.offsets = partners;
     task.unit = random.coin() ? 1 : std::exp2(random.below(41) - 20);
     task.metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task.wraps = random.coin();
@@ -451,32 +546,52 @@ TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
       task.bound[j] = random.coin(0.05) ? 0 : random.uniform(0.1, 1);
       task.scale[j] = random.coin(0.1) ? 0 : task.unit * random.uniform(0, 3);
     }
-    for (int k = 0; k < partners; ++k) {
-      const auto near = static_cast<std::size_t>(random.below(n));
-      const double share =
-          random.coin() ? 1 : 1.1;  // of the bounds: some partners stand on them to the bit
-      for (std::size_t j = 0; j < kDof; ++j) {
-        const double away =
-            random.coin(0.2) ? std::copysign(1.0, random.uniform(-1, 1)) : random.uniform(-1, 1);
-        const double whole = task.turn[j] > 0 ? kTwoPi * (random.below(3) - 1) : 0;
-        turned += whole != 0;
-        to[j].push_back(from[j][near] + share * away * task.bound[j] + whole);
-      }
-    }
-    std::vector<double> value;
-    for (int k = 0; k < partners; ++k)
+    for (int k = 0; k < task.offsets; ++k) add_partner(random);
+    for (int k = 0; k < task.offsets; ++k)
       value.push_back(random.coin(0.2) ? kUnreachable : task.unit * random.uniform(0, 5));
     task.value = value.data();
     for (std::size_t j = 0; j < kDof; ++j) {
       task.from[j] = from[j].data();
       task.to[j] = to[j].data();
     }
-    const std::vector<double> plain = relaxed_plainly(task, true);
+  }
+  ReachCase(const ReachCase&) = delete;
+  ReachCase& operator=(const ReachCase&) = delete;
+
+  std::array<std::vector<double>, kDof> from, to;
+  std::vector<double> value;
+  RelaxTask<double> task{};
+  int turned = 0;  ///< joints of partners that are a turn further than those of the node
+
+ private:
+  /// Adds a partner about as far from a node as the bounds allow, some joints a turn further.
+  void add_partner(Random& random) {
+    const auto near = static_cast<std::size_t>(random.below(task.n));
+    const double share =
+        random.coin() ? 1 : 1.1;  // of the bounds: some partners stand on them to the bit
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double away =
+          random.coin(0.2) ? std::copysign(1.0, random.uniform(-1, 1)) : random.uniform(-1, 1);
+      const double whole = task.turn[j] > 0 ? kTwoPi * (random.below(3) - 1) : 0;
+      turned += whole != 0;
+      to[j].push_back(from[j][near] + share * away * task.bound[j] + whole);
+    }
+  }
+};
+
+TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
+  Random random(seed("RelaxAll"));
+  const std::vector<const RelaxKernels*> units = vector_units();
+  int runs = 0, reached = 0, barred = 0, turned = 0;
+  for (int trial = 0; trial < trials(4000); ++trial) {
+    ReachCase some(random);
+    turned += some.turned;
+    const std::vector<double> plain = relaxed_plainly(some.task, true);
     for (const double found : plain) (found == kUnreachable ? barred : reached) += 1;
     for (const RelaxKernels* kernels : units) {
-      std::vector<double> best(static_cast<std::size_t>(n), kUnreachable);
-      task.best = best.data();
-      kernels->relax_all(task);
+      std::vector<double> best(static_cast<std::size_t>(some.task.n), kUnreachable);
+      some.task.best = best.data();
+      kernels->relax_all(some.task);
       ASSERT_EQ(best, plain);
       ++runs;
     }

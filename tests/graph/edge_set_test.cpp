@@ -102,61 +102,85 @@ std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const
   return {q0, q1};
 }
 
+/// Returns a problem of two layers: from the pose q0 to q1.
+Problem two_layers(const TestRobot& robot, const Chain& chain, const std::pair<Config, Config>& q,
+                   Random& random) {
+  Problem problem = problem_for(robot);
+  problem.waypoints = {waypoint_of(chain.tool(q.first)), waypoint_of(chain.tool(q.second))};
+  problem.resolution = {.ds = 10, .dphi = random.uniform(0.08, 0.3), .dalpha = 10};
+  problem.limits.arm_slope = random.uniform(0.0, 0.1);
+  problem.limits.joint_step = random.uniform(0.3, 0.7);
+  return problem;
+}
+
+/// Counts edges: all, those that change the solution, by place, and those that flip a sign of the
+/// branch or change the winding.
+struct EdgeCounts {
+  std::int64_t total = 0;
+  std::map<Place, std::int64_t> changing;
+  std::array<std::int64_t, 3> flips{};
+  std::int64_t windings = 0;
+
+  /// Counts the edges from slot a of layer 0.
+  void add(const SrsLattice& lattice, Place place, int a, const std::vector<Edge>& edges) {
+    total += static_cast<std::int64_t>(edges.size());
+    for (const Edge& edge : edges) {
+      const int change = lattice.branch_of(a) ^ lattice.branch_of(edge.b);
+      if (lattice.solution_of(a) != lattice.solution_of(edge.b)) ++changing[place];
+      for (int bit = 0; bit < 3; ++bit) flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
+      windings += change == 0 && lattice.solution_of(a) != lattice.solution_of(edge.b);
+    }
+  }
+};
+
+/// Expects the implicit graph and the sweep to have the edges of brute force between the two layers
+/// of the lattice; `what` tells the problem.
+void expect_edges_of_brute_force(const SrsLattice& lattice, Place place, const std::string& what,
+                                 EdgeCounts& counts) {
+  std::vector<std::optional<Config>> here, next;
+  for (int slot = 0; slot < lattice.width(); ++slot) {
+    here.push_back(lattice.node(0, slot));
+    next.push_back(lattice.node(1, slot));
+  }
+  GridCostToGo cost_to_go(lattice);
+  cost_to_go.sweep(1);
+  const ImplicitLattice graph(cost_to_go, kUnreachable);
+  for (int a = 0; a < lattice.width(); ++a) {
+    const std::vector<Edge> wanted = brute_force(lattice, 0, a, here, next);
+    double least = kUnreachable;
+    for (const Edge& edge : wanted) least = std::min(least, edge.cost);
+    ASSERT_EQ(cost_to_go.at(0, a), least) << what;  // the vector sweep sees the same edges
+    if (!here[static_cast<std::size_t>(a)]) continue;
+    std::vector<Edge> found;
+    for (const auto& edge : graph.expand(graph.vertex(0, a)))
+      found.push_back({graph.slot_of(edge.target), edge.cost});
+    std::sort(found.begin(), found.end(), [](const Edge& x, const Edge& y) { return x.b < y.b; });
+    ASSERT_EQ(found, wanted) << what;
+    counts.add(lattice, place, a, found);
+  }
+}
+
 TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
   Random random(seed("EdgeSet"));
   const std::map<Place, const char*> places{
       {Place::kAnywhere, "anywhere"}, {Place::kShoulder, "shoulder"}, {Place::kElbow, "elbow"},
       {Place::kWrist, "wrist"},       {Place::kWindow, "window"},     {Place::kAxisOne, "axis 1"}};
-  std::int64_t total = 0;
-  std::map<Place, std::int64_t> changing;
-  std::array<std::int64_t, 3> flips{};
-  std::int64_t windings = 0;
+  EdgeCounts counts;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (const auto& [place, name] : places)
       for (int trial = 0; trial < trials(6); ++trial) {
-        const auto [q0, q1] = ends(robot, arm.chain, srs, place, random);
-        Problem problem = problem_for(robot);
-        problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
-        problem.resolution = {.ds = 10, .dphi = random.uniform(0.08, 0.3), .dalpha = 10};
-        problem.limits.arm_slope = random.uniform(0.0, 0.1);
-        problem.limits.joint_step = random.uniform(0.3, 0.7);
+        Problem problem =
+            two_layers(robot, arm.chain, ends(robot, arm.chain, srs, place, random), random);
         problem.resolution.arcs = trial % 2 == 1;
         const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
         const SrsLattice lattice(arm.chain, srs, path, problem);
-        std::vector<std::optional<Config>> here, next;
-        for (int slot = 0; slot < lattice.width(); ++slot) {
-          here.push_back(lattice.node(0, slot));
-          next.push_back(lattice.node(1, slot));
-        }
-        GridCostToGo cost_to_go(lattice);
-        cost_to_go.sweep(1);
-        const ImplicitLattice graph(cost_to_go, kUnreachable);
-        for (int a = 0; a < lattice.width(); ++a) {
-          const std::vector<Edge> wanted = brute_force(lattice, 0, a, here, next);
-          double least = kUnreachable;
-          for (const Edge& edge : wanted) least = std::min(least, edge.cost);
-          ASSERT_EQ(cost_to_go.at(0, a), least)
-              << robot.name << " " << name;  // the vector sweep sees the same edges
-          if (!here[static_cast<std::size_t>(a)]) continue;
-          std::vector<Edge> found;
-          for (const auto& edge : graph.expand(graph.vertex(0, a)))
-            found.push_back({graph.slot_of(edge.target), edge.cost});
-          std::sort(found.begin(), found.end(),
-                    [](const Edge& x, const Edge& y) { return x.b < y.b; });
-          ASSERT_EQ(found, wanted) << robot.name << " " << name;
-          total += static_cast<std::int64_t>(found.size());
-          for (const Edge& edge : found) {
-            const int change = lattice.branch_of(a) ^ lattice.branch_of(edge.b);
-            if (lattice.solution_of(a) != lattice.solution_of(edge.b)) ++changing[place];
-            for (int bit = 0; bit < 3; ++bit)
-              flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
-            windings += change == 0 && lattice.solution_of(a) != lattice.solution_of(edge.b);
-          }
-        }
+        expect_edges_of_brute_force(lattice, place, robot.name + " " + name, counts);
+        if (HasFatalFailure()) return;
       }
   }
+  auto& [total, changing, flips, windings] = counts;
   std::printf("%lld edges; sheet-changing:", static_cast<long long>(total));
   for (const auto& [place, count] : changing)
     std::printf(" %s %lld", places.at(place), static_cast<long long>(count));
@@ -200,76 +224,105 @@ std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice,
   return g;
 }
 
+/// Returns a problem of some five steps between two random poses near one another.
+Problem five_steps(const TestRobot& robot, const Chain& chain, Random& random) {
+  const Config q0 = random_config(chain, random);
+  Config q1 = q0;
+  for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
+  Problem problem = problem_for(robot);
+  problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
+  const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+  problem.resolution = {.ds = length / 5,
+                        .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3),
+                        .dalpha = 10};
+  problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
+  if (random.coin()) problem.start = q0;
+  return problem;
+}
+
+/// Counts rounds, what they removed, and how often that changed the optimum.
+struct RemovalCounts {
+  int rounds = 0, removed_nodes = 0, removed_edges = 0, changed = 0;
+};
+
+/// Expects the cost-to-go of every node to be that of the definition; `what` tells the round.
+void expect_plain_cost_to_go(const GridCostToGo& cost_to_go, const std::string& what) {
+  const SrsLattice& lattice = cost_to_go.lattice();
+  const auto wanted = plain_cost_to_go(lattice, cost_to_go);
+  for (int layer = 0; layer < lattice.layers(); ++layer)
+    for (int slot = 0; slot < lattice.width(); ++slot)
+      ASSERT_EQ(cost_to_go.at(layer, slot),
+                wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
+          << what << " layer " << layer << " slot " << slot;
+}
+
+/// Removes a blob about the best path, and some edges of it, and repairs the costs-to-go.
+void remove_about_best_path(GridCostToGo& cost_to_go, Random& random, RemovalCounts& counts) {
+  const SrsLattice& lattice = cost_to_go.lattice();
+  const double before = cost_to_go.best();
+  ImplicitLattice graph(cost_to_go);
+  int slot = 0;
+  for (int s = 0; s < lattice.width(); ++s)
+    if (cost_to_go.at(0, s) == before) slot = s;
+  const int cut = random.below(lattice.layers());
+  for (int layer = 0; layer <= cut && layer < lattice.layers(); ++layer) {
+    if (layer == cut) {
+      for (int k = 0; k < 3; ++k) {
+        const int j = (lattice.angle_of(slot) + k) % lattice.angles();
+        cost_to_go.verdicts().remove_node(layer, lattice.solution_of(slot) * lattice.angles() + j);
+        ++counts.removed_nodes;
+      }
+      break;
+    }
+    const auto& edges = graph.expand(graph.vertex(layer, slot));
+    if (edges.empty()) break;
+    const int next = graph.slot_of(edges[0].target);
+    if (random.coin(0.3)) {
+      cost_to_go.remove_edge(layer, slot, next);
+      ++counts.removed_edges;
+    }
+    slot = next;
+  }
+  cost_to_go.repair();
+  counts.changed += cost_to_go.best() != before;
+}
+
+/// Expects a fresh sweep with the same removals to agree with the repaired values.
+void expect_fresh_sweep_agrees(GridCostToGo& cost_to_go) {
+  const int width = cost_to_go.lattice().width();
+  std::vector<double> repaired;
+  for (int s = 0; s < width; ++s) repaired.push_back(cost_to_go.at(0, s));
+  cost_to_go.sweep(cost_to_go.goal_layer());
+  for (int s = 0; s < width; ++s)
+    ASSERT_EQ(cost_to_go.at(0, s), repaired[static_cast<std::size_t>(s)]);
+}
+
 TEST(CostToGo, StaysExactUnderRemovals) {
   Random random(seed("CostToGo.StaysExactUnderRemovals"));
-  int rounds = 0, removed_nodes = 0, removed_edges = 0, changed = 0;
+  RemovalCounts counts;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(6); ++trial) {
-      const Config q0 = random_config(arm.chain, random);
-      Config q1 = q0;
-      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
-      Problem problem = problem_for(robot);
-      problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
-      const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
-      problem.resolution = {.ds = length / 5,
-                            .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3),
-                            .dalpha = 10};
-      problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
-      if (random.coin()) problem.start = q0;
+      Problem problem = five_steps(robot, arm.chain, random);
       problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
       GridCostToGo cost_to_go(lattice);
       cost_to_go.sweep(lattice.layers() - 1);
       for (int round = 0; round < 6; ++round) {
-        const auto wanted = plain_cost_to_go(lattice, cost_to_go);
-        for (int layer = 0; layer < lattice.layers(); ++layer)
-          for (int slot = 0; slot < lattice.width(); ++slot)
-            ASSERT_EQ(cost_to_go.at(layer, slot),
-                      wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
-                << robot.name << " trial " << trial << " round " << round << " layer " << layer
-                << " slot " << slot;
-        ++rounds;
+        expect_plain_cost_to_go(cost_to_go, robot.name + " trial " + std::to_string(trial) +
+                                                " round " + std::to_string(round));
+        if (HasFatalFailure()) return;
+        ++counts.rounds;
         if (cost_to_go.best() == kUnreachable) break;
-        const double before = cost_to_go.best();
-        // Remove a blob about the best path, and an edge of it.
-        ImplicitLattice graph(cost_to_go);
-        int slot = 0;
-        for (int s = 0; s < lattice.width(); ++s)
-          if (cost_to_go.at(0, s) == before) slot = s;
-        const int cut = random.below(lattice.layers());
-        for (int layer = 0; layer <= cut && layer < lattice.layers(); ++layer) {
-          if (layer == cut) {
-            for (int k = 0; k < 3; ++k) {
-              const int j = (lattice.angle_of(slot) + k) % lattice.angles();
-              cost_to_go.verdicts().remove_node(layer,
-                                                lattice.solution_of(slot) * lattice.angles() + j);
-              ++removed_nodes;
-            }
-            break;
-          }
-          const auto& edges = graph.expand(graph.vertex(layer, slot));
-          if (edges.empty()) break;
-          const int next = graph.slot_of(edges[0].target);
-          if (random.coin(0.3)) {
-            cost_to_go.remove_edge(layer, slot, next);
-            ++removed_edges;
-          }
-          slot = next;
-        }
-        cost_to_go.repair();
-        changed += cost_to_go.best() != before;
+        remove_about_best_path(cost_to_go, random, counts);
       }
-      // A fresh sweep with the same removals agrees with the repaired values.
-      std::vector<double> repaired;
-      for (int s = 0; s < lattice.width(); ++s) repaired.push_back(cost_to_go.at(0, s));
-      cost_to_go.sweep(cost_to_go.goal_layer());
-      for (int s = 0; s < lattice.width(); ++s)
-        ASSERT_EQ(cost_to_go.at(0, s), repaired[static_cast<std::size_t>(s)]);
+      expect_fresh_sweep_agrees(cost_to_go);
+      if (HasFatalFailure()) return;
     }
   }
+  const auto& [rounds, removed_nodes, removed_edges, changed] = counts;
   std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds,
               removed_nodes, removed_edges, changed);
   EXPECT_GE(rounds, at_least(61));
