@@ -292,6 +292,59 @@ bool agrees_with_urdfdom(const std::string& text, const RobotModel& robot) {
 }
 #endif
 
+/// Counts what became of changed robots.
+struct UrdfCounts {
+  int refused = 0, warned = 0, defaults = 0, removed = 0, doubled_bodies = 0, compared = 0;
+};
+
+/// Expects a robot from whose text a mutation removed something to be as the format's defaults say.
+/// `text` is what it was before, `whole` the robot of that.
+void expect_defaults(const Mutation& mutation, const RobotModel& robot, const std::string& text,
+                     const RobotModel& whole, UrdfCounts& counts) {
+  if (mutation.with_default) {
+    ++counts.defaults;
+    const auto written = read(*mutation.with_default);
+    ASSERT_TRUE(written);
+    EXPECT_EQ(kinematics(robot), kinematics(*written));
+  }
+  if (mutation.element == "collision" && mutation.attribute.empty()) {
+    EXPECT_EQ(bodies(robot) + 1, bodies(whole));
+  }
+  if (mutation.element == "safety_controller" && mutation.attribute.empty()) {
+    EXPECT_EQ(kinematics(robot), kinematics(*parse_robot(text, "", {}, {{}, false})));
+  }
+#ifdef SWIVEL_URDFDOM
+  // The words of URDF 1.1 and 1.2, which older ones do not have, and limits without a velocity,
+  // which they refuse, are left out.
+  if (text != kEveryWord) counts.compared += agrees_with_urdfdom(mutation.text, robot);
+#endif
+}
+
+/// Expects a changed robot to be refused or warned of, unless a body was doubled or something was
+/// removed. `text` is what it was before, `whole` the robot of that.
+void expect_nothing_passed_over(const Mutation& mutation, const std::string& text,
+                                const RobotModel& whole, UrdfCounts& counts) {
+  SCOPED_TRACE("<" + mutation.element + "> " + mutation.attribute + ", mutation " +
+               std::to_string(static_cast<int>(mutation.what)));
+  const auto robot = read(mutation.text);
+  if (!robot) {
+    ++counts.refused;
+    return;
+  }
+  const bool removes =
+      mutation.what == What::kRemoveElement || mutation.what == What::kRemoveAttribute;
+  if (!removes && robot->warnings.size() > whole.warnings.size()) {
+    ++counts.warned;
+  } else if (mutation.what == What::kDoubleElement && mutation.element == "collision") {
+    ++counts.doubled_bodies;
+    EXPECT_EQ(bodies(*robot), bodies(whole) + 1);
+  } else {
+    ++counts.removed;
+    ASSERT_TRUE(removes) << "passed over:\n" << mutation.text;
+    expect_defaults(mutation, *robot, text, whole, counts);
+  }
+}
+
 TEST(Mutated, Urdf) {
   Random random(swivel::test::seed("Mutated.Urdf"));
   const std::set<std::string> names{"link",     "joint", "collision", "origin",
@@ -303,62 +356,29 @@ TEST(Mutated, Urdf) {
   ASSERT_GE(texts.size(), 18u);
   std::map<std::string, std::shared_ptr<const RobotModel>> wholes;
   for (const std::string& text : texts) wholes[text] = read(text);
-  int refused = 0, warned = 0, defaults = 0, removed = 0, doubled_bodies = 0, compared = 0;
+  UrdfCounts counts;
   const int wanted = trials(2000);
   for (int trial = 0; trial < wanted;) {
     const std::string& text =
         texts[static_cast<std::size_t>(random.below(static_cast<int>(texts.size())))];
-    const RobotModel& whole = *wholes.at(text);
     const auto mutation = mutated(text, names, random);
     if (!mutation) continue;
     ++trial;
-    SCOPED_TRACE("<" + mutation->element + "> " + mutation->attribute + ", mutation " +
-                 std::to_string(static_cast<int>(mutation->what)));
-    const auto robot = read(mutation->text);
-    if (!robot) {
-      ++refused;
-      continue;
-    }
-    const bool removes =
-        mutation->what == What::kRemoveElement || mutation->what == What::kRemoveAttribute;
-    if (!removes && robot->warnings.size() > whole.warnings.size()) {
-      ++warned;
-    } else if (mutation->what == What::kDoubleElement && mutation->element == "collision") {
-      ++doubled_bodies;
-      EXPECT_EQ(bodies(*robot), bodies(whole) + 1);
-    } else {
-      ++removed;
-      ASSERT_TRUE(removes) << "passed over:\n" << mutation->text;
-      if (mutation->with_default) {
-        ++defaults;
-        const auto written = read(*mutation->with_default);
-        ASSERT_TRUE(written);
-        EXPECT_EQ(kinematics(*robot), kinematics(*written));
-      }
-      if (mutation->element == "collision" && mutation->attribute.empty()) {
-        EXPECT_EQ(bodies(*robot) + 1, bodies(whole));
-      }
-      if (mutation->element == "safety_controller" && mutation->attribute.empty()) {
-        EXPECT_EQ(kinematics(*robot), kinematics(*parse_robot(text, "", {}, {{}, false})));
-      }
-#ifdef SWIVEL_URDFDOM
-      // The words of URDF 1.1 and 1.2, which older ones do not have, and limits without a velocity,
-      // which they refuse, are left out.
-      if (text != kEveryWord) compared += agrees_with_urdfdom(mutation->text, *robot);
-#endif
-    }
+    expect_nothing_passed_over(*mutation, text, *wholes.at(text), counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d refused, %d warned of, %d bodies doubled, %d removed, of these %d as with the default, "
       "%d as urdfdom reads them\n",
-      refused, warned, doubled_bodies, removed, defaults, compared);
-  EXPECT_GE(refused, at_least(1200));
-  EXPECT_GE(warned, at_least(15));
-  EXPECT_GE(doubled_bodies, at_least(5));
-  EXPECT_GE(removed, at_least(200));
-  EXPECT_GE(defaults, at_least(100));
+      counts.refused, counts.warned, counts.doubled_bodies, counts.removed, counts.defaults,
+      counts.compared);
+  EXPECT_GE(counts.refused, at_least(1200));
+  EXPECT_GE(counts.warned, at_least(15));
+  EXPECT_GE(counts.doubled_bodies, at_least(5));
+  EXPECT_GE(counts.removed, at_least(200));
+  EXPECT_GE(counts.defaults, at_least(100));
 #ifdef SWIVEL_URDFDOM
-  EXPECT_GE(compared, at_least(50));
+  EXPECT_GE(counts.compared, at_least(50));
 #endif
 }
 
@@ -377,10 +397,9 @@ TEST(Mutated, NothingOfTheProjectsRobotsIsWarnedOf) {
   EXPECT_GE(compared, 9);
 }
 
-TEST(Mutated, Srdf) {
-  Random random(swivel::test::seed("Mutated.Srdf"));
-  const char* const every_word =
-      R"(<robot name="arm"><group name="g"><link name="link_1"/><joint name="joint_1"/>
+/// Elements of SRDF with their attributes, about the robot of arm_urdf().
+const char* const kEveryWordOfSrdf =
+    R"(<robot name="arm"><group name="g"><link name="link_1"/><joint name="joint_1"/>
 <chain base_link="base_link" tip_link="link_7"/>
 <group name="h"/></group><group_state name="s" group="g">
 <joint name="joint_2" value="0"/></group_state>
@@ -393,6 +412,9 @@ TEST(Mutated, Srdf) {
 <disable_collisions link1="link_3" link2="link_5" reason="x"/>
 <link_sphere_approximation link="link_1">
 <sphere center="0 0 0" radius="0.1"/></link_sphere_approximation></robot>)";
+
+TEST(Mutated, Srdf) {
+  Random random(swivel::test::seed("Mutated.Srdf"));
   const std::set<std::string> names{"group",
                                     "link",
                                     "joint",
@@ -407,7 +429,7 @@ TEST(Mutated, Srdf) {
                                     "disable_collisions",
                                     "link_sphere_approximation",
                                     "sphere"};
-  std::vector<std::pair<std::string, std::string>> robots_and_srdfs{{arm_urdf(), every_word}};
+  std::vector<std::pair<std::string, std::string>> robots_and_srdfs{{arm_urdf(), kEveryWordOfSrdf}};
   const std::vector<std::string> urdfs = robots(".urdf"), srdfs = robots(".srdf");
   ASSERT_EQ(urdfs.size(), srdfs.size());
   for (std::size_t k = 0; k < urdfs.size(); ++k) robots_and_srdfs.emplace_back(urdfs[k], srdfs[k]);
