@@ -73,30 +73,39 @@ TEST(ProblemFile, RollOfTheTool) {
   EXPECT_EQ(some.cost.weights[6], 0.3);
 }
 
+/// A problem of two waypoints with windows of the roll.
+struct RollWindows {
+  /// Loads the problem; the texts are path.roll with its comma and what follows xyz of the
+  /// waypoints.
+  [[nodiscard]] Problem load(const char* roll, const char* first, const char* second) const {
+    return folder.load({{"path", std::string("{") + roll + "waypoints: [{xyz: [0.6, -0.1, 0.9]" +
+                                     first + "}, {xyz: [0.6, 0.1, 0.9]" + second + "}]}"}});
+  }
+
+  ProblemFolder folder;
+};
+
 TEST(ProblemFile, WindowsOfTheRoll) {
-  const ProblemFolder folder;
-  const auto path = [](const char* roll, const char* first, const char* second) {
-    return std::string("{") + roll + "waypoints: [{xyz: [0.6, -0.1, 0.9]" + first +
-           "}, {xyz: [0.6, 0.1, 0.9]" + second + "}]}";
-  };
-  const auto load = [&](const char* roll, const char* first, const char* second) {
-    return folder.load({{"path", path(roll, first, second)}});
-  };
-  // They are cut to path.roll, which is cut to what they leave of it.
-  const Problem cut = load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
+  const RollWindows windows;
+  // Windows of waypoints are cut to path.roll, which is cut to what they leave of it.
+  const Problem cut = windows.load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
   EXPECT_EQ(cut.waypoints[0].roll, Roll(-0.5, 0.1));
   EXPECT_EQ(cut.waypoints[1].roll, Roll(0.2, 0.2));
   EXPECT_EQ(*cut.roll, Roll(-0.5, 0.2));
-  EXPECT_EQ(*load("roll: free, ", ", roll: [-2, 0.1]", ", roll: [0.2, 3]").roll, Roll(-2, 3));
+  EXPECT_EQ(*windows.load("roll: free, ", ", roll: [-2, 0.1]", ", roll: [0.2, 3]").roll,
+            Roll(-2, 3));
   // What allows a whole turn at one waypoint allows no circle.
-  const Problem whole = load("roll: free, ", ", roll: [-4, 4]", ", roll: [0.2, 0.2]");
+  const Problem whole = windows.load("roll: free, ", ", roll: [-4, 4]", ", roll: [0.2, 0.2]");
   EXPECT_FALSE(whole.roll->circle());
   EXPECT_NEAR(whole.roll->upper, kPi, 1e-5);
-  EXPECT_FALSE(load("roll: free, ", "", "").waypoints[0].roll);
+  EXPECT_FALSE(windows.load("roll: free, ", "", "").waypoints[0].roll);
+}
 
+TEST(ProblemFile, BadWindowsOfTheRollAreRefused) {
+  const RollWindows windows;
   const auto refused = [&](const char* roll, const char* first, const char* second,
                            const std::vector<std::string>& words) {
-    expect_message(input_error([&] { return load(roll, first, second); }), words);
+    expect_message(input_error([&] { return windows.load(roll, first, second); }), words);
   };
   refused("", ", roll: [-2, 0.1]", ", roll: [0, 1]",
           {"path.waypoints", "the roll is not free", "path.roll"});
@@ -110,8 +119,12 @@ TEST(ProblemFile, WindowsOfTheRoll) {
   refused("roll: free, ", ", roll: [-2, -1]", ", roll: [4, 5]",
           {"path.waypoints", "-2 to 5", "less than a turn"});
   refused("roll: free, ", ", roll: [1, 1]", ", roll: [1, 1]", {"path.waypoints", "more than one"});
+}
 
-  // A problem file that states this.
+TEST(ProblemFile, WindowsOfTheRollInATable) {
+  const RollWindows windows;
+  const ProblemFolder& folder = windows.folder;
+  const Problem cut = windows.load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
   folder.folder().write("problems/turns.csv",
                         "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0.6,-0.1,0.9,1,0,0,0,-2,0.1\n0.6,0.1,"
                         "0.9,1,0,0,0,0.2,0.2\n");
@@ -171,9 +184,9 @@ TEST(ProblemFile, ArmSlopeIsForArmsWithAnArmAngle) {
                    {"problem.yaml:1: limits.arm_slope", "no arm angle", "allowed is no such key"});
 }
 
-TEST(ProblemFile, EveryKey) {
-  const ProblemFolder folder;
-  const Problem problem = folder.load({
+/// Loads a problem file with every key.
+Problem load_every_key(const ProblemFolder& folder) {
+  return folder.load({
       {"robot", R"(
   urdf: ../robots/arm.urdf
   srdf: ../robots/arm.srdf
@@ -208,6 +221,11 @@ TEST(ProblemFile, EveryKey) {
       {"cost", "{metric: time, weights: [1, 2, 3, 4, 5, 6, 0]}"},
       {"vary", "[{object: door, xyz: [0.1, 0.2, 0.3]}, {object: ball, rpy: [0, 0, 1]}]"},
   });
+}
+
+TEST(ProblemFile, EveryKey) {
+  const ProblemFolder folder;
+  const Problem problem = load_every_key(folder);
   EXPECT_TRUE(problem.model->has_srdf);
   EXPECT_EQ(problem.tool.translation(), Vector3d(0, 0, 0.1));
   const Matrix3d tool =

@@ -116,7 +116,8 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["joint_names"], Json({"a", "b", "c", "d", "e", "f", "g"}));
 }
 
-TEST(Result, Infeasible) {
+/// Returns the result of a problem that has no path, with causes of three kinds.
+PlanResult infeasible() {
   PlanResult result;
   result.status = PlanStatus::kInfeasible;
   Cause limit, pair, reach;
@@ -143,12 +144,22 @@ TEST(Result, Infeasible) {
   result.diagnosis.removed = {{reach, 9}};
   result.diagnosis.complete = false;
   result.diagnosis.layers_known = 16;
-  const Json json = Json::parse(to_json(result));
+  return result;
+}
+
+TEST(Result, Infeasible) {
+  const Json json = Json::parse(to_json(infeasible()));
   EXPECT_EQ(json["status"], "infeasible");
   for (const char* key : {"cost", "min_clearance", "min_margin", "min_manipulability"})
     EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
-  const Json& diagnosis = json["diagnosis"];
+  EXPECT_EQ(json["summary"]["solved"], false);
+  EXPECT_TRUE(json["summary"]["clearance"].is_null());
+  EXPECT_EQ(json["trajectory"], Json::array());
+}
+
+TEST(Result, DiagnosisOfAnInfeasibleProblem) {
+  const Json diagnosis = Json::parse(to_json(infeasible()))["diagnosis"];
   EXPECT_EQ(keys_of(diagnosis),
             (std::vector<std::string>{"reached_layer", "reached_s", "reason", "cause", "at_s",
                                       "waypoints", "without_it", "without_it_s", "together",
@@ -174,11 +185,14 @@ TEST(Result, Infeasible) {
   EXPECT_TRUE(diagnosis["empty_layers"][1]["waypoints"].is_null());
   EXPECT_EQ(diagnosis["empty_layers"][1]["cause"]["bodies"], Json({"link_3", "table"}));
   EXPECT_TRUE(diagnosis["empty_layers"][1]["cause"]["by"].is_null());
-  EXPECT_EQ(json["summary"]["solved"], false);
-  EXPECT_TRUE(json["summary"]["clearance"].is_null());
   EXPECT_EQ(diagnosis["complete"], false);
   EXPECT_EQ(diagnosis["layers_known"], 16);
   EXPECT_EQ(diagnosis["removed"]["no IK"], 9);
+}
+
+TEST(Result, ResolutionsThatADiagnosisHoldsFor) {
+  PlanResult result = infeasible();
+  const Json diagnosis = Json::parse(to_json(result))["diagnosis"];
   EXPECT_EQ(diagnosis["holds"], "this_resolution");
   EXPECT_TRUE(diagnosis["unreachable"].is_null());
   result.diagnosis.unreachable = {14, 0.36, -1};
@@ -187,7 +201,6 @@ TEST(Result, Infeasible) {
             Json::parse(R"({"layer": 14, "s": 0.36, "waypoint": null})"));
   result.diagnosis.unreachable->waypoint = 4;
   EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "every_resolution");
-  EXPECT_EQ(json["trajectory"], Json::array());
 }
 
 TEST(Result, WhatWasNotAskedForIsNull) {
