@@ -229,6 +229,10 @@ TEST(Robot, WordsThatAreNotKnownAreRefused) {
     SCOPED_TRACE(what);
     expect_message(input_error([&, &more = more] { (void)one_joint("revolute", more); }), needles);
   }
+}
+
+/// Unknown words of links, second shapes and second robots are refused at their line.
+TEST(Robot, WordsThatAreNotKnownInLinksAreRefused) {
   const auto message = [](const std::string& body) {
     return input_error([&] { (void)parse_robot(robot(body)); });
   };
@@ -567,83 +571,114 @@ TEST(Robot, SrdfDefaults) {
   EXPECT_EQ(model->disabled_pairs, expected);
 }
 
-TEST(Robot, BadUrdf) {
+/// A bad URDF file and what the message about it has to name.
+struct BadFile {
+  const char* name;
+  std::string text;
+  std::vector<std::string> needles;
+};
+
+/// Expects each of the files to be refused with a message that names the file and has the needles.
+/// The files may name the mesh box.stl beside them.
+void expect_refused(const std::vector<BadFile>& files) {
   const TempFolder folder;
   folder.write("box.stl", box_stl());
-  const std::string ab = "<link name='a'/>\n<link name='b'/>\n", abc = ab + "<link name='c'/>\n";
-  const auto shape = [](const std::string& geometry) {
-    return robot("<link name='a'><collision><geometry>" + geometry +
-                 "</geometry></collision></link>");
-  };
-  const struct {
-    const char* name;
-    std::string text;
-    std::vector<std::string> needles;
-  } cases[] = {
+  for (const auto& [name, text, needles] : files) {
+    SCOPED_TRACE(name);
+    const fs::path file = folder.write("r.urdf", text);
+    const std::string message = input_error([&] { (void)load_robot(file); });
+    expect_message(message, needles);
+    expect_message(message, {file.string()});
+  }
+}
+
+/// Two links and three links of a URDF file.
+const std::string kAb = "<link name='a'/>\n<link name='b'/>\n", kAbc = kAb + "<link name='c'/>\n";
+
+TEST(Robot, BadUrdf) {
+  expect_refused({
       {"empty", "", {"not XML"}},
       {"not XML", "<robot>\n<link></robot>", {"r.urdf:2", "not XML"}},
       {"not a robot", "<sdf/>", {"r.urdf:1", "robot"}},
       {"no links", robot(""), {}},
-      {"two roots", robot(ab), {"root"}},
+      {"two roots", robot(kAb), {"root"}},
       {"no root",
-       robot(ab + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a")),
+       robot(kAb + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a")),
        {"r.urdf:6", "'k'", "loop"}},
       {"link twice", robot("<link name='a'/>\n<link name='a'/>"), {"r.urdf:4", "'a'"}},
       {"joint twice",
-       robot(abc + joint("j", "fixed", "a", "b") + joint("j", "fixed", "a", "c")),
+       robot(kAbc + joint("j", "fixed", "a", "b") + joint("j", "fixed", "a", "c")),
        {"'j'"}},
       {"unnamed link", robot("<link/>"), {"r.urdf:3", "<link> has no name"}},
       {"unnamed joint",
-       robot(ab + "<joint type='fixed'><parent link='a'/><child link='b'/></joint>"),
+       robot(kAb + "<joint type='fixed'><parent link='a'/><child link='b'/></joint>"),
        {}},
-      {"unknown parent", robot(ab + joint("j", "fixed", "x", "b")), {"x"}},
+      {"unknown parent", robot(kAb + joint("j", "fixed", "x", "b")), {"x"}},
       {"two parents",
-       robot(abc + joint("j", "fixed", "a", "b") + joint("k", "fixed", "a", "c") +
+       robot(kAbc + joint("j", "fixed", "a", "b") + joint("k", "fixed", "a", "c") +
              joint("l", "fixed", "b", "c")),
        {"r.urdf:8", "'l'", "'c'"}},
       {"loop beside the root",
-       robot(abc + joint("j", "fixed", "b", "c") + joint("k", "fixed", "c", "b")),
+       robot(kAbc + joint("j", "fixed", "b", "c") + joint("k", "fixed", "c", "b")),
        {"r.urdf:7", "'k'", "loop"}},
-      {"no limit", robot(ab + joint("j", "revolute", "a", "b")), {"j"}},
-      {"no prismatic limit", robot(ab + joint("j", "prismatic", "a", "b")), {"j"}},
+  });
+  const TempFolder folder;
+  expect_message(input_error([&] { (void)load_robot(folder.path() / "absent.urdf"); }),
+                 {"absent.urdf"});
+  expect_message(input_error([&] { (void)load_robot(folder.path()); }), {folder.path().string()});
+}
+
+TEST(Robot, BadJointsOfUrdf) {
+  expect_refused({
+      {"no limit", robot(kAb + joint("j", "revolute", "a", "b")), {"j"}},
+      {"no prismatic limit", robot(kAb + joint("j", "prismatic", "a", "b")), {"j"}},
       {"limits crossed",
-       robot(ab + joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")),
+       robot(kAb + joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")),
        {"r.urdf:5", "'j'", "lower"}},
       {"limit not a number",
-       robot(ab + joint("j", "revolute", "a", "b", "<limit lower='1x' upper='2'/>")),
+       robot(kAb + joint("j", "revolute", "a", "b", "<limit lower='1x' upper='2'/>")),
        {"j"}},
       {"limit NaN",
-       robot(ab + joint("j", "revolute", "a", "b", "<limit lower='nan' upper='2'/>")),
+       robot(kAb + joint("j", "revolute", "a", "b", "<limit lower='nan' upper='2'/>")),
        {"j"}},
       {"velocity negative",
-       robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='-1'/>")),
+       robot(kAb + joint("j", "continuous", "a", "b", "<limit velocity='-1'/>")),
        {"r.urdf:5", "'j'", "velocity"}},
       {"acceleration negative",
-       robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='1' acceleration='-1'/>")),
+       robot(kAb + joint("j", "continuous", "a", "b", "<limit velocity='1' acceleration='-1'/>")),
        {"r.urdf:5", "'j'", "acceleration"}},
       {"jerk no number",
-       robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='1' jerk='1x'/>")),
+       robot(kAb + joint("j", "continuous", "a", "b", "<limit velocity='1' jerk='1x'/>")),
        {"r.urdf:5", "'j'", "jerk"}},
       {"zero axis",
-       robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 0 0'/>")),
+       robot(kAb + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 0 0'/>")),
        {"r.urdf:5", "'j'", "axis"}},
       {"short axis",
-       robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 1'/>")),
+       robot(kAb + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 1'/>")),
        {"j"}},
       {"no type",
-       robot(ab + "<joint name='j'><parent link='a'/><child link='b'/></joint>"),
+       robot(kAb + "<joint name='j'><parent link='a'/><child link='b'/></joint>"),
        {"r.urdf:5", "'j'", "no joint type"}},
-      {"unknown type", robot(ab + joint("j", "hinge", "a", "b")), {"j", "hinge"}},
+      {"unknown type", robot(kAb + joint("j", "hinge", "a", "b")), {"j", "hinge"}},
       {"mimic of nothing",
-       robot(ab + joint("j", "continuous", "a", "b", "<mimic joint='x'/>")),
+       robot(kAb + joint("j", "continuous", "a", "b", "<mimic joint='x'/>")),
        {"r.urdf:5", "'j'", "'x'"}},
       {"mimic of itself",
-       robot(ab + joint("j", "continuous", "a", "b", "<mimic joint='j'/>")),
+       robot(kAb + joint("j", "continuous", "a", "b", "<mimic joint='j'/>")),
        {"r.urdf:5", "'j'", "itself"}},
       {"mimic in a circle",
-       robot(abc + joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
+       robot(kAbc + joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
              joint("k", "continuous", "b", "c", "<mimic joint='j'/>")),
        {"'k'", "itself"}},
+  });
+}
+
+TEST(Robot, BadShapesOfUrdf) {
+  const auto shape = [](const std::string& geometry) {
+    return robot("<link name='a'><collision><geometry>" + geometry +
+                 "</geometry></collision></link>");
+  };
+  expect_refused({
       {"no geometry", shape(""), {"a"}},
       {"unknown geometry", shape("<torus/>"), {"a", "torus"}},
       {"sphere without radius", shape("<sphere/>"), {"a"}},
@@ -667,17 +702,7 @@ TEST(Robot, BadUrdf) {
       {"mesh scale zero",
        shape("<mesh filename='box.stl' scale='1 0 1'/>"),
        {"r.urdf:3", "'a'", "scale"}},
-  };
-  for (const auto& [name, text, needles] : cases) {
-    SCOPED_TRACE(name);
-    const fs::path file = folder.write("r.urdf", text);
-    const std::string message = input_error([&] { (void)load_robot(file); });
-    expect_message(message, needles);
-    expect_message(message, {file.string()});
-  }
-  expect_message(input_error([&] { (void)load_robot(folder.path() / "absent.urdf"); }),
-                 {"absent.urdf"});
-  expect_message(input_error([&] { (void)load_robot(folder.path()); }), {folder.path().string()});
+  });
 }
 
 TEST(Robot, BadSrdf) {

@@ -175,6 +175,59 @@ std::string shuffled_csv(const TimedPath& motion, const JointNames& names,
   return text.str() + '\n';
 }
 
+/// A motion as a file of one format, and what the file states.
+struct MotionFile {
+  const char* name;
+  std::string text;
+  Stated stated;
+  bool timed = true;
+};
+
+/// Returns a motion in every format, and as a CSV with columns drawn at random.
+std::vector<MotionFile> motion_files(const TimedPath& motion, const JointNames& names,
+                                     swivel::test::Random& random) {
+  const bool has_v = random.coin(), has_a = random.coin(), placed = random.coin(),
+             timed = random.coin();
+  const Stated some{placed, placed, placed, placed, true, timed && has_v, timed && has_a},
+      in_message{false, false, false, false, !motion.roll, true, true},
+      in_log{false, false, false, false, !motion.roll, true, false};
+  return {
+      {"m.csv", to_timed_csv(motion, names), {}},
+      {"shuffled.csv", shuffled_csv(motion, names, random, some, timed), some, timed},
+      {"m.json", to_trajectory_json(motion, names, "base \"1\""), in_message},
+      {"m.yaml", to_trajectory_yaml(motion, names, "base"), in_message},
+      {"no_ending", to_trajectory_yaml(motion, names, "base") + "---\n", in_message},
+      {"m.mcap", to_mcap(motion, names, "base"), in_log},
+  };
+}
+
+/// Expects what was read of the file to be the motion: bits of what the file states, times of
+/// messages to the nanosecond.
+void expect_motion(const MotionFile& file, const TimedPath& motion, const TrajectoryFile& read) {
+  ASSERT_EQ(read.rows.size(), motion.rows.size());
+  ASSERT_EQ(read.timed.size(), file.timed ? motion.rows.size() : 0);
+  EXPECT_EQ(read.stated.s, file.stated.s);
+  EXPECT_EQ(read.stated.phi, file.stated.phi);
+  EXPECT_EQ(read.stated.branch, file.stated.branch);
+  EXPECT_EQ(read.stated.roll, file.stated.roll);
+  EXPECT_EQ(read.stated.last_joint, file.stated.last_joint);
+  EXPECT_EQ(read.stated.v, file.stated.v);
+  EXPECT_EQ(read.stated.a, file.stated.a);
+  const Eigen::Index joints = file.stated.last_joint ? kDof : kDof - 1;
+  const double time_error = std::string(file.name).ends_with(".csv") ? 0 : 0.5001e-9;
+  for (std::size_t k = 0; k < read.rows.size(); ++k) {
+    const TimedRow& row = motion.rows[k];
+    EXPECT_EQ(read.rows[k].q.head(joints), row.row.q.head(joints));
+    if (!file.timed) continue;
+    EXPECT_NEAR(read.timed[k].t, row.t, time_error);
+    EXPECT_EQ(read.timed[k].row.q.head(joints), row.row.q.head(joints));
+    EXPECT_EQ(read.timed[k].v.head(joints),
+              Config(file.stated.v ? row.v : Config::Zero()).head(joints));
+    EXPECT_EQ(read.timed[k].a.head(joints),
+              Config(file.stated.a ? row.a : Config::Zero()).head(joints));
+  }
+}
+
 /// Every format keeps every bit of what it holds, messages times to the nanosecond, and says what
 /// it does not hold.
 TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
@@ -189,56 +242,12 @@ TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
     const bool roll = random.coin(0.3);
     if (roll) names.back() = "roll";
     const TimedPath motion = random_motion(random, rates[random.below(8)], roll);
-    const bool has_v = random.coin(), has_a = random.coin(), placed = random.coin(),
-               timed = random.coin();
-    const Stated some{placed, placed, placed, placed, true, timed && has_v, timed && has_a};
-    const struct {
-      const char* name;
-      std::string text;
-      Stated stated;
-      bool timed = true;
-    } files[] = {
-        {"m.csv", to_timed_csv(motion, names), {}},
-        {"shuffled.csv", shuffled_csv(motion, names, random, some, timed), some, timed},
-        {"m.json",
-         to_trajectory_json(motion, names, "base \"1\""),
-         {false, false, false, false, !roll, true, true}},
-        {"m.yaml",
-         to_trajectory_yaml(motion, names, "base"),
-         {false, false, false, false, !roll, true, true}},
-        {"no_ending",
-         to_trajectory_yaml(motion, names, "base") + "---\n",
-         {false, false, false, false, !roll, true, true}},
-        {"m.mcap",
-         to_mcap(motion, names, "base"),
-         {false, false, false, false, !roll, true, false}},
-    };
-    for (const auto& [name, text, stated, is_timed] : files) {
-      SCOPED_TRACE(std::string(name) + ", trial " + std::to_string(trial));
-      const TrajectoryFile read = load_trajectory_file(folder.write(name, text), names);
-      ASSERT_EQ(read.rows.size(), motion.rows.size());
-      ASSERT_EQ(read.timed.size(), is_timed ? motion.rows.size() : 0);
-      EXPECT_EQ(read.stated.s, stated.s);
-      EXPECT_EQ(read.stated.phi, stated.phi);
-      EXPECT_EQ(read.stated.branch, stated.branch);
-      EXPECT_EQ(read.stated.roll, stated.roll);
-      EXPECT_EQ(read.stated.last_joint, stated.last_joint);
-      EXPECT_EQ(read.stated.v, stated.v);
-      EXPECT_EQ(read.stated.a, stated.a);
-      const Eigen::Index joints = stated.last_joint ? kDof : kDof - 1;
-      for (std::size_t k = 0; k < read.rows.size(); ++k) {
-        const TimedRow& row = motion.rows[k];
-        EXPECT_EQ(read.rows[k].q.head(joints), row.row.q.head(joints));
-        if (!is_timed) continue;
-        EXPECT_NEAR(read.timed[k].t, row.t, std::string(name).ends_with(".csv") ? 0 : 0.5001e-9);
-        EXPECT_EQ(read.timed[k].row.q.head(joints), row.row.q.head(joints));
-        EXPECT_EQ(read.timed[k].v.head(joints),
-                  Config(stated.v ? row.v : Config::Zero()).head(joints));
-        EXPECT_EQ(read.timed[k].a.head(joints),
-                  Config(stated.a ? row.a : Config::Zero()).head(joints));
-      }
+    for (const MotionFile& file : motion_files(motion, names, random)) {
+      SCOPED_TRACE(std::string(file.name) + ", trial " + std::to_string(trial));
+      expect_motion(file, motion, load_trajectory_file(folder.write(file.name, file.text), names));
+      if (HasFatalFailure()) return;
       ++count;
-      without_roll += !stated.last_joint;
+      without_roll += !file.stated.last_joint;
     }
   }
   std::printf("%d files, %d without the roll\n", count, without_roll);
@@ -246,77 +255,118 @@ TEST(TrajectoryFiles, RandomMotionsAreReadAsTheyWereWritten) {
   EXPECT_GE(without_roll, swivel::test::at_least(100));
 }
 
-/// Messages of other programs: one line with place, key and what is allowed.
-TEST(TrajectoryFiles, MessagesAreReadStrictly) {
+/// A bad message of another program, and what is said about it.
+struct BadMessage {
+  const char* name;
+  std::string text;
+  std::vector<std::string> needles;
+};
+
+/// Expects each of the messages to be refused in one line that has its needles.
+void expect_refused(const std::vector<BadMessage>& messages) {
   const TempFolder folder;
-  const std::string
-      names = "joint_names: [a, b, c, d, e, f, g]\n",
-      time = "time_from_start: {sec: 0, nanosec: 0}", zeros = "[0, 0, 0, 0, 0, 0, 0]",
-      first = "- {positions: " + zeros + ", " + time + "}\n",
-      second = "- {positions: [1, 1, 1, 1, 1, 1, 1], time_from_start: {sec: 1, nanosec: 5}}\n";
+  for (const auto& [name, text, needles] : messages) {
+    SCOPED_TRACE(name);
+    const fs::path file = folder.write("t", text);
+    expect_message(input_error([&] { (void)load_trajectory_file(file, kNames); }), needles);
+  }
+}
+
+/// Pieces of messages in YAML: the names of the joints, two points and what they are made of.
+const std::string
+    kJointNames = "joint_names: [a, b, c, d, e, f, g]\n",
+    kTime = "time_from_start: {sec: 0, nanosec: 0}", kZeros = "[0, 0, 0, 0, 0, 0, 0]",
+    kFirst = "- {positions: " + kZeros + ", " + kTime + "}\n",
+    kSecond = "- {positions: [1, 1, 1, 1, 1, 1, 1], time_from_start: {sec: 1, nanosec: 5}}\n",
+    kPoints = "points:\n";
+
+TEST(TrajectoryFiles, AMessageMayHaveNotesAndItsNamesLast) {
+  const TempFolder folder;
   const TrajectoryFile good = load_trajectory_file(
-      folder.write("t", "# a note\n---\npoints:\n" + first + second + names), kNames);
+      folder.write("t", "# a note\n---\n" + kPoints + kFirst + kSecond + kJointNames), kNames);
   ASSERT_EQ(good.timed.size(), 2u);
   EXPECT_EQ(good.timed[1].t, 1.000000005);
   EXPECT_FALSE(good.stated.v || good.stated.a || good.stated.s);
-  const std::string points = "points:\n";
-  const struct {
-    const char* name;
-    std::string text;
-    std::vector<std::string> needles;
-  } cases[] = {
+}
+
+/// Messages of other programs: one line with place, key and what is allowed.
+TEST(TrajectoryFiles, MessagesAreReadStrictly) {
+  expect_refused({
       {"another joint",
-       "joint_names: [a, b, c, d, e, f, g, finger]\n" + points + first,
+       "joint_names: [a, b, c, d, e, f, g, finger]\n" + kPoints + kFirst,
        {"t:1", "joint_names", "7 names"}},
       {"a joint of another arm",
-       "joint_names: [a, b, c, d, e, f, x]\n" + points + first + second,
+       "joint_names: [a, b, c, d, e, f, x]\n" + kPoints + kFirst + kSecond,
        {"t: joint_names", "'x'"}},
       {"a joint is missing",
-       "joint_names: [a, b, c, d, e, f]\n" + points + first + second,
+       "joint_names: [a, b, c, d, e, f]\n" + kPoints + kFirst + kSecond,
        {"'g' is missing"}},
       {"a joint twice",
-       "joint_names: [a, b, c, d, e, f, f]\n" + points + first + second,
+       "joint_names: [a, b, c, d, e, f, f]\n" + kPoints + kFirst + kSecond,
        {"'f' is there twice"}},
-      {"one point", names + points + first, {"1 row"}},
-      {"no points", names, {"t:1", "points: is missing"}},
+      {"one point", kJointNames + kPoints + kFirst, {"1 row"}},
+      {"no points", kJointNames, {"t:1", "points: is missing"}},
       {"unknown key",
-       names + points + first + second + "extra: 1\n",
+       kJointNames + kPoints + kFirst + kSecond + "extra: 1\n",
        {"t:5", "'extra' is unknown"}},
       {"unknown key of a point",
-       names + points + "- {position: " + zeros + "}\n",
+       kJointNames + kPoints + "- {position: " + kZeros + "}\n",
        {"t:3", "points[0]", "'position' is unknown"}},
       {"key twice",
-       names + names + points + first + second,
+       kJointNames + kJointNames + kPoints + kFirst + kSecond,
        {"t:2", "'joint_names' is there twice"}},
       {"no time",
-       names + points + "- {positions: " + zeros + "}\n",
+       kJointNames + kPoints + "- {positions: " + kZeros + "}\n",
        {"points[0]", "time_from_start: is missing"}},
       {"too few numbers",
-       names + points + first + "- {positions: [1, 2], time_from_start: {sec: 1, nanosec: 0}}\n",
+       kJointNames + kPoints + kFirst +
+           "- {positions: [1, 2], time_from_start: {sec: 1, nanosec: 0}}\n",
        {"t:4", "points[1]", "positions", "2 numbers"}},
       {"NaN",
-       names + points + first +
+       kJointNames + kPoints + kFirst +
            "- {positions: [0, 0, 0, 0, 0, 0, .nan], time_from_start: {sec: 1, nanosec: 0}}\n",
        {"t:4", "points[1]", "positions", "'.nan'"}},
-      {"times go back", names + points + second + first, {"t:4", "points[1]", "ascend"}},
+      {"times go back", kJointNames + kPoints + kSecond + kFirst, {"t:4", "points[1]", "ascend"}},
       {"speeds of one point",
-       names + points + "- {positions: " + zeros + ", velocities: " + zeros + ", " + time + "}\n" +
-           second,
+       kJointNames + kPoints + "- {positions: " + kZeros + ", velocities: " + kZeros + ", " +
+           kTime + "}\n" + kSecond,
        {"t:4", "points[1]", "velocities", "in some rows only"}},
       {"nanoseconds",
-       names + points + first + "- {positions: " + zeros +
+       kJointNames + kPoints + kFirst + "- {positions: " + kZeros +
            ", time_from_start: {sec: 1, nanosec: 1000000000}}\n",
        {"t:4", "points[1]", "time_from_start.nanosec", "'1000000000'"}},
       {"fraction of a second",
-       names + points + "- {positions: " + zeros + ", time_from_start: {sec: 0.5, nanosec: 0}}\n",
+       kJointNames + kPoints + "- {positions: " + kZeros +
+           ", time_from_start: {sec: 0.5, nanosec: 0}}\n",
        {"points[0]", "time_from_start.sec", "'0.5'"}},
       {"seconds in quotes",
-       names + points + "- {positions: " + zeros + ", time_from_start: {sec: \"1\", nanosec: 0}}\n",
+       kJointNames + kPoints + "- {positions: " + kZeros +
+           ", time_from_start: {sec: \"1\", nanosec: 0}}\n",
        {"t:3", "points[0]", "time_from_start.sec", "the text \"1\"", "a whole number"}},
       {"a position in quotes",
-       names + points + first +
+       kJointNames + kPoints + kFirst +
            "- {positions: [0, 0, '0', 0, 0, 0, 0], time_from_start: {sec: 1, nanosec: 0}}\n",
        {"t:4", "points[1]", "positions", "the text \"0\"", "a finite number"}},
+      {"empty", "", {"is empty"}},
+  });
+}
+
+TEST(TrajectoryFiles, YamlOfMessagesIsReadStrictly) {
+  expect_refused({
+      {"alias",
+       kJointNames + kPoints + "- &p {positions: " + kZeros + ", " + kTime + "}\n- *p\n",
+       {"t:4", "alias"}},
+      {"two messages",
+       kJointNames + kPoints + kFirst + kSecond + "---\n" + kJointNames + kPoints + kFirst +
+           kSecond,
+       {"more than one message"}},
+      {"a list", "- joint_names: [a]\n", {"'- joint_names: [a]'"}},
+      {"broken YAML", kJointNames + "points: [\n", {"not YAML"}},
+  });
+}
+
+TEST(TrajectoryFiles, JsonOfMessagesIsReadStrictly) {
+  expect_refused({
       {"JSON: seconds in quotes",
        R"({"points": [{"positions": [0, 0, 0, 0, 0, 0, 0],
                        "time_from_start": {"sec": "1", "nanosec": 0}}]})",
@@ -337,24 +387,10 @@ TEST(TrajectoryFiles, MessagesAreReadStrictly) {
       {"JSON: a number for a name",
        R"({"joint_names": ["a", 2]})",
        {"joint_names", "is 2", "the name of a joint"}},
-      {"alias",
-       names + points + "- &p {positions: " + zeros + ", " + time + "}\n- *p\n",
-       {"t:4", "alias"}},
-      {"two messages",
-       names + points + first + second + "---\n" + names + points + first + second,
-       {"more than one message"}},
-      {"a list", "- joint_names: [a]\n", {"'- joint_names: [a]'"}},
-      {"broken YAML", names + "points: [\n", {"not YAML"}},
       {"JSON list", "[1]", {"t:", "is no map"}},
       {"broken JSON", "{\"joint_names\": [\"a\"", {"t:", "JSON"}},
       {"JSON with another key", "{\"schema_version\": 1}", {"'schema_version' is unknown"}},
-      {"empty", "", {"is empty"}},
-  };
-  for (const auto& [name, text, needles] : cases) {
-    SCOPED_TRACE(name);
-    const fs::path file = folder.write("t", text);
-    expect_message(input_error([&] { (void)load_trajectory_file(file, kNames); }), needles);
-  }
+  });
 }
 
 TEST(TrajectoryFiles, LogsAreReadStrictly) {
