@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "concatenated.hpp"
 #include "motion_problem.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -294,12 +295,58 @@ inline Problem as_a_motion(const Judged& judged) {
   return judged.timed ? with_motion_defaults(judged.problem) : judged.problem;
 }
 
-}  // namespace detail
+/// Says whether the arm keeps 1 mm more clearance than it must, at both postures and at every fifth
+/// row.
+inline bool is_free_at_ends_and_rows(const Judged& m, World::Query& query, const Config& from,
+                                     const Config& to) {
+  if (query.find_violating_pair(from, Threshold(ClearanceRule::kNode, 1e-3)) ||
+      query.find_violating_pair(to, Threshold(ClearanceRule::kNode, 1e-3)))
+    return false;
+  bool free_at_rows = true;
+  for (std::size_t k = 0; k < m.rows.size() && free_at_rows; k += 5)
+    free_at_rows =
+        !query.find_violating_pair_incremental(m.q(k), Threshold(ClearanceRule::kNode, 1e-3));
+  return free_at_rows;
+}
 
-/// Returns all mutations, in a fixed order.
-inline const std::vector<MotionMutation>& motion_mutations() {
-  using namespace detail;
-  static const std::vector<MotionMutation> all = {
+/// Inserts a swing at rest, and a small ball that a body holds inside half way and that nothing
+/// meets at the ends of the swing. Returns which body holds it, or nothing where no such ball is
+/// found.
+inline std::string meet_something_in_a_swing(Judged& m, Random& random) {
+  if (m.problem.limits.edges != EdgeMode::kContinuous) return "";
+  const auto swing = some_swing(m, random.uniform(0.4, 0.9) * m.problem.limits.joint_step, random);
+  if (!swing) return "";
+  allow_swings(m);
+  const Config &from = m.q(swing->row), &to = swing->other.row.q, middle = (from + to) / 2;
+  // A small ball that some body holds inside half way, and neither before nor behind.
+  const auto G = m.chain().displacements(middle);
+  std::vector<std::size_t> moving;
+  const auto& bodies = m.robot->world().bodies();
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].group > 0 && std::holds_alternative<Capsule>(bodies[b].shape))
+      moving.push_back(b);
+  for (int trial = 0; trial < 200 && !moving.empty(); ++trial) {
+    const RobotBody& body = bodies[moving[some(0, moving.size(), random)]];
+    const auto& capsule = std::get<Capsule>(body.shape);
+    const Vector3d in_body = Vector3d(0, 0, random.uniform(-0.5, 0.5) * capsule.length) +
+                             random_vector(random, random.uniform(0.8, 0.95) * capsule.radius);
+    Pose pose = Pose::Identity();
+    pose.translation() = G[static_cast<std::size_t>(body.group)] * (body.pose * in_body);
+    Judged other = m;
+    other.problem.scene.push_back({"wire", Sphere{0.002}, pose, {}});
+    const World world(m.robot->world(), as_a_motion(other));
+    World::Query query(world);
+    if (!is_free_at_ends_and_rows(m, query, from, to)) continue;
+    m = std::move(other);
+    insert(m, *swing);
+    return "'" + body.name + "' holds it inside half way";
+  }
+  return "";
+}
+
+/// Returns the mutations of the times of rows: gaps, steps that are too short, and disorder.
+inline std::vector<MotionMutation> mutations_of_times() {
+  return {
       {"gap in time", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const double h = m.t(1) - m.t(0);
@@ -348,6 +395,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          for (TimedRow& row : m.rows) row.t /= factor, row.v *= factor, row.a *= factor * factor;
          return words("a joint is at %.3g times its speed", most * factor);
        }},
+  };
+}
+
+/// Returns the mutations that leave rows out.
+inline std::vector<MotionMutation> mutations_that_leave_rows_out() {
+  return {
       {"row left out, what follows sooner", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const double h = m.t(1) - m.t(0);
@@ -395,6 +448,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
            m.rows.erase(m.rows.begin(), m.rows.begin() + static_cast<std::ptrdiff_t>(k));
          return words("%.3g m of the path are missing", off);
        }},
+  };
+}
+
+/// Returns the mutations that repeat rows or change their order.
+inline std::vector<MotionMutation> mutations_of_order() {
+  return {
       {"row doubled", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const std::size_t k = some(0, m.rows.size(), random);
@@ -431,6 +490,13 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          for (TimedRow& row : m.rows) row.t = end - row.t, row.v = -row.v;
          return "begins at the end";
        }},
+  };
+}
+
+/// Returns the mutations that move the arm within its self-motion, and those that put a body in
+/// its way.
+inline std::vector<MotionMutation> mutations_of_self_motion_and_scene() {
+  return {
       {"tool sways in a swing at rest", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const auto swing =
@@ -446,46 +512,7 @@ inline const std::vector<MotionMutation>& motion_mutations() {
                       off, allowed);
        }},
       {"something is met in a swing at rest", true, false, Column::kJoints,
-       [](Judged& m, Random& random) -> std::string {
-         if (m.problem.limits.edges != EdgeMode::kContinuous) return "";
-         const auto swing =
-             some_swing(m, random.uniform(0.4, 0.9) * m.problem.limits.joint_step, random);
-         if (!swing) return "";
-         allow_swings(m);
-         const Config &from = m.q(swing->row), &to = swing->other.row.q, middle = (from + to) / 2;
-         // A small ball that some body holds inside half way, and neither before nor behind.
-         const auto G = m.chain().displacements(middle);
-         std::vector<std::size_t> moving;
-         const auto& bodies = m.robot->world().bodies();
-         for (std::size_t b = 0; b < bodies.size(); ++b)
-           if (bodies[b].group > 0 && std::holds_alternative<Capsule>(bodies[b].shape))
-             moving.push_back(b);
-         for (int trial = 0; trial < 200 && !moving.empty(); ++trial) {
-           const RobotBody& body = bodies[moving[some(0, moving.size(), random)]];
-           const auto& capsule = std::get<Capsule>(body.shape);
-           const Vector3d in_body =
-               Vector3d(0, 0, random.uniform(-0.5, 0.5) * capsule.length) +
-               random_vector(random, random.uniform(0.8, 0.95) * capsule.radius);
-           Pose pose = Pose::Identity();
-           pose.translation() = G[static_cast<std::size_t>(body.group)] * (body.pose * in_body);
-           Judged other = m;
-           other.problem.scene.push_back({"wire", Sphere{0.002}, pose, {}});
-           const World world(m.robot->world(), as_a_motion(other));
-           World::Query query(world);
-           if (query.find_violating_pair(from, Threshold(ClearanceRule::kNode, 1e-3)) ||
-               query.find_violating_pair(to, Threshold(ClearanceRule::kNode, 1e-3)))
-             continue;
-           bool free_at_rows = true;
-           for (std::size_t k = 0; k < m.rows.size() && free_at_rows; k += 5)
-             free_at_rows = !query.find_violating_pair_incremental(
-                 m.q(k), Threshold(ClearanceRule::kNode, 1e-3));
-           if (!free_at_rows) continue;
-           m = std::move(other);
-           insert(m, *swing);
-           return "'" + body.name + "' holds it inside half way";
-         }
-         return "";
-       }},
+       &meet_something_in_a_swing},
       {"row of another posture", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const std::size_t k = some(1, m.rows.size() - 1, random);
@@ -514,6 +541,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          m.problem.scene.push_back({"moved", Sphere{0.001}, pose, {}});
          return "inside '" + body.name + "'";
        }},
+  };
+}
+
+/// Returns the mutations of joint positions and their limits, and of values that are no numbers.
+inline std::vector<MotionMutation> mutations_of_joints() {
+  return {
       {"joint beyond its limit", true, true, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const int j = random.below(kDof);
@@ -553,6 +586,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          (m.timed && random.coin(0.3) ? row.t : row.row.q[random.below(kDof)]) = bad;
          return "NaN or infinity";
        }},
+  };
+}
+
+/// Returns the mutations of speeds and accelerations that rows state.
+inline std::vector<MotionMutation> mutations_of_rates() {
+  return {
       {"not a number among the rates", true, false, Column::kRates,
        [](Judged& m, Random& random) -> std::string {
          const std::size_t ends[] = {0, m.rows.size() - 1, some(0, m.rows.size(), random)};
@@ -596,6 +635,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
            row.a[j] -= (2.1 * m.rates().jerk[j] * h + 0.1) * more;
          return of_speed ? "a speed" : "an acceleration";
        }},
+  };
+}
+
+/// Returns the mutations of s, phi and branch that rows state.
+inline std::vector<MotionMutation> mutations_of_places() {
+  return {
       {"place falsified", true, true, Column::kPlace,
        [](Judged& m, Random& random) -> std::string {
          TrajectoryRow& row = m.rows[some(0, m.rows.size(), random)].row;
@@ -623,6 +668,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
              random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
          return "NaN or infinity";
        }},
+  };
+}
+
+/// Returns the mutation of the pace of a motion: slow for most rows, then as planned.
+inline std::vector<MotionMutation> mutations_of_pace() {
+  return {
       {"crawls, then goes on", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          // More than half of the rows stand far apart in time, so that the median of all steps is a
@@ -639,6 +690,23 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          return most > kSurely ? words("the speed jumps by %.3g times what can be", most) : "";
        }},
   };
+}
+
+}  // namespace detail
+
+/// Returns all mutations, in a fixed order.
+inline const std::vector<MotionMutation>& motion_mutations() {
+  using namespace detail;
+  static const std::vector<MotionMutation> all = concatenated({
+      mutations_of_times(),
+      mutations_that_leave_rows_out(),
+      mutations_of_order(),
+      mutations_of_self_motion_and_scene(),
+      mutations_of_joints(),
+      mutations_of_rates(),
+      mutations_of_places(),
+      mutations_of_pace(),
+  });
   return all;
 }
 
@@ -650,9 +718,11 @@ struct LegalChange {
   std::function<std::string(Judged&, Random&)> change;
 };
 
-inline const std::vector<LegalChange>& legal_changes() {
-  using namespace detail;
-  static const std::vector<LegalChange> all = {
+namespace detail {
+
+/// Returns the legal changes of times and whole turns of joints, and one that changes nothing.
+inline std::vector<LegalChange> legal_changes_of_times_and_turns() {
+  return {
       {"none", true, true, [](Judged&, Random&) -> std::string { return "as planned"; }},
       {"slower", true, false,
        [](Judged& m, Random& random) -> std::string {
@@ -696,6 +766,12 @@ inline const std::vector<LegalChange>& legal_changes() {
          }
          return turned ? "of continuous joints" : "";
        }},
+  };
+}
+
+/// Returns the legal swings of the arm at rest.
+inline std::vector<LegalChange> legal_swings() {
+  return {
       {"small swing at rest", true, false,
        [](Judged& m, Random& random) -> std::string {
          if (m.chain().tool_may_turn()) return "";
@@ -735,6 +811,12 @@ inline const std::vector<LegalChange>& legal_changes() {
                           : "the tool sways by %.3g m, which is allowed",
                       off);
        }},
+  };
+}
+
+/// Returns the legal change that leaves a row out.
+inline std::vector<LegalChange> legal_omissions() {
+  return {
       {"row left out where the speed is steady", true, false,
        [](Judged& m, Random& random) -> std::string {
          if (m.rows.size() < 12) return "";
@@ -755,6 +837,18 @@ inline const std::vector<LegalChange>& legal_changes() {
          return "joints go straight over two steps";
        }},
   };
+}
+
+}  // namespace detail
+
+/// Returns all legal changes, in a fixed order.
+inline const std::vector<LegalChange>& legal_changes() {
+  using namespace detail;
+  static const std::vector<LegalChange> all = concatenated({
+      legal_changes_of_times_and_turns(),
+      legal_swings(),
+      legal_omissions(),
+  });
   return all;
 }
 
