@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "concatenated.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 
 namespace swivel::test {
@@ -79,12 +80,18 @@ inline ArmModel arm_with_roll(const ArmTable& arm, const Roll& roll) {
   return build_arm(model, "base", model.links.back().name, {}, Pose::Identity(), roll);
 }
 
-/// Arms of seven joints. Only the last of them is S-R-S.
-inline std::vector<ArmTable> arms_7r() {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
-                 o = Vector3d::Zero();
-  const auto v = [](double a, double b, double c) { return Vector3d(a, b, c); };
-  const double half = kPi / 2;
+namespace arm_tables {
+
+constexpr double half = kPi / 2;  // a right angle, rad
+
+/// Returns the vector (a, b, c) of a row's origin: a position, m, or roll, pitch and yaw, rad.
+inline Vector3d v(double a, double b, double c) {
+  return Vector3d(a, b, c);
+}
+
+/// Arms of seven joints that all have limits; none is S-R-S.
+inline std::vector<ArmTable> bounded_7r() {
+  const Vector3d z = Vector3d::UnitZ(), o = Vector3d::Zero();
   return {
       {"panda",
        {{v(0, 0, 0.333), o, z, -2.8973, 2.8973},
@@ -113,6 +120,14 @@ inline std::vector<ArmTable> arms_7r() {
         {o, v(half, 0, 0), z, -1.71, 1.78},
         {v(0.067, 0, 0), v(half, 0, 0), z, -3.0, 3.0}},
        v(0, 0, 0.1)},
+  };
+}
+
+/// Arms of seven joints of which some turn without limits; none is S-R-S.
+inline std::vector<ArmTable> continuous_7r() {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
+  return {
       {"fetch",
        {{v(0.119525, 0, 0.34858), o, z, -1.6056, 1.6056},
         {v(0.117, 0, 0.0599999999999999), o, y, -1.221, 1.518},
@@ -150,6 +165,13 @@ inline std::vector<ArmTable> arms_7r() {
         {v(0, -0.10593, -0.00017505), v(-1.5708, -5.5511e-17, 9.6396e-17), z, 0, 0, true}},
        v(0, 0, -0.061525),
        v(kPi, 0, 0)},
+  };
+}
+
+/// The arm of seven joints that is S-R-S.
+inline std::vector<ArmTable> srs_7r() {
+  const Vector3d z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  return {
       {"iiwa7",
        {{v(0, 0, 0.15), o, z, -2.967, 2.967},
         {v(0, 0, 0.19), v(half, 0, kPi), z, -2.094, 2.094},
@@ -162,12 +184,10 @@ inline std::vector<ArmTable> arms_7r() {
   };
 }
 
-/// Arms of six joints; the turn of the tool is their redundancy.
-inline std::vector<ArmTable> arms_6r() {
+/// Arms of six joints with a spherical wrist of which neighbouring axes are square.
+inline std::vector<ArmTable> square_wrists_6r() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
                  o = Vector3d::Zero();
-  const auto v = [](double a, double b, double c) { return Vector3d(a, b, c); };
-  const double half = kPi / 2;
   return {
       {"kr6-r900",
        {{v(0, 0, 0.4), o, -z, -2.967, 2.967},
@@ -196,6 +216,13 @@ inline std::vector<ArmTable> arms_6r() {
         {v(0.072, 0, 0), o, x, -6.98, 6.98}},
        v(0.08, 0, 0.05),
        v(0, 0.8, 0)},
+  };
+}
+
+/// Arms of six joints, three of them with parallel axes.
+inline std::vector<ArmTable> parallel_axes_6r() {
+  const Vector3d y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  return {
       {"ur5e",
        {{v(0, 0, 0.1625), v(0, 0, kPi), z, -kTwoPi, kTwoPi},
         {o, v(1.570796327, 0, 0), z, -kTwoPi, kTwoPi},
@@ -236,6 +263,14 @@ inline std::vector<ArmTable> arms_6r() {
         {v(0.03, 0, 0.1), o, z, -kPi, kPi}},
        v(0, 0.1, 0.03),
        v(0.5, 0, 0)},
+  };
+}
+
+/// The arm of six joints with a spherical wrist of which neighbouring axes are not square.
+inline std::vector<ArmTable> oblique_wrists_6r() {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(),
+                 o = Vector3d::Zero();
+  return {
       // Neighbours of the wrist at 70 and 60 degrees.
       {"oblique-wrist",
        {{v(0, 0, 0.3), o, z, -kPi, kPi},
@@ -247,6 +282,20 @@ inline std::vector<ArmTable> arms_6r() {
        v(0.1, 0, 0.05),
        v(0, 0.8, 0)},
   };
+}
+
+}  // namespace arm_tables
+
+/// Arms of seven joints. Only the last of them is S-R-S.
+inline std::vector<ArmTable> arms_7r() {
+  return concatenated(
+      {arm_tables::bounded_7r(), arm_tables::continuous_7r(), arm_tables::srs_7r()});
+}
+
+/// Arms of six joints; the turn of the tool is their redundancy.
+inline std::vector<ArmTable> arms_6r() {
+  return concatenated({arm_tables::square_wrists_6r(), arm_tables::parallel_axes_6r(),
+                       arm_tables::oblique_wrists_6r()});
 }
 
 }  // namespace swivel::test
