@@ -31,15 +31,13 @@ inline Pose random_pose(Random& random, const Vector3d& center, double spread) {
   return pose;
 }
 
-/// Draws a small problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near
-/// the arm, random limits, both edge modes, with and without a start. Small enough for brute force
-/// over all pairs of nodes.
-inline Problem random_problem(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
-  const Chain chain = arm_of(robot).chain;
-  Config q = random_config(chain, random);
-  const Config q0 = q;
-  const int waypoints = 2 + random.below(3);
+/// The steps of random_problem().
+namespace problem_parts {
+
+/// Draws waypoints near posture `q`, the first of them the pose of the tool there. Returns the
+/// length of the path, m.
+inline double draw_waypoints(Problem& problem, const Chain& chain, Config q, int waypoints,
+                             Random& random) {
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
   double length = 0;
   for (int k = 1; k < waypoints; ++k) {
@@ -49,7 +47,12 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
                problem.waypoints[static_cast<std::size_t>(k) - 1].position)
                   .norm();
   }
-  const int obstacles = random.below(5);
+  return length;
+}
+
+/// Draws obstacles near the first waypoint and near the axis of joint 5 at posture `q0`.
+inline void draw_obstacles(Problem& problem, const Chain& chain, const Config& q0, int obstacles,
+                           Random& random) {
   const Vector3d near = chain.displacements(q0)[4] * chain.point[4];
   for (int k = 0; k < obstacles; ++k) {
     SceneObject object;
@@ -74,10 +77,10 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
     }
     problem.scene.push_back(object);
   }
-  problem.resolution.ds = std::max(0.01, length / (3 + random.below(5)));
-  problem.resolution.dphi =
-      robot.name == "windings" ? random.uniform(0.5, 0.9) : random.uniform(0.25, 0.6);
-  problem.resolution.dalpha = random.uniform(0.2, 1);
+}
+
+/// Draws limits. The slope of the arm angle is drawn relative to problem.resolution.
+inline void draw_limits(Problem& problem, Random& random) {
   Limits& limits = problem.limits;
   limits.arm_slope = random.uniform(0.8, 3.2) * problem.resolution.dphi / problem.resolution.ds;
   limits.joint_step = random.uniform(0.4, 1.2);
@@ -90,18 +93,42 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
   if (random.coin(0.3)) limits.joint_margin = random.uniform(0, 0.1);
   limits.edges = random.coin(0.4) ? EdgeMode::kContinuous : EdgeMode::kNodes;
   limits.edge_tolerance = 0.005;  // fewer midpoints: small problems have large steps
+}
+
+/// Starts the path at posture `q0` where the joints' limits and margins allow it.
+inline void start_at(Problem& problem, const Chain& chain, const Config& q0) {
+  const Limits& limits = problem.limits;
+  bool fits = true;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    fits = fits && (limit.continuous || (q0[j] >= limit.lower + limits.joint_margin &&
+                                         q0[j] <= limit.upper - limits.joint_margin));
+  }
+  if (fits) problem.start = q0;
+}
+
+}  // namespace problem_parts
+
+/// Draws a small problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near
+/// the arm, random limits, both edge modes, with and without a start. Small enough for brute force
+/// over all pairs of nodes.
+inline Problem random_problem(const TestRobot& robot, Random& random) {
+  Problem problem = problem_for(robot);
+  const Chain chain = arm_of(robot).chain;
+  const Config q0 = random_config(chain, random);
+  const int waypoints = 2 + random.below(3);
+  const double length = problem_parts::draw_waypoints(problem, chain, q0, waypoints, random);
+  const int obstacles = random.below(5);
+  problem_parts::draw_obstacles(problem, chain, q0, obstacles, random);
+  problem.resolution.ds = std::max(0.01, length / (3 + random.below(5)));
+  problem.resolution.dphi =
+      robot.name == "windings" ? random.uniform(0.5, 0.9) : random.uniform(0.25, 0.6);
+  problem.resolution.dalpha = random.uniform(0.2, 1);
+  problem_parts::draw_limits(problem, random);
   if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
   if (random.coin(0.3))
     for (double& weight : problem.cost.weights) weight = random.uniform(0, 2);
-  if (random.coin(0.4)) {
-    bool fits = true;
-    for (int j = 0; j < kDof; ++j) {
-      const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-      fits = fits && (limit.continuous || (q0[j] >= limit.lower + limits.joint_margin &&
-                                           q0[j] <= limit.upper - limits.joint_margin));
-    }
-    if (fits) problem.start = q0;
-  }
+  if (random.coin(0.4)) problem_parts::start_at(problem, chain, q0);
   problem.resolution.arcs = (waypoints + obstacles) % 2 == 1;
   return problem;
 }
