@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "concatenated.hpp"
 #include "inner_posture.hpp"
 #include "plain_edge_rule.hpp"
 #include "robots.hpp"
@@ -230,11 +231,17 @@ std::string amount(const char* format, double value) {
   return text;
 }
 
-const std::vector<std::pair<std::string, Mutation>>& mutations() {
-  const auto some_row = [](const Good& good, Random& random) {
-    return static_cast<std::size_t>(random.below(static_cast<int>(good.rows.size())));
-  };
-  static const std::vector<std::pair<std::string, Mutation>> all = {
+using NamedMutation = std::pair<std::string, Mutation>;
+
+/// Draws the index of a row.
+std::size_t some_row(const Good& good, Random& random) {
+  return static_cast<std::size_t>(random.below(static_cast<int>(good.rows.size())));
+}
+
+/// Returns the mutations that leave rows out, reorder or repeat them, and those that turn joints
+/// around.
+std::vector<NamedMutation> mutations_of_order_and_turns() {
+  return {
       {"stretch cut out",
        [](Good& good, Random& random) -> std::string {
          const int n = static_cast<int>(good.rows.size());
@@ -254,44 +261,50 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          return "ends at the beginning";
        }},
       {"rows swapped",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          const std::size_t k = some_row(good, random);
          if (k + 2 >= good.rows.size() || k == 0) return "";
          std::swap(good.rows[k], good.rows[k + 1]);
          return "comes back by a step";
        }},
       {"row doubled",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          const std::size_t k = some_row(good, random);
          good.rows.insert(good.rows.begin() + static_cast<std::ptrdiff_t>(k), good.rows[k]);
          return "rests";
        }},
       {"joint moved by 2 pi",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          good.rows[some_row(good, random)].q[random.below(kDof)] +=
              random.coin() ? kTwoPi : -kTwoPi;
          return "a joint moves by 2 pi less or plus 0.5 rad, allowed is 0.5";
        }},
       {"continuous joints spinning",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          const std::size_t k = some_row(good, random);
          const int j = random.below(kDof), turns = (1 + random.below(4)) * (random.coin() ? 1 : -1);
          if (k == 0 || !good.chain().limit[static_cast<std::size_t>(j)].continuous) return "";
          for (std::size_t i = k; i < good.rows.size(); ++i) good.rows[i].q[j] += turns * kTwoPi;
          return amount("a joint moves by %.0f turns in a step", turns);
        }},
+  };
+}
+
+/// Returns the mutations of the values of one row, and one that leaves out a row at an end.
+std::vector<NamedMutation> mutations_of_row_values() {
+  return {
       {"s",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          good.rows[some_row(good, random)].s += random.coin() ? 1e-5 : -1e-5;
          return "1e-5 m along the path, allowed are 1e-6";
        }},
       {"phi",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          good.rows[some_row(good, random)].phi += random.coin() ? 0.02 : -0.02;
          return "0.02 rad, allowed are 0.001";
        }},
       {"branch",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          TrajectoryRow& row = good.rows[some_row(good, random)];
          const SrsArm& arm = good.robot->srs();
          const double angles[] = {arm.shoulder_angle(row.q), arm.wrist_angle(row.q),
@@ -302,7 +315,7 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          return amount("sine %.3g of the other sign", std::sin(angles[bit]));
        }},
       {"tool turned",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          const double by = random.uniform(1e-5, 1e-2);
          good.rows[some_row(good, random)].q[6] += by;
          return amount("by %.3g rad, allowed are 1e-6", by);
@@ -316,13 +329,19 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          return "a step is missing";
        }},
       {"not a number",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          TrajectoryRow& row = good.rows[some_row(good, random)];
          double* const value[] = {&row.s, &row.phi, &row.q[random.below(kDof)]};
          *value[random.below(3)] =
              random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
          return "NaN or infinity";
        }},
+  };
+}
+
+/// Returns the mutations that narrow limits of the joints.
+std::vector<NamedMutation> mutations_of_joint_limits() {
+  return {
       {"joint_margin",
        [](Good& good, Random&) -> std::string {
          double least = 1e9;
@@ -354,6 +373,12 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          good.problem.limits.tool_speed = 1.05 * least;
          return "a joint must be 5 % too fast";
        }},
+  };
+}
+
+/// Returns the mutations that narrow limits of errors and of manipulability.
+std::vector<NamedMutation> mutations_of_error_limits() {
+  return {
       {"tool_path_error",
        [](Good& good, Random&) -> std::string {
          const double most = largest(good, path_deviation);
@@ -389,6 +414,12 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          good.problem.limits.manipulability = 1.01 * least;
          return "1 % too small";
        }},
+  };
+}
+
+/// Returns the mutations that ask for more clearance, and one that puts a ball inside a link.
+std::vector<NamedMutation> mutations_of_clearance() {
+  return {
       {"clearance",
        [](Good& good, Random&) -> std::string {
          if (!good.problem.model->has_srdf)
@@ -418,7 +449,7 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          return "0.2 mm too near";
        }},
       {"contact",
-       [=](Good& good, Random& random) -> std::string {
+       [](Good& good, Random& random) -> std::string {
          if (!good.problem.model->has_srdf)
            return "";  // else the pairs that count depend on clearances
          const auto G = good.chain().displacements(good.rows[some_row(good, random)].q);
@@ -434,6 +465,12 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          good.problem.limits.edges = EdgeMode::kNodes;
          return "a ball inside a link, with no clearance asked";
        }},
+  };
+}
+
+/// Returns the mutations of the start and of waypoints.
+std::vector<NamedMutation> mutations_of_start_and_waypoints() {
+  return {
       {"start",
        [](Good& good, Random& random) -> std::string {
          good.problem.start = good.rows[0].q;
@@ -463,6 +500,18 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          return amount("by %.3g rad, allowed are 0.02 at waypoints", turn);
        }},
   };
+}
+
+/// Returns all mutations, in a fixed order.
+const std::vector<NamedMutation>& mutations() {
+  static const std::vector<NamedMutation> all = concatenated({
+      mutations_of_order_and_turns(),
+      mutations_of_row_values(),
+      mutations_of_joint_limits(),
+      mutations_of_error_limits(),
+      mutations_of_clearance(),
+      mutations_of_start_and_waypoints(),
+  });
   return all;
 }
 
@@ -601,78 +650,108 @@ bool keeps_rules(const Good& good, const World& world, World::Query& query, cons
          !test::edge_blocked_plain(query, world.edge_rule(good.robot->radii()), a.q, b.q);
 }
 
+/// Counts the resamplings, and what was done to make them.
+struct ResamplingCounts {
+  int count = 0;     ///< resamplings that were checked
+  int dropped = 0;   ///< layers left out
+  int inserted = 0;  ///< rows between layers
+  int inexact = 0;   ///< resamplings of inexact arms
+  int turned = 0;    ///< joints turned
+};
+
+/// Draws places on the path, in order, from 0 to `last`: layers, some left out; rows between
+/// layers, none or several in a step.
+std::vector<double> draw_places(int trial, int last, Random& random) {
+  const double keep = trial % 3 == 0 ? 1 : random.uniform(0.1, 1),
+               insert = trial % 3 == 1 ? 0 : random.uniform(0, 1.5);
+  std::vector<double> places{static_cast<double>(last)};
+  for (int i = 0; i < last; ++i) {
+    if (i == 0 || random.coin(keep)) places.push_back(i);
+    for (double more = insert; random.coin(std::min(more, 1.0)); more /= 2)
+      places.push_back(i + random.uniform(0.001, 0.999));
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Returns rows of the trajectory at the places, as far as each move keeps all rules; where a move
+/// does not, rows at all layers on its way. Returns nothing where some move cannot be judged.
+std::optional<std::vector<TrajectoryRow>> resampled(const Good& good,
+                                                    const std::vector<double>& places,
+                                                    ResamplingCounts& counts) {
+  const World world(good.robot->world(), good.problem.scene);
+  World::Query query(world);
+  std::vector<TrajectoryRow> rows{good.rows[0]};
+  double place = 0;
+  const auto row_at = [&](double at) {
+    return at == std::floor(at) ? std::optional(good.rows[static_cast<std::size_t>(at)])
+                                : row_between(good, at);
+  };
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    const auto next = row_at(places[k]);
+    if (!next) continue;
+    if (!keeps_rules(good, world, query, rows.back(), place, *next, places[k])) {
+      // All the layers on the way instead: the planner's own moves; from a row between layers to
+      // the next layer.
+      bool kept = true;
+      for (double layer = std::floor(place) + 1; layer < places[k] && kept; ++layer) {
+        const TrajectoryRow& row = good.rows[static_cast<std::size_t>(layer)];
+        kept =
+            place == layer - 1 || keeps_rules(good, world, query, rows.back(), place, row, layer);
+        rows.push_back(row);
+        place = layer;
+      }
+      if (!kept || (!(place == places[k] - 1 && places[k] == std::floor(places[k])) &&
+                    !keeps_rules(good, world, query, rows.back(), place, *next, places[k])))
+        break;
+    } else {
+      counts.dropped += static_cast<int>(std::ceil(places[k]) - std::floor(place)) - 1;
+    }
+    counts.inserted += places[k] != std::floor(places[k]);
+    rows.push_back(*next);
+    place = places[k];
+  }
+  if (place < good.path->size() - 1) return std::nullopt;  // some move could not be judged
+  return rows;
+}
+
+/// Turns continuous joints of all rows by whole turns, from -3 to 3. Returns how many joints there
+/// are.
+int turn_continuous_joints(const Good& good, std::vector<TrajectoryRow>& rows, Random& random) {
+  int turned = 0;
+  for (int j = 0; j < kDof; ++j)  // other turns of continuous joints are as good
+    if (good.chain().limit[static_cast<std::size_t>(j)].continuous) {
+      const double turns = kTwoPi * (random.below(7) - 3);
+      for (TrajectoryRow& row : rows) row.q[j] += turns;
+      ++turned;
+    }
+  return turned;
+}
+
 TEST(Check, LegalResamplingsPass) {
   const std::uint64_t base = seed("Resamplings");
   const auto& all = good_trajectories();
-  int count = 0, dropped = 0, inserted = 0, inexact = 0, turned = 0;
-  for (int trial = 0; count < trials(300) && trial < 1000; ++trial) {
+  ResamplingCounts counts;
+  for (int trial = 0; counts.count < trials(300) && trial < 1000; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Good& good = all[static_cast<std::size_t>(trial) % all.size()];
-    const World world(good.robot->world(), good.problem.scene);
-    World::Query query(world);
-    const int last = good.path->size() - 1;
-    // Layers, some left out; rows between layers, none or several in a step.
-    const double keep = trial % 3 == 0 ? 1 : random.uniform(0.1, 1),
-                 insert = trial % 3 == 1 ? 0 : random.uniform(0, 1.5);
-    std::vector<double> places{static_cast<double>(last)};
-    for (int i = 0; i < last; ++i) {
-      if (i == 0 || random.coin(keep)) places.push_back(i);
-      for (double more = insert; random.coin(std::min(more, 1.0)); more /= 2)
-        places.push_back(i + random.uniform(0.001, 0.999));
-    }
-    std::sort(places.begin(), places.end());
-    std::vector<TrajectoryRow> rows{good.rows[0]};
-    double place = 0;
-    const auto row_at = [&](double at) {
-      return at == std::floor(at) ? std::optional(good.rows[static_cast<std::size_t>(at)])
-                                  : row_between(good, at);
-    };
-    for (std::size_t k = 1; k < places.size(); ++k) {
-      const auto next = row_at(places[k]);
-      if (!next) continue;
-      if (!keeps_rules(good, world, query, rows.back(), place, *next, places[k])) {
-        // All the layers on the way instead: the planner's own moves; from a row between layers to
-        // the next layer.
-        bool kept = true;
-        for (double layer = std::floor(place) + 1; layer < places[k] && kept; ++layer) {
-          const TrajectoryRow& row = good.rows[static_cast<std::size_t>(layer)];
-          kept =
-              place == layer - 1 || keeps_rules(good, world, query, rows.back(), place, row, layer);
-          rows.push_back(row);
-          place = layer;
-        }
-        if (!kept || (!(place == places[k] - 1 && places[k] == std::floor(places[k])) &&
-                      !keeps_rules(good, world, query, rows.back(), place, *next, places[k])))
-          break;
-      } else {
-        dropped += static_cast<int>(std::ceil(places[k]) - std::floor(place)) - 1;
-      }
-      inserted += places[k] != std::floor(places[k]);
-      rows.push_back(*next);
-      place = places[k];
-    }
-    if (place < last) continue;  // some move could not be judged
-    if (trial % 4 == 0)
-      for (int j = 0; j < kDof; ++j)  // other turns of continuous joints are as good
-        if (good.chain().limit[static_cast<std::size_t>(j)].continuous) {
-          const double turns = kTwoPi * (random.below(7) - 3);
-          for (TrajectoryRow& row : rows) row.q[j] += turns;
-          ++turned;
-        }
-    const CheckResult result = check_trajectory(*good.robot, good.problem, rows);
+    auto rows = resampled(good, draw_places(trial, good.path->size() - 1, random), counts);
+    if (!rows) continue;
+    if (trial % 4 == 0) counts.turned += turn_continuous_joints(good, *rows, random);
+    const CheckResult result = check_trajectory(*good.robot, good.problem, *rows);
     EXPECT_TRUE(result.passed) << good.what << ", trial " << trial << ": " << first(result);
-    ++count;
-    inexact += !good.robot->srs().exact;
+    ++counts.count;
+    counts.inexact += !good.robot->srs().exact;
   }
   std::printf(
       "%d resamplings: %d layers left out, %d rows between layers, %d of inexact arms, %d joints "
       "turned\n",
-      count, dropped, inserted, inexact, turned);
-  EXPECT_GE(count, trials(300));
-  EXPECT_GE(dropped, count);
-  EXPECT_GE(inserted, count);
-  EXPECT_GE(inexact, at_least(count / 10));
-  EXPECT_GE(turned, at_least(10));
+      counts.count, counts.dropped, counts.inserted, counts.inexact, counts.turned);
+  EXPECT_GE(counts.count, trials(300));
+  EXPECT_GE(counts.dropped, counts.count);
+  EXPECT_GE(counts.inserted, counts.count);
+  EXPECT_GE(counts.inexact, at_least(counts.count / 10));
+  EXPECT_GE(counts.turned, at_least(10));
 }
 
 /// A closed path of the iiwa14 with corners that turn, as a user might write it.
