@@ -16,11 +16,74 @@ namespace {
 
 using namespace test;
 
+/// Counts the trajectories that were measured.
+struct Counts {
+  int solved = 0;   ///< problems that have a trajectory
+  int near = 0;     ///< trajectories with a clearance
+  int bounded = 0;  ///< trajectories with a nearest limit of a joint
+};
+
+/// Checks that the measures are what plan() says of its trajectory.
+void expect_what_plan_says(const Measures& measures, const PlanResult& result,
+                           const Problem& problem, const std::string& what) {
+  EXPECT_EQ(measures.min_clearance, result.min_clearance) << what;
+  EXPECT_EQ(measures.min_manipulability, result.min_manipulability) << what;
+  EXPECT_EQ(measures.arm_angle, result.arm_angle) << what;
+  EXPECT_EQ(measures.tool_path_error_mm.max, result.tool_path_error_mm.max) << what;
+  EXPECT_EQ(measures.tool_path_error_mm.mean, result.tool_path_error_mm.mean) << what;
+  EXPECT_EQ(measures.tool_path_error_mm.allowed, problem.limits.tool_path_error) << what;
+  EXPECT_TRUE(measures.evidence.postures && measures.evidence.tool_path_error) << what;
+}
+
+/// Checks that the measures are what rows say one by one.
+void expect_what_rows_say(const Measures& measures, const PreparedRobot& robot,
+                          const Problem& problem, const std::vector<TrajectoryRow>& trajectory,
+                          const std::string& what, Counts& counts) {
+  const Chain& chain = robot.arm().chain;
+  const World world(robot.world(), problem);
+  World::Query query(world);
+  std::optional<double> least;
+  double manipulability = 1e9, margin = 1e9;
+  for (const TrajectoryRow& row : trajectory) {
+    if (const auto clearance = query.clearance(row.q))
+      least = std::min(least.value_or(1e9), clearance->least);
+    manipulability = std::min(manipulability, chain.manipulability(row.q));
+    for (std::size_t k = 0; k < kDof; ++k) {
+      if (chain.limit[k].continuous || chain.limit[k].wide()) continue;
+      const double q = row.q[static_cast<Eigen::Index>(k)];
+      margin = std::min({margin, q - chain.limit[k].lower, chain.limit[k].upper - q});
+    }
+  }
+  EXPECT_EQ(measures.min_clearance, least) << what;
+  EXPECT_EQ(measures.min_manipulability, manipulability) << what;
+  counts.near += least.has_value();
+  ASSERT_EQ(measures.nearest_limit.has_value(), margin < 1e9) << what;
+  if (measures.nearest_limit) {
+    EXPECT_EQ(measures.nearest_limit->margin, margin) << what;
+  }
+  counts.bounded += measures.nearest_limit.has_value();
+}
+
+/// Checks what measuring gives without evidence, and that it refuses a trajectory without its last
+/// row.
+void expect_less_without_evidence(const Measures& measures, const PreparedRobot& robot,
+                                  const Problem& problem,
+                                  const std::vector<TrajectoryRow>& trajectory,
+                                  const std::string& what) {
+  const Measures little = measure(robot, problem, trajectory, {});
+  EXPECT_FALSE(little.evidence.postures || little.evidence.tool_path_error || little.min_clearance)
+      << what;
+  EXPECT_EQ(little.nearest_limit.has_value(), measures.nearest_limit.has_value()) << what;
+  std::vector<TrajectoryRow> fewer = trajectory;
+  fewer.pop_back();
+  EXPECT_THROW((void)measure(robot, problem, fewer), InvalidArgument) << what;
+}
+
 /// Measuring a trajectory gives what plan() says of it, and what asking row by row gives.
 TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
   const std::uint64_t base = seed("Measure");
   const auto robots = all_robots();
-  int solved = 0, near = 0, bounded = 0;
+  Counts counts;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what =
@@ -33,53 +96,18 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
     options.evidence = Evidence::all();
     const PlanResult result = plan(robot, problem, options);
     if (result.status != PlanStatus::kSolved) continue;
-    ++solved;
+    ++counts.solved;
     const Measures measures = measure(robot, problem, result.trajectory);
-    EXPECT_EQ(measures.min_clearance, result.min_clearance) << what;
-    EXPECT_EQ(measures.min_manipulability, result.min_manipulability) << what;
-    EXPECT_EQ(measures.arm_angle, result.arm_angle) << what;
-    EXPECT_EQ(measures.tool_path_error_mm.max, result.tool_path_error_mm.max) << what;
-    EXPECT_EQ(measures.tool_path_error_mm.mean, result.tool_path_error_mm.mean) << what;
-    EXPECT_EQ(measures.tool_path_error_mm.allowed, problem.limits.tool_path_error) << what;
-    EXPECT_TRUE(measures.evidence.postures && measures.evidence.tool_path_error) << what;
-
-    const Chain& chain = robot.arm().chain;
-    const World world(robot.world(), problem);
-    World::Query query(world);
-    std::optional<double> least;
-    double manipulability = 1e9, margin = 1e9;
-    for (const TrajectoryRow& row : result.trajectory) {
-      if (const auto clearance = query.clearance(row.q))
-        least = std::min(least.value_or(1e9), clearance->least);
-      manipulability = std::min(manipulability, chain.manipulability(row.q));
-      for (std::size_t k = 0; k < kDof; ++k) {
-        if (chain.limit[k].continuous || chain.limit[k].wide()) continue;
-        const double q = row.q[static_cast<Eigen::Index>(k)];
-        margin = std::min({margin, q - chain.limit[k].lower, chain.limit[k].upper - q});
-      }
-    }
-    EXPECT_EQ(measures.min_clearance, least) << what;
-    EXPECT_EQ(measures.min_manipulability, manipulability) << what;
-    near += least.has_value();
-    ASSERT_EQ(measures.nearest_limit.has_value(), margin < 1e9) << what;
-    if (measures.nearest_limit) {
-      EXPECT_EQ(measures.nearest_limit->margin, margin) << what;
-    }
-    bounded += measures.nearest_limit.has_value();
-
-    const Measures little = measure(robot, problem, result.trajectory, {});
-    EXPECT_FALSE(little.evidence.postures || little.evidence.tool_path_error ||
-                 little.min_clearance)
-        << what;
-    EXPECT_EQ(little.nearest_limit.has_value(), measures.nearest_limit.has_value()) << what;
-    std::vector<TrajectoryRow> fewer = result.trajectory;
-    fewer.pop_back();
-    EXPECT_THROW((void)measure(robot, problem, fewer), InvalidArgument) << what;
+    expect_what_plan_says(measures, result, problem, what);
+    expect_what_rows_say(measures, robot, problem, result.trajectory, what, counts);
+    if (::testing::Test::HasFatalFailure()) return;
+    expect_less_without_evidence(measures, robot, problem, result.trajectory, what);
   }
-  std::printf("%d trajectories, %d near something, %d with limits\n", solved, near, bounded);
-  EXPECT_GE(solved, at_least(count / 4));
-  EXPECT_GE(near, at_least(count / 8));
-  EXPECT_GE(bounded, at_least(count / 8));
+  std::printf("%d trajectories, %d near something, %d with limits\n", counts.solved, counts.near,
+              counts.bounded);
+  EXPECT_GE(counts.solved, at_least(count / 4));
+  EXPECT_GE(counts.near, at_least(count / 8));
+  EXPECT_GE(counts.bounded, at_least(count / 8));
 }
 
 }  // namespace
