@@ -46,80 +46,247 @@ Drawn draw(const std::string& name, PlannerKind planner, bool full) {
   return drawn;
 }
 
+/// Returns the problem of a torch at a door, with windows of the roll that go along the path, or
+/// with all rolls and a ball in the scene.
+Problem problem_of_rolls(bool windows) {
+  Problem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
+  problem.resolution.droll = 0.25;
+  problem.resolution.dphi = 0.2;
+  if (!windows)
+    problem.scene.push_back({"ball", Sphere{0.03}, Pose(Eigen::Translation3d(0.6, 0.3, 1.0)), {}});
+  const auto n = static_cast<double>(problem.waypoints.size() - 1);
+  if (windows) problem.roll = Roll{-1, 0.8};
+  for (std::size_t k = 0; windows && k < problem.waypoints.size(); ++k)
+    problem.waypoints[k].roll =
+        Roll{-1 + 0.6 * static_cast<double>(k) / n, 0.2 + 0.6 * static_cast<double>(k) / n};
+  return problem;
+}
+
+/// The panel of rolls of a map, and what is asked about its nodes.
+struct PanelOfRolls {
+  const PlanView& view;
+  const LatticeMap& map;
+  LatticeInfo::Grid grid;
+  double clearance;  ///< m
+  bool windows;      ///< whether waypoints limit the roll
+  World::Query query;
+  std::map<NodeState, int> count;  ///< cells by their state
+
+  /// Returns how many slots each roll has.
+  [[nodiscard]] int width() const { return grid.branches * grid.windings * grid.phi; }
+};
+
+/// Checks cell k of a layer; `inner` is the place of the path's node within its roll.
+void check_cell_of_rolls(PanelOfRolls& panel, int layer, int inner, int k) {
+  const Lattice& lattice = panel.view.lattice;
+  const LatticeMap& map = panel.map;
+  const int width = panel.width();
+  const Roll window = lattice.path().layer(layer).window;
+  const double roll = k * (kTwoPi / map.angles) - kPi;
+  const LatticeMap::Node& seen = map.at(layer, map.solutions(), k);
+  ++panel.count[seen.state];
+  int nearest = 0;
+  double least = kPi;
+  for (int rank = 0; rank < *panel.grid.rolls; ++rank) {
+    const double away = std::abs(
+        std::remainder(lattice.grid_place(layer, rank * width + inner).roll - roll, kTwoPi));
+    if (away < least) least = away, nearest = rank;
+  }
+  if (panel.windows && (roll < window.lower - 0.13 || roll > window.upper + 0.13)) {
+    ASSERT_EQ(seen.state, NodeState::kNoIk) << layer << ' ' << k;
+    return;
+  }
+  if (least > 0.12) return;  // between two rolls either may be told
+  const int slot = nearest * width + inner;
+  const auto q = lattice.node(layer, slot);
+  ASSERT_EQ(q.has_value(), seen.state >= NodeState::kNotLookedAt) << layer << ' ' << k;
+  if (q) {
+    ASSERT_EQ(seen.state, panel.query.find_violating_pair(*q, panel.clearance) ? NodeState::kBlocked
+                                                                               : NodeState::kFree);
+  } else {
+    ASSERT_EQ(seen.state == NodeState::kJointLimit,
+              lattice.fault(layer, slot).status == NodeStatus::kLimit);
+  }
+}
+
+/// Checks the node of the path and all cells of a layer.
+void check_layer_of_rolls(PanelOfRolls& panel, int layer) {
+  const Lattice& lattice = panel.view.lattice;
+  const LatticeMap& map = panel.map;
+  const int on_path = panel.view.path[static_cast<std::size_t>(layer)],
+            inner = lattice.grid_place(layer, on_path).cell;
+  const int path_cell =
+      map.path_of_rolls[static_cast<std::size_t>(layer)] - map.solutions() * map.angles;
+  EXPECT_EQ(map.at(layer, map.solutions(), path_cell).state, NodeState::kFree) << layer;
+  for (int k = 0; k < map.angles; ++k) {
+    check_cell_of_rolls(panel, layer, inner, k);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+}
+
+/// Checks how many cells are in each state, and that text and drawing name the panel.
+void check_states_of_rolls(PanelOfRolls& panel) {
+  const LatticeMap& map = panel.map;
+  const bool windows = panel.windows;
+  std::map<NodeState, int>& count = panel.count;
+  std::printf("%s: %d free, %d blocked, %d beyond a limit, %d none\n",
+              windows ? "windows" : "all rolls", count[NodeState::kFree],
+              count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kNoIk]);
+  EXPECT_GT(count[NodeState::kFree], 50);
+  EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 50);
+  EXPECT_EQ(count[NodeState::kNoIk] > 50, windows);
+  const std::string name = map.solution_name(map.solutions());
+  EXPECT_NE(to_text(map, 80, false).find(name), std::string::npos);
+  EXPECT_NE(to_svg(map).find(name), std::string::npos);
+}
+
 /// The panel of rolls: what plain questions say of the nodes at the path's branch and arm angle,
 /// nothing outside the windows.
 TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
   for (const bool windows : {false, true}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
-    problem.resolution.droll = 0.25;
-    problem.resolution.dphi = 0.2;
-    if (!windows)
-      problem.scene.push_back(
-          {"ball", Sphere{0.03}, Pose(Eigen::Translation3d(0.6, 0.3, 1.0)), {}});
-    const auto n = static_cast<double>(problem.waypoints.size() - 1);
-    if (windows) problem.roll = Roll{-1, 0.8};
-    for (std::size_t k = 0; windows && k < problem.waypoints.size(); ++k)
-      problem.waypoints[k].roll =
-          Roll{-1 + 0.6 * static_cast<double>(k) / n, 0.2 + 0.6 * static_cast<double>(k) / n};
+    const Problem problem = problem_of_rolls(windows);
     Planner arm(problem);
     const PlanResult result = arm.plan({});
     ASSERT_EQ(result.status, PlanStatus::kSolved);
     const PlanView view = arm.view();
-    const Lattice& lattice = view.lattice;
-    const LatticeInfo::Grid grid = result.lattice.grid.value();
-    const int width = grid.branches * grid.windings * grid.phi;
     const LatticeMap map = make_map(view, true);
     ASSERT_TRUE(map.turns);
     ASSERT_EQ(map.path_of_rolls.size(), view.path.size());
-    World::Query query(view.world);
-    std::map<NodeState, int> count;
-    const double cell = kTwoPi / map.angles;
+    PanelOfRolls panel{view,
+                       map,
+                       result.lattice.grid.value(),
+                       problem.limits.clearance,
+                       windows,
+                       World::Query(view.world),
+                       {}};
     for (int layer = 0; layer < map.layers; ++layer) {
-      const int on_path = view.path[static_cast<std::size_t>(layer)],
-                inner = lattice.grid_place(layer, on_path).cell;
-      const int path_cell =
-          map.path_of_rolls[static_cast<std::size_t>(layer)] - map.solutions() * map.angles;
-      EXPECT_EQ(map.at(layer, map.solutions(), path_cell).state, NodeState::kFree) << layer;
-      const Roll window = lattice.path().layer(layer).window;
-      for (int k = 0; k < map.angles; ++k) {
-        const double roll = k * cell - kPi;
-        const LatticeMap::Node& seen = map.at(layer, map.solutions(), k);
-        ++count[seen.state];
-        int nearest = 0;
-        double least = kPi;
-        for (int rank = 0; rank < *grid.rolls; ++rank) {
-          const double away = std::abs(
-              std::remainder(lattice.grid_place(layer, rank * width + inner).roll - roll, kTwoPi));
-          if (away < least) least = away, nearest = rank;
-        }
-        if (windows && (roll < window.lower - 0.13 || roll > window.upper + 0.13)) {
-          ASSERT_EQ(seen.state, NodeState::kNoIk) << layer << ' ' << k;
-          continue;
-        }
-        if (least > 0.12) continue;  // between two rolls either may be told
-        const int slot = nearest * width + inner;
-        const auto q = lattice.node(layer, slot);
-        ASSERT_EQ(q.has_value(), seen.state >= NodeState::kNotLookedAt) << layer << ' ' << k;
-        if (q) {
-          ASSERT_EQ(seen.state, query.find_violating_pair(*q, problem.limits.clearance)
-                                    ? NodeState::kBlocked
-                                    : NodeState::kFree);
-        } else {
-          ASSERT_EQ(seen.state == NodeState::kJointLimit,
-                    lattice.fault(layer, slot).status == NodeStatus::kLimit);
-        }
-      }
+      check_layer_of_rolls(panel, layer);
+      if (::testing::Test::HasFatalFailure()) return;
     }
-    std::printf("%s: %d free, %d blocked, %d beyond a limit, %d none\n",
-                windows ? "windows" : "all rolls", count[NodeState::kFree],
-                count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kNoIk]);
-    EXPECT_GT(count[NodeState::kFree], 50);
-    EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 50);
-    EXPECT_EQ(count[NodeState::kNoIk] > 50, windows);
-    const std::string name = map.solution_name(map.solutions());
-    EXPECT_NE(to_text(map, 80, false).find(name), std::string::npos);
-    EXPECT_NE(to_svg(map).find(name), std::string::npos);
+    check_states_of_rolls(panel);
   }
+}
+
+/// The cells of a layer, by branch and cell, that arcs pass through.
+struct CellsOfArcs {
+  std::map<std::pair<int, int>, std::vector<int>> of_cell;  ///< the slots that have the cell
+  std::set<std::pair<int, int>> with_node;
+  std::set<std::pair<int, int>> unsure;  ///< as near to one neighbour as to the other
+};
+
+/// Finds the cells of a layer from its nodes and from the ways between neighbours on their arcs.
+void find_cells_of_arcs(const Lattice& lattice, const LatticeMap& map, int layer,
+                        CellsOfArcs& cells) {
+  for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+    const double at = map.place(lattice.phi(layer, slot));
+    ASSERT_TRUE(map.closed ? at < map.angles - 0.5 + 1e-9 : at <= map.angles - 1 + 1e-6);
+    ASSERT_GE(at, map.closed ? -0.5 : -1e-6);
+    const std::pair cell(lattice.branch(layer, slot),
+                         static_cast<int>(std::lround(at)) % map.angles);
+    cells.of_cell[cell].push_back(slot);
+    cells.with_node.insert(cell);
+    const int next = lattice.next_on_arc(layer, slot);
+    if (next < 0) continue;
+    const double from = lattice.phi(layer, slot),
+                 way = std::remainder(lattice.phi(layer, next) - from, kTwoPi);
+    for (int k = 0; k < map.angles; ++k) {
+      const double along = std::remainder(map.low + k * map.step - from, kTwoPi);
+      if (along * way < 0 || std::abs(along) > std::abs(way)) continue;
+      const int nearer = std::abs(2 * along) < std::abs(way) ? slot : next;
+      cells.of_cell[{lattice.branch(layer, nearer), k}].push_back(nearer);
+      if (std::abs(std::abs(2 * along) - std::abs(way)) < 1e-9)
+        for (const int either : {slot, next})
+          cells.unsure.insert({lattice.branch(layer, either), k});
+    }
+  }
+}
+
+/// Counts cells of a map.
+struct CellCounts {
+  int filled = 0;  ///< cells between nodes of an arc
+  int own = 0;     ///< cells with a node of their own
+  int empty = 0;   ///< cells that no arc passes through
+  int holes = 0;   ///< cells that show no node although an arc passes through
+};
+
+/// A map of arcs, and what is asked about its nodes.
+struct ArcMap {
+  const char* name;
+  const PlanView& view;
+  const LatticeMap& map;
+  double clearance;  ///< m
+  World::Query query;
+  CellCounts counts;
+};
+
+/// Checks which slot a cell shows, and its state; `on_path` is the path's slot in the layer, -1
+/// where it has none.
+void check_cell_of_arcs(ArcMap& arcs, const CellsOfArcs& cells, int layer, int solution, int cell,
+                        int on_path) {
+  const Lattice& lattice = arcs.view.lattice;
+  const LatticeMap& map = arcs.map;
+  CellCounts& counts = arcs.counts;
+  const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + solution)) *
+                            static_cast<std::size_t>(map.angles) +
+                        static_cast<std::size_t>(cell);
+  const auto found = cells.of_cell.find({solution, cell});
+  if (cells.unsure.count({solution, cell})) return;
+  if (found == cells.of_cell.end()) {
+    ++counts.empty;
+    EXPECT_EQ(map.slots[k], -1) << arcs.name << ' ' << layer << ' ' << solution << ' ' << cell;
+    return;
+  }
+  const std::vector<int>& slots = found->second;
+  (cells.with_node.count({solution, cell}) ? counts.own : counts.filled) += 1;
+  counts.holes += map.slots[k] < 0;
+  if (std::find(slots.begin(), slots.end(), on_path) != slots.end()) {
+    EXPECT_EQ(map.slots[k], on_path);
+    return;
+  }
+  EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end())
+      << layer << ' ' << cell;
+  const bool blocked = std::any_of(slots.begin(), slots.end(), [&](int slot) {
+    return arcs.query.find_violating_pair(*lattice.node(layer, slot), arcs.clearance).has_value();
+  });
+  EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree)
+      << arcs.name << ' ' << layer << ' ' << cell;
+}
+
+/// Checks all cells of a layer, and those of the path.
+void check_layer_of_arcs(ArcMap& arcs, int layer) {
+  const PlanView& view = arcs.view;
+  const LatticeMap& map = arcs.map;
+  CellsOfArcs cells;
+  find_cells_of_arcs(view.lattice, map, layer, cells);
+  if (::testing::Test::HasFatalFailure()) return;
+  const int on_path =
+      layer < static_cast<int>(view.path.size()) ? view.path[static_cast<std::size_t>(layer)] : -1;
+  for (int solution = 0; solution < map.solutions(); ++solution)
+    for (int cell = 0; cell < map.angles; ++cell)
+      check_cell_of_arcs(arcs, cells, layer, solution, cell, on_path);
+  if (layer >= static_cast<int>(view.path.size())) return;
+  const int cell = map.path[static_cast<std::size_t>(layer)];  // the path shows itself
+  EXPECT_EQ(map.slots[static_cast<std::size_t>(layer * map.panels() * map.angles + cell)],
+            view.path[static_cast<std::size_t>(layer)]);
+  EXPECT_EQ(map.at(layer, cell / map.angles, cell % map.angles).state, NodeState::kFree);
+}
+
+/// Checks what text and drawing say of the coordinate and of cells without a node.
+void check_words_of_arcs(const LatticeMap& map) {
+  const std::string text = to_text(map, 80, false), svg = to_svg(map),
+                    words = map.coordinate_name();
+  EXPECT_NE(text.find("Rows are " + words + "s, rad."), std::string::npos);
+  EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
+  EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
+  const auto solutions = map.inhabited_solutions();
+  const bool some_are_empty = std::any_of(solutions.begin(), solutions.end(), [&](int solution) {
+    for (int layer = 0; layer < map.layers; ++layer)
+      for (int cell = 0; cell < map.angles; ++cell)
+        if (map.at(layer, solution, cell).state == NodeState::kNoIk) return true;
+    return false;
+  });
+  EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos,
+            some_are_empty);
 }
 
 /// Every cell that an arc passes through between two nodes shows a node, its own or the nearer
@@ -137,95 +304,22 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
     Planner arm(problem);
     (void)arm.plan({});
     const PlanView view = arm.view();
-    const Lattice& lattice = view.lattice;
     const LatticeMap map = make_map(view, true);
-    World::Query query(view.world);
     EXPECT_EQ(map.coordinate, coordinate);
     EXPECT_EQ(map.slots.size(), map.nodes.size());
     const double high = map.low + (map.angles - 1) * map.step;
-    int filled = 0, own = 0, empty = 0, holes = 0;
+    ArcMap arcs{name, view, map, problem.limits.clearance, World::Query(view.world), {}};
     for (int layer = 0; layer < map.layers; ++layer) {
-      std::map<std::pair<int, int>, std::vector<int>>
-          of_cell;  // by branch and cell: the slots that have it
-      std::set<std::pair<int, int>> with_node,
-          unsure;  // unsure: as near to one neighbour as to the other
-      for (int slot = 0; slot < lattice.slots(layer); ++slot) {
-        const double at = map.place(lattice.phi(layer, slot));
-        ASSERT_TRUE(map.closed ? at < map.angles - 0.5 + 1e-9 : at <= map.angles - 1 + 1e-6);
-        ASSERT_GE(at, map.closed ? -0.5 : -1e-6);
-        const std::pair cell(lattice.branch(layer, slot),
-                             static_cast<int>(std::lround(at)) % map.angles);
-        of_cell[cell].push_back(slot);
-        with_node.insert(cell);
-        const int next = lattice.next_on_arc(layer, slot);
-        if (next < 0) continue;
-        const double from = lattice.phi(layer, slot),
-                     way = std::remainder(lattice.phi(layer, next) - from, kTwoPi);
-        for (int k = 0; k < map.angles; ++k) {
-          const double along = std::remainder(map.low + k * map.step - from, kTwoPi);
-          if (along * way < 0 || std::abs(along) > std::abs(way)) continue;
-          const int nearer = std::abs(2 * along) < std::abs(way) ? slot : next;
-          of_cell[{lattice.branch(layer, nearer), k}].push_back(nearer);
-          if (std::abs(std::abs(2 * along) - std::abs(way)) < 1e-9)
-            for (const int either : {slot, next}) unsure.insert({lattice.branch(layer, either), k});
-        }
-      }
-      const int on_path = layer < static_cast<int>(view.path.size())
-                              ? view.path[static_cast<std::size_t>(layer)]
-                              : -1;
-      for (int solution = 0; solution < map.solutions(); ++solution)
-        for (int cell = 0; cell < map.angles; ++cell) {
-          const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + solution)) *
-                                    static_cast<std::size_t>(map.angles) +
-                                static_cast<std::size_t>(cell);
-          const auto found = of_cell.find({solution, cell});
-          if (unsure.count({solution, cell})) continue;
-          if (found == of_cell.end()) {
-            ++empty;
-            EXPECT_EQ(map.slots[k], -1) << name << ' ' << layer << ' ' << solution << ' ' << cell;
-            continue;
-          }
-          const std::vector<int>& slots = found->second;
-          (with_node.count({solution, cell}) ? own : filled) += 1;
-          holes += map.slots[k] < 0;
-          if (std::find(slots.begin(), slots.end(), on_path) != slots.end()) {
-            EXPECT_EQ(map.slots[k], on_path);
-            continue;
-          }
-          EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end())
-              << layer << ' ' << cell;
-          const bool blocked = std::any_of(slots.begin(), slots.end(), [&](int slot) {
-            return query.find_violating_pair(*lattice.node(layer, slot), problem.limits.clearance)
-                .has_value();
-          });
-          EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree)
-              << name << ' ' << layer << ' ' << cell;
-        }
-      if (layer >= static_cast<int>(view.path.size())) continue;
-      const int cell = map.path[static_cast<std::size_t>(layer)];  // the path shows itself
-      EXPECT_EQ(map.slots[static_cast<std::size_t>(layer * map.panels() * map.angles + cell)],
-                view.path[static_cast<std::size_t>(layer)]);
-      EXPECT_EQ(map.at(layer, cell / map.angles, cell % map.angles).state, NodeState::kFree);
+      check_layer_of_arcs(arcs, layer);
+      if (::testing::Test::HasFatalFailure()) return;
     }
     std::printf("%s: %d cells with nodes, %d between them, %d empty; %.2f to %.2f rad%s\n", name,
-                own, filled, empty, map.low, high, map.closed ? ", closed" : "");
-    EXPECT_EQ(holes, 0);
-    EXPECT_GT(filled, 100);
-    EXPECT_GT(own, 500);
-    const std::string text = to_text(map, 80, false), svg = to_svg(map),
-                      words = map.coordinate_name();
-    EXPECT_NE(text.find("Rows are " + words + "s, rad."), std::string::npos);
-    EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
-    EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
-    const auto solutions = map.inhabited_solutions();
-    const bool some_are_empty = std::any_of(solutions.begin(), solutions.end(), [&](int solution) {
-      for (int layer = 0; layer < map.layers; ++layer)
-        for (int cell = 0; cell < map.angles; ++cell)
-          if (map.at(layer, solution, cell).state == NodeState::kNoIk) return true;
-      return false;
-    });
-    EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos,
-              some_are_empty);
+                arcs.counts.own, arcs.counts.filled, arcs.counts.empty, map.low, high,
+                map.closed ? ", closed" : "");
+    EXPECT_EQ(arcs.counts.holes, 0);
+    EXPECT_GT(arcs.counts.filled, 100);
+    EXPECT_GT(arcs.counts.own, 500);
+    check_words_of_arcs(map);
   }
 }
 
@@ -253,70 +347,59 @@ INSTANTIATE_TEST_SUITE_P(Experiments, Maps,
                          ::testing::Values("experiment_a", "experiment_a_start", "experiment_b",
                                            "experiment_c"));
 
-TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
-  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false),
-              full = draw(GetParam(), PlannerKind::kLazy, true);
-  const Drawn eager = draw(GetParam(), PlannerKind::kEagerDp, false);
-  EXPECT_FALSE(lazy.map.complete);
-  EXPECT_TRUE(full.map.complete);
-  EXPECT_TRUE(eager.map.complete);
+/// The maps of one problem: of a lazy search, of all its nodes, and of an eager plan.
+struct ThreeMaps {
+  Drawn lazy, full, eager;
+};
 
-  const PreparedRobot robot(lazy.problem);
-  const ToolPath path(waypoints_in_base(lazy.problem), lazy.problem.resolution, "test");
-  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
-  const World world(robot.world(), lazy.problem.scene);
-  World::Query query(world), quick(world, DistanceProofs::kOn);
-  int proved = 0;
-  ASSERT_EQ(lazy.map.nodes.size(), static_cast<std::size_t>(lattice.nodes()));
-  std::map<NodeState, int> count;
-  std::size_t k = 0;
-  for (int layer = 0; layer < lattice.layers(); ++layer)
-    for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
-      const LatticeMap::Node seen = lazy.map.nodes[k], known = full.map.nodes[k];
-      ++count[seen.state];
-      ASSERT_EQ(known.state, eager.map.nodes[k].state);
-      if (seen.state != NodeState::kNotLookedAt) {
-        ASSERT_EQ(seen.state, known.state);
-      }
-      const auto q = lattice.node(layer, slot);
-      ASSERT_EQ(q.has_value(), known.state >= NodeState::kNotLookedAt);
-      if (!q) {
-        const SrsLattice::NodeFault fault = lattice.fault(layer, slot);
-        ASSERT_EQ(known.state == NodeState::kJointLimit, fault.status == NodeStatus::kLimit);
-        if (fault.status == NodeStatus::kLimit) {
-          ASSERT_TRUE(fault.joints >> known.cause & 1);
-        }
-        continue;
-      }
-      const std::int64_t asked = quick.counters().fcl_calls;
-      (void)quick.find_violating_pair(*q, lazy.problem.limits.clearance);
-      ASSERT_EQ(known.proved, quick.counters().fcl_calls == asked);  // it took no FCL
-      proved += known.proved;
-      if (seen.state != NodeState::kNotLookedAt) {
-        ASSERT_EQ(seen.proved, known.proved);
-      }
-      const auto pair = query.find_violating_pair(*q, lazy.problem.limits.clearance);
-      ASSERT_EQ(known.state, pair ? NodeState::kBlocked : NodeState::kFree);
-      if (pair) {
-        const auto& names = world.body_names();
-        ASSERT_EQ(full.map.blockers[known.cause],
-                  std::pair(names[static_cast<std::size_t>(pair->a)],
-                            names[static_cast<std::size_t>(pair->b)]));
-      }
+/// Answers plain questions about the nodes of a lattice, and counts the answers.
+struct PlainQuestions {
+  const SrsLattice& lattice;
+  const World& world;
+  World::Query query{world}, quick{world, DistanceProofs::kOn};
+  int proved = 0;                    ///< nodes that a distance proof alone proves
+  std::map<NodeState, int> count{};  ///< nodes of the lazy map by their state
+};
+
+/// Checks the state of node k of the maps, which is at a layer and a slot of the lattice.
+void check_state_of_node(const ThreeMaps& maps, PlainQuestions& plain, int layer, int slot,
+                         std::size_t k) {
+  const LatticeMap::Node seen = maps.lazy.map.nodes[k], known = maps.full.map.nodes[k];
+  ++plain.count[seen.state];
+  ASSERT_EQ(known.state, maps.eager.map.nodes[k].state);
+  if (seen.state != NodeState::kNotLookedAt) {
+    ASSERT_EQ(seen.state, known.state);
+  }
+  const auto q = plain.lattice.node(layer, slot);
+  ASSERT_EQ(q.has_value(), known.state >= NodeState::kNotLookedAt);
+  if (!q) {
+    const SrsLattice::NodeFault fault = plain.lattice.fault(layer, slot);
+    ASSERT_EQ(known.state == NodeState::kJointLimit, fault.status == NodeStatus::kLimit);
+    if (fault.status == NodeStatus::kLimit) {
+      ASSERT_TRUE(fault.joints >> known.cause & 1);
     }
-  std::printf(
-      "%s: %zu nodes: %d not looked at, %d free, %d blocked, %d beyond a limit, %d singular, %d "
-      "out of reach\n",
-      GetParam(), k, count[NodeState::kNotLookedAt], count[NodeState::kFree],
-      count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kSingular],
-      count[NodeState::kNoIk]);
-  EXPECT_GT(count[NodeState::kNotLookedAt], count[NodeState::kFree]);  // or the search was not lazy
-  EXPECT_GT(count[NodeState::kJointLimit], 0);
-  const int exist = static_cast<int>(
-      std::count_if(full.map.nodes.begin(), full.map.nodes.end(),
-                    [](const auto& node) { return node.state >= NodeState::kFree; }));
-  std::printf("%d of %d nodes certified\n", proved, exist);
-  EXPECT_GT(proved, exist / 2);
+    return;
+  }
+  const std::int64_t asked = plain.quick.counters().fcl_calls;
+  (void)plain.quick.find_violating_pair(*q, maps.lazy.problem.limits.clearance);
+  ASSERT_EQ(known.proved, plain.quick.counters().fcl_calls == asked);  // it took no FCL
+  plain.proved += known.proved;
+  if (seen.state != NodeState::kNotLookedAt) {
+    ASSERT_EQ(seen.proved, known.proved);
+  }
+  const auto pair = plain.query.find_violating_pair(*q, maps.lazy.problem.limits.clearance);
+  ASSERT_EQ(known.state, pair ? NodeState::kBlocked : NodeState::kFree);
+  if (pair) {
+    const auto& names = plain.world.body_names();
+    ASSERT_EQ(maps.full.map.blockers[known.cause],
+              std::pair(names[static_cast<std::size_t>(pair->a)],
+                        names[static_cast<std::size_t>(pair->b)]));
+  }
+}
+
+/// Checks that the path is free, and that it is the eager plan's, or as long as the diagnosis says.
+void check_path_of_maps(const ThreeMaps& maps, const SrsLattice& lattice) {
+  const Drawn &lazy = maps.lazy, &eager = maps.eager;
   for (std::size_t i = 0; i < lazy.map.path.size(); ++i)
     EXPECT_EQ(lazy.map
                   .nodes[i * static_cast<std::size_t>(lattice.width()) +
@@ -330,6 +413,44 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
     EXPECT_EQ(static_cast<int>(lazy.map.path.size()),
               lazy.result.diagnosis.reached_layer.value_or(-1) + 1);
   }
+}
+
+TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
+  const ThreeMaps maps{draw(GetParam(), PlannerKind::kLazy, false),
+                       draw(GetParam(), PlannerKind::kLazy, true),
+                       draw(GetParam(), PlannerKind::kEagerDp, false)};
+  const auto& [lazy, full, eager] = maps;
+  EXPECT_FALSE(lazy.map.complete);
+  EXPECT_TRUE(full.map.complete);
+  EXPECT_TRUE(eager.map.complete);
+
+  const PreparedRobot robot(lazy.problem);
+  const ToolPath path(waypoints_in_base(lazy.problem), lazy.problem.resolution, "test");
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
+  const World world(robot.world(), lazy.problem.scene);
+  PlainQuestions plain{lattice, world};
+  ASSERT_EQ(lazy.map.nodes.size(), static_cast<std::size_t>(lattice.nodes()));
+  std::size_t k = 0;
+  for (int layer = 0; layer < lattice.layers(); ++layer)
+    for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
+      check_state_of_node(maps, plain, layer, slot, k);
+      if (::testing::Test::HasFatalFailure()) return;
+    }
+  std::map<NodeState, int>& count = plain.count;
+  std::printf(
+      "%s: %zu nodes: %d not looked at, %d free, %d blocked, %d beyond a limit, %d singular, %d "
+      "out of reach\n",
+      GetParam(), k, count[NodeState::kNotLookedAt], count[NodeState::kFree],
+      count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kSingular],
+      count[NodeState::kNoIk]);
+  EXPECT_GT(count[NodeState::kNotLookedAt], count[NodeState::kFree]);  // or the search was not lazy
+  EXPECT_GT(count[NodeState::kJointLimit], 0);
+  const int exist = static_cast<int>(
+      std::count_if(full.map.nodes.begin(), full.map.nodes.end(),
+                    [](const auto& node) { return node.state >= NodeState::kFree; }));
+  std::printf("%d of %d nodes certified\n", plain.proved, exist);
+  EXPECT_GT(plain.proved, exist / 2);
+  check_path_of_maps(maps, lattice);
 }
 
 TEST_P(Maps, TextFitsTheTerminalAndTellsThePath) {
