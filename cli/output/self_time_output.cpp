@@ -44,7 +44,7 @@ void print_self_times(const Timeline& timeline) {
       arena_ns += event.end_ns - event.begin_ns;
     }
   if (indices > 0)
-    complain("  %lld parts of shared loops ran in TBB's arena, in %.1f ms\n",
+    complain("  parts of shared loops in TBB's arena: %lld, in %.1f ms\n",
              static_cast<long long>(indices), ms(arena_ns));
 }
 
