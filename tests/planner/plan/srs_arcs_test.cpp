@@ -58,6 +58,73 @@ Found least(std::unique_ptr<Lattice> lattice) {
   }
 }
 
+/// Counts the paths of one arm that lattices solve, and keeps the ratios of their costs.
+struct Counts {
+  int solved = 0, both = 0, finer = 0, cheaper = 0, arcs_alone = 0;
+  std::vector<double> ratios, others;  // cost along arcs over the grid's: of l2, of max and time
+};
+
+/// Makes a random path without obstacles, with nodes about as far apart on arcs as on the grid.
+Problem free_problem(const TestRobot& robot, Random& random) {
+  Problem problem = motion_problem(robot, random);
+  problem.scene.clear();
+  problem.smooth.reset();
+  problem.resolution.dphi = 0.05;
+  problem.resolution.arc = 0.1;  // about as far from node to node as that
+  return problem;
+}
+
+/// Checks that the least path along arcs costs no more than the one over the grid of arm angles.
+void compare_with_grid(Problem problem, const std::string& what, Counts& counts) {
+  const PreparedRobot prepared(problem);
+  const Chain& chain = prepared.arm().chain;
+  ASSERT_EQ(prepared.arm_class().kind, ArmKind::kSrs) << what;
+  ArmClass as_others;
+  as_others.kind = ArmKind::kArcs;
+  as_others.lock = lock_method(chain);
+  ASSERT_GE(as_others.lock.best, 0) << what;
+  const ToolPath path = problem_path(problem, chain);
+  const Found grid = least(make_lattice(chain, prepared.arm_class(), path, problem));
+  const Found arcs = least(make_lattice(chain, as_others, path, problem));
+  counts.solved += !grid.joints.empty();
+  if (grid.joints.empty()) {
+    counts.arcs_alone += !arcs.joints.empty();
+    return;
+  }
+  ASSERT_FALSE(arcs.joints.empty())
+      << what << ": no path along arcs, of cost " << grid.cost << " over the grid";
+  ++counts.both;
+  const bool l2 = problem.cost.metric == CostMetric::kL2;
+  (l2 ? counts.ratios : counts.others).push_back(arcs.cost / grid.cost);
+  counts.cheaper += arcs.cost < grid.cost;
+  if (arcs.cost > 1.01 * grid.cost) {
+    ++counts.finer;
+    problem.resolution.arc /= 2;
+    EXPECT_LE(least(make_lattice(chain, as_others, path, problem)).cost, 1.01 * grid.cost) << what;
+  }
+  for (std::size_t i = 0; i < arcs.joints.size(); ++i)
+    ASSERT_TRUE(chain.tool(arcs.joints[i]).isApprox(path.layer(static_cast<int>(i)).tool, 1e-9))
+        << what << " layer " << i;
+}
+
+/// Prints how many of `count` paths were found, and how their costs are spread.
+void print_counts(std::uint64_t base, const std::string& robot, int count, Counts& counts) {
+  std::printf(
+      "seed %llu, %s: %d paths, %d over the grid, %d along arcs as well (%d cheaper, %d dearer "
+      "by 1 %% but not along finer "
+      "ones), %d "
+      "along arcs alone\n",
+      static_cast<unsigned long long>(base), robot.c_str(), count, counts.solved, counts.both,
+      counts.cheaper, counts.finer, counts.arcs_alone);
+  for (auto* const some : {&counts.ratios, &counts.others}) {
+    std::sort(some->begin(), some->end());
+    if (some->empty()) continue;
+    std::printf("  %s: %zu, cost over the grid's %.4f in the median, %.4f to %.4f\n",
+                some == &counts.ratios ? "l2" : "max and time", some->size(),
+                (*some)[some->size() / 2], some->front(), some->back());
+  }
+}
+
 TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
   const std::uint64_t base = seed("SrsArcs");
   const std::vector<TestRobot> robots{data_robot("iiwa14"), data_robot("sda5f"),
@@ -65,65 +132,19 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
   const int count = trials(25);
   for (std::size_t which = 0; which < robots.size(); ++which) {
     const TestRobot& robot = robots[which];
-    int solved = 0, both = 0, finer = 0, cheaper = 0, arcs_alone = 0;
-    std::vector<double> ratios, others;
+    Counts counts;
     for (int trial = 0; trial < count; ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial) * robots.size() + which);
-      Problem problem = motion_problem(robot, random);
-      problem.scene.clear();
-      problem.smooth.reset();
-      problem.resolution.dphi = 0.05;
-      problem.resolution.arc = 0.1;  // about as far from node to node as that
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                               std::to_string(trial) + " " + robot.name;
-      const PreparedRobot prepared(problem);
-      const Chain& chain = prepared.arm().chain;
-      ASSERT_EQ(prepared.arm_class().kind, ArmKind::kSrs) << what;
-      ArmClass as_others;
-      as_others.kind = ArmKind::kArcs;
-      as_others.lock = lock_method(chain);
-      ASSERT_GE(as_others.lock.best, 0) << what;
-      const ToolPath path = problem_path(problem, chain);
-      const Found grid = least(make_lattice(chain, prepared.arm_class(), path, problem));
-      const Found arcs = least(make_lattice(chain, as_others, path, problem));
-      solved += !grid.joints.empty();
-      if (grid.joints.empty()) {
-        arcs_alone += !arcs.joints.empty();
-        continue;
-      }
-      ASSERT_FALSE(arcs.joints.empty())
-          << what << ": no path along arcs, of cost " << grid.cost << " over the grid";
-      ++both;
-      const bool l2 = problem.cost.metric == CostMetric::kL2;
-      (l2 ? ratios : others).push_back(arcs.cost / grid.cost);
-      cheaper += arcs.cost < grid.cost;
-      if (arcs.cost > 1.01 * grid.cost) {
-        ++finer;
-        problem.resolution.arc /= 2;
-        EXPECT_LE(least(make_lattice(chain, as_others, path, problem)).cost, 1.01 * grid.cost)
-            << what;
-      }
-      for (std::size_t i = 0; i < arcs.joints.size(); ++i)
-        ASSERT_TRUE(chain.tool(arcs.joints[i]).isApprox(path.layer(static_cast<int>(i)).tool, 1e-9))
-            << what << " layer " << i;
+      compare_with_grid(free_problem(robot, random),
+                        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                            std::to_string(trial) + " " + robot.name,
+                        counts);
+      if (HasFatalFailure()) return;
     }
-    std::printf(
-        "seed %llu, %s: %d paths, %d over the grid, %d along arcs as well (%d cheaper, %d dearer "
-        "by 1 %% but not along finer "
-        "ones), %d "
-        "along arcs alone\n",
-        static_cast<unsigned long long>(base), robot.name.c_str(), count, solved, both, cheaper,
-        finer, arcs_alone);
-    for (auto* const some : {&ratios, &others}) {
-      std::sort(some->begin(), some->end());
-      if (some->empty()) continue;
-      std::printf("  %s: %zu, cost over the grid's %.4f in the median, %.4f to %.4f\n",
-                  some == &ratios ? "l2" : "max and time", some->size(), (*some)[some->size() / 2],
-                  some->front(), some->back());
-    }
-    EXPECT_GE(both, at_least(count / 2)) << robot.name;
-    EXPECT_LE(finer, 1 + both / 20) << robot.name;
-    EXPECT_GE(cheaper, at_least(count / 3)) << robot.name;
+    print_counts(base, robot.name, count, counts);
+    EXPECT_GE(counts.both, at_least(count / 2)) << robot.name;
+    EXPECT_LE(counts.finer, 1 + counts.both / 20) << robot.name;
+    EXPECT_GE(counts.cheaper, at_least(count / 3)) << robot.name;
   }
 }
 
