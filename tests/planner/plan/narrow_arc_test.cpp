@@ -131,82 +131,112 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
   EXPECT_EQ(advised, missed);
 }
 
+/// Makes a path between random postures far apart: what is hard to reach is between waypoints.
+Problem drawn_far(const TestRobot& robot, const ArmModel& arm, double most, Random& random) {
+  Problem problem = drawn(robot, arm, most, random);
+  problem.waypoints = {problem.waypoints[0],
+                       waypoint_of(arm.chain.tool(random_config(arm.chain, random)))};
+  problem.resolution = {.ds = 0.05, .dphi = 0.2, .dalpha = 0.2};
+  return problem;
+}
+
+/// Returns whether any IK solution at one of 4000 arm angles keeps all joints `margin` rad within
+/// their limits.
+bool sampled_within_limits(const Chain& chain, const SrsArm& srs,
+                           const std::array<ElbowCircle, 2>& circles, double margin) {
+  for (int k = 0; k < 4000; ++k)
+    for (int branch = 0; branch < kBranches; ++branch) {
+      const Config q = srs_ik(srs, circles, -kPi + kTwoPi * k / 4000, branch);
+      bool within = true;
+      for (int j = 0; j < kDof; ++j) {
+        const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+        within = within && (limit.continuous ||
+                            (q[j] >= limit.lower + margin && q[j] <= limit.upper - margin));
+      }
+      if (within) return true;
+    }
+  return false;
+}
+
+/// Checks layers proved unreachable by sampling, and how far "no path" says that it holds.
+void expect_holds_as_proved(const Problem& problem, const ToolPath& path, const ArmModel& arm,
+                            const SrsArm& srs, const Diagnosis& diagnosis,
+                            const std::string& what) {
+  const SrsLattice lattice(arm.chain, srs, path, problem);
+  bool waypoint_empty = false, empty = false;
+  for (int layer = 0; layer < lattice.layers();
+       ++layer) {  // by sampling, each IK solution's joints within the limits
+    if (reach_status(srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
+    const auto circles = elbow_circles(srs, lattice.plane(layer), path.layer(layer).tool);
+    const bool any = sampled_within_limits(arm.chain, srs, circles, problem.limits.joint_margin);
+    const bool proved = lattice.proved_unreachable(layer);
+    ASSERT_FALSE(any && proved) << what;
+    if (proved) {
+      empty = true;
+      waypoint_empty = waypoint_empty || path.layer(layer).waypoint >= 0;
+    }
+  }
+  ASSERT_EQ(diagnosis.holds(), waypoint_empty ? Diagnosis::Holds::kEveryResolution
+                               : empty        ? Diagnosis::Holds::kExactTool
+                                              : Diagnosis::Holds::kThisResolution)
+      << what;
+}
+
+/// Counts the answers "no path" by how far they hold, and those that were tried finer.
+struct HoldsCounts {
+  std::array<int, 3> seen{};
+  int finer = 0;
+};
+
+/// Plans with the problem's joint margin and checks how far "no path" holds, if that is the answer.
+void check_no_path(const Problem& problem, const ArmModel& arm, const SrsArm& srs,
+                   const std::string& what, HoldsCounts& counts) {
+  const PlanResult result = planned(problem, false);
+  if (result.status == PlanStatus::kSolved) return;
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+  const Diagnosis& diagnosis = result.diagnosis;
+  ++counts.seen[static_cast<std::size_t>(diagnosis.holds())];
+  expect_holds_as_proved(problem, path, arm, srs, diagnosis, what);
+  if (::testing::Test::HasFatalFailure()) return;
+  if (diagnosis.holds() != Diagnosis::Holds::kEveryResolution) return;
+  ASSERT_EQ(path.layer(diagnosis.unreachable->layer).waypoint, diagnosis.unreachable->waypoint)
+      << what;
+  Problem finer = problem;
+  finer.resolution.ds /= 3;
+  finer.resolution.dphi /= 7;
+  ASSERT_EQ(planned(finer, true).status, PlanStatus::kInfeasible) << what;
+  ++counts.finer;
+}
+
 /// With a margin that just leaves no arc, "no path" holds at every resolution where that is at a
 /// waypoint, else for a tool that follows exactly; with one that just leaves an arc it holds for
 /// this resolution.
 TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
   const std::uint64_t base = seed("NarrowArc.Holds");
-  std::array<int, 3> seen{};
-  int finer = 0;
+  HoldsCounts counts;
   const TestRobot robots[] = {data_robot("iiwa14"), continuous_robot()};
   for (int trial = 0; trial < trials(60); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot = robots[trial % 2];
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
-    Problem problem = drawn(robot, arm, 0.1, random);
-    const bool far =
-        trial % 4 > 1;  // between postures far apart, what is hard to reach is between waypoints
-    if (far)
-      problem.waypoints = {problem.waypoints[0],
-                           waypoint_of(arm.chain.tool(random_config(arm.chain, random)))};
-    if (far) problem.resolution = {.ds = 0.05, .dphi = 0.2, .dalpha = 0.2};
-    const Resolution asked = problem.resolution;
+    const bool far = trial % 4 > 1;
+    Problem problem = (far ? drawn_far : drawn)(robot, arm, 0.1, random);
     const auto margin = far ? std::optional(0.0) : margin_that_leaves(1e-3, arm, srs, problem);
     if (!margin) continue;
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     for (const double more : {0.0, 0.02}) {
       problem.limits.joint_margin = *margin + more;
-      const PlanResult result = planned(problem, false);
-      if (result.status == PlanStatus::kSolved) continue;
-      const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-      const SrsLattice lattice(arm.chain, srs, path, problem);
-      const Diagnosis& diagnosis = result.diagnosis;
-      ++seen[static_cast<std::size_t>(diagnosis.holds())];
-      bool waypoint_empty = false, empty = false;
-      for (int layer = 0; layer < lattice.layers();
-           ++layer) {  // by sampling, each IK solution's joints within the limits
-        if (reach_status(srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
-        const auto circles = elbow_circles(srs, lattice.plane(layer), path.layer(layer).tool);
-        bool any = false;
-        for (int k = 0; k < 4000 && !any; ++k)
-          for (int branch = 0; branch < kBranches && !any; ++branch) {
-            const Config q = srs_ik(srs, circles, -kPi + kTwoPi * k / 4000, branch);
-            any = true;
-            for (int j = 0; j < kDof; ++j) {
-              const JointLimit& limit = arm.chain.limit[static_cast<std::size_t>(j)];
-              const double m = problem.limits.joint_margin;
-              any =
-                  any && (limit.continuous || (q[j] >= limit.lower + m && q[j] <= limit.upper - m));
-            }
-          }
-        const bool proved = lattice.proved_unreachable(layer);
-        ASSERT_FALSE(any && proved) << what;
-        if (proved) {
-          empty = true;
-          waypoint_empty = waypoint_empty || path.layer(layer).waypoint >= 0;
-        }
-      }
-      ASSERT_EQ(diagnosis.holds(), waypoint_empty ? Diagnosis::Holds::kEveryResolution
-                                   : empty        ? Diagnosis::Holds::kExactTool
-                                                  : Diagnosis::Holds::kThisResolution)
-          << what;
-      if (diagnosis.holds() != Diagnosis::Holds::kEveryResolution) continue;
-      ASSERT_EQ(path.layer(diagnosis.unreachable->layer).waypoint, diagnosis.unreachable->waypoint)
-          << what;
-      problem.resolution.ds /= 3;
-      problem.resolution.dphi /= 7;
-      ASSERT_EQ(planned(problem, true).status, PlanStatus::kInfeasible) << what;
-      problem.resolution = asked;
-      ++finer;
+      check_no_path(problem, arm, srs, what, counts);
+      if (HasFatalFailure()) return;
     }
   }
   std::printf(
       "%d for this resolution, %d for an exact tool, %d for every resolution, of which %d were "
       "tried finer\n",
-      seen[0], seen[1], seen[2], finer);
-  for (const int count : seen) EXPECT_GE(count, at_least(3));
+      counts.seen[0], counts.seen[1], counts.seen[2], counts.finer);
+  for (const int count : counts.seen) EXPECT_GE(count, at_least(3));
 }
 
 }  // namespace
