@@ -48,14 +48,120 @@ Pose nudged(Random& random, Pose pose) {
   return pose;
 }
 
-TEST(Planner, RemembersWithoutChangingAnAnswer) {
-  const std::uint64_t base = seed("Replanning");
-  const auto robots = all_robots();
-  constexpr PlannerKind kPlanners[] = {PlannerKind::kLazy, PlannerKind::kParallel,
-                                       PlannerKind::kEagerDp};
+/// Makes one random change to a planner's problem and names its kind.
+class RandomChange {
+ public:
+  /// Changes the problem and returns the kind: "nothing" where the drawn one has nothing to act on.
+  std::string make(Planner& planner, Random& random) {
+    const Problem& problem = planner.problem();
+    const int objects = static_cast<int>(problem.scene.size());
+    const int kind = random.below(12);
+    const std::string object =
+        objects > 0 ? problem.scene[static_cast<std::size_t>(random.below(objects))].name : "";
+    if (kind < 6 && objects > 0) return move(planner, object, random);
+    if (kind == 6) {
+      planner.add(random_object(random, problem, "added" + std::to_string(named_++)));
+      return "add";
+    }
+    if (kind == 7 && objects > 0) {
+      planner.remove(object);
+      return "remove";
+    }
+    if (kind == 8) return change_clearance(planner, random);
+    if (kind == 9) return change_path(planner, random);
+    if (kind == 10) {
+      if (problem.attached.empty())
+        planner.attach(
+            {"grip", Box{Vector3d(0.05, 0.08, 0.03)}, Pose::Identity(), problem.tip_link});
+      else
+        planner.detach("grip");
+      return "attach";
+    }
+    if (kind == 11 && objects > 0) {
+      std::vector<SceneObject> scene = problem.scene;
+      if (random.coin()) std::rotate(scene.begin(), scene.begin() + 1, scene.end());
+      scene.back().pose = nudged(random, scene.back().pose);
+      planner.set_scene(scene);
+      return "scene";
+    }
+    return "nothing";
+  }
+
+ private:
+  static std::string move(Planner& planner, const std::string& object, Random& random) {
+    const Problem& problem = planner.problem();
+    const auto& o = *std::find_if(problem.scene.begin(), problem.scene.end(),
+                                  [&](const auto& x) { return x.name == object; });
+    planner.move(object, nudged(random, o.pose));
+    if (random.coin(0.3)) {  // two at once
+      const int objects = static_cast<int>(problem.scene.size());
+      const SceneObject& other = problem.scene[static_cast<std::size_t>(random.below(objects))];
+      planner.move(other.name, nudged(random, other.pose));
+    }
+    return "move";
+  }
+  static std::string change_clearance(Planner& planner, Random& random) {
+    Task task = planner.problem();
+    task.limits.clearance = random.uniform(0, 0.03);
+    task.limits.edges = random.coin() ? EdgeMode::kNodes : EdgeMode::kContinuous;
+    planner.set_task(task);
+    return "clearance";
+  }
+  static std::string change_path(Planner& planner, Random& random) {
+    Task task = planner.problem();
+    for (Waypoint& waypoint : task.waypoints)
+      waypoint.position.z() += random.uniform(-0.005, 0.005);
+    task.start.reset();
+    planner.set_task(task);
+    return "path";
+  }
+
+  int named_ = 0;  // objects added so far
+};
+
+/// Counts plans after each kind of change, and the questions that planners asked.
+struct Counts {
   std::map<std::string, int> changes;
   int plans = 0, solved = 0, changed_answers = 0;
   std::int64_t remembered_questions = 0, fresh_questions = 0;
+};
+
+/// Changes a planner's problem eleven times, and checks after each change that the planner answers
+/// as a fresh one.
+void replan_after_changes(Planner& planner, Random& random, const std::string& trial,
+                          const std::string& robot, Counts& counts) {
+  constexpr PlannerKind kPlanners[] = {PlannerKind::kLazy, PlannerKind::kParallel,
+                                       PlannerKind::kEagerDp};
+  std::optional<PlanResult> last;
+  RandomChange random_change;
+  for (int step = 0; step < 12; ++step) {
+    const std::string change = step > 0 ? random_change.make(planner, random) : "nothing";
+    ++counts.changes[change];
+    const std::string what =
+        trial + " step " + std::to_string(step) + " robot " + robot + " after: " + change;
+    PlanOptions options;
+    options.planner = kPlanners[random.coin(0.1) ? 2 : random.below(2)];
+    options.threads = 2;
+    options.evidence.layers = true;
+    const PlanResult remembered = planner.plan(options), fresh = plan(planner.problem(), options);
+    expect_same(remembered, fresh, what);
+    if (::testing::Test::HasFatalFailure()) return;
+    if (options.planner != PlannerKind::kEagerDp && step > 0) {
+      counts.remembered_questions +=
+          remembered.counters.nodes_checked + remembered.counters.edges_checked;
+      counts.fresh_questions += fresh.counters.nodes_checked + fresh.counters.edges_checked;
+    }
+    ++counts.plans;
+    counts.solved += fresh.status == PlanStatus::kSolved;
+    counts.changed_answers += last && (last->status != fresh.status || last->cost != fresh.cost);
+    last = fresh;
+  }
+}
+
+TEST(Planner, RemembersWithoutChangingAnAnswer) {
+  const std::uint64_t base = seed("Replanning");
+  const auto robots = all_robots();
+  Counts counts;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -64,95 +170,26 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
                                  : robots[static_cast<std::size_t>(trial) % robots.size()];
     Problem start = random_problem(robot, random);
     Planner planner(start);
-    std::optional<PlanResult> last;
-    int named = 0;
-    for (int step = 0; step < 12; ++step) {
-      const Problem& problem = planner.problem();
-      const int objects = static_cast<int>(problem.scene.size());
-      std::string change = "nothing";
-      if (step > 0) {
-        const int kind = random.below(12);
-        const std::string object =
-            objects > 0 ? problem.scene[static_cast<std::size_t>(random.below(objects))].name : "";
-        if (kind < 6 && objects > 0) {
-          change = "move";
-          const auto& o = *std::find_if(problem.scene.begin(), problem.scene.end(),
-                                        [&](const auto& x) { return x.name == object; });
-          planner.move(object, nudged(random, o.pose));
-          if (random.coin(0.3)) {  // two at once
-            const SceneObject& other =
-                problem.scene[static_cast<std::size_t>(random.below(objects))];
-            planner.move(other.name, nudged(random, other.pose));
-          }
-        } else if (kind == 6) {
-          change = "add";
-          planner.add(random_object(random, problem, "added" + std::to_string(named++)));
-        } else if (kind == 7 && objects > 0) {
-          change = "remove";
-          planner.remove(object);
-        } else if (kind == 8) {
-          change = "clearance";
-          Task task = problem;
-          task.limits.clearance = random.uniform(0, 0.03);
-          task.limits.edges = random.coin() ? EdgeMode::kNodes : EdgeMode::kContinuous;
-          planner.set_task(task);
-        } else if (kind == 9) {
-          change = "path";
-          Task task = problem;
-          for (Waypoint& waypoint : task.waypoints)
-            waypoint.position.z() += random.uniform(-0.005, 0.005);
-          task.start.reset();
-          planner.set_task(task);
-        } else if (kind == 10) {
-          change = "attach";
-          if (problem.attached.empty())
-            planner.attach(
-                {"grip", Box{Vector3d(0.05, 0.08, 0.03)}, Pose::Identity(), problem.tip_link});
-          else
-            planner.detach("grip");
-        } else if (kind == 11 && objects > 0) {
-          change = "scene";
-          std::vector<SceneObject> scene = problem.scene;
-          if (random.coin()) std::rotate(scene.begin(), scene.begin() + 1, scene.end());
-          scene.back().pose = nudged(random, scene.back().pose);
-          planner.set_scene(scene);
-        }
-      }
-      ++changes[change];
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                               std::to_string(trial) + " step " + std::to_string(step) + " robot " +
-                               robot.name + " after: " + change;
-      PlanOptions options;
-      options.planner = kPlanners[random.coin(0.1) ? 2 : random.below(2)];
-      options.threads = 2;
-      options.evidence.layers = true;
-      const PlanResult remembered = planner.plan(options), fresh = plan(planner.problem(), options);
-      expect_same(remembered, fresh, what);
-      if (HasFatalFailure()) return;
-      if (options.planner != PlannerKind::kEagerDp && step > 0) {
-        remembered_questions +=
-            remembered.counters.nodes_checked + remembered.counters.edges_checked;
-        fresh_questions += fresh.counters.nodes_checked + fresh.counters.edges_checked;
-      }
-      ++plans;
-      solved += fresh.status == PlanStatus::kSolved;
-      changed_answers += last && (last->status != fresh.status || last->cost != fresh.cost);
-      last = fresh;
-    }
+    replan_after_changes(
+        planner, random,
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial), robot.name,
+        counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d plans, %d solved, %d answers unlike the one before; %lld questions where fresh planners "
       "ask %lld;",
-      plans, solved, changed_answers, static_cast<long long>(remembered_questions),
-      static_cast<long long>(fresh_questions));
-  for (const auto& [change, times] : changes) std::printf(" %s %d", change.c_str(), times);
+      counts.plans, counts.solved, counts.changed_answers,
+      static_cast<long long>(counts.remembered_questions),
+      static_cast<long long>(counts.fresh_questions));
+  for (const auto& [change, times] : counts.changes) std::printf(" %s %d", change.c_str(), times);
   std::printf("\n");
   if (count < 60) return;
-  EXPECT_GT(solved, plans / 5);
-  EXPECT_GT(changed_answers, plans / 20);
-  EXPECT_GE(changes.size(), 8u);
-  for (const auto& [change, times] : changes) EXPECT_GT(times, 5) << change;
-  EXPECT_LT(remembered_questions, fresh_questions * 2 / 3);
+  EXPECT_GT(counts.solved, counts.plans / 5);
+  EXPECT_GT(counts.changed_answers, counts.plans / 20);
+  EXPECT_GE(counts.changes.size(), 8u);
+  for (const auto& [change, times] : counts.changes) EXPECT_GT(times, 5) << change;
+  EXPECT_LT(counts.remembered_questions, counts.fresh_questions * 2 / 3);
 }
 
 /// What failed where the path was a moment ago is asked about first: fewer rounds of search, for
