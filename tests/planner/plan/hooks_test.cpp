@@ -150,101 +150,159 @@ PlanOptions options_for(PlannerKind planner) {
 constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
                                      PlannerKind::kParallel};
 
-TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
-  const std::uint64_t base = seed("Hooks");
-  const auto robots = all_robots();
+/// Holds one random problem with rules and costs of the caller's own, and its answer by brute
+/// force.
+struct Case {
+  Case(const TestRobot& model, int trial, Random& random)
+      : problem(random_problem(model, random)),
+        robot(problem),
+        path(problem_path(problem, robot.arm().chain)),
+        lattice(robot.arm().chain, robot.srs(), path, problem),
+        check(trial % 4 == 1 ? nullptr : random_check(random)),
+        cost(trial % 4 == 2 ? nullptr : random_cost(random, lattice.cost_unit())),
+        hooks{check, cost},
+        world(robot.world(), problem),
+        truth(brute_force(
+            lattice, world, world.edge_rule(robot.radii()),
+            [&](int layer, int a, int b) { return window_allows(lattice, layer, a, b); }, hooks)) {
+    if (check) check->look_for_collisions(world);
+  }
+
+  const Problem problem;
+  const PreparedRobot robot;
+  const ToolPath path;
+  const SrsLattice lattice;
+  const std::shared_ptr<WaveCheck> check;
+  const std::shared_ptr<WaveCost> cost;
+  const Hooks hooks;
+  const World world;
+  const Answer truth;
+};
+
+/// Counts the problems by what they have and by how they end, and the questions to the caller.
+struct Counts {
   int solved = 0, infeasible = 0, with_cost = 0, with_check = 0, with_motions = 0, other_path = 0,
       other_verdict = 0, by_check = 0, confirmed = 0;
   std::int64_t asked = 0, refused = 0, lazy_costs = 0, eager_costs = 0;
+};
+
+/// Checks a planner's answer against brute force, and its rows and reasons against the first
+/// planner's.
+void expect_truth(const Case& one, const PlanResult& result, const PlanResult& first,
+                  const std::string& who) {
+  const Answer& truth = one.truth;
+  ASSERT_EQ(result.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible) << who;
+  ASSERT_EQ(result.cost, truth.solved ? truth.cost : 0) << who;
+  for (int i = 0; truth.solved && i < one.lattice.layers(); ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    ASSERT_EQ(result.trajectory[row].phi, one.lattice.phi(i, truth.slots[row]))
+        << who << " row " << i;
+    ASSERT_EQ(result.trajectory[row].branch, one.lattice.branch(i, truth.slots[row]))
+        << who << " row " << i;
+    ASSERT_EQ(result.trajectory[row].q, first.trajectory[row].q) << who << " row " << i;
+  }
+  ASSERT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause)) << who;
+  ASSERT_EQ(result.diagnosis.removed, first.diagnosis.removed) << who;
+  ASSERT_EQ(result.partial.size(), first.partial.size()) << who;
+  for (std::size_t i = 0; i < result.partial.size(); ++i)
+    ASSERT_EQ(result.partial[i].q, first.partial[i].q) << who << " row " << i;
+  if (!truth.solved) {
+    ASSERT_EQ(result.diagnosis.reached_layer.value_or(-1), truth.deepest) << who;
+    ASSERT_NE(result.diagnosis.cause.kind, Cause::Kind::kNone) << who;
+    std::vector<int> empty;
+    for (const EmptyLayers& run : result.diagnosis.empty_layers)
+      for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
+    ASSERT_TRUE(!result.diagnosis.complete || empty == truth.empty) << who;
+  }
+}
+
+/// Plans with each planner and checks its answer, and that the caller's check is asked by one at a
+/// time and about no state in collision. Puts the first planner's answer into `first`.
+void plan_with_each(const Case& one, const std::string& what, std::optional<PlanResult>& first,
+                    Counts& counts) {
+  const auto& check = one.check;
+  const auto& cost = one.cost;
+  for (int k = 0; k < 4; ++k) {
+    PlanOptions options = options_for(kPlanners[k]);
+    options.evidence.layers = true;
+    options.hooks = one.hooks;
+    if (check) check->asked = check->refused = 0;
+    if (cost) cost->asked = 0;
+    const PlanResult result = plan(one.robot, one.problem, options);
+    if (!first) first = result;
+    const std::string who = what + " planner " + result.planner;
+    expect_truth(one, result, *first, who);
+    if (::testing::Test::HasFatalFailure()) return;
+    if (check) {
+      ASSERT_EQ(check->in_collision, 0) << who;
+      ASSERT_LE(check->most_at_once, 1) << who;
+      counts.asked += check->asked;
+      counts.refused += check->refused;
+    }
+    if (cost && k == 1) counts.eager_costs += cost->asked;
+    if (cost && k == 2) counts.lazy_costs += cost->asked;
+  }
+}
+
+/// Checks that the trajectory passes, and that its cost is that of its motions and of its states.
+void expect_cost_of_states(const Case& one, const std::vector<TrajectoryRow>& rows,
+                           const std::string& what) {
+  const CheckResult checked = check_trajectory(one.robot, one.problem, rows);
+  ASSERT_TRUE(checked.passed) << what << ": "
+                              << (checked.failures.empty() ? "" : checked.failures[0]);
+  double of_states = 0;
+  for (const TrajectoryRow& row : rows) of_states += one.cost ? one.cost->of(row.q) : 0;
+  ASSERT_NEAR(checked.cost + of_states, one.truth.cost, 1e-9 * std::max(1.0, one.truth.cost))
+      << what;
+}
+
+/// Plans without hooks: counts what they changed, and checks a path that is said to be possible
+/// without the check.
+void compare_with_plain(const Case& one, const PlanResult& hooked, const std::string& what,
+                        Counts& counts) {
+  const PlanResult plain = plan(one.robot, one.problem, options_for(PlannerKind::kLazy));
+  counts.other_verdict += plain.status != hooked.status;
+  if (const Diagnosis& d = hooked.diagnosis; !one.truth.solved && one.check && d.without_it) {
+    ASSERT_EQ(d.cause.kind, Cause::Kind::kCheck) << what;
+    ASSERT_TRUE(plain.status == PlanStatus::kSolved ||
+                plain.diagnosis.reached_layer.value_or(-1) >= *d.without_it)
+        << what;
+    ++counts.confirmed;
+  }
+  if (one.truth.solved)
+    counts.other_path +=
+        !std::equal(plain.trajectory.begin(), plain.trajectory.end(), hooked.trajectory.begin(),
+                    [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
+}
+
+/// Checks all planners on one problem, and what its hooks changed.
+void check_case(const Case& one, const std::string& what, Counts& counts) {
+  (one.truth.solved ? counts.solved : counts.infeasible) += 1;
+  counts.with_cost += one.cost != nullptr;
+  counts.with_check += one.check != nullptr;
+  counts.with_motions += one.check && one.check->checks_motions();
+  std::optional<PlanResult> first;
+  plan_with_each(one, what, first, counts);
+  if (::testing::Test::HasFatalFailure()) return;
+  counts.by_check += words(first->diagnosis.cause).starts_with("check wave");
+  if (one.truth.solved) expect_cost_of_states(one, first->trajectory, what);
+  if (::testing::Test::HasFatalFailure()) return;
+  compare_with_plain(one, *first, what, counts);
+}
+
+TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
+  const std::uint64_t base = seed("Hooks");
+  const auto robots = all_robots();
+  Counts counts;
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
-        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " robot " + problem.source;
-    const PreparedRobot robot(problem);
-    const ToolPath path = problem_path(problem, robot.arm().chain);
-    const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
-    const std::shared_ptr<WaveCheck> check = trial % 4 == 1 ? nullptr : random_check(random);
-    const std::shared_ptr<WaveCost> cost =
-        trial % 4 == 2 ? nullptr : random_cost(random, lattice.cost_unit());
-    const Hooks hooks{check, cost};
-    const World world(robot.world(), problem);
-    const Answer truth = brute_force(
-        lattice, world, world.edge_rule(robot.radii()),
-        [&](int layer, int a, int b) { return window_allows(lattice, layer, a, b); }, hooks);
-    (truth.solved ? solved : infeasible) += 1;
-    with_cost += cost != nullptr;
-    with_check += check != nullptr;
-    with_motions += check && check->checks_motions();
-    if (check) check->look_for_collisions(world);
-
-    std::vector<PlanResult> results;
-    for (int k = 0; k < 4; ++k) {
-      PlanOptions options = options_for(kPlanners[k]);
-      options.evidence.layers = true;
-      options.hooks = hooks;
-      if (check) check->asked = check->refused = 0;
-      if (cost) cost->asked = 0;
-      results.push_back(plan(robot, problem, options));
-      const PlanResult& result = results.back();
-      const std::string who = what + " planner " + result.planner;
-      ASSERT_EQ(result.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible) << who;
-      ASSERT_EQ(result.cost, truth.solved ? truth.cost : 0) << who;
-      for (int i = 0; truth.solved && i < lattice.layers(); ++i) {
-        const auto row = static_cast<std::size_t>(i);
-        ASSERT_EQ(result.trajectory[row].phi, lattice.phi(i, truth.slots[row]))
-            << who << " row " << i;
-        ASSERT_EQ(result.trajectory[row].branch, lattice.branch(i, truth.slots[row]))
-            << who << " row " << i;
-        ASSERT_EQ(result.trajectory[row].q, results[0].trajectory[row].q) << who << " row " << i;
-      }
-      ASSERT_EQ(words(result.diagnosis.cause), words(results[0].diagnosis.cause)) << who;
-      ASSERT_EQ(result.diagnosis.removed, results[0].diagnosis.removed) << who;
-      ASSERT_EQ(result.partial.size(), results[0].partial.size()) << who;
-      for (std::size_t i = 0; i < result.partial.size(); ++i)
-        ASSERT_EQ(result.partial[i].q, results[0].partial[i].q) << who << " row " << i;
-      if (!truth.solved) {
-        ASSERT_EQ(result.diagnosis.reached_layer.value_or(-1), truth.deepest) << who;
-        ASSERT_NE(result.diagnosis.cause.kind, Cause::Kind::kNone) << who;
-        std::vector<int> empty;
-        for (const EmptyLayers& run : result.diagnosis.empty_layers)
-          for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
-        ASSERT_TRUE(!result.diagnosis.complete || empty == truth.empty) << who;
-      }
-      if (check) {
-        ASSERT_EQ(check->in_collision, 0) << who;
-        ASSERT_LE(check->most_at_once, 1) << who;
-        asked += check->asked;
-        refused += check->refused;
-      }
-      if (cost && k == 1) eager_costs += cost->asked;
-      if (cost && k == 2) lazy_costs += cost->asked;
-    }
-    by_check += words(results[0].diagnosis.cause).starts_with("check wave");
-    if (truth.solved) {
-      const CheckResult checked = check_trajectory(robot, problem, results[0].trajectory);
-      ASSERT_TRUE(checked.passed) << what << ": "
-                                  << (checked.failures.empty() ? "" : checked.failures[0]);
-      double of_states = 0;
-      for (const TrajectoryRow& row : results[0].trajectory)
-        of_states += cost ? cost->of(row.q) : 0;
-      ASSERT_NEAR(checked.cost + of_states, truth.cost, 1e-9 * std::max(1.0, truth.cost)) << what;
-    }
-    const PlanResult plain = plan(robot, problem, options_for(PlannerKind::kLazy));
-    other_verdict += plain.status != results[0].status;
-    if (const Diagnosis& d = results[0].diagnosis; !truth.solved && check && d.without_it) {
-      ASSERT_EQ(d.cause.kind, Cause::Kind::kCheck) << what;
-      ASSERT_TRUE(plain.status == PlanStatus::kSolved ||
-                  plain.diagnosis.reached_layer.value_or(-1) >= *d.without_it)
-          << what;
-      ++confirmed;
-    }
-    if (truth.solved)
-      other_path += !std::equal(
-          plain.trajectory.begin(), plain.trajectory.end(), results[0].trajectory.begin(),
-          [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
+    const Case one(robots[static_cast<std::size_t>(trial) % robots.size()], trial, random);
+    check_case(one,
+               "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                   " robot " + one.problem.source,
+               counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d solved, %d infeasible (%d by a check, %d confirmed without it); %d with "
@@ -252,18 +310,35 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
       "motions; another path %d times, "
       "another verdict %d times; %lld asked, %lld refused; costs asked: %lld lazily, %lld "
       "eagerly\n",
-      count, solved, infeasible, by_check, confirmed, with_cost, with_check, with_motions,
-      other_path, other_verdict, static_cast<long long>(asked), static_cast<long long>(refused),
-      static_cast<long long>(lazy_costs), static_cast<long long>(eager_costs));
-  EXPECT_GE(solved, count / 4);
-  EXPECT_GE(infeasible, count / 10);
-  EXPECT_GE(with_motions, count / 4);
-  EXPECT_GE(other_path, count / 10);
-  EXPECT_GE(other_verdict, count / 40);
-  EXPECT_GE(by_check, count / 40);
-  EXPECT_GE(confirmed, count / 80);
-  EXPECT_GT(refused, asked / 20);
-  EXPECT_LT(lazy_costs, eager_costs);
+      count, counts.solved, counts.infeasible, counts.by_check, counts.confirmed, counts.with_cost,
+      counts.with_check, counts.with_motions, counts.other_path, counts.other_verdict,
+      static_cast<long long>(counts.asked), static_cast<long long>(counts.refused),
+      static_cast<long long>(counts.lazy_costs), static_cast<long long>(counts.eager_costs));
+  EXPECT_GE(counts.solved, count / 4);
+  EXPECT_GE(counts.infeasible, count / 10);
+  EXPECT_GE(counts.with_motions, count / 4);
+  EXPECT_GE(counts.other_path, count / 10);
+  EXPECT_GE(counts.other_verdict, count / 40);
+  EXPECT_GE(counts.by_check, count / 40);
+  EXPECT_GE(counts.confirmed, count / 80);
+  EXPECT_GT(counts.refused, counts.asked / 20);
+  EXPECT_LT(counts.lazy_costs, counts.eager_costs);
+}
+
+/// Makes a random problem on a coarse lattice whose last pose is within a wall.
+Problem walled_problem(const TestRobot& robot, Random& random) {
+  Problem problem = random_problem(robot, random);
+  problem.limits.step_error.reset();
+  problem.limits.arm_slope = Limits().arm_slope;
+  problem.limits.joint_step = 1;
+  problem.resolution.arc = 0.4;
+  problem.start.reset();
+  SceneObject wall;  // about the last pose
+  wall.name = "wall";
+  wall.shape = Sphere{0.1};
+  wall.pose.translation() = waypoints_in_base(problem).back().position;
+  problem.scene.push_back(wall);
+  return problem;
 }
 
 /// How far the tool comes, and by which path, depends neither on what a planner planned before nor
@@ -278,18 +353,8 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
-        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    problem.limits.step_error.reset();
-    problem.limits.arm_slope = Limits().arm_slope;
-    problem.limits.joint_step = 1;
-    problem.resolution.arc = 0.4;
-    problem.start.reset();
-    SceneObject wall;  // about the last pose
-    wall.name = "wall";
-    wall.shape = Sphere{0.1};
-    wall.pose.translation() = waypoints_in_base(problem).back().position;
-    problem.scene.push_back(wall);
+    const Problem problem =
+        walled_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + problem.source;
     std::optional<PlanResult> first;
@@ -331,6 +396,97 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
   EXPECT_GE(costs_mattered, at_least(count / 8));
 }
 
+/// Makes a random problem without a start and without a limit of step errors.
+Problem startless_problem(const TestRobot& robot, Random& random) {
+  Problem problem = random_problem(robot, random);
+  problem.limits.step_error.reset();
+  problem.start.reset();
+  return problem;
+}
+
+/// Lists a random half of the nodes of each layer of a grid.
+std::vector<std::vector<ExplicitLattice::Point>> half_of_nodes(const SrsLattice& grid,
+                                                               Random& random) {
+  std::vector<std::vector<ExplicitLattice::Point>> layers(static_cast<std::size_t>(grid.layers()));
+  std::vector<Lattice::Node> nodes;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    grid.layer_nodes(static_cast<int>(i), nodes);
+    for (const Lattice::Node& node : nodes)
+      if (random.coin(0.5)) layers[i].push_back({.q = node.q});
+  }
+  return layers;
+}
+
+/// Holds a lattice of listed nodes with hooks, and its answer by brute force.
+struct ListedCase {
+  ListedCase(const TestRobot& robot, Random& random, const std::string& what)
+      : problem(startless_problem(robot, random)),
+        arm(arm_of(robot)),
+        srs(fit_srs(arm.chain, what)),
+        path(problem_path(problem, arm.chain)),
+        grid(arm.chain, srs, path, problem),
+        lattice(arm.chain, path, problem, half_of_nodes(grid, random)),
+        world(*robot.model, arm, problem),
+        rule(world.edge_rule(motion_radii(arm.chain, world.bodies()))),
+        hooks{random_check(random), random_cost(random, lattice.cost_unit())},
+        truth(brute_force(
+            lattice, world, rule, [](int, int, int) { return true; }, hooks)) {}
+
+  /// Checks what a search found: its path and cost, or how deep paths reach.
+  void expect_truth(const SlotPath& slots, double cost, int deepest, const std::string& who) const {
+    ASSERT_EQ(slots, truth.slots) << who;
+    ASSERT_TRUE(!truth.solved || cost == truth.cost) << who;
+    ASSERT_TRUE(truth.solved || deepest == truth.deepest) << who;
+  }
+
+  const Problem problem;
+  const ArmModel arm;
+  const SrsArm srs;
+  const ToolPath path;
+  const SrsLattice grid;
+  const ExplicitLattice lattice;
+  const World world;
+  const EdgeRule rule;
+  const Hooks hooks;
+  const Answer truth;
+};
+
+/// Checks the searches that ask about every node, with stored edges and without.
+void check_eager_searches(const ListedCase& one, const std::string& what) {
+  Executor executor(1);
+  const Budget never;
+  for (const bool stored : {true, false}) {
+    CollisionValidity collision(one.lattice, one.world, one.rule, one.problem.limits.edges,
+                                DistanceProofs::kOff, executor, 0, never);
+    HookedValidity validity(one.lattice, collision, one.hooks, never);
+    EagerOutcome found;
+    (stored ? eager_search : eager_dp)(one.lattice, validity, never, found);
+    one.expect_truth(found.path, found.cost, found.deepest.value_or(-1), what + " eager");
+  }
+}
+
+/// Checks the search that asks along paths only, about 1 and 32 at once; returns its rounds.
+int check_lazy_searches(const ListedCase& one, const std::string& what) {
+  Executor executor(1);
+  const Budget never;
+  int rounds = 0;
+  for (const int batch : {1, 32}) {
+    CollisionValidity collision(one.lattice, one.world, one.rule, one.problem.limits.edges,
+                                DistanceProofs::kOn, executor, batch == 1 ? 1 : 4, never);
+    HookedValidity validity(one.lattice, collision, one.hooks, never);
+    const auto cost_to_go = make_cost_to_go(one.lattice);
+    cost_to_go->sweep(one.lattice.layers() - 1);
+    SearchCounters counters;
+    const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
+    rounds += static_cast<int>(counters.iterations);
+    int deepest = -1;
+    if (found.path.empty())
+      deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
+    one.expect_truth(found.path, found.cost, deepest, what + " lazy");
+  }
+  return rounds;
+}
+
 TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
   const std::uint64_t base = seed("Hooks.Lists");
   const auto robots = all_robots();
@@ -340,60 +496,10 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
-    Problem problem = random_problem(robot, random);
-    problem.limits.step_error.reset();
-    problem.start.reset();
-    const ArmModel arm = arm_of(robot);
-    const SrsArm srs = fit_srs(arm.chain, what);
-    const ToolPath path = problem_path(problem, arm.chain);
-    const SrsLattice grid(arm.chain, srs, path, problem);
-    std::vector<std::vector<ExplicitLattice::Point>> layers(
-        static_cast<std::size_t>(grid.layers()));
-    std::vector<Lattice::Node> nodes;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-      grid.layer_nodes(static_cast<int>(i), nodes);
-      for (const Lattice::Node& node : nodes)
-        if (random.coin(0.5)) layers[i].push_back({.q = node.q});
-    }
-    const ExplicitLattice lattice(arm.chain, path, problem, std::move(layers));
-    const World world(*robot.model, arm, problem);
-    const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
-    const Hooks hooks{random_check(random), random_cost(random, lattice.cost_unit())};
-    const Answer truth = brute_force(
-        lattice, world, rule, [](int, int, int) { return true; }, hooks);
-    (truth.solved ? solved : infeasible) += 1;
-
-    Executor executor(1);
-    const Budget never;
-    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest,
-                                  const char* planner) {
-      ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
-      ASSERT_TRUE(!truth.solved || cost == truth.cost) << what << ' ' << planner;
-      ASSERT_TRUE(truth.solved || deepest == truth.deepest) << what << ' ' << planner;
-    };
-    for (const bool stored : {true, false}) {
-      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff,
-                                  executor, 0, never);
-      HookedValidity validity(lattice, collision, hooks, never);
-      EagerOutcome found;
-      (stored ? eager_search : eager_dp)(lattice, validity, never, found);
-      expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
-    }
-    for (const int batch : {1, 32}) {
-      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn,
-                                  executor, batch == 1 ? 1 : 4, never);
-      HookedValidity validity(lattice, collision, hooks, never);
-      const auto cost_to_go = make_cost_to_go(lattice);
-      cost_to_go->sweep(lattice.layers() - 1);
-      SearchCounters counters;
-      const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
-      rounds += static_cast<int>(counters.iterations);
-      int deepest = -1;
-      if (found.path.empty())
-        deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
-      expect_truth(found.path, found.cost, deepest, "lazy");
-    }
+    const ListedCase one(robots[static_cast<std::size_t>(trial) % robots.size()], random, what);
+    (one.truth.solved ? solved : infeasible) += 1;
+    check_eager_searches(one, what);
+    rounds += check_lazy_searches(one, what);
     if (HasFatalFailure()) return;
   }
   std::printf("%d solved, %d infeasible, %d rounds\n", solved, infeasible, rounds);
