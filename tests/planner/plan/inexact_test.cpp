@@ -40,13 +40,100 @@ Answer truth_of(const Laid& laid) {
       [&](int layer, int a, int b) { return window_allows(laid.lattice, layer, a, b); });
 }
 
+/// Counts the problems by what they have and by how they end.
+struct Counts {
+  int solved = 0, infeasible = 0, started = 0, detours = 0, continuous = 0, dearer = 0,
+      without_row = 0, rows = 0;
+  double farthest = 0;  // of a row's tool from the path, m or rad
+};
+
+/// Checks a planner's answer, with its rows and reasons, against the first planner's.
+void expect_same_answer(const PlanResult& other, const PlanResult& first, const Answer& truth,
+                        const std::string& what) {
+  ASSERT_EQ(other.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible)
+      << what << " " << other.planner;
+  ASSERT_EQ(other.cost, first.cost) << what << " " << other.planner;
+  ASSERT_EQ(other.lattice.cost, first.lattice.cost) << what << " " << other.planner;
+  ASSERT_EQ(other.trajectory.size(), first.trajectory.size()) << what;
+  for (std::size_t i = 0; i < first.trajectory.size(); ++i) {
+    ASSERT_EQ(other.trajectory[i].q, first.trajectory[i].q)
+        << what << " " << other.planner << " row " << i;
+    ASSERT_EQ(other.trajectory[i].phi, first.trajectory[i].phi) << what;
+  }
+  ASSERT_EQ(words(other.diagnosis.cause), words(first.diagnosis.cause))
+      << what << " " << other.planner;
+  ASSERT_EQ(other.diagnosis.removed, first.diagnosis.removed) << what << " " << other.planner;
+}
+
+/// Checks how far a problem without a path is said to reach, and its layers without nodes.
+void expect_reaches_as_far(const Diagnosis& diagnosis, const Answer& truth,
+                           const std::string& what) {
+  ASSERT_EQ(diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+  std::vector<int> empty;
+  for (const EmptyLayers& run : diagnosis.empty_layers)
+    for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
+  ASSERT_EQ(empty, truth.empty) << what;
+}
+
+/// Checks a trajectory's arm angles, start and cost, and notes how far its tool is from the path.
+void expect_rows_of_path(const Laid& laid, const Problem& problem, const PlanResult& result,
+                         const Answer& truth, const std::string& what, Counts& counts) {
+  const SrsLattice& lattice = laid.lattice;
+  ASSERT_EQ(result.lattice.cost, truth.cost) << what;
+  counts.dearer += result.cost != result.lattice.cost;
+  for (int i = 0; i < lattice.layers(); ++i) {
+    const TrajectoryRow& row = result.trajectory[static_cast<std::size_t>(i)];
+    ASSERT_EQ(row.phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)])) << what;
+    const Pose reached = lattice.chain().tool(row.q), &asked = laid.path.layer(i).tool;
+    counts.farthest =
+        std::max({counts.farthest, (reached.translation() - asked.translation()).norm(),
+                  Eigen::AngleAxisd(reached.linear().transpose() * asked.linear()).angle()});
+    ++counts.rows;
+  }
+  if (problem.start) {
+    ASSERT_EQ(result.trajectory[0].q, *problem.start) << what;
+  }
+  const CheckResult check = check_trajectory(laid.robot, problem, result.trajectory);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
+}
+
+/// Checks all planners on one problem of an arm that is approximately S-R-S.
+void check_problem(const Problem& problem, const std::string& what, Counts& counts) {
+  const Laid laid(problem);
+  const SrsLattice& lattice = laid.lattice;
+  ASSERT_TRUE(lattice.is_approximate()) << what;
+  for (int layer = 0; layer < lattice.layers(); ++layer)
+    for (int slot = 0; slot < lattice.width(); ++slot)
+      counts.without_row += lattice.node(layer, slot) && !lattice.exact_config(layer, slot);
+  const Answer truth = truth_of(laid);
+  std::vector<PlanResult> results;
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options;
+    options.planner = planner;
+    options.threads = 2;
+    options.evidence = Evidence::all();
+    results.push_back(plan(laid.robot, problem, options));
+    expect_same_answer(results.back(), results[0], truth, what);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  counts.started += problem.start.has_value();
+  counts.continuous += problem.limits.edges == EdgeMode::kContinuous;
+  counts.detours += results[2].counters.iterations > 1;
+  if (truth.solved) {
+    ++counts.solved;
+    expect_rows_of_path(laid, problem, results[0], truth, what, counts);
+  } else {
+    ++counts.infeasible;
+    expect_reaches_as_far(results[0].diagnosis, truth, what);
+  }
+}
+
 TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
   const std::uint64_t base = seed("Inexact.Agreement");
   Random making(base);
   const std::vector<TestRobot> robots = inexact_robots(making);
-  int solved = 0, infeasible = 0, started = 0, detours = 0, continuous = 0, dearer = 0,
-      without_row = 0, rows = 0;
-  double farthest = 0;
+  Counts counts;
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -54,82 +141,26 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (random.coin(0.3))
       problem.limits.joint_step = random.uniform(0.1, 0.4);  // where steps decide
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " robot " + problem.source;
-    const Laid laid(problem);
-    const SrsLattice& lattice = laid.lattice;
-    ASSERT_TRUE(lattice.is_approximate()) << what;
-    for (int layer = 0; layer < lattice.layers(); ++layer)
-      for (int slot = 0; slot < lattice.width(); ++slot)
-        without_row += lattice.node(layer, slot) && !lattice.exact_config(layer, slot);
-    const Answer truth = truth_of(laid);
-    std::vector<PlanResult> results;
-    for (const PlannerKind planner : kPlanners) {
-      PlanOptions options;
-      options.planner = planner;
-      options.threads = 2;
-      options.evidence = Evidence::all();
-      results.push_back(plan(laid.robot, problem, options));
-      const PlanResult &first = results[0], &other = results.back();
-      ASSERT_EQ(other.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible)
-          << what << " " << other.planner;
-      ASSERT_EQ(other.cost, first.cost) << what << " " << other.planner;
-      ASSERT_EQ(other.lattice.cost, first.lattice.cost) << what << " " << other.planner;
-      ASSERT_EQ(other.trajectory.size(), first.trajectory.size()) << what;
-      for (std::size_t i = 0; i < first.trajectory.size(); ++i) {
-        ASSERT_EQ(other.trajectory[i].q, first.trajectory[i].q)
-            << what << " " << other.planner << " row " << i;
-        ASSERT_EQ(other.trajectory[i].phi, first.trajectory[i].phi) << what;
-      }
-      ASSERT_EQ(words(other.diagnosis.cause), words(first.diagnosis.cause))
-          << what << " " << other.planner;
-      ASSERT_EQ(other.diagnosis.removed, first.diagnosis.removed) << what << " " << other.planner;
-    }
-    started += problem.start.has_value();
-    continuous += problem.limits.edges == EdgeMode::kContinuous;
-    detours += results[2].counters.iterations > 1;
-    if (!truth.solved) {
-      ++infeasible;
-      ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
-      std::vector<int> empty;
-      for (const EmptyLayers& run : results[0].diagnosis.empty_layers)
-        for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
-      ASSERT_EQ(empty, truth.empty) << what;
-      continue;
-    }
-    ++solved;
-    const PlanResult& result = results[0];
-    ASSERT_EQ(result.lattice.cost, truth.cost) << what;
-    dearer += result.cost != result.lattice.cost;
-    for (int i = 0; i < lattice.layers(); ++i) {
-      const TrajectoryRow& row = result.trajectory[static_cast<std::size_t>(i)];
-      ASSERT_EQ(row.phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)])) << what;
-      const Pose reached = lattice.chain().tool(row.q), &asked = laid.path.layer(i).tool;
-      farthest =
-          std::max({farthest, (reached.translation() - asked.translation()).norm(),
-                    Eigen::AngleAxisd(reached.linear().transpose() * asked.linear()).angle()});
-      ++rows;
-    }
-    if (problem.start) {
-      ASSERT_EQ(result.trajectory[0].q, *problem.start) << what;
-    }
-    const CheckResult check = check_trajectory(laid.robot, problem, result.trajectory);
-    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
-    ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
+    check_problem(problem,
+                  "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                      " robot " + problem.source,
+                  counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d solved (%d of another cost than their nodes), %d infeasible, %d continuous, "
       "%d with a start, %d after "
       "failures; %d nodes without a row; %d rows within %.1e m and rad\n",
-      count, solved, dearer, infeasible, continuous, started, detours, without_row, rows, farthest);
-  EXPECT_LE(farthest, 1e-9);
-  EXPECT_GE(solved, count / 4);
-  EXPECT_EQ(dearer, solved);
-  EXPECT_GE(infeasible, count / 20);
-  EXPECT_GE(continuous, count / 5);
-  EXPECT_GE(started, count / 10);
-  EXPECT_GE(detours, count / 20);
-  EXPECT_GT(without_row, 100);
+      count, counts.solved, counts.dearer, counts.infeasible, counts.continuous, counts.started,
+      counts.detours, counts.without_row, counts.rows, counts.farthest);
+  EXPECT_LE(counts.farthest, 1e-9);
+  EXPECT_GE(counts.solved, count / 4);
+  EXPECT_EQ(counts.dearer, counts.solved);
+  EXPECT_GE(counts.infeasible, count / 20);
+  EXPECT_GE(counts.continuous, count / 5);
+  EXPECT_GE(counts.started, count / 10);
+  EXPECT_GE(counts.detours, count / 20);
+  EXPECT_GT(counts.without_row, 100);
 }
 
 /// A row that keeps to the limits is not missed because the fitted arm's joints lie beyond them:
