@@ -109,118 +109,177 @@ void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem,
   }
 }
 
+/// Counts the problems by what they have and by how they end.
+struct Counts {
+  int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0,
+      inexact = 0, turned = 0, between = 0;
+  int at_rest = 0, moved_after_all = 0, windows = 0, costly = 0;
+};
+
+/// Says by the definition which nodes of neighbouring layers may be joined.
+class Joinable {
+ public:
+  Joinable(const RollLattice& lattice, const ToolPath& path, const Problem& problem)
+      : lattice_(lattice), path_(path), problem_(problem) {}
+
+  // Own words for what may follow what: cells on circles.
+  bool operator()(int layer, int a, int b) const {
+    if (lattice_.branch(layer, a) != lattice_.branch(layer + 1, b)) return false;
+    const double way = path_.layer(lattice_.knots()[static_cast<std::size_t>(layer) + 1]).travel -
+                       path_.layer(lattice_.knots()[static_cast<std::size_t>(layer)]).travel;
+    if (!arm_angles_may_follow(layer, a, b, way)) return false;
+    if (problem_.waypoints[0].roll)  // parts of what each layer allows
+      return std::abs(lattice_.roll(layer, a) - lattice_.roll(layer + 1, b)) <=
+             problem_.limits.roll_slope * way + 1e-9;
+    return rolls_may_follow(layer, a, b, way);
+  }
+
+ private:
+  bool arm_angles_may_follow(int layer, int a, int b, double way) const {
+    const double phi_cell = kTwoPi / std::ceil(kTwoPi / problem_.resolution.dphi - 1e-9);
+    const double most =
+        std::max(1.0,
+                 std::floor(problem_.limits.arm_slope * way / problem_.resolution.dphi + 1e-9)) *
+        phi_cell;
+    const auto grid = [&](int at, int slot) {  // moved cells count by their own grid angle
+      return at == 0 && problem_.start
+                 ? lattice_.phi(0, slot)
+                 : -kPi + phi_cell * lattice_.at_roll(0).angle_of(lattice_.inner(at, slot));
+    };
+    return !(std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) >
+             std::min(most, kPi) + 1e-9);
+  }
+  // Rolls: by how many values they are apart, in order.
+  bool rolls_may_follow(int layer, int a, int b, double way) const {
+    std::vector<double> values;
+    for (int rank = 0; rank < lattice_.rolls(); ++rank)
+      values.push_back(lattice_.roll_of_rank(layer, rank));
+    std::sort(values.begin(), values.end());
+    const auto place = [&](int at, int slot) {
+      return static_cast<int>(std::find(values.begin(), values.end(), lattice_.roll(at, slot)) -
+                              values.begin());
+    };
+    int apart = std::abs(place(layer, a) - place(layer + 1, b));
+    const int n = static_cast<int>(values.size());
+    const bool circle = problem_.roll->upper - problem_.roll->lower >= kTwoPi - 1e-9;
+    if (circle) apart = std::min(apart, n - apart);
+    const double cells =
+        std::floor(problem_.limits.roll_slope * way / problem_.resolution.droll + 1e-9);
+    return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
+  }
+
+  const RollLattice& lattice_;
+  const ToolPath& path_;
+  const Problem& problem_;
+};
+
+/// Holds a lattice of one problem and its answer by brute force.
+struct Truth {
+  std::unique_ptr<const RollLattice> lattice;
+  Answer answer;
+};
+
+/// Plans by brute force: with joint 7 at rest where that is enough, else with all rolls.
+Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const Problem& problem,
+               Counts& counts) {
+  const Chain& chain = robot.arm().chain;
+  const EdgeRule rule = robot.world().edge_rule(robot.radii());
+  const auto answer_on = [&](const RollLattice& lattice) {
+    return brute_force(lattice, robot.world(), rule, Joinable(lattice, path, problem));
+  };
+  // Joint 7 at rest where that is enough.
+  const std::optional<double> rest = last_joint_at_rest(chain, robot.arm_class(), problem);
+  const bool coaxial = rest.has_value();
+  Truth truth;
+  truth.lattice = RollLattice::make(chain, robot.srs(), path, problem, {}, rest);
+  truth.answer = answer_on(*truth.lattice);
+  counts.at_rest += coaxial && truth.answer.solved;
+  if (coaxial && !truth.answer.solved) {
+    truth.lattice = RollLattice::make(chain, robot.srs(), path, problem);
+    truth.answer = answer_on(*truth.lattice);
+    counts.moved_after_all += truth.answer.solved;
+  }
+  return truth;
+}
+
+/// Checks a planner's answer, with its rows and reasons, against the first planner's.
+void expect_same_answer(const PlanResult& result, const PlanResult& first, const Truth& truth,
+                        const std::string& what) {
+  ASSERT_EQ(result.status == PlanStatus::kSolved, truth.answer.solved)
+      << what << ' ' << result.planner;
+  ASSERT_TRUE(result.lattice.grid && result.lattice.grid->rolls == truth.lattice->rolls()) << what;
+  ASSERT_EQ(result.cost, first.cost) << what << ' ' << result.planner;
+  ASSERT_EQ(result.trajectory.size(), first.trajectory.size()) << what;
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+    ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q)
+        << what << ' ' << result.planner << " row " << i;
+  ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer)
+      << what << ' ' << result.planner;
+  ASSERT_EQ(result.diagnosis.cause, first.diagnosis.cause) << what << ' ' << result.planner;
+}
+
+/// Checks the cost and the rows of a path, and counts what it has.
+void expect_path(const PreparedRobot& robot, const Problem& problem, const PlanResult& result,
+                 const Truth& truth, const std::string& what, Counts& counts) {
+  ASSERT_EQ(result.lattice.cost, truth.answer.cost) << what;
+  const auto& rows = result.trajectory;
+  expect_rows_on_path(robot, problem, rows, what);
+  counts.between += static_cast<int>(rows.size()) > truth.lattice->layers();
+  counts.turned += std::any_of(rows.begin(), rows.end(),
+                               [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+  counts.windows += problem.waypoints[0].roll.has_value();
+  counts.costly += problem.cost.roll > 0;
+  const CheckResult check = check_trajectory(robot, problem, rows);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
+}
+
+/// Checks all planners on one problem against brute force.
+void check_problem(const Problem& problem, const std::string& what, Counts& counts) {
+  const PreparedRobot robot(problem);
+  const ToolPath path = problem_path(problem, robot.arm().chain);
+  const Truth truth = truth_of(robot, path, problem, counts);
+  std::optional<PlanResult> first;
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options;
+    options.planner = planner;
+    options.threads = 2;
+    options.evidence = Evidence::all();
+    const PlanResult result = plan(robot, problem, options);
+    if (!first) first = result;
+    expect_same_answer(result, *first, truth, what);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  counts.started += problem.start.has_value();
+  counts.continuous += problem.limits.edges == EdgeMode::kContinuous;
+  counts.obstacles += !problem.scene.empty();
+  counts.circles += problem.roll->upper - problem.roll->lower >= kTwoPi;
+  counts.inexact += !robot.srs().exact;
+  if (truth.answer.solved) {
+    ++counts.solved;
+    expect_path(robot, problem, *first, truth, what, counts);
+  } else {
+    ++counts.infeasible;
+    ASSERT_GE(first->diagnosis.reached_layer.value_or(-1), truth.answer.deepest) << what;
+    ASSERT_FALSE(words(first->diagnosis.cause).empty()) << what;
+  }
+}
+
 TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("RollLattice");
   Random any(base);
   const auto arms = robots(any);
-  int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0,
-      inexact = 0, turned = 0, between = 0;
-  int at_rest = 0, moved_after_all = 0, windows = 0, costly = 0;
+  Counts counts;
   const int count = trials(80);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Problem problem =
         roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " robot " + problem.source;
-    const PreparedRobot robot(problem);
-    const Chain& chain = robot.arm().chain;
-    const ToolPath path = problem_path(problem, chain);
-    // Joint 7 at rest where that is enough.
-    const std::optional<double> rest = last_joint_at_rest(chain, robot.arm_class(), problem);
-    const bool coaxial = rest.has_value();
-    std::unique_ptr<const RollLattice> lattice =
-        RollLattice::make(chain, robot.srs(), path, problem, {}, rest);
-    const EdgeRule rule = robot.world().edge_rule(robot.radii());
-    // Own words for what may follow what: cells on circles.
-    const auto in_window = [&](int layer, int a, int b) {
-      if (lattice->branch(layer, a) != lattice->branch(layer + 1, b)) return false;
-      const double way = path.layer(lattice->knots()[static_cast<std::size_t>(layer) + 1]).travel -
-                         path.layer(lattice->knots()[static_cast<std::size_t>(layer)]).travel;
-      const double phi_cell = kTwoPi / std::ceil(kTwoPi / problem.resolution.dphi - 1e-9);
-      const double most =
-          std::max(1.0,
-                   std::floor(problem.limits.arm_slope * way / problem.resolution.dphi + 1e-9)) *
-          phi_cell;
-      const auto grid = [&](int at, int slot) {  // moved cells count by their own grid angle
-        return at == 0 && problem.start
-                   ? lattice->phi(0, slot)
-                   : -kPi + phi_cell * lattice->at_roll(0).angle_of(lattice->inner(at, slot));
-      };
-      if (std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) > std::min(most, kPi) + 1e-9)
-        return false;
-      if (problem.waypoints[0].roll)  // parts of what each layer allows
-        return std::abs(lattice->roll(layer, a) - lattice->roll(layer + 1, b)) <=
-               problem.limits.roll_slope * way + 1e-9;
-      // Rolls: by how many values they are apart, in order.
-      std::vector<double> values;
-      for (int rank = 0; rank < lattice->rolls(); ++rank)
-        values.push_back(lattice->roll_of_rank(layer, rank));
-      std::sort(values.begin(), values.end());
-      const auto place = [&](int at, int slot) {
-        return static_cast<int>(std::find(values.begin(), values.end(), lattice->roll(at, slot)) -
-                                values.begin());
-      };
-      int apart = std::abs(place(layer, a) - place(layer + 1, b));
-      const int n = static_cast<int>(values.size());
-      const bool circle = problem.roll->upper - problem.roll->lower >= kTwoPi - 1e-9;
-      if (circle) apart = std::min(apart, n - apart);
-      const double cells =
-          std::floor(problem.limits.roll_slope * way / problem.resolution.droll + 1e-9);
-      return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
-    };
-    Answer truth = brute_force(*lattice, robot.world(), rule, in_window);
-    at_rest += coaxial && truth.solved;
-    if (coaxial && !truth.solved) {
-      lattice = RollLattice::make(chain, robot.srs(), path, problem);
-      truth = brute_force(*lattice, robot.world(), rule, in_window);
-      moved_after_all += truth.solved;
-    }
-
-    std::vector<PlanResult> results;
-    for (const PlannerKind planner : kPlanners) {
-      PlanOptions options;
-      options.planner = planner;
-      options.threads = 2;
-      options.evidence = Evidence::all();
-      results.push_back(plan(robot, problem, options));
-      const PlanResult& result = results.back();
-      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved)
-          << what << ' ' << result.planner;
-      ASSERT_TRUE(result.lattice.grid && result.lattice.grid->rolls == lattice->rolls()) << what;
-      ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
-      ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
-      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q)
-            << what << ' ' << result.planner << " row " << i;
-      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer)
-          << what << ' ' << result.planner;
-      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause)
-          << what << ' ' << result.planner;
-    }
-    started += problem.start.has_value();
-    continuous += problem.limits.edges == EdgeMode::kContinuous;
-    obstacles += !problem.scene.empty();
-    circles += problem.roll->upper - problem.roll->lower >= kTwoPi;
-    inexact += !robot.srs().exact;
-    if (!truth.solved) {
-      ++infeasible;
-      ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
-      ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
-      continue;
-    }
-    ++solved;
-    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
-    const auto& rows = results[0].trajectory;
-    expect_rows_on_path(robot, problem, rows, what);
-    between += path.size() > lattice->layers();
-    turned += std::any_of(rows.begin(), rows.end(),
-                          [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
-    windows += problem.waypoints[0].roll.has_value();
-    costly += problem.cost.roll > 0;
-    const CheckResult check = check_trajectory(robot, problem, rows);
-    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
-    ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
+    check_problem(problem,
+                  "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                      " robot " + problem.source,
+                  counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d solved (%d turn the tool, %d with layers between), %d infeasible, %d with a "
@@ -229,19 +288,76 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
       "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved "
       "after all in %d; solved with windows "
       "of roll %d, with a cost of it %d\n",
-      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact,
-      at_rest, moved_after_all, windows, costly);
-  EXPECT_GE(windows, at_least(count / 20));
-  EXPECT_GE(costly, at_least(count / 12));
-  EXPECT_GE(solved, at_least(count / 4));
-  EXPECT_GE(infeasible, at_least(count / 20));
-  EXPECT_GE(started, at_least(count / 10));
-  EXPECT_GE(continuous, at_least(count / 5));
-  EXPECT_GE(turned, at_least(count / 20));
-  EXPECT_GE(between, at_least(count / 5));
-  EXPECT_GE(circles, at_least(count / 5));
-  EXPECT_GE(inexact, at_least(count / 20));
-  EXPECT_GE(at_rest, at_least(count / 40));
+      count, counts.solved, counts.turned, counts.between, counts.infeasible, counts.started,
+      counts.continuous, counts.obstacles, counts.circles, counts.inexact, counts.at_rest,
+      counts.moved_after_all, counts.windows, counts.costly);
+  EXPECT_GE(counts.windows, at_least(count / 20));
+  EXPECT_GE(counts.costly, at_least(count / 12));
+  EXPECT_GE(counts.solved, at_least(count / 4));
+  EXPECT_GE(counts.infeasible, at_least(count / 20));
+  EXPECT_GE(counts.started, at_least(count / 10));
+  EXPECT_GE(counts.continuous, at_least(count / 5));
+  EXPECT_GE(counts.turned, at_least(count / 20));
+  EXPECT_GE(counts.between, at_least(count / 5));
+  EXPECT_GE(counts.circles, at_least(count / 5));
+  EXPECT_GE(counts.inexact, at_least(count / 20));
+  EXPECT_GE(counts.at_rest, at_least(count / 40));
+}
+
+/// Makes a random path without obstacles or a start, along which all rolls are free.
+Problem free_roll_problem(const TestRobot& robot, CostMetric metric, Random& random) {
+  Problem problem = random_problem(robot, random);
+  problem.limits = {};
+  problem.limits.joint_step = 2;
+  problem.limits.roll_slope = 1000;
+  problem.cost.metric = metric;
+  problem.scene.clear();
+  problem.start.reset();
+  problem.roll = Roll{};
+  problem.resolution.knot = 2 * problem.resolution.ds;
+  problem.resolution.droll = 0.2;
+  return problem;
+}
+
+/// Counts paths along which joint 7 rests, and those along which it moves.
+struct RestCounts {
+  int both = 0, cheaper = 0, neither = 0, refined = 0, inexact = 0;
+};
+
+/// Checks that the least path with joint 7 at rest costs no more than the least of all rolls.
+void compare_rest_with_motion(const PreparedRobot& robot, const Problem& problem,
+                              const std::string& what, RestCounts& counts) {
+  const Chain& chain = robot.arm().chain;
+  const ToolPath path = problem_path(problem, chain);
+  const auto least = [&](const std::unique_ptr<Lattice>& lattice) {
+    const auto cost_to_go = make_cost_to_go(*lattice);
+    cost_to_go->sweep(lattice->layers() - 1);
+    return cost_to_go->best();
+  };
+  const double resting = least(make_coaxial_lattice(chain, robot.arm_class(), path, problem));
+  const double moving = least(make_lattice(chain, robot.arm_class(), path, problem));
+  ASSERT_LE(resting, moving + 1e-9) << what;
+  counts.both += moving < kUnreachable;
+  counts.cheaper += resting < moving - 1e-6;
+  counts.neither += resting == kUnreachable;
+  counts.inexact += !robot.srs().exact;
+}
+
+/// Checks that joint 7 keeps `rest`, rad, in the path over the lattice and in the refined one.
+void expect_refined_at_rest(const PreparedRobot& robot, const Problem& problem, double rest,
+                            const std::string& what, RestCounts& counts) {
+  Planner planner(with_motion_defaults(problem));
+  const MotionPlan plan = plan_motion(planner, {.check = true}, true, std::nullopt);
+  if (plan.result.status != PlanStatus::kSolved || plan.result.lattice.grid->rolls > 1) return;
+  ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
+  counts.refined += plan.refinement->refined;
+  for (const auto* rows : {&plan.lattice_path, &plan.result.trajectory}) {
+    expect_rows_on_path(robot, planner.problem(), *rows, what);
+    for (const TrajectoryRow& row : *rows)
+      ASSERT_NEAR(row.q[kDof - 1], rest, robot.srs().exact ? 0 : 1e-3) << what;
+    const CheckResult check = check_trajectory(with_motion_defaults(problem), *rows);
+    ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
+  }
 }
 
 /// Where the tool turns about joint 7's axis, a path along which that joint rests costs no more
@@ -251,61 +367,31 @@ TEST(RollLattice, JointSevenRests) {
   Random any(base);
   auto arms = all_robots();
   arms.push_back(rounded(arms.front(), 1e-4));
-  int both = 0, cheaper = 0, neither = 0, refined = 0, inexact = 0;
+  RestCounts counts;
   const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
-    problem.limits = {};
-    problem.limits.joint_step = 2;
-    problem.limits.roll_slope = 1000;
-    problem.cost.metric = trial % 3 == 0 ? CostMetric::kMax : CostMetric::kL2;
-    problem.scene.clear();
-    problem.start.reset();
-    problem.roll = Roll{};
-    problem.resolution.knot = 2 * problem.resolution.ds;
-    problem.resolution.droll = 0.2;
+    const Problem problem =
+        free_roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()],
+                          trial % 3 == 0 ? CostMetric::kMax : CostMetric::kL2, random);
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const PreparedRobot robot(problem);
-    const ToolPath path = problem_path(problem, robot.arm().chain);
     const auto rest = last_joint_at_rest(robot.arm().chain, robot.arm_class(), problem);
     if (!rest) continue;  // its tool turns about another axis
-    const auto least = [&](const std::unique_ptr<Lattice>& lattice) {
-      const auto cost_to_go = make_cost_to_go(*lattice);
-      cost_to_go->sweep(lattice->layers() - 1);
-      return cost_to_go->best();
-    };
-    const double resting =
-        least(make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem));
-    const double moving = least(make_lattice(robot.arm().chain, robot.arm_class(), path, problem));
-    ASSERT_LE(resting, moving + 1e-9) << what;
-    both += moving < kUnreachable;
-    cheaper += resting < moving - 1e-6;
-    neither += resting == kUnreachable;
-    inexact += !robot.srs().exact;
-
-    Planner planner(with_motion_defaults(problem));
-    const MotionPlan plan = plan_motion(planner, {.check = true}, true, std::nullopt);
-    if (plan.result.status != PlanStatus::kSolved || plan.result.lattice.grid->rolls > 1) continue;
-    ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
-    refined += plan.refinement->refined;
-    for (const auto* rows : {&plan.lattice_path, &plan.result.trajectory}) {
-      expect_rows_on_path(robot, planner.problem(), *rows, what);
-      for (const TrajectoryRow& row : *rows)
-        ASSERT_NEAR(row.q[kDof - 1], *rest, robot.srs().exact ? 0 : 1e-3) << what;
-      const CheckResult check = check_trajectory(with_motion_defaults(problem), *rows);
-      ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
-    }
+    compare_rest_with_motion(robot, problem, what, counts);
+    if (HasFatalFailure()) return;
+    expect_refined_at_rest(robot, problem, *rest, what, counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d solved both ways, %d cheaper at rest, %d not at all; %d refined; %d on arms "
       "that are not exact\n",
-      count, both, cheaper, neither, refined, inexact);
-  EXPECT_GE(both, at_least(count / 4));
-  EXPECT_GE(cheaper, at_least(count / 20));
-  EXPECT_GE(refined, at_least(count / 8));
-  EXPECT_GE(inexact, at_least(count / 10));
+      count, counts.both, counts.cheaper, counts.neither, counts.refined, counts.inexact);
+  EXPECT_GE(counts.both, at_least(count / 4));
+  EXPECT_GE(counts.cheaper, at_least(count / 20));
+  EXPECT_GE(counts.refined, at_least(count / 8));
+  EXPECT_GE(counts.inexact, at_least(count / 10));
 }
 
 /// Where joint 7 rests determines what the tool meets: joint 7 moves if there is no path otherwise.
@@ -424,6 +510,64 @@ TEST(RollLattice, RepairsAreSweeps) {
   EXPECT_GE(edges, at_least(20));
 }
 
+/// Makes an episode of a problem: the door in a random pose, with random ranges and cost of roll.
+Problem random_episode(const Problem& problem, Random& random) {
+  Problem episode = problem;
+  for (SceneObject& object : episode.scene)
+    if (object.name == "door")
+      object.pose = object.pose *
+                    Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),
+                                         random.uniform(-0.1, 0.1)) *
+                    Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vector3d::UnitZ());
+  if (random.coin()) episode.roll = Roll{-0.5, 0.5};
+  if (!episode.roll->circle() && random.coin())
+    draw_windows(episode, random, random.uniform(-0.3, 0.3));
+  if (random.coin(0.4)) episode.cost.roll = random.uniform(0.5, 10);
+  return episode;
+}
+
+/// Counts the refined paths and the motions, and what their episodes have.
+struct RefinementCounts {
+  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0, windows = 0, costly = 0,
+      timed_windows = 0;
+};
+
+/// Checks that a refined path passes the check and costs no more than before.
+void expect_refined(const Problem& episode, const MotionPlan& plan, const std::string& what,
+                    RefinementCounts& counts) {
+  counts.partial += episode.roll->upper < kPi;
+  const auto& before = plan.lattice_path;
+  const auto& rows = plan.result.trajectory;
+  ASSERT_EQ(rows.size(), before.size()) << what;
+  ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    counts.moved += std::abs(wrap_angle(rows[i].roll - before[i].roll)) > 1e-6;
+  const CheckResult check = check_trajectory(with_motion_defaults(episode), rows);
+  ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
+  ASSERT_NEAR(check.cost, plan.result.cost, 1e-6) << what;
+  counts.refined += plan.refinement->refined;
+  counts.windows += plan.refinement->refined && episode.waypoints[0].roll;
+  counts.costly += plan.refinement->refined && episode.cost.roll > 0;
+  counts.turning += std::any_of(rows.begin(), rows.end(),
+                                [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+}
+
+/// Checks that the motion along a refined path passes the check, or prints why there is none.
+void expect_timed(const Problem& episode, const PreparedRobot& robot, const MotionPlan& plan,
+                  const std::string& what, RefinementCounts& counts) {
+  if (!plan.motion->motion) {
+    std::printf("%s%s: no motion: %s\n", what.c_str(),
+                episode.waypoints[0].roll ? " with windows" : "",
+                plan.motion->failure->reason.c_str());
+    return;
+  }
+  ++counts.timed;
+  counts.timed_windows += episode.waypoints[0].roll.has_value();
+  const CheckResult motion =
+      check_motion(robot, with_motion_defaults(episode), plan.motion->motion->rows, {});
+  ASSERT_TRUE(motion.passed) << what << ": " << motion.failures[0];
+}
+
 /// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll
 /// that was chosen.
 TEST(RollLattice, PathsAreRefinedAndTimed) {
@@ -432,66 +576,34 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
   problem.resolution.dphi = 0.2;
   Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
   const PreparedRobot robot(problem);
-  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0, windows = 0, costly = 0,
-      timed_windows = 0;
+  RefinementCounts counts;
   const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
-    Problem episode = problem;
-    for (SceneObject& object : episode.scene)
-      if (object.name == "door")
-        object.pose = object.pose *
-                      Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),
-                                           random.uniform(-0.1, 0.1)) *
-                      Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vector3d::UnitZ());
-    if (random.coin()) episode.roll = Roll{-0.5, 0.5};
-    if (!episode.roll->circle() && random.coin())
-      draw_windows(episode, random, random.uniform(-0.3, 0.3));
-    if (random.coin(0.4)) episode.cost.roll = random.uniform(0.5, 10);
+    const Problem episode = random_episode(problem, random);
     Planner planner(with_motion_defaults(episode));
     const MotionPlan plan =
         plan_motion(planner, {.check = true}, true, TimingOptions{.speed = 0.05});
     if (plan.result.status != PlanStatus::kSolved) continue;
     const std::string what = "trial " + std::to_string(trial);
-    partial += episode.roll->upper < kPi;
-    const auto& before = plan.lattice_path;
-    const auto& rows = plan.result.trajectory;
-    ASSERT_EQ(rows.size(), before.size()) << what;
-    ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      moved += std::abs(wrap_angle(rows[i].roll - before[i].roll)) > 1e-6;
-    const CheckResult check = check_trajectory(with_motion_defaults(episode), rows);
-    ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
-    ASSERT_NEAR(check.cost, plan.result.cost, 1e-6) << what;
-    refined += plan.refinement->refined;
-    windows += plan.refinement->refined && episode.waypoints[0].roll;
-    costly += plan.refinement->refined && episode.cost.roll > 0;
-    turning += std::any_of(rows.begin(), rows.end(),
-                           [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
-    if (!plan.motion->motion) {
-      std::printf("%s%s: no motion: %s\n", what.c_str(),
-                  episode.waypoints[0].roll ? " with windows" : "",
-                  plan.motion->failure->reason.c_str());
-      continue;
-    }
-    ++timed;
-    timed_windows += episode.waypoints[0].roll.has_value();
-    const CheckResult motion = check_motion(planner.prepare(), with_motion_defaults(episode),
-                                            plan.motion->motion->rows, {});
-    ASSERT_TRUE(motion.passed) << what << ": " << motion.failures[0];
+    expect_refined(episode, plan, what, counts);
+    if (HasFatalFailure()) return;
+    expect_timed(episode, planner.prepare(), plan, what, counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d refined (%d with windows of roll, %d with a cost of it), %d turn the tool, "
       "%d timed (%d with windows), %d "
       "within "
       "half a radian\n",
-      count, refined, windows, costly, turning, timed, timed_windows, partial);
-  EXPECT_GE(windows, at_least(2));
-  EXPECT_GE(timed_windows, at_least(1));
-  EXPECT_GE(costly, at_least(3));
-  EXPECT_GE(refined, at_least(count / 2));
-  EXPECT_GE(timed, at_least(count / 2));
-  EXPECT_GE(turning, at_least(2));
-  EXPECT_GE(moved, at_least(100));  // rolls of rows
+      count, counts.refined, counts.windows, counts.costly, counts.turning, counts.timed,
+      counts.timed_windows, counts.partial);
+  EXPECT_GE(counts.windows, at_least(2));
+  EXPECT_GE(counts.timed_windows, at_least(1));
+  EXPECT_GE(counts.costly, at_least(3));
+  EXPECT_GE(counts.refined, at_least(count / 2));
+  EXPECT_GE(counts.timed, at_least(count / 2));
+  EXPECT_GE(counts.turning, at_least(2));
+  EXPECT_GE(counts.moved, at_least(100));  // rolls of rows
 }
 
 /// Proofs that there is no path are verified without the planner, and forged ones refused.
