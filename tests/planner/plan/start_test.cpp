@@ -165,10 +165,124 @@ TEST(StartAt, FromARowOfATrajectoryTheRestIsTheSame) {
   EXPECT_EQ(refused, compared);
 }
 
+/// Holds a place between two rows of a trajectory, and the problem to go on from there.
+struct Stop {
+  std::size_t cut = 0;  // row before the place
+  double t = 0;         // part of the way to the next row
+  bool on_path = false;
+  Config q;
+  Problem rest;
+};
+
+/// Returns the configuration of the node nearest to `q` whose tool is on the path at the stop;
+/// none where there is no node.
+std::optional<Config> nearest_on_path(const PreparedRobot& robot, const Problem& problem,
+                                      const Stop& stop, const Config& q, const std::string& what) {
+  Problem free = problem;
+  free.start.reset();
+  const ToolPath all = whole_path(problem);
+  ToolPath there = all;
+  there.begin_at(*stop.rest.start_at, all.at(static_cast<int>(stop.cut), stop.t), 1e-6, what);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), there, free);
+  std::vector<Lattice::Node> nodes;
+  lattice.layer_nodes(0, nodes);
+  const auto distance = [&](const Lattice::Node& node) { return lattice.delta(q, node.q).norm(); };
+  const auto nearest =
+      std::min_element(nodes.begin(), nodes.end(),
+                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  if (nearest == nodes.end()) return std::nullopt;
+  return q + lattice.delta(q, nearest->q);
+}
+
+/// Draws a stop on the way along a trajectory; none where no node is on the path there.
+std::optional<Stop> random_stop(const PreparedRobot& robot, const Problem& problem,
+                                const PlanResult& whole, Random& random, const std::string& what) {
+  Stop stop;
+  stop.cut = static_cast<std::size_t>(random.below(static_cast<int>(whole.trajectory.size()) - 1));
+  stop.t = random.uniform(0.1, 0.9);
+  const TrajectoryRow &from = whole.trajectory[stop.cut], &to = whole.trajectory[stop.cut + 1];
+  stop.rest = problem;
+  stop.rest.start_at = from.s + stop.t * (to.s - from.s);
+  // The start is where the joints stopped on the way, beside the path, or a node of the path
+  // there.
+  stop.q = from.q + stop.t * (to.q - from.q);
+  stop.on_path = random.coin();
+  if (stop.on_path) {
+    const auto nearest = nearest_on_path(robot, problem, stop, stop.q, what);
+    if (!nearest) return std::nullopt;
+    stop.q = *nearest;
+  } else {
+    stop.rest.start_tolerance = 0.1;
+  }
+  stop.rest.start = stop.q;
+  return stop;
+}
+
+/// Checks that the rest of a trajectory begins with the stop as it is, and then keeps the rows'
+/// places on the path.
+void expect_rest_from_stop(const PreparedRobot& robot, const Stop& stop, const PlanResult& result,
+                           const PlanResult& whole, const std::string& what) {
+  ASSERT_EQ(result.trajectory.size(), whole.trajectory.size() - stop.cut) << what;
+  ASSERT_EQ(result.trajectory[0].q, stop.q) << what;
+  ASSERT_NEAR(result.trajectory[0].s, *stop.rest.start_at, 1e-6) << what;
+  for (std::size_t k = 1; k < result.trajectory.size(); ++k)
+    ASSERT_EQ(result.trajectory[k].s, whole.trajectory[stop.cut + k].s) << what;
+  const CheckResult checked = check_trajectory(robot, stop.rest, result.trajectory);
+  ASSERT_TRUE(checked.passed) << what << ": "
+                              << (checked.failures.empty() ? "" : checked.failures[0]);
+}
+
+/// Checks that all planners find the path of `result`.
+void expect_planners_agree(const PreparedRobot& robot, const Problem& problem,
+                           const PlanResult& result, const std::string& what) {
+  for (const PlannerKind planner : kPlanners) {
+    const PlanResult other = plan(robot, problem, options_for(planner));
+    ASSERT_EQ(other.cost, result.cost) << what;
+    for (std::size_t k = 0; k < result.trajectory.size(); ++k)
+      ASSERT_EQ(other.trajectory[k].q, result.trajectory[k].q) << what;
+  }
+}
+
+/// Counts the plans from stops by how they end and by where the stops are.
+struct StopCounts {
+  int solved = 0, exact = 0, aside = 0, infeasible = 0;
+};
+
+/// Stops a trajectory on its way and checks what is planned from there.
+void check_stop(const Problem& problem, const PlanOptions& options, Random& random,
+                const std::string& what, StopCounts& counts) {
+  const PreparedRobot robot(problem);
+  const PlanResult whole = plan(robot, problem, options);
+  if (whole.status != PlanStatus::kSolved) return;
+  const std::optional<Stop> stop = random_stop(robot, problem, whole, random, what);
+  if (!stop) return;
+  PlanResult result;
+  try {
+    result = plan(robot, stop->rest, options);
+  } catch (const InputError&) {  // the node nearest to the joints has another image than fits
+    return;
+  }
+  if (result.status == PlanStatus::kInfeasible) {
+    ++counts.infeasible;
+    return;
+  }
+  ASSERT_EQ(result.status, PlanStatus::kSolved) << what;
+  ++counts.solved;
+  expect_rest_from_stop(robot, *stop, result, whole, what);
+  if (::testing::Test::HasFatalFailure()) return;
+  counts.exact += stop->on_path;
+  const ToolPath path = problem_path(stop->rest, robot.arm().chain);
+  counts.aside += !stop->on_path &&
+                  (whole_path(problem).at(static_cast<int>(stop->cut), stop->t).translation() -
+                   path.layer(0).tool.translation())
+                          .norm() > 1e-5;
+  expect_planners_agree(robot, stop->rest, result, what);
+}
+
 TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
   const std::uint64_t base = seed("StartAt.Between");
   const auto robots = all_robots();
-  int solved = 0, exact = 0, aside = 0, infeasible = 0;
+  StopCounts counts;
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -178,80 +292,15 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
         0.001;  // motions keep half of it, rows all: a stop may be too near for a row
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + problem.source;
-    const PreparedRobot robot(problem);
-    PlanOptions options = options_for(kPlanners[trial % 4]);
-    const PlanResult whole = plan(robot, problem, options);
-    if (whole.status != PlanStatus::kSolved) continue;
-    const std::size_t cut =
-        static_cast<std::size_t>(random.below(static_cast<int>(whole.trajectory.size()) - 1));
-    const double t = random.uniform(0.1, 0.9);
-    const TrajectoryRow &from = whole.trajectory[cut], &to = whole.trajectory[cut + 1];
-    Problem rest = problem;
-    rest.start_at = from.s + t * (to.s - from.s);
-    // The start is where the joints stopped on the way, beside the path, or a node of the path
-    // there.
-    Config q = from.q + t * (to.q - from.q);
-    const bool on_path = random.coin();
-    if (on_path) {
-      Problem free = problem;
-      free.start.reset();
-      const ToolPath all = whole_path(problem);
-      ToolPath there = all;
-      there.begin_at(*rest.start_at, all.at(static_cast<int>(cut), t), 1e-6, what);
-      const SrsLattice lattice(robot.arm().chain, robot.srs(), there, free);
-      std::vector<Lattice::Node> nodes;
-      lattice.layer_nodes(0, nodes);
-      const auto distance = [&](const Lattice::Node& node) {
-        return lattice.delta(q, node.q).norm();
-      };
-      const auto nearest =
-          std::min_element(nodes.begin(), nodes.end(),
-                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-      if (nearest == nodes.end()) continue;
-      q += lattice.delta(q, nearest->q);
-    } else {
-      rest.start_tolerance = 0.1;
-    }
-    rest.start = q;
-    PlanResult result;
-    try {
-      result = plan(robot, rest, options);
-    } catch (const InputError&) {  // the node nearest to the joints has another image than fits
-      continue;
-    }
-    if (result.status == PlanStatus::kInfeasible) {
-      ++infeasible;
-      continue;
-    }
-    ASSERT_EQ(result.status, PlanStatus::kSolved) << what;
-    ++solved;
-    ASSERT_EQ(result.trajectory.size(), whole.trajectory.size() - cut) << what;
-    ASSERT_EQ(result.trajectory[0].q, q) << what;
-    ASSERT_NEAR(result.trajectory[0].s, *rest.start_at, 1e-6) << what;
-    for (std::size_t k = 1; k < result.trajectory.size(); ++k)
-      ASSERT_EQ(result.trajectory[k].s, whole.trajectory[cut + k].s) << what;
-    const CheckResult checked = check_trajectory(robot, rest, result.trajectory);
-    ASSERT_TRUE(checked.passed) << what << ": "
-                                << (checked.failures.empty() ? "" : checked.failures[0]);
-    exact += on_path;
-    const ToolPath path = problem_path(rest, robot.arm().chain);
-    aside += !on_path && (whole_path(problem).at(static_cast<int>(cut), t).translation() -
-                          path.layer(0).tool.translation())
-                                 .norm() > 1e-5;
-    // All planners agree.
-    for (const PlannerKind planner : kPlanners) {
-      const PlanResult other = plan(robot, rest, options_for(planner));
-      ASSERT_EQ(other.cost, result.cost) << what;
-      for (std::size_t k = 0; k < result.trajectory.size(); ++k)
-        ASSERT_EQ(other.trajectory[k].q, result.trajectory[k].q) << what;
-    }
+    check_stop(problem, options_for(kPlanners[trial % 4]), random, what, counts);
+    if (HasFatalFailure()) return;
   }
-  std::printf("%d solved: %d on the path, %d beside it; %d have no path from there\n", solved,
-              exact, aside, infeasible);
-  EXPECT_GE(solved, count / 5);
-  EXPECT_GE(exact, count / 15);
-  EXPECT_GE(aside, count / 15);
-  EXPECT_LE(infeasible, solved);
+  std::printf("%d solved: %d on the path, %d beside it; %d have no path from there\n",
+              counts.solved, counts.exact, counts.aside, counts.infeasible);
+  EXPECT_GE(counts.solved, count / 5);
+  EXPECT_GE(counts.exact, count / 15);
+  EXPECT_GE(counts.aside, count / 15);
+  EXPECT_LE(counts.infeasible, counts.solved);
 }
 
 Problem experiment_a() {
