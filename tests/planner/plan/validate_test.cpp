@@ -61,9 +61,9 @@ void add_number(std::vector<Case>& cases, const std::string& field,
     cases.push_back({field, [=](Problem& problem) { member(problem) = value; }});
 }
 
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
-  const std::vector<double> not_positive{0, -1}, negative{-1}, none;
+/// Breaks numbers of the limits.
+void add_limits(std::vector<Case>& cases) {
+  const std::vector<double> not_positive{0, -1}, negative{-1};
   const auto limit = [&](const char* name, auto member, const std::vector<double>& values) {
     add_number(
         cases, std::string("limits.") + name,
@@ -88,6 +88,11 @@ std::vector<Case> all_cases() {
   optional_limit("tool_turn_speed", &Limits::tool_turn_speed, not_positive);
   optional_limit("self_clearance", &Limits::self_clearance, negative);
   optional_limit("edge_clearance", &Limits::edge_clearance, negative);
+}
+
+/// Breaks numbers of the resolution and of the cost.
+void add_resolution_and_cost(std::vector<Case>& cases) {
+  const std::vector<double> not_positive{0, -1};
   add_number(
       cases, "resolution.ds", [](Problem& p) -> double& { return p.resolution.ds; }, not_positive);
   add_number(cases, "resolution.dphi", [](Problem& p) -> double& { return p.resolution.dphi; },
@@ -95,18 +100,10 @@ std::vector<Case> all_cases() {
   add_number(
       cases, "resolution.dalpha", [](Problem& p) -> double& { return p.resolution.dalpha; },
       not_positive);
-  for (std::size_t k : {0u, 6u}) {
+  for (std::size_t k : {0u, 6u})
     add_number(cases, "cost.weights[" + std::to_string(k) + "]",
                [=](Problem& p) -> double& { return p.cost.weights[k]; },
                {-1, 1e-7, 1.1e6, 1e160, 1e-300});
-    add_number(
-        cases, "start[" + std::to_string(k) + "]",
-        [=](Problem& p) -> double& {
-          if (!p.start) p.start = Config::Zero();
-          return (*p.start)[static_cast<Eigen::Index>(k)];
-        },
-        none);
-  }
   add_number(cases, "cost.roll",
              [](Problem& p) -> double& {
                p.roll = Roll{};
@@ -114,6 +111,19 @@ std::vector<Case> all_cases() {
              },
              {-1, 1e-7, 1.1e6});
   cases.push_back({"cost.roll", [](Problem& p) { p.cost.roll = 1; }});  // no roll is free
+}
+
+/// Breaks numbers of the start and of joints that are held.
+void add_start_and_hold(std::vector<Case>& cases) {
+  const std::vector<double> negative{-1}, none;
+  for (std::size_t k : {0u, 6u})
+    add_number(
+        cases, "start[" + std::to_string(k) + "]",
+        [=](Problem& p) -> double& {
+          if (!p.start) p.start = Config::Zero();
+          return (*p.start)[static_cast<Eigen::Index>(k)];
+        },
+        none);
   add_number(cases, "start_tolerance", [](Problem& p) -> double& { return p.start_tolerance; },
              {0, -1, 0.11});
   add_number(
@@ -124,6 +134,13 @@ std::vector<Case> all_cases() {
       },
       negative);
   cases.push_back({"start_at", [](Problem& p) { p.start_at = 0.1; }});
+  add_number(
+      cases, "hold.joint", [](Problem& p) -> double& { return p.hold["joint"]; }, none);
+}
+
+/// Breaks positions and orientations of waypoints, and how far objects vary.
+void add_waypoints_and_variation(std::vector<Case>& cases) {
+  const std::vector<double> negative{-1}, none;
   for (int k = 0; k < 3; ++k) {
     const std::string at = "[" + std::to_string(k) + "]";
     add_number(
@@ -135,24 +152,20 @@ std::vector<Case> all_cases() {
     add_number(
         cases, "vary[0].rpy" + at, [=](Problem& p) -> double& { return p.vary[0].rpy[k]; },
         negative);
-    add_number(
-        cases, "scene[0].shape.size" + at,
-        [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
-        not_positive);
   }
-  // Beyond kMostMetres distances are not right, and names stand on terminals and in pictures
-  // (bounds.hpp).
-  cases.push_back({"scene[1].shape.radius", [](Problem& p) { p.scene[1].shape = Sphere{1000.1}; }});
-  cases.push_back(
-      {"scene[0].shape.size[2]", [](Problem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
-  cases.push_back(
-      {"scene[4].shape", [](Problem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
-  cases.push_back({"scene[3].pose", [](Problem& p) { p.scene[3].pose.translation().x() = 1e9; }});
-  cases.push_back({"scene[2].name", [](Problem& p) { p.scene[2].name = "a\x1b[31m"; }});
-  cases.push_back({"attached[0].name", [](Problem& p) { p.attached[0].name = "\xff"; }});
   for (int k = 0; k < 4; ++k)
     add_number(cases, "waypoints[0].orientation",
                [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; }, {3});
+}
+
+/// Breaks dimensions of boxes, spheres, cylinders and capsules.
+void add_dimensions(std::vector<Case>& cases) {
+  const std::vector<double> not_positive{0, -1};
+  for (int k = 0; k < 3; ++k)
+    add_number(
+        cases, "scene[0].shape.size[" + std::to_string(k) + "]",
+        [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
+        not_positive);
   add_number(
       cases, "scene[1].shape.radius",
       [](Problem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
@@ -177,6 +190,25 @@ std::vector<Case> all_cases() {
       cases, "attached[0].shape.radius",
       [](Problem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
       not_positive);
+}
+
+/// Sets sizes, poses and names beyond their bounds.
+void add_beyond_bounds(std::vector<Case>& cases) {
+  // Beyond kMostMetres distances are not right, and names stand on terminals and in pictures
+  // (bounds.hpp).
+  cases.push_back({"scene[1].shape.radius", [](Problem& p) { p.scene[1].shape = Sphere{1000.1}; }});
+  cases.push_back(
+      {"scene[0].shape.size[2]", [](Problem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
+  cases.push_back(
+      {"scene[4].shape", [](Problem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
+  cases.push_back({"scene[3].pose", [](Problem& p) { p.scene[3].pose.translation().x() = 1e9; }});
+  cases.push_back({"scene[2].name", [](Problem& p) { p.scene[2].name = "a\x1b[31m"; }});
+  cases.push_back({"attached[0].name", [](Problem& p) { p.attached[0].name = "\xff"; }});
+}
+
+/// Breaks entries of the tool's pose and of poses of objects, in the scene and attached.
+void add_poses(std::vector<Case>& cases) {
+  const std::vector<double> none;
   const std::pair<const char*, std::function<Pose&(Problem&)>> poses[] = {
       {"tool", [](Problem& p) -> Pose& { return p.tool; }},
       {"scene[1].pose", [](Problem& p) -> Pose& { return p.scene[1].pose; }},
@@ -192,8 +224,11 @@ std::vector<Case> all_cases() {
         {field, [=](Problem& p) { pose(p).matrix().topLeftCorner<3, 3>() *= -1; }});  // a mirror
     cases.push_back({field, [=](Problem& p) { pose(p).matrix().setZero(); }});
   }
-  add_number(
-      cases, "hold.joint", [](Problem& p) -> double& { return p.hold["joint"]; }, none);
+}
+
+/// Breaks vertices of a mesh and corners of its triangles.
+void add_mesh(std::vector<Case>& cases) {
+  const std::vector<double> none;
   const auto mesh = [](Problem& p) {
     auto copy = std::make_shared<TriangleMesh>(*std::get<MeshPtr>(p.scene[4].shape));
     p.scene[4].shape = MeshPtr(copy);
@@ -205,6 +240,10 @@ std::vector<Case> all_cases() {
         none);
   for (const int corner : {-1, 8, std::numeric_limits<int>::max()})
     cases.push_back({"scene[4].shape", [=](Problem& p) { mesh(p)->triangles[3][1] = corner; }});
+}
+
+/// Removes the model and a mesh, and sets names that are empty, taken or unknown.
+void add_names(std::vector<Case>& cases) {
   cases.insert(cases.end(),
                {{"model", [](Problem& p) { p.model = nullptr; }},
                 {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
@@ -221,6 +260,15 @@ std::vector<Case> all_cases() {
                 {"attached[0].link", [](Problem& p) { p.attached[0].link = "hand"; }},
                 {"path_frame", [](Problem& p) { p.path_frame = "door"; }},
                 {"vary[0].object", [](Problem& p) { p.vary[0].object = "door"; }}});
+}
+
+/// Lists every way to break every member of full_problem().
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (const auto add :
+       {add_limits, add_resolution_and_cost, add_start_and_hold, add_waypoints_and_variation,
+        add_dimensions, add_beyond_bounds, add_poses, add_mesh, add_names})
+    add(cases);
   return cases;
 }
 
