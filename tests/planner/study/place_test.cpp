@@ -66,6 +66,76 @@ void expect_same(const PlacementRow& a, const PlacementRow& b, const std::string
   EXPECT_EQ(a.reason, b.reason) << what;
 }
 
+/// Plans the cells at one, two and three threads, in two parts each; checks that the rows are the
+/// same and puts them into `rows`.
+void plan_at_thread_counts(const std::shared_ptr<const PreparedRobot>& robot,
+                           const Problem& problem, const Movable& thing,
+                           const std::vector<PlacementCell>& cells, PlanOptions options,
+                           const std::string& what, std::vector<PlacementRow>& rows) {
+  for (const int threads : {1, 2, 3}) {
+    options.threads = threads;
+    PlacementPlanner planner(robot, problem, thing, options);
+    std::vector<PlacementRow> found = planner.plan({cells.begin(), cells.begin() + 5});
+    const auto more = planner.plan({cells.begin() + 5, cells.end()});
+    found.insert(found.end(), more.begin(), more.end());
+    ASSERT_EQ(found.size(), cells.size()) << what;
+    EXPECT_FALSE(planner.stopped());
+    if (threads == 1) rows = found;
+    for (std::size_t k = 0; k < cells.size(); ++k) expect_same(found[k], rows[k], what);
+  }
+}
+
+/// Returns the row of a cell whose problem was planned alone.
+PlacementRow row_of(const PlacementCell& cell, const PlanResult& result, const Problem& placed) {
+  PlacementRow row;
+  row.cell = cell.cell;
+  row.offset = cell.offset;
+  row.status = result.status;
+  if (row.status == PlanStatus::kSolved) {
+    row.cost = result.cost;
+    if (result.min_margin) {
+      row.clearance = result.min_margin->clearance;
+      row.clearance_margin = result.min_margin->margin;
+    }
+    if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
+    if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
+  } else {
+    row.failed_s = result.diagnosis.reached_s;
+    row.cause = to_string(result.diagnosis.cause.kind);
+    row.by = subject_of(result.diagnosis.cause, placed);
+    row.reason = words(result.diagnosis.cause);
+  }
+  return row;
+}
+
+/// Checks twelve random cells of a problem against plans of each alone; counts in `met` what the
+/// cells are and have.
+void check_cells(const Problem& problem, Random& random, const std::string& what,
+                 std::map<std::string, int>& met) {
+  const auto robot = std::make_shared<const PreparedRobot>(problem);
+  const Movable thing = random_thing(random, problem);
+  std::vector<PlacementCell> cells;
+  for (std::uint64_t k = 0; k < 12; ++k)
+    cells.push_back({3 * k, random_offset(random, random.coin() ? 0.01 : 0.1)});
+  PlanOptions options;
+  options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
+  std::vector<PlacementRow> rows;
+  plan_at_thread_counts(robot, problem, thing, cells, options, what, rows);
+  if (::testing::Test::HasFatalFailure()) return;
+  options.threads = 3;
+  options.evidence.postures = true;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const Problem placed = placed_problem(problem, thing, cells[k].offset);
+    const PlanResult result = plan(*robot, placed, options);
+    ++met[to_string(result.status)];
+    ++met[thing.kind == Movable::Kind::kObject ? "object"
+          : thing.kind == Movable::Kind::kPath ? "path"
+                                               : "base"];
+    met["clearance"] += result.status == PlanStatus::kSolved && result.min_margin;
+    expect_same(rows[k], row_of(cells[k], result, placed), what + " cell " + std::to_string(k));
+  }
+}
+
 /// Every cell is what planning its problem with a planner of its own gives, bit for bit, and the
 /// same at any number of threads.
 TEST(Place, CellsAreSinglePlans) {
@@ -78,54 +148,7 @@ TEST(Place, CellsAreSinglePlans) {
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const Problem problem =
         random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const auto robot = std::make_shared<const PreparedRobot>(problem);
-    const Movable thing = random_thing(random, problem);
-    std::vector<PlacementCell> cells;
-    for (std::uint64_t k = 0; k < 12; ++k)
-      cells.push_back({3 * k, random_offset(random, random.coin() ? 0.01 : 0.1)});
-    PlanOptions options;
-    options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
-    std::vector<std::vector<PlacementRow>> found;
-    for (const int threads : {1, 2, 3}) {
-      options.threads = threads;
-      PlacementPlanner planner(robot, problem, thing, options);
-      found.push_back(planner.plan({cells.begin(), cells.begin() + 5}));
-      const auto more = planner.plan({cells.begin() + 5, cells.end()});
-      found.back().insert(found.back().end(), more.begin(), more.end());
-      ASSERT_EQ(found.back().size(), cells.size()) << what;
-      EXPECT_FALSE(planner.stopped());
-      for (std::size_t k = 0; k < cells.size(); ++k)
-        expect_same(found.back()[k], found.front()[k], what);
-    }
-    options.evidence.postures = true;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const Problem placed = placed_problem(problem, thing, cells[k].offset);
-      const PlanResult result = plan(*robot, placed, options);
-      PlacementRow row;
-      row.cell = cells[k].cell;
-      row.offset = cells[k].offset;
-      row.status = result.status;
-      ++met[to_string(row.status)];
-      ++met[thing.kind == Movable::Kind::kObject ? "object"
-            : thing.kind == Movable::Kind::kPath ? "path"
-                                                 : "base"];
-      if (row.status == PlanStatus::kSolved) {
-        row.cost = result.cost;
-        if (result.min_margin) {
-          row.clearance = result.min_margin->clearance;
-          row.clearance_margin = result.min_margin->margin;
-          ++met["clearance"];
-        }
-        if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
-        if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
-      } else {
-        row.failed_s = result.diagnosis.reached_s;
-        row.cause = to_string(result.diagnosis.cause.kind);
-        row.by = subject_of(result.diagnosis.cause, placed);
-        row.reason = words(result.diagnosis.cause);
-      }
-      expect_same(found.front()[k], row, what + " cell " + std::to_string(k));
-    }
+    check_cells(problem, random, what, met);
     if (HasFailure()) return;
   }
   for (const auto& [name, times] : met) std::printf("%s %d; ", name.c_str(), times);
@@ -134,13 +157,96 @@ TEST(Place, CellsAreSinglePlans) {
     EXPECT_GE(met[name], at_least(12)) << name;
 }
 
+/// Counts the cells by how they end, and the nodes that planners asked about.
+struct NeighbourCounts {
+  int solved = 0, infeasible = 0, changed = 0;
+  std::int64_t asked = 0, asked_alone = 0;
+};
+
+/// Draws cells along a random walk, in steps of at most 5 mm and 5 mrad along and about each axis.
+std::vector<PlacementCell> neighbouring_cells(Random& random) {
+  std::vector<PlacementCell> cells;
+  Offset at{};
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    cells.push_back({k, at});
+    const Offset step = random_offset(random, 0.005);
+    for (std::size_t c = 0; c < at.size(); ++c) at[c] += step[c];
+  }
+  return cells;
+}
+
+/// Checks a row against the plan of its cell alone.
+void expect_row_of(const PlacementRow& row, const PlanResult& alone, const std::string& here) {
+  if (alone.status != PlanStatus::kSolved) {
+    EXPECT_EQ(row.failed_s, alone.diagnosis.reached_s) << here;
+    EXPECT_EQ(row.reason, words(alone.diagnosis.cause)) << here;
+    return;
+  }
+  EXPECT_EQ(row.cost, alone.cost) << here;
+  EXPECT_EQ(row.clearance_margin.has_value(), alone.min_margin.has_value()) << here;
+  if (alone.min_margin) {
+    EXPECT_EQ(row.clearance_margin, alone.min_margin->margin) << here;
+    EXPECT_EQ(row.clearance, alone.min_margin->clearance) << here;
+  }
+}
+
+/// Checks the trajectory that is shown of a cell, and that of a planner that goes from cell to
+/// cell, against the plan of the cell alone.
+void expect_trajectory_of(const PlacedPlan& shown, const PlanResult& again, const PlanResult& alone,
+                          std::uint64_t cell, const std::string& here) {
+  EXPECT_EQ(shown.cell.cell, cell) << here;
+  ASSERT_EQ(shown.trajectory.size(), alone.trajectory.size()) << here;
+  for (std::size_t i = 0; i < alone.trajectory.size(); ++i) {
+    ASSERT_EQ(shown.trajectory[i].q, alone.trajectory[i].q) << here << " row " << i;
+    ASSERT_EQ(again.trajectory[i].q, alone.trajectory[i].q) << here << " row " << i;
+  }
+}
+
+/// Plans the cells one after the other and checks each against its plan alone.
+void check_neighbours(const Problem& problem, const std::shared_ptr<const PreparedRobot>& robot,
+                      const Movable& thing, Random& random, const std::string& what,
+                      NeighbourCounts& counts) {
+  PlanOptions options;
+  options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
+  options.threads = 1;
+  const std::vector<PlacementCell> cells = neighbouring_cells(random);
+  PlacementPlanner placements(robot, problem, thing, options);
+  const std::vector<PlacementRow> rows = placements.plan(cells);
+  const std::vector<PlacedPlan> plans = placements.trajectories(cells);
+  ASSERT_EQ(rows.size(), cells.size()) << what;
+  Planner planner(robot, problem);
+  options.evidence.postures = true;
+  auto shown = plans.begin();
+  std::optional<PlanStatus> before;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const std::string here = what + " cell " + std::to_string(k);
+    const Problem placed = placed_problem(problem, thing, cells[k].offset);
+    const PlanResult alone = plan(*robot, placed, options);
+    planner.set_problem(placed);
+    const PlanResult again = planner.plan(options);
+    counts.asked += again.counters.nodes_checked;
+    counts.asked_alone += alone.counters.nodes_checked;
+    ASSERT_EQ(rows[k].status, alone.status) << here;
+    ASSERT_EQ(again.status, alone.status) << here;
+    counts.changed += before && *before != alone.status;
+    before = alone.status;
+    expect_row_of(rows[k], alone, here);
+    (alone.status == PlanStatus::kSolved ? counts.solved : counts.infeasible) += 1;
+    if (alone.status != PlanStatus::kSolved) continue;
+    ASSERT_NE(shown, plans.end()) << here;
+    expect_trajectory_of(*shown, again, alone, k, here);
+    if (::testing::Test::HasFatalFailure()) return;
+    ++shown;
+  }
+  EXPECT_EQ(shown, plans.end()) << what;
+}
+
 /// An object that moves a little from cell to cell: what is kept of its clearances from one to the
 /// next changes no answer, and spares most questions.
 TEST(Place, NeighboursAreWhatTheyAreAlone) {
   const std::uint64_t base = seed("Place.Neighbours");
   const auto robots = all_robots();
-  int solved = 0, infeasible = 0, changed = 0;
-  std::int64_t asked = 0, asked_alone = 0;
+  NeighbourCounts counts;
   for (int trial = 0; trial < trials(30); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::string what =
@@ -155,67 +261,70 @@ TEST(Place, NeighboursAreWhatTheyAreAlone) {
             .scene[static_cast<std::size_t>(random.below(static_cast<int>(problem.scene.size())))]
             .name};
     if (thing.object == problem.path_frame) continue;
-    PlanOptions options;
-    options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
-    options.threads = 1;
-    std::vector<PlacementCell> cells;
-    Offset at{};
-    for (std::uint64_t k = 0; k < 20; ++k) {
-      cells.push_back({k, at});
-      const Offset step = random_offset(random, 0.005);
-      for (std::size_t c = 0; c < at.size(); ++c) at[c] += step[c];
-    }
-    PlacementPlanner placements(robot, problem, thing, options);
-    const std::vector<PlacementRow> rows = placements.plan(cells);
-    const std::vector<PlacedPlan> plans = placements.trajectories(cells);
-    ASSERT_EQ(rows.size(), cells.size()) << what;
-    Planner planner(robot, problem);
-    options.evidence.postures = true;
-    auto shown = plans.begin();
-    std::optional<PlanStatus> before;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const std::string here = what + " cell " + std::to_string(k);
-      const Problem placed = placed_problem(problem, thing, cells[k].offset);
-      const PlanResult alone = plan(*robot, placed, options);
-      planner.set_problem(placed);
-      const PlanResult again = planner.plan(options);
-      asked += again.counters.nodes_checked;
-      asked_alone += alone.counters.nodes_checked;
-      ASSERT_EQ(rows[k].status, alone.status) << here;
-      ASSERT_EQ(again.status, alone.status) << here;
-      changed += before && *before != alone.status;
-      before = alone.status;
-      if (alone.status != PlanStatus::kSolved) {
-        ++infeasible;
-        EXPECT_EQ(rows[k].failed_s, alone.diagnosis.reached_s) << here;
-        EXPECT_EQ(rows[k].reason, words(alone.diagnosis.cause)) << here;
-        continue;
-      }
-      ++solved;
-      EXPECT_EQ(rows[k].cost, alone.cost) << here;
-      EXPECT_EQ(rows[k].clearance_margin.has_value(), alone.min_margin.has_value()) << here;
-      if (alone.min_margin) {
-        EXPECT_EQ(rows[k].clearance_margin, alone.min_margin->margin) << here;
-        EXPECT_EQ(rows[k].clearance, alone.min_margin->clearance) << here;
-      }
-      ASSERT_NE(shown, plans.end()) << here;
-      EXPECT_EQ(shown->cell.cell, k) << here;
-      ASSERT_EQ(shown->trajectory.size(), alone.trajectory.size()) << here;
-      for (std::size_t i = 0; i < alone.trajectory.size(); ++i) {
-        ASSERT_EQ(shown->trajectory[i].q, alone.trajectory[i].q) << here << " row " << i;
-        ASSERT_EQ(again.trajectory[i].q, alone.trajectory[i].q) << here << " row " << i;
-      }
-      ++shown;
-    }
-    EXPECT_EQ(shown, plans.end()) << what;
+    check_neighbours(problem, robot, thing, random, what, counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d solved, %d infeasible, the verdict changed %d times; %lld nodes asked about of %lld\n",
-      solved, infeasible, changed, static_cast<long long>(asked),
-      static_cast<long long>(asked_alone));
-  EXPECT_GE(solved, at_least(100));
-  EXPECT_GE(infeasible, at_least(20));
-  EXPECT_LT(2 * asked, asked_alone);
+      counts.solved, counts.infeasible, counts.changed, static_cast<long long>(counts.asked),
+      static_cast<long long>(counts.asked_alone));
+  EXPECT_GE(counts.solved, at_least(100));
+  EXPECT_GE(counts.infeasible, at_least(20));
+  EXPECT_LT(2 * counts.asked, counts.asked_alone);
+}
+
+/// Turns and shifts poses by an offset, about an origin that is given.
+struct Displacement {
+  explicit Displacement(const Offset& offset) : shift(offset[0], offset[1], offset[2]) {
+    turn.linear() = from_rpy({offset[3], offset[4], offset[5]}).toRotationMatrix();
+  }
+  [[nodiscard]] Pose about(const Vector3d& origin, const Pose& pose) const {
+    Pose moved = turn * pose;
+    moved.translation() = origin + shift + turn * (pose.translation() - origin);
+    return moved;
+  }
+
+  Pose turn = Pose::Identity();
+  Vector3d shift;
+};
+
+/// Checks objects in the world: `robot` is the pose of the base in the world as it was.
+void expect_objects_placed(const Problem& problem, const Problem& placed, const Movable& thing,
+                           const Displacement& by, const Pose& robot, int trial) {
+  for (std::size_t k = 0; k < problem.scene.size(); ++k) {
+    Pose expected = problem.scene[k].pose;
+    if (thing.object == problem.scene[k].name)
+      expected = by.about(expected.translation(), expected);
+    EXPECT_TRUE((robot * placed.scene[k].pose).matrix().isApprox(expected.matrix(), 1e-9)) << trial;
+    if (thing.kind != Movable::Kind::kBase && thing.object != problem.scene[k].name) {
+      EXPECT_EQ(placed.scene[k].pose.matrix(), problem.scene[k].pose.matrix());
+    }
+  }
+}
+
+/// Checks waypoints in the world, where they move with the path or with the object whose frame
+/// they are in; returns how many there are.
+int expect_waypoints_placed(const Problem& problem, const Problem& placed, const Movable& thing,
+                            const Displacement& by, const Pose& robot, int trial) {
+  Vector3d path_origin = Vector3d::Zero();
+  for (const SceneObject& object : problem.scene)
+    if (problem.path_frame == object.name) path_origin = object.pose.translation();
+  const bool moves = thing.kind == Movable::Kind::kPath ||
+                     (!thing.object.empty() && thing.object == problem.path_frame);
+  const auto before = waypoints_in_base(problem), after = waypoints_in_base(placed);
+  int looked_at = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    Pose pose = Pose::Identity();
+    pose.linear() = before[k].orientation.toRotationMatrix();
+    pose.translation() = before[k].position;
+    if (moves) pose = by.about(path_origin, pose);
+    EXPECT_LT((robot * after[k].position - pose.translation()).norm(), 1e-9) << trial;
+    EXPECT_LT((robot.linear() * after[k].orientation.toRotationMatrix() - pose.linear()).norm(),
+              1e-9)
+        << trial;
+    ++looked_at;
+  }
+  return looked_at;
 }
 
 /// Things are where they should be in the world, whichever of them is moved.
@@ -230,46 +339,15 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
     const Offset offset = random_offset(random, 3);
     const Movable thing = random_thing(random, problem);
     const Problem placed = placed_problem(problem, thing, offset);
-    Pose turn = Pose::Identity();
-    turn.linear() = from_rpy({offset[3], offset[4], offset[5]}).toRotationMatrix();
-    const Vector3d shift(offset[0], offset[1], offset[2]);
+    const Displacement by(offset);
     // The pose of the base in the world as it was.
     Pose robot = Pose::Identity();
     if (thing.kind == Movable::Kind::kBase) {
-      robot = turn;
-      robot.translation() = shift;
+      robot = by.turn;
+      robot.translation() = by.shift;
     }
-    const auto about = [&](const Vector3d& origin, const Pose& pose) {
-      Pose moved = turn * pose;
-      moved.translation() = origin + shift + turn * (pose.translation() - origin);
-      return moved;
-    };
-    Vector3d path_origin = Vector3d::Zero();
-    for (std::size_t k = 0; k < problem.scene.size(); ++k) {
-      Pose expected = problem.scene[k].pose;
-      if (thing.object == problem.scene[k].name) expected = about(expected.translation(), expected);
-      if (problem.path_frame == problem.scene[k].name)
-        path_origin = problem.scene[k].pose.translation();
-      EXPECT_TRUE((robot * placed.scene[k].pose).matrix().isApprox(expected.matrix(), 1e-9))
-          << trial;
-      if (thing.kind != Movable::Kind::kBase && thing.object != problem.scene[k].name) {
-        EXPECT_EQ(placed.scene[k].pose.matrix(), problem.scene[k].pose.matrix());
-      }
-    }
-    const bool moves = thing.kind == Movable::Kind::kPath ||
-                       (!thing.object.empty() && thing.object == problem.path_frame);
-    const auto before = waypoints_in_base(problem), after = waypoints_in_base(placed);
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      Pose pose = Pose::Identity();
-      pose.linear() = before[k].orientation.toRotationMatrix();
-      pose.translation() = before[k].position;
-      if (moves) pose = about(path_origin, pose);
-      EXPECT_LT((robot * after[k].position - pose.translation()).norm(), 1e-9) << trial;
-      EXPECT_LT((robot.linear() * after[k].orientation.toRotationMatrix() - pose.linear()).norm(),
-                1e-9)
-          << trial;
-      ++looked_at;
-    }
+    expect_objects_placed(problem, placed, thing, by, robot, trial);
+    looked_at += expect_waypoints_placed(problem, placed, thing, by, robot, trial);
     const Problem still = placed_problem(problem, thing, {});
     for (std::size_t k = 0; k < problem.scene.size(); ++k, ++kept)
       EXPECT_EQ(still.scene[k].pose.matrix(), problem.scene[k].pose.matrix());
@@ -343,80 +421,120 @@ TEST(Place, AStartThatThePathLeavesIsBadInput) {
   }
 }
 
-/// A third of the plans at most; the best ten within 1 % of the best there are, where the criterion
-/// has one hill within a region.
-TEST(GridRefinement, FindsTheBestWithAThirdOfThePlans) {
-  const std::uint64_t base = seed("GridRefinement");
-  std::int64_t asked = 0, cells = 0;
-  int compared = 0, worse = 0, border = 0, unlike = 0;
-  for (int trial = 0; trial < trials(200); ++trial) {
-    Random random(base + static_cast<std::uint64_t>(trial));
+/// Holds a random grid of up to three axes, and a criterion with one hill within a ball where cells
+/// are solved.
+class Hill {
+ public:
+  explicit Hill(Random& random)
+      : dimensions_(1 + random.below(3)), grid_(random_axes(dimensions_, random)) {
+    top_ =
+        Vector3d(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
+    center_ = Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    radius_ = random.uniform(0.6, 2);
+  }
+  [[nodiscard]] int dimensions() const { return dimensions_; }
+  [[nodiscard]] const PlacementGrid& grid() const { return grid_; }
+  [[nodiscard]] PlacementRow row_of(std::uint64_t cell) const {
+    PlacementRow row;
+    row.cell = cell;
+    row.offset = grid_.offset(cell);
+    Vector3d at = Vector3d::Zero(), hill = Vector3d::Zero(), middle = Vector3d::Zero();
+    for (int a = 0; a < dimensions_; ++a) {
+      at[a] = row.offset[static_cast<std::size_t>(a)];
+      hill[a] = top_[a];
+      middle[a] = center_[a];
+    }
+    row.status = (at - middle).norm() < radius_ ? PlanStatus::kSolved : PlanStatus::kInfeasible;
+    if (row.status == PlanStatus::kSolved) row.cost = 1 + (at - hill).squaredNorm();
+    return row;
+  }
+
+ private:
+  static std::vector<PlacementAxis> random_axes(int dimensions, Random& random) {
     std::vector<PlacementAxis> axes;
-    const int dimensions = 1 + random.below(3);
     for (int a = 0; a < dimensions; ++a) {
       const int count = random.coin(0.1) ? 1 : 20 + random.below(dimensions == 3 ? 10 : 40);
       axes.push_back({a, -1, 1, 2.0 / std::max(1, count - 1), count});
     }
-    const PlacementGrid grid(axes);
-    const Vector3d top(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2),
-                       random.uniform(-1.2, 1.2)),
-        center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double radius = random.uniform(0.6, 2);
-    const auto row_of = [&](std::uint64_t cell) {
-      PlacementRow row;
-      row.cell = cell;
-      row.offset = grid.offset(cell);
-      Vector3d at = Vector3d::Zero(), hill = Vector3d::Zero(), middle = Vector3d::Zero();
-      for (int a = 0; a < dimensions; ++a) {
-        at[a] = row.offset[static_cast<std::size_t>(a)];
-        hill[a] = top[a];
-        middle[a] = center[a];
-      }
-      row.status = (at - middle).norm() < radius ? PlanStatus::kSolved : PlanStatus::kInfeasible;
-      if (row.status == PlanStatus::kSolved) row.cost = 1 + (at - hill).squaredNorm();
-      return row;
-    };
-    GridRefinement refinement(grid, {PlacementCriterion::kCost});
-    std::map<std::uint64_t, PlacementRow> known;
-    for (auto next = refinement.next(); !next.empty(); next = refinement.next())
-      for (const std::uint64_t cell : next) {
-        ASSERT_LT(cell, grid.size());
-        ASSERT_TRUE(known.emplace(cell, row_of(cell)).second) << "asked twice";
-        refinement.learn(row_of(cell));
-      }
-    ASSERT_LE(known.size(), std::max<std::size_t>(1, grid.size() / 3)) << trial;
-    asked += static_cast<std::int64_t>(known.size());
-    cells += static_cast<std::int64_t>(grid.size());
-    if (grid.size() < 200) continue;
-    std::vector<PlacementRow> all, some;
-    for (std::uint64_t cell = 0; cell < grid.size(); ++cell) all.push_back(row_of(cell));
-    for (const auto& [cell, row] : known) some.push_back(row);
-    const auto best = best_placements(all, {PlacementCriterion::kCost}, 10),
-               found = best_placements(some, {PlacementCriterion::kCost}, 10);
-    if (best.size() < 10) continue;
-    ++compared;
-    for (std::size_t k = 0; k < 10; ++k)
-      if (k >= found.size() || *found[k].cost > 1.01 * *best[k].cost) {
-        ++worse;
-        break;
-      }
-    if (dimensions != 2) continue;
-    for (std::uint64_t cell = 0; cell + 1 < grid.size(); ++cell) {
-      if (grid.indices(cell)[0] != grid.indices(cell + 1)[0] ||
-          all[cell].status == all[cell + 1].status)
-        continue;
-      ++unlike;
-      border += known.contains(cell) && known.contains(cell + 1);
+    return axes;
+  }
+
+  int dimensions_;
+  PlacementGrid grid_;
+  Vector3d top_, center_;
+  double radius_ = 0;
+};
+
+/// Counts planned cells, grids whose best cells were compared, and pairs of cells across a border.
+struct RefinementCounts {
+  std::int64_t asked = 0, cells = 0;
+  int compared = 0, worse = 0, border = 0, unlike = 0;
+};
+
+/// Refines a grid: checks that no cell is asked about twice and at most a third of them at all.
+/// Puts the rows of the cells that were asked about into `known`.
+void refine(const Hill& hill, int trial, std::map<std::uint64_t, PlacementRow>& known) {
+  GridRefinement refinement(hill.grid(), {PlacementCriterion::kCost});
+  for (auto next = refinement.next(); !next.empty(); next = refinement.next())
+    for (const std::uint64_t cell : next) {
+      ASSERT_LT(cell, hill.grid().size());
+      ASSERT_TRUE(known.emplace(cell, hill.row_of(cell)).second) << "asked twice";
+      refinement.learn(hill.row_of(cell));
     }
+  ASSERT_LE(known.size(), std::max<std::size_t>(1, hill.grid().size() / 3)) << trial;
+}
+
+/// Compares what is known with the whole grid: the best ten cells, and in two dimensions the pairs
+/// of neighbours of which one is solved.
+void compare_with_whole_grid(const Hill& hill, const std::map<std::uint64_t, PlacementRow>& known,
+                             RefinementCounts& counts) {
+  const PlacementGrid& grid = hill.grid();
+  std::vector<PlacementRow> all, some;
+  for (std::uint64_t cell = 0; cell < grid.size(); ++cell) all.push_back(hill.row_of(cell));
+  for (const auto& [cell, row] : known) some.push_back(row);
+  const auto best = best_placements(all, {PlacementCriterion::kCost}, 10),
+             found = best_placements(some, {PlacementCriterion::kCost}, 10);
+  if (best.size() < 10) return;
+  ++counts.compared;
+  for (std::size_t k = 0; k < 10; ++k)
+    if (k >= found.size() || *found[k].cost > 1.01 * *best[k].cost) {
+      ++counts.worse;
+      break;
+    }
+  if (hill.dimensions() != 2) return;
+  for (std::uint64_t cell = 0; cell + 1 < grid.size(); ++cell) {
+    if (grid.indices(cell)[0] != grid.indices(cell + 1)[0] ||
+        all[cell].status == all[cell + 1].status)
+      continue;
+    ++counts.unlike;
+    counts.border += known.contains(cell) && known.contains(cell + 1);
+  }
+}
+
+/// A third of the plans at most; the best ten within 1 % of the best there are, where the criterion
+/// has one hill within a region.
+TEST(GridRefinement, FindsTheBestWithAThirdOfThePlans) {
+  const std::uint64_t base = seed("GridRefinement");
+  RefinementCounts counts;
+  for (int trial = 0; trial < trials(200); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Hill hill(random);
+    std::map<std::uint64_t, PlacementRow> known;
+    refine(hill, trial, known);
+    if (HasFatalFailure()) return;
+    counts.asked += static_cast<std::int64_t>(known.size());
+    counts.cells += static_cast<std::int64_t>(hill.grid().size());
+    if (hill.grid().size() < 200) continue;
+    compare_with_whole_grid(hill, known, counts);
   }
   std::printf(
       "%lld of %lld cells planned; the best ten more than 1 %% worse in %d of %d; %d of %d pairs "
       "across the border planned\n",
-      static_cast<long long>(asked), static_cast<long long>(cells), worse, compared, border,
-      unlike);
-  EXPECT_GE(compared, at_least(80));
-  EXPECT_LE(worse, compared / 20);
-  EXPECT_GE(border, unlike * 3 / 4);
+      static_cast<long long>(counts.asked), static_cast<long long>(counts.cells), counts.worse,
+      counts.compared, counts.border, counts.unlike);
+  EXPECT_GE(counts.compared, at_least(80));
+  EXPECT_LE(counts.worse, counts.compared / 20);
+  EXPECT_GE(counts.border, counts.unlike * 3 / 4);
 }
 
 TEST(Place, GridsAndSamples) {
