@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <tuple>
 
 #include "exact/pair_test.hpp"
@@ -86,6 +87,87 @@ std::vector<SceneObject> random_scene(Random& random, const std::vector<MeshPtr>
   return scene;
 }
 
+/// Queries of one world that are compared: `asked` and `fast` with distance proofs, `off` by FCL
+/// alone.
+struct ComparedQueries {
+  explicit ComparedQueries(const World& of)
+      : world(of),
+        asked(of, DistanceProofs::kOn),
+        fast(of, DistanceProofs::kOn),
+        off(of, DistanceProofs::kOff) {}
+  const World& world;
+  World::Query asked, fast, off;
+};
+
+/// Names the configuration of a scene in messages.
+struct CaseName {
+  std::uint64_t base;
+  int scene, configuration;
+  friend std::ostream& operator<<(std::ostream& out, const CaseName& name) {
+    return out << "SWIVEL_TEST_SEED=" << name.base << " scene " << name.scene << " configuration "
+               << name.configuration;
+  }
+};
+
+/// Counts what queries with distance proofs and by FCL alone were asked.
+struct LaneCounts {
+  std::int64_t questions = 0, pairs = 0, at_threshold = 0, clearances = 0, touching = 0;
+};
+
+/// Returns whether some pair of bodies is nearer than d (m) at q, and compares each pair up to the
+/// first of them with FCL.
+bool ask(ComparedQueries& queries, const Config& q, double d, const CaseName& name,
+         LaneCounts& counts) {
+  const auto found = queries.asked.find_violating_pair(q, d);
+  for (const BodyPair& pair : queries.world.pairs()) {  // up to the first that FCL names
+    const bool below = queries.off.pair_violates(q, pair, d);
+    EXPECT_EQ(queries.asked.pair_violates(q, pair, d), below) << name << " d " << d;
+    ++counts.pairs;
+    if (below) {
+      EXPECT_EQ(found, pair);
+      break;
+    }
+  }
+  ++counts.questions;
+  return found.has_value();
+}
+
+/// Compares the clearance at q with that by FCL alone.
+void check_clearance(ComparedQueries& queries, const Config& q, const CaseName& name,
+                     LaneCounts& counts) {
+  const auto plain = queries.off.clearance(q), sooner = queries.fast.clearance(q);
+  ASSERT_EQ(plain.has_value(), sooner.has_value());
+  if (plain) {
+    EXPECT_EQ(std::tuple(sooner->distance, sooner->required, sooner->least),
+              std::tuple(plain->distance, plain->required, plain->least));
+    EXPECT_EQ(sooner->pair, plain->pair) << name;
+    counts.touching += plain->distance == 0;
+  }
+  ++counts.clearances;
+}
+
+/// Asks about distances within three bands of verdicts of the clearance at q, where it is less than
+/// 0.3 m and more than nothing.
+void check_near_clearance(ComparedQueries& queries, const Config& q, const CaseName& name,
+                          LaneCounts& counts) {
+  World::Query& fast = queries.fast;
+  double low = 0, high = 0.3;  // of the clearance
+  if (fast.find_violating_pair(q, low) || !fast.find_violating_pair(q, high)) return;
+  while (high - low > 1e-7) {
+    const double middle = (low + high) / 2;
+    (fast.find_violating_pair(q, middle) ? high : low) = middle;
+  }
+  for (const double offset :
+       {-3 * kTau, -1.1 * kTau, -0.5 * kTau, 0.5 * kTau, 1.1 * kTau, 3 * kTau}) {
+    if (low + offset < 0) continue;
+    const bool below = ask(queries, q, low + offset, name, counts);
+    if (std::abs(offset) > kTau) {
+      EXPECT_EQ(below, offset > 0) << "clearance " << low << " offset " << offset;
+    }
+    ++counts.at_threshold;
+  }
+}
+
 class Lanes : public ::testing::TestWithParam<int> {};
 
 TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
@@ -98,62 +180,22 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
   const World empty(*robot.model, arm, test::problem_for(robot));
   const int scenes = test::trials(125), configurations = 1000;
   CollisionCounters sum, by_fcl;
-  std::int64_t questions = 0, pairs = 0, at_threshold = 0, clearances = 0, touching = 0;
+  LaneCounts counts;
   for (int s = 0; s < scenes; ++s) {
     const World world(empty, random_scene(random, pool));
-    World::Query asked(world, DistanceProofs::kOn), fast(world, DistanceProofs::kOn),
-        off(world, DistanceProofs::kOff);
+    ComparedQueries queries(world);
     for (int k = 0; k < configurations; ++k) {
+      const CaseName name{base, s, k};
       const Config q = test::random_config(arm.chain, random);
-      const auto ask = [&](double d) {
-        const auto found = asked.find_violating_pair(q, d);
-        for (const BodyPair& pair : world.pairs()) {  // up to the first that FCL names
-          const bool below = off.pair_violates(q, pair, d);
-          EXPECT_EQ(asked.pair_violates(q, pair, d), below)
-              << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k << " d "
-              << d;
-          ++pairs;
-          if (below) {
-            EXPECT_EQ(found, pair);
-            break;
-          }
-        }
-        ++questions;
-        return found.has_value();
-      };
-      if (k % 100 == 0) {
-        const auto plain = off.clearance(q), sooner = fast.clearance(q);
-        ASSERT_EQ(plain.has_value(), sooner.has_value());
-        if (plain) {
-          EXPECT_EQ(std::tuple(sooner->distance, sooner->required, sooner->least),
-                    std::tuple(plain->distance, plain->required, plain->least));
-          EXPECT_EQ(sooner->pair, plain->pair)
-              << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k;
-          touching += plain->distance == 0;
-        }
-        ++clearances;
-      }
-      ask(k % 3 == 0 ? 0 : k % 3 == 1 ? 0.005 : random.uniform(0, 0.05));
-      if (k % 20 != 0) continue;
-      double low = 0, high = 0.3;  // of the clearance
-      if (fast.find_violating_pair(q, low) || !fast.find_violating_pair(q, high)) continue;
-      while (high - low > 1e-7) {
-        const double middle = (low + high) / 2;
-        (fast.find_violating_pair(q, middle) ? high : low) = middle;
-      }
-      for (const double offset :
-           {-3 * kTau, -1.1 * kTau, -0.5 * kTau, 0.5 * kTau, 1.1 * kTau, 3 * kTau}) {
-        if (low + offset < 0) continue;
-        const bool below = ask(low + offset);
-        if (std::abs(offset) > kTau) {
-          EXPECT_EQ(below, offset > 0) << "clearance " << low << " offset " << offset;
-        }
-        ++at_threshold;
-      }
+      if (k % 100 == 0) check_clearance(queries, q, name, counts);
+      if (HasFatalFailure()) return;
+      ask(queries, q, k % 3 == 0 ? 0 : k % 3 == 1 ? 0.005 : random.uniform(0, 0.05), name, counts);
+      if (k % 20 == 0) check_near_clearance(queries, q, name, counts);
     }
-    sum += asked.counters();
-    by_fcl += off.counters();
+    sum += queries.asked.counters();
+    by_fcl += queries.off.counters();
   }
+  const auto [questions, pairs, at_threshold, clearances, touching] = counts;
   const std::int64_t undecided = questions - sum.proved_free - sum.proved_colliding;
   std::printf(
       "%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld "
@@ -181,6 +223,91 @@ struct Verdicts {
   [[nodiscard]] int all() const { return free + colliding + none; }
 };
 
+/// A mesh of the pool and a shape of kind 0 to 5 (sphere, capsule, capsule, box, cylinder, mesh of
+/// the pool), placed near each other (m), in either order.
+struct RandomPair {
+  int kind = 0;
+  FclShape mesh, other;
+  Pose X_mesh, X_other;
+  bool swapped = false;
+  [[nodiscard]] PlacedShapeRef a() const {
+    return swapped ? PlacedShapeRef{&other, &X_other} : PlacedShapeRef{&mesh, &X_mesh};
+  }
+  [[nodiscard]] PlacedShapeRef b() const {
+    return swapped ? PlacedShapeRef{&mesh, &X_mesh} : PlacedShapeRef{&other, &X_other};
+  }
+};
+
+/// Draws a pair of which one body is a mesh of the pool.
+RandomPair random_pair(Random& random, const std::vector<MeshPtr>& pool, MeshStore& store) {
+  RandomPair pair;
+  const double small = random.coin(0.2) ? 0.005 : random.uniform(0.01, 0.15);
+  pair.kind = random.below(6);
+  Shape other;
+  if (pair.kind == 0) other = Sphere{small};
+  if (pair.kind == 1 || pair.kind == 2) other = Capsule{small, random.uniform(0.01, 0.5)};
+  if (pair.kind == 3) other = Box{random_size(random, small / 4, 2 * small)};
+  if (pair.kind == 4) other = Cylinder{small, random.uniform(0.005, 0.4)};
+  if (pair.kind == 5) other = pool[random.below(static_cast<int>(pool.size()))];
+  pair.mesh = make_fcl_shape(pool[random.below(static_cast<int>(pool.size()))], store);
+  pair.other = make_fcl_shape(other, store);
+  pair.X_mesh = random_pose(random, 0.1);
+  pair.X_other =
+      pair.X_mesh * random_pose(random, random.coin(0.3) ? 0.15 : 0.6);  // the nearer often inside
+  pair.swapped = random.coin();
+  return pair;
+}
+
+/// Compares the clearance (m) that a pair test of near parts gives with that of whole meshes.
+void check_near_parts(PairTest& near_parts, const RandomPair& pair, double clearance,
+                      const std::string& where) {
+  const PlacedShapeRef a = pair.a(), b = pair.b();
+  ASSERT_EQ(near_parts.clearance(a, b), clearance) << where << " kind " << pair.kind;
+  if (clearance > 0 && pair.kind > 2) {
+    ASSERT_TRUE(near_parts.below(a, b, std::nextafter(clearance, 1)))
+        << where << " kind " << pair.kind;
+    ASSERT_FALSE(near_parts.below(a, b, clearance)) << where << " kind " << pair.kind;
+  }
+}
+
+/// Compares the distance of two bodies made of triangles with their clearance (m).
+void check_triangle_distance(const RandomPair& pair, double clearance, Random& random,
+                             const std::string& where) {
+  const PlacedShapeRef a = pair.a(), b = pair.b();
+  TrianglePair anywhere;
+  const double own = triangle_distance(a, b, 0, 10, anywhere);
+  ASSERT_NEAR(own, clearance, clearance > kTriangleBand ? kTriangleBand / 2 : 2 * kTriangleBand)
+      << where << " kind " << pair.kind;
+  if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand; d > 0 && clearance > 0) {
+    ASSERT_TRUE(!proves_beyond(a, b, d, anywhere) || clearance > d) << where;
+  }
+}
+
+/// Compares what is proved about the distance d (m) with the clearance (m), and counts the verdict.
+void check_proof(const RandomPair& pair, double clearance, double d, const std::string& where,
+                 Verdicts& tally) {
+  const PlacedShapeRef a = pair.a(), b = pair.b();
+  const double beyond = pair.mesh.beyond_triangles + pair.other.beyond_triangles;
+  const DistanceProof certificate = prove_distance(a, b, d);
+  const std::string what = where + " kind " + std::to_string(pair.kind) + " clearance " +
+                           std::to_string(clearance) + " d " + std::to_string(d);
+  ASSERT_FALSE(certificate == DistanceProof::kFree && (clearance < d || clearance == 0)) << what;
+  ASSERT_FALSE(certificate == DistanceProof::kColliding && clearance >= d && clearance > 0) << what;
+  // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all
+  // is decided.
+  if (clearance > d + 2.5 * kTau + beyond) {
+    ASSERT_EQ(certificate, DistanceProof::kFree) << what;
+  }
+  if (clearance < d - 2.5 * kTau - beyond) {
+    ASSERT_EQ(certificate, DistanceProof::kColliding) << what;
+  }
+  tally.add(certificate);
+  TrianglePair nowhere;
+  const Proof ahead = prove(a, b, d, 0.01, nowhere);
+  ASSERT_EQ(ahead.proved, certificate) << what;
+  ASSERT_LE(ahead.bound, clearance + kTau) << what;
+}
+
 class MeshLanes : public ::testing::TestWithParam<int> {};
 
 TEST_P(MeshLanes, MeshesAgainstFclDistances) {
@@ -193,68 +320,26 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
   int triangles = 0;
   const int count = test::trials(5000);
   for (int k = 0; k < count; ++k) {
-    const double small = random.coin(0.2) ? 0.005 : random.uniform(0.01, 0.15);
-    const int kind = random.below(6);
-    Shape other;
-    if (kind == 0) other = Sphere{small};
-    if (kind == 1 || kind == 2) other = Capsule{small, random.uniform(0.01, 0.5)};
-    if (kind == 3) other = Box{random_size(random, small / 4, 2 * small)};
-    if (kind == 4) other = Cylinder{small, random.uniform(0.005, 0.4)};
-    if (kind == 5) other = pool[random.below(static_cast<int>(pool.size()))];
-    const FclShape fa = make_fcl_shape(pool[random.below(static_cast<int>(pool.size()))], store);
-    const FclShape fb = make_fcl_shape(other, store);
-    const Pose X_a = random_pose(random, 0.1);
-    const Pose X_b =
-        X_a * random_pose(random, random.coin(0.3) ? 0.15 : 0.6);  // the nearer often inside
-    const bool swapped = random.coin();
-    const PlacedShapeRef a = swapped ? PlacedShapeRef{&fb, &X_b} : PlacedShapeRef{&fa, &X_a};
-    const PlacedShapeRef b = swapped ? PlacedShapeRef{&fa, &X_a} : PlacedShapeRef{&fb, &X_b};
-    const double clearance = fcl.clearance(a, b);
+    const RandomPair pair = random_pair(random, pool, store);
+    const double clearance = fcl.clearance(pair.a(), pair.b());
     const std::string where =
         "SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
-    ASSERT_EQ(near_parts.clearance(a, b), clearance) << where << " kind " << kind;
-    if (clearance > 0 && kind > 2) {
-      ASSERT_TRUE(near_parts.below(a, b, std::nextafter(clearance, 1)))
-          << where << " kind " << kind;
-      ASSERT_FALSE(near_parts.below(a, b, clearance)) << where << " kind " << kind;
-    }
-    if (are_triangles(a, b)) {
-      TrianglePair anywhere;
-      const double own = triangle_distance(a, b, 0, 10, anywhere);
-      ASSERT_NEAR(own, clearance, clearance > kTriangleBand ? kTriangleBand / 2 : 2 * kTriangleBand)
-          << where << " kind " << kind;
-      if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand;
-          d > 0 && clearance > 0) {
-        ASSERT_TRUE(!proves_beyond(a, b, d, anywhere) || clearance > d) << where;
-      }
+    check_near_parts(near_parts, pair, clearance, where);
+    if (HasFatalFailure()) return;
+    if (are_triangles(pair.a(), pair.b())) {
+      check_triangle_distance(pair, clearance, random, where);
+      if (HasFatalFailure()) return;
       ++triangles;
     }
-    Verdicts& tally = clearance == 0 ? touching : kind <= 2 ? round : kind <= 4 ? solid : mesh;
-    const double beyond = fa.beyond_triangles + fb.beyond_triangles;
+    Verdicts& tally = clearance == 0   ? touching
+                      : pair.kind <= 2 ? round
+                      : pair.kind <= 4 ? solid
+                                       : mesh;
     for (const double d :
          {0.0, 0.005, clearance - 3 * kTau, clearance - 1.1 * kTau, clearance + 1.1 * kTau,
           clearance + 3 * kTau, clearance + random.uniform(-0.02, 0.02)}) {
-      if (d < 0) continue;
-      const DistanceProof certificate = prove_distance(a, b, d);
-      const std::string what = where + " kind " + std::to_string(kind) + " clearance " +
-                               std::to_string(clearance) + " d " + std::to_string(d);
-      ASSERT_FALSE(certificate == DistanceProof::kFree && (clearance < d || clearance == 0))
-          << what;
-      ASSERT_FALSE(certificate == DistanceProof::kColliding && clearance >= d && clearance > 0)
-          << what;
-      // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all
-      // is decided.
-      if (clearance > d + 2.5 * kTau + beyond) {
-        ASSERT_EQ(certificate, DistanceProof::kFree) << what;
-      }
-      if (clearance < d - 2.5 * kTau - beyond) {
-        ASSERT_EQ(certificate, DistanceProof::kColliding) << what;
-      }
-      tally.add(certificate);
-      TrianglePair nowhere;
-      const Proof ahead = prove(a, b, d, 0.01, nowhere);
-      ASSERT_EQ(ahead.proved, certificate) << what;
-      ASSERT_LE(ahead.bound, clearance + kTau) << what;
+      if (d >= 0) check_proof(pair, clearance, d, where, tally);
+      if (HasFatalFailure()) return;
     }
   }
   for (const auto& [name, tally] :

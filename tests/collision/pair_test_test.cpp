@@ -38,12 +38,47 @@ struct Tally {
   int apart = 0, touching = 0;
 };
 
+/// Counts verdicts on pairs, and those that a distance proof gave.
+struct VerdictCounts {
+  int verdicts = 0, proved = 0;
+};
+
+/// Compares verdicts and distance proofs about d (m) with the clearance `truth` (m) of two placed
+/// shapes, for increasing d up to beyond that clearance.
+void check_verdicts(PairTest& test, const PlacedShapeRef& a, const PlacedShapeRef& b, double truth,
+                    const std::string& what, VerdictCounts& counts) {
+  std::vector<double> thresholds{0.0, 0.001, 0.005, 0.02, 0.1};
+  for (const double offset : {-2 * kTau, -1.1 * kTau, 1.1 * kTau, 2 * kTau})
+    if (truth + offset >= 0) thresholds.push_back(truth + offset);
+  std::sort(thresholds.begin(), thresholds.end());
+  const Bound &bound_a = a.shape->bound, &bound_b = b.shape->bound;
+  bool was_below = false;
+  for (const double d : thresholds) {
+    const bool below = test.below(a, b, d);
+    ASSERT_TRUE(below || !was_below) << what << ": not monotone at " << d;
+    was_below = below;
+    if (truth == 0 || std::abs(truth - d) > kTau) {
+      ASSERT_EQ(below, truth == 0 || truth < d) << what << ", d " << d;
+    }
+    const bool apart =
+        proved_apart(bound_a, place(bound_a, *a.pose), bound_b, place(bound_b, *b.pose), d + 1e-6);
+    ASSERT_FALSE(apart && below) << what;
+    const DistanceProof certificate = prove_distance(a, b, d);
+    ASSERT_FALSE(certificate == DistanceProof::kFree && (truth < d || truth == 0))
+        << what << ", d " << d;
+    ASSERT_FALSE(certificate == DistanceProof::kColliding && truth >= d && truth > 0)
+        << what << ", d " << d;
+    counts.proved += certificate != DistanceProof::kNone;
+    ++counts.verdicts;
+  }
+}
+
 TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   Random random(21);
   PairTest test;
   MeshStore store;
   std::map<std::pair<int, int>, Tally> tally;
-  int verdicts = 0, proved = 0;
+  VerdictCounts counts;
   double worst = 0;
   for (int ka = 0; ka < 7; ++ka)
     for (int kb = 0; kb < 7; ++kb)
@@ -66,35 +101,13 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
         ASSERT_LE(distance_bound(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b)),
                   truth + 1e-5)
             << what;
-
-        std::vector<double> thresholds{0.0, 0.001, 0.005, 0.02, 0.1};
-        for (const double offset : {-2 * kTau, -1.1 * kTau, 1.1 * kTau, 2 * kTau})
-          if (truth + offset >= 0) thresholds.push_back(truth + offset);
-        std::sort(thresholds.begin(), thresholds.end());
-        bool was_below = false;
-        for (const double d : thresholds) {
-          const bool below = test.below(pa, pb, d);
-          ASSERT_TRUE(below || !was_below) << what << ": not monotone at " << d;
-          was_below = below;
-          if (truth == 0 || std::abs(truth - d) > kTau) {
-            ASSERT_EQ(below, truth == 0 || truth < d) << what << ", d " << d;
-          }
-          const bool apart = proved_apart(fa.bound, place(fa.bound, X_a), fb.bound,
-                                          place(fb.bound, X_b), d + 1e-6);
-          ASSERT_FALSE(apart && below) << what;
-          const DistanceProof certificate = prove_distance(pa, pb, d);
-          ASSERT_FALSE(certificate == DistanceProof::kFree && (truth < d || truth == 0))
-              << what << ", d " << d;
-          ASSERT_FALSE(certificate == DistanceProof::kColliding && truth >= d && truth > 0)
-              << what << ", d " << d;
-          proved += certificate != DistanceProof::kNone;
-          ++verdicts;
-        }
+        check_verdicts(test, pa, pb, truth, what, counts);
+        if (HasFatalFailure()) return;
         ++(truth > 0 ? tally[{ka, kb}].apart : tally[{ka, kb}].touching);
       }
   EXPECT_EQ(test.counters().fcl_failures, 0);
-  EXPECT_GT(verdicts, test::at_least(5500));
-  EXPECT_GT(proved, verdicts * 3 / 4);
+  EXPECT_GT(counts.verdicts, test::at_least(5500));
+  EXPECT_GT(counts.proved, counts.verdicts * 3 / 4);
   for (const auto& [kinds, t] : tally) {
     const std::string what = kKinds[kinds.first] + " / " + kKinds[kinds.second];
     EXPECT_GE(t.apart, test::at_least(1)) << what;
