@@ -41,6 +41,122 @@ class Walk {
   Config q_, step_;
 };
 
+/// Counts questions that were put to queries which keep clearances and to plain ones.
+struct KeptCounts {
+  std::int64_t questions = 0, pairs = 0, named = 0, turned = 0, scene_questions = 0, only_own = 0,
+               reduced = 0;
+};
+
+/// Queries of one world: `kept` keeps clearances from posture to posture, `plain` knows nothing of
+/// the posture before, and `fcl` asks FCL alone.
+struct ComparedQueries {
+  explicit ComparedQueries(const World& of)
+      : world(of), kept(of, DistanceProofs::kOn), plain(of, DistanceProofs::kOn), fcl(of) {}
+  const World& world;
+  World::Query kept, plain, fcl;
+};
+
+/// A question about a posture (rad): d is a distance (m), and `by_rule` tells that the threshold
+/// follows the clearances of the world instead.
+struct Question {
+  Config q;
+  double d;
+  bool by_rule;
+  std::optional<BodyPair> suspected;
+  Threshold threshold;
+};
+
+/// Draws the distance, the suspected pair and the threshold of a question about q.
+Question random_question(const World& world, const Config& q, bool by_rule, Random& random) {
+  const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
+  std::optional<BodyPair> suspected;
+  if (random.coin(0.2))
+    suspected = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
+  const Threshold threshold =
+      by_rule ? Threshold(ClearanceRule::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01))
+              : Threshold(d);
+  return {q, d, by_rule, suspected, threshold};
+}
+
+/// Checks that a pair which was found by a proof violates its threshold, within the band in which
+/// FCL alone decides.
+void check_proved_pair(ComparedQueries& queries, const Question& asked, const BodyPair& found,
+                       KeptCounts& counts) {
+  const double node = queries.world.required_clearance(found).node;
+  const double required = asked.by_rule ? node + asked.threshold.more : asked.d;
+  ASSERT_TRUE(required <= kVerdictBand ||
+              queries.plain.pair_violates(asked.q, found, required - kVerdictBand));
+  counts.reduced += asked.by_rule && node < 0.04;
+}
+
+/// Returns the suspected pair, else the first pair of a body of the robot and one of the scene,
+/// that violates the threshold by the plain query.
+std::optional<BodyPair> plain_pair_with_scene(ComparedQueries& queries, const Question& asked) {
+  const World& world = queries.world;
+  World::Query& plain = queries.plain;
+  if (asked.suspected && plain.pair_violates(asked.q, *asked.suspected, asked.threshold))
+    return asked.suspected;
+  for (const BodyPair& pair : world.pairs())
+    if (pair.b >= static_cast<int>(world.bodies().size()) &&
+        plain.pair_violates(asked.q, pair, asked.threshold))
+      return pair;
+  return std::nullopt;
+}
+
+/// Compares the answer about the scene alone with that of the plain query; `found` is the answer
+/// about all pairs.
+void check_scene_question(ComparedQueries& queries, const Question& asked,
+                          const std::optional<BodyPair>& found, std::uint64_t base,
+                          KeptCounts& counts) {
+  const auto of_scene = plain_pair_with_scene(queries, asked);
+  ASSERT_EQ(queries.kept.find_violating_pair_with_scene(asked.q, asked.threshold, asked.suspected),
+            of_scene)
+      << "SWIVEL_TEST_SEED=" << base;
+  ++counts.scene_questions;
+  counts.only_own += found && !of_scene;
+}
+
+/// Puts other questions to the queries after the one that was answered with `found`: now and then
+/// about the scene alone and about another posture, and about single pairs where `each_pair`.
+void check_other_questions(ComparedQueries& queries, const Question& asked,
+                           const std::optional<BodyPair>& found, bool each_pair, const Chain& chain,
+                           std::uint64_t base, Random& random, KeptCounts& counts) {
+  World::Query &kept = queries.kept, &plain = queries.plain;
+  if (random.coin(0.2)) {
+    check_scene_question(queries, asked, found, base, counts);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  if (random.coin(0.1)) {  // other questions to the same query disturb nothing
+    const Config elsewhere = test::random_config(chain, random);
+    ASSERT_EQ(kept.find_violating_pair(elsewhere, asked.d),
+              plain.find_violating_pair(elsewhere, asked.d));
+  }
+  if (!each_pair) return;
+  for (const BodyPair& pair : queries.world.pairs())
+    ASSERT_EQ(kept.pair_violates(asked.q, pair, asked.threshold),
+              queries.fcl.pair_violates(asked.q, pair, asked.threshold));
+}
+
+/// Prints what was asked of a robot and how many FCL calls it took.
+void print_counts(const std::string& robot, const KeptCounts& counts, const CollisionCounters& kept,
+                  const CollisionCounters& plain) {
+  const auto questions = static_cast<double>(counts.questions);
+  std::printf(
+      "%s: %lld questions (%lld answered by a pair, %lld turns from free to not or back), %.1f of "
+      "%.1f pairs a question kept, "
+      "%lld FCL calls for %lld\n",
+      robot.c_str(), static_cast<long long>(counts.questions), static_cast<long long>(counts.named),
+      static_cast<long long>(counts.turned), static_cast<double>(kept.pairs_kept) / questions,
+      static_cast<double>(counts.pairs) / questions, static_cast<long long>(kept.fcl_calls),
+      static_cast<long long>(plain.fcl_calls));
+  std::printf(
+      "%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at "
+      "which only the robot's own were "
+      "near\n",
+      static_cast<long long>(counts.reduced), static_cast<long long>(counts.scene_questions),
+      static_cast<long long>(counts.only_own));
+}
+
 class Kept : public ::testing::TestWithParam<int> {};
 
 TEST_P(Kept, ClearancesChangeNoAnswer) {
@@ -55,92 +171,46 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
   Problem wide = test::problem_for(bare);
   wide.limits.clearance = 0.04;
   const World without(*bare.model, arm, wide);
-  std::int64_t reduced = 0;
   const MeshPtr panel = testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel");
   CollisionCounters kept_counters, plain_counters;
-  std::int64_t questions = 0, pairs = 0, named = 0, turned = 0, scene_questions = 0, only_own = 0;
+  KeptCounts counts;
   for (int s = 0; s < test::trials(40); ++s) {
     std::vector<SceneObject> scene = test::random_problem(robot, random).scene;
     scene.push_back({"panel", panel, test::random_pose(random, Vector3d(0, 0, 0.6), 0.8), {}});
     const bool special = s % 3 == 2;
     const World world(special ? without : with_srdf, scene);
-    World::Query kept(world, DistanceProofs::kOn), plain(world, DistanceProofs::kOn), fcl(world);
+    ComparedQueries queries(world);
     Walk walk(arm.chain, random);
     bool was_free = false;
     for (int k = 0; k < 500; ++k) {
-      const Config& q = walk.next();
-      const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
-      std::optional<BodyPair> suspected;
-      if (random.coin(0.2))
-        suspected = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
-      const Threshold threshold =
-          special ? Threshold(ClearanceRule::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01))
-                  : Threshold(d);
-      const auto expected = plain.find_violating_pair(q, threshold, suspected),
-                 found = kept.find_violating_pair_incremental(q, threshold, suspected);
+      const Question asked = random_question(world, walk.next(), special, random);
+      const auto& [q, d, by_rule, suspected, threshold] = asked;
+      const auto expected = queries.plain.find_violating_pair(q, threshold, suspected),
+                 found = queries.kept.find_violating_pair_incremental(q, threshold, suspected);
       ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene "
                                  << s << " posture " << k << " d " << d;
-      if (found && kept.violation_is_proved()) {
-        const double required =
-            special ? world.required_clearance(*found).node + threshold.more : d;
-        ASSERT_TRUE(required <= kVerdictBand ||
-                    plain.pair_violates(q, *found, required - kVerdictBand));
-        reduced += special && world.required_clearance(*found).node < 0.04;
-      }
-      if (random.coin(0.2)) {
-        const auto of_scene = [&]() -> std::optional<BodyPair> {
-          if (suspected && plain.pair_violates(q, *suspected, threshold)) return suspected;
-          for (const BodyPair& pair : world.pairs())
-            if (pair.b >= static_cast<int>(world.bodies().size()) &&
-                plain.pair_violates(q, pair, threshold))
-              return pair;
-          return std::nullopt;
-        }();
-        ASSERT_EQ(kept.find_violating_pair_with_scene(q, threshold, suspected), of_scene)
-            << "SWIVEL_TEST_SEED=" << base;
-        ++scene_questions;
-        only_own += found && !of_scene;
-      }
-      if (random.coin(0.1)) {  // other questions to the same query disturb nothing
-        const Config elsewhere = test::random_config(arm.chain, random);
-        ASSERT_EQ(kept.find_violating_pair(elsewhere, d), plain.find_violating_pair(elsewhere, d));
-      }
-      for (const BodyPair& pair : world.pairs()) {
-        if (k >= 50) break;
-        ASSERT_EQ(kept.pair_violates(q, pair, threshold), fcl.pair_violates(q, pair, threshold));
-      }
-      ++questions;
-      pairs += static_cast<std::int64_t>(world.pairs().size());
-      named += found.has_value();
-      turned += k > 0 && was_free == found.has_value();
+      if (found && queries.kept.violation_is_proved())
+        check_proved_pair(queries, asked, *found, counts);
+      if (HasFatalFailure()) return;
+      check_other_questions(queries, asked, found, k < 50, arm.chain, base, random, counts);
+      if (HasFatalFailure()) return;
+      ++counts.questions;
+      counts.pairs += static_cast<std::int64_t>(world.pairs().size());
+      counts.named += found.has_value();
+      counts.turned += k > 0 && was_free == found.has_value();
       was_free = !found;
     }
-    kept_counters += kept.counters();
-    plain_counters += plain.counters();
+    kept_counters += queries.kept.counters();
+    plain_counters += queries.plain.counters();
   }
-  std::printf(
-      "%s: %lld questions (%lld answered by a pair, %lld turns from free to not or back), %.1f of "
-      "%.1f pairs a question kept, "
-      "%lld FCL calls for %lld\n",
-      robot.name.c_str(), static_cast<long long>(questions), static_cast<long long>(named),
-      static_cast<long long>(turned),
-      static_cast<double>(kept_counters.pairs_kept) / static_cast<double>(questions),
-      static_cast<double>(pairs) / static_cast<double>(questions),
-      static_cast<long long>(kept_counters.fcl_calls),
-      static_cast<long long>(plain_counters.fcl_calls));
-  std::printf(
-      "%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at "
-      "which only the robot's own were "
-      "near\n",
-      static_cast<long long>(reduced), static_cast<long long>(scene_questions),
-      static_cast<long long>(only_own));
-  EXPECT_GT(scene_questions, questions / 10);
+  print_counts(robot.name, counts, kept_counters, plain_counters);
+  EXPECT_GT(counts.scene_questions, counts.questions / 10);
   EXPECT_EQ(plain_counters.pairs_kept, 0);
-  EXPECT_GT(kept_counters.pairs_kept, pairs / 4);
+  EXPECT_GT(kept_counters.pairs_kept, counts.pairs / 4);
   // A short search for a proof that begins elsewhere may miss one now and then.
   EXPECT_LE(kept_counters.fcl_calls, plain_counters.fcl_calls + 2);
-  EXPECT_GT(named, questions / 20);
-  EXPECT_GT(turned, questions / 400);
+  EXPECT_GT(counts.named, counts.questions / 20);
+  EXPECT_GT(counts.turned, counts.questions / 400);
 }
 INSTANTIATE_TEST_SUITE_P(Robots, Kept, ::testing::Range(0, 5));
 
