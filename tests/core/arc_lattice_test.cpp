@@ -137,9 +137,88 @@ std::vector<ArmTable> arms() {
   return {arms_7r()[0], arms_7r()[1], arms_7r()[3], arms_7r()[6], arms_6r()[0], arms_6r()[3]};
 }
 
+/// Counts nodes of arc lattices: at ends of arcs, continued from the layer before, placed in gaps,
+/// and twins of flipped arcs.
+struct NodeCounts {
+  int ends = 0, transported = 0, filled = 0, twins = 0;
+};
+
+/// Checks that joints (rad) are inside their limits less the margin (rad), and returns whether one
+/// is at its limit.
+bool check_limits(const ArcLattice& lattice, const Config& joints, double margin) {
+  const Chain& chain = lattice.chain();
+  bool at_limit = false;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const double q = joints[static_cast<Eigen::Index>(j)];
+    if (lattice.continuous()[j]) {
+      EXPECT_LE(std::abs(q), kPi);
+      continue;
+    }
+    const double lower = chain.limit[j].lower + margin, upper = chain.limit[j].upper - margin;
+    EXPECT_TRUE(q >= lower && q <= upper);
+    at_limit = at_limit || q == lower || q == upper;
+  }
+  return at_limit;
+}
+
+/// Checks the nodes of layer i: `again` is the lattice of the problem built once more.
+void check_nodes(const ArcLattice& lattice, const ArcLattice& again, const Problem& problem, int i,
+                 NodeCounts& counts) {
+  const Pose& tool = lattice.path().layer(i).tool;
+  for (int slot = 0; slot < lattice.slots(i); ++slot) {
+    const auto& point = lattice.point(i, slot);
+    ASSERT_EQ(point.q, again.point(i, slot).q);
+    const Pose reached = lattice.chain().tool(point.q);
+    EXPECT_LT((reached.matrix() - tool.matrix()).norm(), 1e-9);
+    counts.ends += check_limits(lattice, point.q, problem.limits.joint_margin);
+    (point.along[0] >= 0 ? counts.transported : counts.filled) += 1;
+    // Neighbours along the arc are no farther than a gap that would be filled.
+    if (point.beside[1] >= 0) {
+      const auto& next = lattice.point(i, point.beside[1]);
+      EXPECT_EQ(next.beside[0], slot);
+      double chord = 0;
+      for (int j = 0; j < kDof; ++j)
+        chord += std::pow(std::remainder(next.q[j] - point.q[j], kTwoPi), 2);
+      EXPECT_LE(std::sqrt(chord), 1.5 * problem.resolution.arc + 1e-2);
+    }
+  }
+}
+
+/// Both arcs of a pair have the same nodes, flipped, and these continue corresponding nodes.
+void check_flipped_arcs(const ArcLattice& lattice, const SelfMotion& motion, int i,
+                        NodeCounts& counts) {
+  for (int slot = 0, half = lattice.slots(i) / 2;
+       motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
+    const int other = slot < half ? slot + half : slot - half;
+    EXPECT_LT(
+        lattice.delta(motion.flipped(lattice.point(i, slot).q), lattice.point(i, other).q).norm(),
+        1e-9);
+    const int before = lattice.point(i, slot).along[0];
+    if (before < 0) continue;
+    const int half_before = lattice.slots(i - 1) / 2;
+    EXPECT_EQ(lattice.point(i, other).along[0],
+              before < half_before ? before + half_before : before - half_before);
+    ++counts.twins;
+  }
+}
+
+/// Every end of an arc is a node, bit for bit.
+void check_ends_of_arcs(const ArcLattice& lattice, const SelfMotion& motion, int i) {
+  const auto arcs = motion.arcs(lattice.path().layer(i).tool);
+  for (const SelfMotionArc& arc : arcs) {
+    if (arc.closed) continue;
+    for (const Config& end : {arc.q.front(), arc.q.back()}) {
+      double nearest = 1e9;
+      for (int slot = 0; slot < lattice.slots(i); ++slot)
+        nearest = std::min(nearest, (lattice.point(i, slot).q - end).norm());
+      EXPECT_LE(nearest, 1e-9);
+    }
+  }
+}
+
 TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
   Random random(seed("ArcLattice.NodesReachTheirPosesAndLieCloseTogether"));
-  int ends = 0, transported = 0, filled = 0, twins = 0;
+  NodeCounts counts;
   for (const ArmTable& table : arms()) {
     const Chain chain = chain_of(table);
     const LockMethod method = lock_method(chain);
@@ -152,76 +231,21 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
       const SelfMotion motion(chain, method, problem.limits.joint_margin);
       std::int64_t nodes = 0;
       for (int i = 0; i < lattice.layers(); ++i) {
-        const Pose& tool = path.layer(i).tool;
         nodes += lattice.slots(i);
-        std::vector<int> on_limit;
-        for (int slot = 0; slot < lattice.slots(i); ++slot) {
-          const auto& point = lattice.point(i, slot);
-          ASSERT_EQ(point.q, again.point(i, slot).q);
-          const Pose reached = chain.tool(point.q);
-          EXPECT_LT((reached.matrix() - tool.matrix()).norm(), 1e-9);
-          bool at_limit = false;
-          for (std::size_t j = 0; j < kDof; ++j) {
-            const double q = point.q[static_cast<Eigen::Index>(j)];
-            if (lattice.continuous()[j]) {
-              EXPECT_LE(std::abs(q), kPi);
-              continue;
-            }
-            const double lower = chain.limit[j].lower + problem.limits.joint_margin,
-                         upper = chain.limit[j].upper - problem.limits.joint_margin;
-            EXPECT_TRUE(q >= lower && q <= upper);
-            at_limit = at_limit || q == lower || q == upper;
-          }
-          ends += at_limit;
-          (point.along[0] >= 0 ? transported : filled) += 1;
-          // Neighbours along the arc are no farther than a gap that would be filled.
-          if (point.beside[1] >= 0) {
-            const auto& next = lattice.point(i, point.beside[1]);
-            EXPECT_EQ(next.beside[0], slot);
-            double chord = 0;
-            for (int j = 0; j < kDof; ++j)
-              chord += std::pow(std::remainder(next.q[j] - point.q[j], kTwoPi), 2);
-            EXPECT_LE(std::sqrt(chord), 1.5 * problem.resolution.arc + 1e-2);
-          } else {
-            on_limit.push_back(slot);
-          }
-        }
-        // Both arcs of a pair have the same nodes, flipped, and these continue corresponding nodes.
-        for (int slot = 0, half = lattice.slots(i) / 2;
-             motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
-          const int other = slot < half ? slot + half : slot - half;
-          EXPECT_LT(
-              lattice.delta(motion.flipped(lattice.point(i, slot).q), lattice.point(i, other).q)
-                  .norm(),
-              1e-9);
-          const int before = lattice.point(i, slot).along[0];
-          if (before < 0) continue;
-          const int half_before = lattice.slots(i - 1) / 2;
-          EXPECT_EQ(lattice.point(i, other).along[0],
-                    before < half_before ? before + half_before : before - half_before);
-          ++twins;
-        }
-        // Every end of an arc is a node, bit for bit.
-        const auto arcs = motion.arcs(tool);
-        for (const SelfMotionArc& arc : arcs) {
-          if (arc.closed) continue;
-          for (const Config& end : {arc.q.front(), arc.q.back()}) {
-            double nearest = 1e9;
-            for (int slot = 0; slot < lattice.slots(i); ++slot)
-              nearest = std::min(nearest, (lattice.point(i, slot).q - end).norm());
-            EXPECT_LE(nearest, 1e-9);
-          }
-        }
+        check_nodes(lattice, again, problem, i, counts);
+        if (HasFatalFailure()) return;
+        check_flipped_arcs(lattice, motion, i, counts);
+        check_ends_of_arcs(lattice, motion, i);
       }
       EXPECT_EQ(nodes, lattice.nodes());
     }
   }
   std::printf(
       "  %d nodes on limits, %d transported, %d filled, %d continue the like of their twins\n",
-      ends, transported, filled, twins);
-  EXPECT_GE(twins, at_least(500));
-  EXPECT_GE(ends, at_least(300));
-  EXPECT_GT(transported, 3 * filled);
+      counts.ends, counts.transported, counts.filled, counts.twins);
+  EXPECT_GE(counts.twins, at_least(500));
+  EXPECT_GE(counts.ends, at_least(300));
+  EXPECT_GT(counts.transported, 3 * counts.filled);
 }
 
 TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
@@ -304,73 +328,102 @@ TEST(ArcLattice, WithoutAClosedFormArcsAreFollowedFromLayerToLayer) {
   EXPECT_GE(static_cast<double>(found), 0.98 * static_cast<double>(all));
 }
 
+/// Returns an arm whose joints of more than a turn have little room beyond it, so that some paths
+/// do not fit.
+ArmTable arm_with_tight_circles(bool seven, Random& random) {
+  ArmTable table = seven ? arms_7r()[1] : arms_6r()[3];
+  for (JointRow& joint : table.joints)
+    if (joint.upper - joint.lower > 6.5) {
+      joint.lower = -random.uniform(3.2, 3.8);
+      joint.upper = random.uniform(3.2, 3.8);
+    }
+  return table;
+}
+
+/// Follows a random node of the first layer along its images; the path may end early.
+std::vector<int> random_slots(const ArcLattice& lattice, Random& random) {
+  std::vector<int> slots;
+  for (int i = 0, slot = lattice.slots(0) > 0 ? random.below(lattice.slots(0)) : -1;
+       i < lattice.layers() && slot >= 0; ++i) {
+    slots.push_back(slot);
+    slot = lattice.neighbour_along_path(i, slot, 1);
+  }
+  return slots;
+}
+
+/// Tells which circles keep their limits along the path, of all images of the first row, by brute
+/// force.
+std::array<bool, kDof> circles_that_fit(const ArcLattice& lattice, const std::vector<int>& slots) {
+  const Chain& chain = lattice.chain();
+  std::array<bool, kDof> fits{};
+  for (std::size_t j = 0; j < kDof; ++j) {
+    if (!lattice.circles()[j]) continue;
+    const auto at = static_cast<Eigen::Index>(j);
+    for (int turn = -2; turn <= 2; ++turn) {
+      double q = lattice.point(0, slots[0]).q[at] + turn * kTwoPi;
+      bool inside = true;
+      for (std::size_t i = 0; i < slots.size(); ++i) {
+        if (i > 0)
+          q += std::remainder(lattice.point(static_cast<int>(i), slots[i]).q[at] -
+                                  lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
+                              kTwoPi);
+        inside = inside && q >= chain.limit[j].lower && q <= chain.limit[j].upper;
+      }
+      fits[j] = fits[j] || inside;
+    }
+  }
+  return fits;
+}
+
+/// Checks that rows (rad) reach the poses of their layers and keep the limits.
+void check_unwrapped_rows(const ArcLattice& lattice, const ArcLattice::Rows& rows) {
+  const Chain& chain = lattice.chain();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_LT(
+        (chain.tool(rows[i]).matrix() - lattice.path().layer(static_cast<int>(i)).tool.matrix())
+            .norm(),
+        1e-9);
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double q = rows[i][static_cast<Eigen::Index>(j)];
+      EXPECT_TRUE(chain.limit[j].continuous ||
+                  (q >= chain.limit[j].lower && q <= chain.limit[j].upper));
+    }
+  }
+}
+
+/// Checks that the joints named are the circles that do not fit, and the lattice that has their
+/// windings.
+void check_windings(const ArcLattice& lattice, const ArcLattice::Joints& joints,
+                    const std::array<bool, kDof>& fits) {
+  for (std::size_t j = 0; j < kDof; ++j) EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
+  const std::unique_ptr<Lattice> wound_lattice = lattice.with_windings(joints);
+  for (std::size_t j = 0; j < kDof; ++j)
+    EXPECT_EQ(wound_lattice->continuous()[j], lattice.continuous()[j] && !joints[j]);
+  EXPECT_GE(wound_lattice->nodes(), lattice.nodes());
+  const Found found = cheapest(*wound_lattice);
+  EXPECT_GE(found.cost, cheapest(lattice).cost);  // also where there is none
+}
+
 TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
   Random random(seed("ArcLattice.UnwrapsByValueOrNamesTheJoints"));
   int unwrapped = 0, wound = 0;
   for (int trial = 0; trial < trials(12); ++trial) {
-    // A circle with little room beyond a turn, so that some paths do not fit.
-    ArmTable table = trial % 2 == 0 ? arms_7r()[1] : arms_6r()[3];
-    for (JointRow& joint : table.joints)
-      if (joint.upper - joint.lower > 6.5) {
-        joint.lower = -random.uniform(3.2, 3.8);
-        joint.upper = random.uniform(3.2, 3.8);
-      }
-    const Chain chain = chain_of(table);
+    const Chain chain = chain_of(arm_with_tight_circles(trial % 2 == 0, random));
     Problem problem = random_path(chain, 0.4, 0.02, random);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
     const ArcLattice lattice(chain, lock_method(chain), path, problem);
-    // Any path will do: follow a random node along its images.
+    // Any path serves: it follows a random node along its images.
     for (int attempt = 0; attempt < 20; ++attempt) {
-      std::vector<int> slots;
-      for (int i = 0, slot = lattice.slots(0) > 0 ? random.below(lattice.slots(0)) : -1;
-           i < lattice.layers() && slot >= 0; ++i) {
-        slots.push_back(slot);
-        slot = lattice.neighbour_along_path(i, slot, 1);
-      }
+      const std::vector<int> slots = random_slots(lattice, random);
       if (static_cast<int>(slots.size()) != lattice.layers()) continue;
       const auto result = lattice.unwrap(slots);
-      // All images of the first row, brute force.
-      std::array<bool, kDof> fits{};
-      for (std::size_t j = 0; j < kDof; ++j) {
-        if (!lattice.circles()[j]) continue;
-        const auto at = static_cast<Eigen::Index>(j);
-        for (int turn = -2; turn <= 2; ++turn) {
-          double q = lattice.point(0, slots[0]).q[at] + turn * kTwoPi;
-          bool inside = true;
-          for (std::size_t i = 0; i < slots.size(); ++i) {
-            if (i > 0)
-              q += std::remainder(lattice.point(static_cast<int>(i), slots[i]).q[at] -
-                                      lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
-                                  kTwoPi);
-            inside = inside && q >= chain.limit[j].lower && q <= chain.limit[j].upper;
-          }
-          fits[j] = fits[j] || inside;
-        }
-      }
       if (const auto* rows = std::get_if<ArcLattice::Rows>(&result)) {
         ++unwrapped;
-        for (std::size_t i = 0; i < rows->size(); ++i) {
-          EXPECT_LT(
-              (chain.tool((*rows)[i]).matrix() - path.layer(static_cast<int>(i)).tool.matrix())
-                  .norm(),
-              1e-9);
-          for (std::size_t j = 0; j < kDof; ++j) {
-            const double q = (*rows)[i][static_cast<Eigen::Index>(j)];
-            EXPECT_TRUE(chain.limit[j].continuous ||
-                        (q >= chain.limit[j].lower && q <= chain.limit[j].upper));
-          }
-        }
+        check_unwrapped_rows(lattice, *rows);
       } else {
         ++wound;
-        const auto& joints = std::get<ArcLattice::Joints>(result);
-        for (std::size_t j = 0; j < kDof; ++j)
-          EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
-        const std::unique_ptr<Lattice> wound_lattice = lattice.with_windings(joints);
-        for (std::size_t j = 0; j < kDof; ++j)
-          EXPECT_EQ(wound_lattice->continuous()[j], lattice.continuous()[j] && !joints[j]);
-        EXPECT_GE(wound_lattice->nodes(), lattice.nodes());
-        const Found found = cheapest(*wound_lattice);
-        EXPECT_GE(found.cost, cheapest(lattice).cost);  // also where there is none
+        check_windings(lattice, std::get<ArcLattice::Joints>(result),
+                       circles_that_fit(lattice, slots));
       }
     }
   }
