@@ -144,74 +144,109 @@ TEST(Linkage, EveryLinkStandsWherePlainKinematicsHasIt) {
   EXPECT_GE(behind_followers, at_least(500));
 }
 
+/// Counts points and pairs of bodies that were moved, pairs at rest, and the largest share of a
+/// bound that a point reached.
+struct RadiiCounts {
+  int points = 0, pairs = 0, still = 0;
+  double most = 0;
+};
+
+/// A motion of an arm from joints q0 to q1 (rad), the radii (m) that bound it, and the
+/// displacements of the groups at its ends.
+struct BoundedMotion {
+  const Chain& chain;
+  const std::array<double, kDof>& radii;
+  Config q0, q1;
+  std::vector<Pose> G0, G1;
+  /// Returns the bound (m) by the joints between two groups.
+  [[nodiscard]] double bound(int group_a, int group_b) const {
+    const Chain::Joints joints = chain.joints_between(group_a, group_b);
+    double sum = 0;
+    for (int j = joints.first; j < joints.last; ++j)
+      sum += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
+    return sum;
+  }
+};
+
+/// Draws a motion within the limits, of some of the joints.
+BoundedMotion random_motion(const Chain& chain, const std::array<double, kDof>& radii,
+                            Random& random) {
+  const Config q0 = random_config(chain, random);
+  Config q1 = q0;
+  const double length = random.coin() ? 0.3 : 1e-3;
+  for (int j = 0; j < kDof; ++j)
+    if (random.coin(0.4))
+      q1[j] = std::clamp(q1[j] + random.uniform(-length, length), chain.limit[j].lower,
+                         chain.limit[j].upper);
+  return {chain, radii, q0, q1, chain.all_displacements(q0), chain.all_displacements(q1)};
+}
+
+/// Checks that no point of a body moves further than the bound.
+void check_points(const BoundedMotion& motion, const RobotBody& body, int trial,
+                  RadiiCounts& counts) {
+  const auto move = [&](const Pose& from, const Pose& to, const Vector3d& x) {
+    return (to * x - from * x).norm();
+  };
+  const auto g = static_cast<std::size_t>(body.group);
+  for (const Ball& ball : bounding_balls(body.shape))
+    for (int side = 0; side < 6; ++side, ++counts.points) {
+      const Vector3d x =
+          body.pose * (ball.center + ball.radius * (side % 2 ? 1 : -1) * Vector3d::Unit(side / 2));
+      const double moved = move(motion.G0[g], motion.G1[g], x),
+                   most_allowed = motion.bound(0, body.group);
+      ASSERT_LE(moved, most_allowed + 1e-12) << trial << " " << body.name;
+      if (most_allowed > 0) counts.most = std::max(counts.most, moved / most_allowed);
+    }
+}
+
+/// Checks that two points, of bodies of different groups, come nearer or further by no more than
+/// the bound.
+void check_pair(const BoundedMotion& motion, const RobotBody& a, const RobotBody& b, int trial,
+                RadiiCounts& counts) {
+  ++counts.pairs;
+  const std::vector<Pose>&G0 = motion.G0, &G1 = motion.G1;
+  const Vector3d x = a.pose * bounding_balls(a.shape)[0].center,
+                 y = b.pose * bounding_balls(b.shape)[0].center;
+  const auto ga = static_cast<std::size_t>(a.group), gb = static_cast<std::size_t>(b.group);
+  const double before = (G0[ga] * x - G0[gb] * y).norm(), after = (G1[ga] * x - G1[gb] * y).norm();
+  const double allowed = motion.bound(a.group, b.group);
+  ASSERT_LE(std::abs(after - before), allowed + 1e-12) << trial << " " << a.name << " " << b.name;
+  counts.still += allowed == 0;
+}
+
 /// Radii bound the motion of one body and of two: no point moves further than joints times radii
 /// say, and only joints between two groups move one against the other.
 TEST(Linkage, RadiiBoundEveryPointThatMoves) {
   const std::uint64_t base = seed("Linkage.Radii");
-  int points = 0, pairs = 0, still = 0;
-  double most = 0;
+  RadiiCounts counts;
   for (int trial = 0; trial < trials(200); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const RandomArm robot = random_arm(random);
     const ArmModel arm = build(robot, {});
-    const Chain& chain = arm.chain;
     const auto bodies = robot_bodies(robot.model, arm, {});
-    const auto radii = motion_radii(chain, bodies);
+    const auto radii = motion_radii(arm.chain, bodies);
     for (int k = 0; k < 10; ++k) {
-      const Config q0 = random_config(chain, random);
-      Config q1 = q0;
-      const double length = random.coin() ? 0.3 : 1e-3;
-      for (int j = 0; j < kDof; ++j)
-        if (random.coin(0.4))
-          q1[j] = std::clamp(q1[j] + random.uniform(-length, length), chain.limit[j].lower,
-                             chain.limit[j].upper);
-      const auto bound = [&](const Chain::Joints& joints) {
-        double sum = 0;
-        for (int j = joints.first; j < joints.last; ++j)
-          sum += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
-        return sum;
-      };
-      const auto G0 = chain.all_displacements(q0), G1 = chain.all_displacements(q1);
-      const auto move = [&](const Pose& from, const Pose& to, const Vector3d& x) {
-        return (to * x - from * x).norm();
-      };
+      const BoundedMotion motion = random_motion(arm.chain, radii, random);
       for (const RobotBody& body : bodies) {
-        const auto g = static_cast<std::size_t>(body.group);
-        for (const Ball& ball : bounding_balls(body.shape))
-          for (int side = 0; side < 6; ++side, ++points) {
-            const Vector3d x = body.pose * (ball.center + ball.radius * (side % 2 ? 1 : -1) *
-                                                              Vector3d::Unit(side / 2));
-            const double moved = move(G0[g], G1[g], x),
-                         most_allowed = bound(chain.joints_between(0, body.group));
-            ASSERT_LE(moved, most_allowed + 1e-12) << trial << " " << body.name;
-            if (most_allowed > 0) most = std::max(most, moved / most_allowed);
-          }
+        check_points(motion, body, trial, counts);
+        if (HasFatalFailure()) return;
       }
       for (int pair = 0; pair < 20; ++pair) {
         const RobotBody
             &a = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))],
             &b = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];
         if (a.group == b.group) continue;
-        ++pairs;
-        // Two points come nearer or further by no more than the bound.
-        const Vector3d x = a.pose * bounding_balls(a.shape)[0].center,
-                       y = b.pose * bounding_balls(b.shape)[0].center;
-        const auto ga = static_cast<std::size_t>(a.group), gb = static_cast<std::size_t>(b.group);
-        const double before = (G0[ga] * x - G0[gb] * y).norm(),
-                     after = (G1[ga] * x - G1[gb] * y).norm();
-        const double allowed = bound(chain.joints_between(a.group, b.group));
-        ASSERT_LE(std::abs(after - before), allowed + 1e-12)
-            << trial << " " << a.name << " " << b.name;
-        still += allowed == 0;
+        check_pair(motion, a, b, trial, counts);
+        if (HasFatalFailure()) return;
       }
     }
   }
-  std::printf("%d points, %d pairs, %d of them at rest; at most %.2f of the bound\n", points, pairs,
-              still, most);
-  EXPECT_GE(points, at_least(50'000));
-  EXPECT_GE(pairs, at_least(20'000));
-  EXPECT_GE(still, at_least(300));
-  EXPECT_GE(most, 0.5);
+  std::printf("%d points, %d pairs, %d of them at rest; at most %.2f of the bound\n", counts.points,
+              counts.pairs, counts.still, counts.most);
+  EXPECT_GE(counts.points, at_least(50'000));
+  EXPECT_GE(counts.pairs, at_least(20'000));
+  EXPECT_GE(counts.still, at_least(300));
+  EXPECT_GE(counts.most, 0.5);
 }
 
 /// iiwa14 with one more link behind a joint that mimics joint 3, on link 2.
@@ -294,13 +329,24 @@ TEST(Linkage, RefusesAnArmThatMimicsItself) {
   }
 }
 
-TEST(Held, AreNamedWithWhereTheyStand) {
-  // A rail above the base, a joint that mimics it, and one beside the arm.
+/// iiwa14 on a cart, with a rail above the base, a joint that mimics it, and one beside the arm.
+struct RailedArm {
   RobotModel model = *data_robot("iiwa14").model;
-  const int root = model.root_link, first = static_cast<int>(model.links.size()),
-            joints = static_cast<int>(model.joints.size());
-  const auto add = [&](const char* name, Joint::Type type, int parent, int child, double lower,
-                       double upper) {
+  int rail = static_cast<int>(model.joints.size()), post = rail + 1;
+
+  RailedArm() {
+    const int root = model.root_link, first = static_cast<int>(model.links.size());
+    model.links.push_back({"hall", {}, -1});
+    model.links.push_back({"cart", {}, rail});
+    model.links.push_back({"aside", {}, rail + 2});
+    add("rail", Joint::Type::kPrismatic, first, first + 1, 0.5, 4);
+    add("post", Joint::Type::kRevolute, first + 1, root, -1, 1);
+    add("lamp", Joint::Type::kRevolute, first + 1, first + 2, -1, 1);
+    model.links[static_cast<std::size_t>(root)].parent_joint = post;
+    model.root_link = first;
+    model.joints[static_cast<std::size_t>(post)].mimic = Joint::Mimic{rail, 0.25, 0};
+  }
+  void add(const char* name, Joint::Type type, int parent, int child, double lower, double upper) {
     Joint joint;
     joint.name = name;
     joint.type = type;
@@ -309,21 +355,16 @@ TEST(Held, AreNamedWithWhereTheyStand) {
     joint.lower = lower;
     joint.upper = upper;
     model.joints.push_back(joint);
-  };
-  model.links.push_back({"hall", {}, -1});
-  model.links.push_back({"cart", {}, joints});
-  model.links.push_back({"aside", {}, joints + 2});
-  add("rail", Joint::Type::kPrismatic, first, first + 1, 0.5, 4);
-  add("post", Joint::Type::kRevolute, first + 1, root, -1, 1);
-  add("lamp", Joint::Type::kRevolute, first + 1, first + 2, -1, 1);
-  model.links[static_cast<std::size_t>(root)].parent_joint = joints + 1;
-  model.root_link = first;
-  model.joints[static_cast<std::size_t>(joints) + 1].mimic = Joint::Mimic{joints, 0.25, 0};
-
-  const auto held = [&](const std::map<std::string, double>& hold) {
+  }
+  /// Returns the joints held between hall and tool where the problem holds `hold`.
+  [[nodiscard]] std::vector<HeldJoint> held(const std::map<std::string, double>& hold) const {
     return build_arm(model, "hall", "tool0", hold, Pose::Identity()).held;
-  };
-  const std::vector<HeldJoint> still = held({});
+  }
+};
+
+TEST(Held, AreNamedWithWhereTheyStand) {
+  const RailedArm arm;
+  const std::vector<HeldJoint> still = arm.held({});
   ASSERT_EQ(still.size(), 2u);
   EXPECT_EQ(words(still), "rail at 0.5 m, post at 0.125 rad (as rail)");
   EXPECT_EQ(with_held(still), " with rail held at 0.5 m, post held at 0.125 rad");
@@ -333,21 +374,28 @@ TEST(Held, AreNamedWithWhereTheyStand) {
             "joint 'rail' lies between base and tip and is not planned: it is held at 0.5 m: "
             "robot.hold: {rail: POSITION} says where "
             "it stands");
-  const std::vector<HeldJoint> given = held({{"rail", 2.0}});
+  const std::vector<HeldJoint> given = arm.held({{"rail", 2.0}});
   EXPECT_EQ(words(given), "rail at 2 m, post at 0.5 rad (as rail)");
   EXPECT_TRUE(held_warnings(given).empty());
-  EXPECT_TRUE(arm_of_iiwa(model).held.empty());
-  EXPECT_EQ(words(arm_of_iiwa(*data_robot("iiwa14").model).held), "");
-  EXPECT_EQ(with_held({}), "");
 
   // An eighth joint, and the torso of two arms.
   const TestRobot torso = data_robot("sda5f");
   EXPECT_EQ(words(arm_of(torso).held), "torso_joint_b1 at 0 rad");
+}
+
+TEST(Held, AreNoneWhereEveryJointIsPlanned) {
+  EXPECT_TRUE(arm_of_iiwa(RailedArm().model).held.empty());
+  EXPECT_EQ(words(arm_of_iiwa(*data_robot("iiwa14").model).held), "");
+  EXPECT_EQ(with_held({}), "");
+}
+
+TEST(Held, KeepTheLimitsOfWhatMimicsThem) {
+  RailedArm arm;
   try {
-    (void)held({{"rail", 3.9}});
-    (void)held({{"rail", 4.0}});
-    model.joints[static_cast<std::size_t>(joints) + 1].upper = 0.9;
-    (void)held({{"rail", 4.0}});
+    (void)arm.held({{"rail", 3.9}});
+    (void)arm.held({{"rail", 4.0}});
+    arm.model.joints[static_cast<std::size_t>(arm.post)].upper = 0.9;
+    (void)arm.held({{"rail", 4.0}});
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_NE(
@@ -357,7 +405,7 @@ TEST(Held, AreNamedWithWhereTheyStand) {
         std::string::npos)
         << error.what();
   }
-  EXPECT_EQ(held({{"rail", 3.5}}).size(), 2u);
+  EXPECT_EQ(arm.held({{"rail", 3.5}}).size(), 2u);
 }
 
 }  // namespace
