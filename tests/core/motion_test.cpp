@@ -54,6 +54,34 @@ double angle_between(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
+/// Checks how far a curve leaves the polyline at a rounded corner, and that it bends without a jump
+/// about it.
+void check_rounded_corner(const ToolPath& plain, const ToolPath& curve,
+                          const ToolPath::Corner& corner, int trial) {
+  // The most it leaves the polyline is at the corner, and told.
+  EXPECT_NEAR(
+      (plain.layer(corner.layer).tool.translation() - curve.layer(corner.layer).tool.translation())
+          .norm(),
+      corner.position, 1e-12);
+  EXPECT_NEAR(angle_between(plain.layer(corner.layer).tool, curve.layer(corner.layer).tool),
+              corner.angle, 1e-7);
+  // Second differences on both sides of where the curve begins to bend come together as the
+  // step shrinks.
+  const double x = curve.layer(corner.layer).travel;
+  for (const double joint : {x - corner.reach, x, x + corner.reach}) {
+    const auto second = [&](double at, double h) -> Eigen::Matrix4d {
+      return ((curve.at_travel(at + h).matrix() - curve.at_travel(at).matrix()) -
+              (curve.at_travel(at).matrix() - curve.at_travel(at - h).matrix())) /
+             (h * h);
+    };
+    const auto jump = [&](double h) {
+      return (second(joint + h, h) - second(joint - h, h)).norm();
+    };
+    const double h = corner.reach / 8, bend = second(x, h).norm();
+    EXPECT_LT(jump(h / 4), 0.4 * jump(h) + 0.02 * bend + 1e-3) << "trial " << trial;
+  }
+}
+
 TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
   const std::uint64_t base = seed("SmoothToolPath");
   const Resolution resolution{.ds = 0.005, .dphi = 0.1, .dalpha = 0.1};
@@ -91,28 +119,7 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
         continue;
       }
       ++rounded;
-      // The most it leaves the polyline is at the corner, and told.
-      EXPECT_NEAR((plain.layer(corner.layer).tool.translation() -
-                   curve.layer(corner.layer).tool.translation())
-                      .norm(),
-                  corner.position, 1e-12);
-      EXPECT_NEAR(angle_between(plain.layer(corner.layer).tool, curve.layer(corner.layer).tool),
-                  corner.angle, 1e-7);
-      // Second differences on both sides of where the curve begins to bend come together as the
-      // step shrinks.
-      const double x = curve.layer(corner.layer).travel;
-      for (const double joint : {x - corner.reach, x, x + corner.reach}) {
-        const auto second = [&](double at, double h) -> Eigen::Matrix4d {
-          return ((curve.at_travel(at + h).matrix() - curve.at_travel(at).matrix()) -
-                  (curve.at_travel(at).matrix() - curve.at_travel(at - h).matrix())) /
-                 (h * h);
-        };
-        const auto jump = [&](double h) {
-          return (second(joint + h, h) - second(joint - h, h)).norm();
-        };
-        const double h = corner.reach / 8, bend = second(x, h).norm();
-        EXPECT_LT(jump(h / 4), 0.4 * jump(h) + 0.02 * bend + 1e-3) << "trial " << trial;
-      }
+      check_rounded_corner(plain, curve, corner, trial);
     }
   }
   std::printf("%d corners rounded, %d sharp\n", rounded, sharp);
@@ -346,6 +353,66 @@ std::optional<Followed> followed(const TestRobot& robot, Random& random,
   return f;
 }
 
+/// Keeps the largest ratios of speed, acceleration and jerk of the rows, by differences over dt
+/// (s), to the rates.
+void keep_worst_rates(const std::vector<TimedRow>& rows, double dt, const JointRates& rates,
+                      double (&worst)[3]) {
+  const auto n = static_cast<std::ptrdiff_t>(rows.size());
+  const auto q = [&](std::ptrdiff_t k) {  // at rest before and after
+    return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
+  };
+  for (std::ptrdiff_t k = -3; k < n + 3; ++k) {
+    const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
+                 j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
+    worst[0] = std::max(worst[0], (v.cwiseAbs().array() / rates.speed.array()).maxCoeff());
+    worst[1] = std::max(worst[1], (a.cwiseAbs().array() / rates.acceleration.array()).maxCoeff());
+    worst[2] = std::max(worst[2], (j.cwiseAbs().array() / rates.jerk.array()).maxCoeff());
+  }
+}
+
+/// Checks that the k-th row, k > 0, has the tool on its path at no more than the speed asked for
+/// (m/s). Returns 1 if it did, and 0 where the path only turns.
+int check_tool(const Followed& f, const std::vector<TimedRow>& rows, std::size_t k, double dt,
+               double speed, int trial) {
+  const TrajectoryRow& row = rows[k].row;
+  const Pose tool = f.chain.tool(row.q);
+  // Its place on the path, by s: where the path only turns, s does not tell.
+  int i = 0;
+  while (i + 2 < f.path->size() && f.path->layer(i + 1).s <= row.s) ++i;
+  const bool turns =
+      f.path->layer(i).step_length == 0 ||
+      (i > 0 && f.path->layer(i - 1).step_length == 0 && row.s == f.path->layer(i).s);
+  if (turns) return 0;
+  const Pose there = f.path->at(i, (row.s - f.path->layer(i).s) / f.path->layer(i).step_length);
+  EXPECT_LE((tool.translation() - there.translation()).norm(), 1e-8)
+      << "trial " << trial << " row " << k;
+  EXPECT_LE(angle_between(tool, there), 1e-6);
+  const double moved = (tool.translation() - f.chain.tool(rows[k - 1].row.q).translation()).norm();
+  EXPECT_LE(moved / dt, speed * (1 + 1e-3) + 1e-6);
+  return 1;
+}
+
+/// Checks the times, places and speeds of the rows. Returns how many have the tool at a place that
+/// their s tells.
+int check_rows(const Followed& f, const std::vector<TimedRow>& rows, double dt, double speed,
+               const JointRates& rates, int trial) {
+  int samples = 0;
+  const std::size_t n = rows.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const TimedRow& row = rows[k];
+    EXPECT_NEAR(row.t, static_cast<double>(k) * dt, 1e-9);
+    if (k > 0) samples += check_tool(f, rows, k, dt, speed, trial);
+    if (k > 0 && k + 1 < n) {
+      const Config v = (rows[k + 1].row.q - rows[k - 1].row.q) / (2 * dt);
+      EXPECT_LE((v - row.v).lpNorm<Eigen::Infinity>(),
+                1e-6 + 0.1 * rates.acceleration.maxCoeff() * dt);
+    }
+  }
+  EXPECT_LE((rows.front().row.q - f.rows.front().q).lpNorm<Eigen::Infinity>(), 1e-8);
+  EXPECT_LE((rows.back().row.q - f.rows.back().q).lpNorm<Eigen::Infinity>(), 1e-8);
+  return samples;
+}
+
 TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
   const std::uint64_t base = seed("TimePath");
   int timed = 0, stops = 0, slow = 0, samples = 0;
@@ -370,51 +437,10 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     if (!result.motion) continue;
     ++timed;
     const TimedPath& out = *result.motion;
-    const std::size_t n = out.rows.size();
-    ASSERT_GE(n, 2u);
+    ASSERT_GE(out.rows.size(), 2u);
     const double dt = 1 / options.rate;
-    const auto q = [&](std::ptrdiff_t k) {  // at rest before and after
-      return out
-          .rows[static_cast<std::size_t>(
-              std::clamp<std::ptrdiff_t>(k, 0, static_cast<std::ptrdiff_t>(n) - 1))]
-          .row.q;
-    };
-    for (std::ptrdiff_t k = -3; k < static_cast<std::ptrdiff_t>(n) + 3; ++k) {
-      const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
-                   j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
-      worst[0] = std::max(worst[0], (v.cwiseAbs().array() / rates.speed.array()).maxCoeff());
-      worst[1] = std::max(worst[1], (a.cwiseAbs().array() / rates.acceleration.array()).maxCoeff());
-      worst[2] = std::max(worst[2], (j.cwiseAbs().array() / rates.jerk.array()).maxCoeff());
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-      const TimedRow& row = out.rows[k];
-      EXPECT_NEAR(row.t, static_cast<double>(k) * dt, 1e-9);
-      const Pose tool = f->chain.tool(row.row.q);
-      // Its place on the path, by s: where the path only turns, s does not tell.
-      int i = 0;
-      while (i + 2 < f->path->size() && f->path->layer(i + 1).s <= row.row.s) ++i;
-      const bool turns =
-          f->path->layer(i).step_length == 0 ||
-          (i > 0 && f->path->layer(i - 1).step_length == 0 && row.row.s == f->path->layer(i).s);
-      if (k > 0 && !turns) {
-        const Pose there =
-            f->path->at(i, (row.row.s - f->path->layer(i).s) / f->path->layer(i).step_length);
-        EXPECT_LE((tool.translation() - there.translation()).norm(), 1e-8)
-            << "trial " << trial << " row " << k;
-        EXPECT_LE(angle_between(tool, there), 1e-6);
-        ++samples;
-        const double moved =
-            (tool.translation() - f->chain.tool(out.rows[k - 1].row.q).translation()).norm();
-        EXPECT_LE(moved / dt, options.speed * (1 + 1e-3) + 1e-6);
-      }
-      if (k > 0 && k + 1 < n) {
-        const Config v = (out.rows[k + 1].row.q - out.rows[k - 1].row.q) / (2 * dt);
-        EXPECT_LE((v - row.v).lpNorm<Eigen::Infinity>(),
-                  1e-6 + 0.1 * rates.acceleration.maxCoeff() * dt);
-      }
-    }
-    EXPECT_LE((out.rows.front().row.q - f->rows.front().q).lpNorm<Eigen::Infinity>(), 1e-8);
-    EXPECT_LE((out.rows.back().row.q - f->rows.back().q).lpNorm<Eigen::Infinity>(), 1e-8);
+    keep_worst_rates(out.rows, dt, rates, worst);
+    samples += check_rows(*f, out.rows, dt, options.speed, rates, trial);
     EXPECT_GE(out.duration, out.ideal * (1 - 1e-6));
     int sharp = 0;
     for (const ToolPath::Corner& corner : f->path->corners()) sharp += corner.reach == 0;
