@@ -165,6 +165,66 @@ double cheapest(const ArcLattice& lattice, std::vector<int>& slots) {
   return *best;
 }
 
+/// Draws a path of three waypoints for a tool that may turn freely or within `roll`, with narrower
+/// windows at the waypoints now and then.
+Problem random_roll_problem(const Chain& chain, bool free, const Roll& roll, Random& random) {
+  Problem problem;
+  problem.source = "random path";
+  problem.resolution.ds = 0.02;
+  problem.limits.roll_slope = random.uniform(3, 12);
+  problem.limits.tool_path_error.reset();
+  problem.cost.weights.back() = 0;
+  Config q = random_configuration(chain, random);
+  if (!free) q[kDof - 1] = random.uniform(roll.lower, roll.upper);
+  Pose tool = chain.tool(q);
+  for (int k = 0; k < 3; ++k) {
+    problem.waypoints.push_back({tool.translation(), Quaterniond(tool.linear()).normalized()});
+    tool.translation() +=
+        0.1 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    tool.rotate(Eigen::AngleAxisd(random.uniform(0, 0.3), Vector3d::UnitX()));
+  }
+  const bool windowed = !free && random.coin();
+  for (std::size_t k = 0; windowed && k < problem.waypoints.size(); ++k) {
+    // Now and then the tool stands as one turn alone.
+    const double middle = q[kDof - 1] + random.uniform(-0.2, 0.2),
+                 half = random.coin(0.3) ? 0 : random.uniform(0.005, 0.3);
+    problem.waypoints[k].roll = Roll{std::clamp(middle - half, roll.lower, roll.upper),
+                                     std::clamp(middle + half, roll.lower, roll.upper)};
+  }
+  problem.roll = roll;
+  return problem;
+}
+
+/// Returns the rolls that each layer allows, and checks that the ends of windows are inside them.
+std::vector<Roll> allowed_rolls(const Problem& problem, const ToolPath& path, bool windowed,
+                                const Roll& roll) {
+  std::vector<Roll> allowed(static_cast<std::size_t>(path.size()), roll);
+  for (int i = 0; windowed && i < path.size(); ++i) {
+    allowed[static_cast<std::size_t>(i)] = path.layer(i).window;
+    EXPECT_NEAR(outside_windows(problem, path, i, path.layer(i).window.lower), 0, 1e-12);
+    EXPECT_NEAR(outside_windows(problem, path, i, path.layer(i).window.upper), 0, 1e-12);
+  }
+  return allowed;
+}
+
+/// Checks the rolls of a path's nodes against their ranges and the slope allowed.
+void check_rolls(const ArcLattice& lattice, const Problem& problem, const std::vector<int>& slots,
+                 bool free, bool windowed) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const Config& row = lattice.point(static_cast<int>(i), slots[i]).q;
+    if (!free) {
+      EXPECT_TRUE(row[kDof - 1] >= problem.roll->lower && row[kDof - 1] <= problem.roll->upper);
+    }
+    if (windowed) {
+      EXPECT_LE(outside_windows(problem, lattice.path(), static_cast<int>(i), row[kDof - 1]), 1e-8);
+    }
+    EXPECT_EQ(lattice.phi(static_cast<int>(i), slots[i]), row[kDof - 1]);
+    if (i == 0) continue;
+    const Config delta = lattice.delta(lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q, row);
+    EXPECT_LE(std::abs(delta[kDof - 1]), problem.limits.roll_slope * problem.resolution.ds + 1e-9);
+  }
+}
+
 TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
   Random random(seed("Roll.PathsAreAsCheapAsThoseOfAGridOfRolls"));
   int solved = 0, unsolved = 0, dearer = 0, windows = 0, fixed = 0;
@@ -174,42 +234,15 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
       const bool free = random.coin();
       const Roll roll = free ? Roll{} : Roll{-random.uniform(0.1, 0.8), random.uniform(0.1, 0.8)};
       const Chain chain = arm_with_roll(arms_6r()[which], roll).chain;
-      Problem problem;
-      problem.source = "random path";
-      problem.resolution.ds = 0.02;
-      problem.limits.roll_slope = random.uniform(3, 12);
-      problem.limits.tool_path_error.reset();
-      problem.cost.weights.back() = 0;
-      Config q = random_configuration(chain, random);
-      if (!free) q[kDof - 1] = random.uniform(roll.lower, roll.upper);
-      Pose tool = chain.tool(q);
-      for (int k = 0; k < 3; ++k) {
-        problem.waypoints.push_back({tool.translation(), Quaterniond(tool.linear()).normalized()});
-        tool.translation() +=
-            0.1 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        tool.rotate(Eigen::AngleAxisd(random.uniform(0, 0.3), Vector3d::UnitX()));
-      }
-      const bool windowed = !free && random.coin();
-      for (std::size_t k = 0; windowed && k < problem.waypoints.size(); ++k) {
-        // Now and then the tool stands as one turn alone.
-        const double middle = q[kDof - 1] + random.uniform(-0.2, 0.2),
-                     half = random.coin(0.3) ? 0 : random.uniform(0.005, 0.3);
-        problem.waypoints[k].roll = Roll{std::clamp(middle - half, roll.lower, roll.upper),
-                                         std::clamp(middle + half, roll.lower, roll.upper)};
-      }
-      problem.roll = roll;
+      const Problem problem = random_roll_problem(chain, free, roll, random);
+      const bool windowed = problem.waypoints[0].roll.has_value();
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const ArcLattice lattice(chain, lock_method(chain), path, problem);
       std::vector<int> slots;
       const double cost = cheapest(lattice, slots);
       // The grid is as fine as the lattice's nodes are where the roll moves most, ends included.
       const int count = free ? 65 : 2 + static_cast<int>((roll.upper - roll.lower) / 0.1);
-      std::vector<Roll> allowed(static_cast<std::size_t>(path.size()), roll);
-      for (int i = 0; windowed && i < path.size(); ++i) {
-        allowed[static_cast<std::size_t>(i)] = path.layer(i).window;
-        EXPECT_NEAR(outside_windows(problem, path, i, path.layer(i).window.lower), 0, 1e-12);
-        EXPECT_NEAR(outside_windows(problem, path, i, path.layer(i).window.upper), 0, 1e-12);
-      }
+      const std::vector<Roll> allowed = allowed_rolls(problem, path, windowed, roll);
       const double grid = cheapest_of_grid(chain, lattice, allowed, count);
       if (grid == kNone && cost == kNone) ++unsolved;
       if (grid == kNone) continue;
@@ -223,20 +256,7 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
                                        });
       worst = std::max(worst, cost / grid);
       dearer += cost > 1.02 * grid;
-      for (std::size_t i = 0; i < slots.size(); ++i) {
-        const Config& row = lattice.point(static_cast<int>(i), slots[i]).q;
-        if (!free) {
-          EXPECT_TRUE(row[kDof - 1] >= roll.lower && row[kDof - 1] <= roll.upper);
-        }
-        if (windowed)
-          EXPECT_LE(outside_windows(problem, path, static_cast<int>(i), row[kDof - 1]), 1e-8);
-        EXPECT_EQ(lattice.phi(static_cast<int>(i), slots[i]), row[kDof - 1]);
-        if (i == 0) continue;
-        const Config delta =
-            lattice.delta(lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q, row);
-        EXPECT_LE(std::abs(delta[kDof - 1]),
-                  problem.limits.roll_slope * problem.resolution.ds + 1e-9);
-      }
+      check_rolls(lattice, problem, slots, free, windowed);
     }
   }
   std::printf(
