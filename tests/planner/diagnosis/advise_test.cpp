@@ -15,6 +15,22 @@ using namespace test;
 using Change = Advice::Change;
 using Outcome = Advice::Outcome;
 
+/// Halves the steps of the lattice and adds arcs to it.
+void make_finer(Resolution& resolution) {
+  for (double* step : {&resolution.ds, &resolution.dphi, &resolution.dalpha, &resolution.arc})
+    *step *= 0.5;
+  resolution.arcs = true;
+}
+
+/// Sets limits.clearance, in metres, and scales self_clearance and edge_clearance alike.
+void set_clearance(Limits& limits, double clearance) {
+  if (limits.self_clearance)
+    limits.self_clearance = *limits.self_clearance * (clearance / limits.clearance);
+  if (limits.edge_clearance)
+    limits.edge_clearance = *limits.edge_clearance * (clearance / limits.clearance);
+  limits.clearance = clearance;
+}
+
 /// The problem as a reader of the advice would change it by hand.
 Problem followed(Problem problem, const Advice& advice) {
   const double share = advice.to.value_or(0);
@@ -27,17 +43,10 @@ Problem followed(Problem problem, const Advice& advice) {
       problem.roll = Roll{};
       break;
     case Change::kFiner:
-      for (double* step : {&problem.resolution.ds, &problem.resolution.dphi,
-                           &problem.resolution.dalpha, &problem.resolution.arc})
-        *step *= 0.5;
-      problem.resolution.arcs = true;
+      make_finer(problem.resolution);
       break;
     case Change::kClearance:
-      if (limits.self_clearance)
-        limits.self_clearance = *limits.self_clearance * (share / limits.clearance);
-      if (limits.edge_clearance)
-        limits.edge_clearance = *limits.edge_clearance * (share / limits.clearance);
-      limits.clearance = share;
+      set_clearance(limits, share);
       break;
     case Change::kJointMargin:
       limits.joint_margin = share;
@@ -82,80 +91,106 @@ Problem followed(Problem problem, const Advice& advice) {
   return problem;
 }
 
+/// Counts the infeasible problems and the changes that are advised for them.
+struct AdviceCounts {
+  int infeasible = 0, helped = 0, unknown = 0;
+  std::map<std::pair<Change, Outcome>, int> seen;
+};
+
+/// Draws a problem, at times with a bound on the joints' steps (rad) or with a clearance (m).
+Problem random_advised(const TestRobot& robot, Random& random) {
+  Problem problem = random_problem(robot, random);
+  if (random.coin()) problem.limits.joint_step = random.uniform(0.1, 0.3);
+  if (random.coin(0.3)) problem.limits.clearance = random.uniform(0.02, 0.08);
+  return problem;
+}
+
+/// Where a limit is relaxed, it is relaxed no further than a sixteenth of the way beyond what is
+/// needed.
+void expect_stricter_unsolved(const Problem& problem, const Advice& one, const PlanOptions& options,
+                              const std::string& what) {
+  if (one.outcome != Outcome::kSolved || !one.to || !one.from) return;
+  const bool down = *one.to < *one.from;
+  const double furthest = !down ? 8 * *one.from
+                          : one.change == Change::kToolSpeed || one.change == Change::kToolTurnSpeed
+                              ? *one.from / 8
+                              : 0;
+  Advice stricter = one;
+  stricter.to = *one.to + (*one.from - furthest) / 16;
+  if (down ? *stricter.to < *one.from : *stricter.to > *one.from) {
+    const PlanResult strict = plan(followed(problem, stricter), options);
+    EXPECT_NE(strict.status, PlanStatus::kSolved) << what << ": " << words(stricter);
+  }
+}
+
+/// Plans the problem that follows one advice and compares the result with the advice's outcome.
+void expect_outcome(const Problem& problem, const Advice& one, const PlanOptions& options,
+                    const std::string& what, AdviceCounts& counts) {
+  ++counts.seen[{one.change, one.outcome}];
+  EXPECT_FALSE(words(one).empty()) << what;
+  if (one.outcome == Outcome::kUnknown) {
+    ++counts.unknown;
+    return;
+  }
+  if (one.change == Change::kMoveObject && one.offset.isZero()) return;  // none of the ways helps
+  Advice given = one;
+  if (!given.to) given.to = 0;
+  const PlanResult there = plan(followed(problem, given), options);
+  ASSERT_EQ(there.status == PlanStatus::kSolved, one.outcome == Outcome::kSolved)
+      << what << ": " << words(one);
+  if (one.outcome == Outcome::kSolved) {
+    ASSERT_EQ(there.cost, *one.cost) << what << ": " << words(one);
+  }
+  if (one.outcome != Outcome::kSolved) {
+    ASSERT_EQ(there.diagnosis.reached_s, one.reached_s) << what << ": " << words(one);
+  }
+  expect_stricter_unsolved(problem, one, options, what);
+}
+
+/// Asks for advice about one problem and checks the order and the outcome of every change.
+void check_advice(const Problem& problem, const std::string& what, AdviceCounts& counts) {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  Planner planner(problem);
+  const PlanResult result = planner.plan(options);
+  options.timeout_s = 5;
+  const std::vector<Advice> advice = advise(planner, result, options);
+  if (result.status == PlanStatus::kSolved) {
+    EXPECT_TRUE(advice.empty()) << what;
+    return;
+  }
+  ++counts.infeasible;
+  ASSERT_FALSE(advice.empty()) << what;
+  counts.helped += advice[0].outcome == Outcome::kSolved;
+  for (std::size_t k = 0; k < advice.size(); ++k) {
+    if (k > 0) {
+      EXPECT_LE(advice[k - 1].outcome, advice[k].outcome) << what;
+    }
+    expect_outcome(problem, advice[k], options, what, counts);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+}
+
 /// Whatever is said of a change is what planning the changed problem, on a robot of its own, gives.
 TEST(Advise, EveryOutcomeIsWhatFollowingTheAdviceGives) {
   const std::uint64_t base = seed("Advise");
   const auto robots = all_robots();
-  std::map<std::pair<Change, Outcome>, int> seen;
-  int infeasible = 0, helped = 0, unknown = 0;
+  AdviceCounts counts;
   for (int trial = 0; trial < trials(60); ++trial) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
-        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    if (random.coin()) problem.limits.joint_step = random.uniform(0.1, 0.3);
-    if (random.coin(0.3)) problem.limits.clearance = random.uniform(0.02, 0.08);
-    PlanOptions options;
-    options.planner = PlannerKind::kLazy;
-    Planner planner(problem);
-    const PlanResult result = planner.plan(options);
-    options.timeout_s = 5;
-    const std::vector<Advice> advice = advise(planner, result, options);
-    if (result.status == PlanStatus::kSolved) {
-      EXPECT_TRUE(advice.empty()) << what;
-      continue;
-    }
-    ++infeasible;
-    ASSERT_FALSE(advice.empty()) << what;
-    helped += advice[0].outcome == Outcome::kSolved;
-    for (std::size_t k = 0; k < advice.size(); ++k) {
-      const Advice& one = advice[k];
-      if (k > 0) {
-        EXPECT_LE(advice[k - 1].outcome, one.outcome) << what;
-      }
-      ++seen[{one.change, one.outcome}];
-      EXPECT_FALSE(words(one).empty()) << what;
-      if (one.outcome == Outcome::kUnknown) {
-        ++unknown;
-        continue;
-      }
-      if (one.change == Change::kMoveObject && one.offset.isZero())
-        continue;  // none of the ways helps
-      Advice given = one;
-      if (!given.to) given.to = 0;
-      const PlanResult there = plan(followed(problem, given), options);
-      ASSERT_EQ(there.status == PlanStatus::kSolved, one.outcome == Outcome::kSolved)
-          << what << ": " << words(one);
-      if (one.outcome == Outcome::kSolved) {
-        ASSERT_EQ(there.cost, *one.cost) << what << ": " << words(one);
-      }
-      if (one.outcome != Outcome::kSolved) {
-        ASSERT_EQ(there.diagnosis.reached_s, one.reached_s) << what << ": " << words(one);
-      }
-      // Where a limit is relaxed, it is relaxed no further than a sixteenth of the way beyond what
-      // is needed.
-      if (one.outcome != Outcome::kSolved || !one.to || !one.from) continue;
-      const bool down = *one.to < *one.from;
-      const double furthest =
-          !down                                                                      ? 8 * *one.from
-          : one.change == Change::kToolSpeed || one.change == Change::kToolTurnSpeed ? *one.from / 8
-                                                                                     : 0;
-      Advice stricter = one;
-      stricter.to = *one.to + (*one.from - furthest) / 16;
-      if (down ? *stricter.to < *one.from : *stricter.to > *one.from) {
-        const PlanResult strict = plan(followed(problem, stricter), options);
-        EXPECT_NE(strict.status, PlanStatus::kSolved) << what << ": " << words(stricter);
-      }
-    }
+    check_advice(random_advised(robots[static_cast<std::size_t>(trial) % robots.size()], random),
+                 what, counts);
+    if (HasFatalFailure()) return;
   }
-  std::printf("%d infeasible, %d helped by one change, %d changes not decided;", infeasible, helped,
-              unknown);
-  for (const auto& [key, count] : seen)
+  std::printf("%d infeasible, %d helped by one change, %d changes not decided;", counts.infeasible,
+              counts.helped, counts.unknown);
+  for (const auto& [key, count] : counts.seen)
     std::printf(" %s %s %d,", to_string(key.first), to_string(key.second), count);
   std::printf("\n");
-  EXPECT_GE(infeasible, at_least(15));
-  EXPECT_GE(helped, at_least(5));
+  EXPECT_GE(counts.infeasible, at_least(15));
+  EXPECT_GE(counts.helped, at_least(5));
 }
 
 PlanOptions for_seconds(double seconds) {

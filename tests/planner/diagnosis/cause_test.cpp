@@ -54,71 +54,93 @@ std::vector<Cause> all_causes(const Problem& problem, const World& world, const 
   return causes;
 }
 
+/// Counts the infeasible problems and what their diagnoses name.
+struct CauseCounts {
+  int infeasible = 0, started = 0, named = 0, confirmed = 0, none_named = 0, none_exists = 0,
+      together = 0, together_confirmed = 0;
+  std::map<std::string, std::array<int, 2>> kinds;  ///< how many are named, how many confirmed
+};
+
+/// Plans the problem without the one cause that is said to be enough, and counts whether it helps.
+void check_single_cause(const Problem& problem, const Diagnosis& d, const std::string& what,
+                        CauseCounts& counts) {
+  EXPECT_TRUE(d.together.empty()) << what;
+  const auto relaxed = without(d.cause, problem);
+  const bool helps = relaxed && further(plan(*relaxed), d);
+  ++counts.named;
+  counts.confirmed += helps;
+  auto& [count, good] = counts.kinds[to_string(d.cause.kind)];
+  ++count;
+  good += helps;
+  if (!helps) std::printf("does not help: %s\n", what.c_str());
+}
+
+/// Plans the problem without each single thing, and without all that the diagnosis names together.
+void check_several_causes(const Problem& problem, const PreparedRobot& robot, const Diagnosis& d,
+                          const std::string& what, CauseCounts& counts) {
+  ++counts.none_named;
+  bool helps = false;
+  for (const Cause& cause : all_causes(problem, robot.world(), robot.arm().chain)) {
+    const auto relaxed = without(cause, problem);
+    if (!relaxed || !further(plan(*relaxed), d)) continue;
+    std::printf("would have helped: %s %s: %s\n", words(cause).c_str(), cause.object.c_str(),
+                what.c_str());
+    helps = true;
+    break;
+  }
+  counts.none_exists += !helps;
+  if (d.together.empty()) return;
+  std::optional<Problem> relaxed = without(d.cause, problem);
+  for (const Cause& cause : d.together)
+    if (relaxed) relaxed = without(cause, *relaxed);
+  ++counts.together;
+  counts.together_confirmed += relaxed && further(plan(*relaxed), d);
+}
+
+/// Plans one problem and, where it is infeasible, checks the causes of its diagnosis.
+void check_causes(const Problem& problem, const std::string& trial, CauseCounts& counts) {
+  const PreparedRobot robot(problem);
+  const PlanResult result = plan(robot, problem);
+  if (result.status != PlanStatus::kInfeasible) return;
+  ++counts.infeasible;
+  counts.started += problem.start.has_value();
+  const Diagnosis& d = result.diagnosis;
+  const std::string what = trial + " " + problem.source + " layer " +
+                           std::to_string(d.reached_layer.value_or(-1)) + ": " + words(d.cause);
+  ASSERT_NE(d.cause.kind, Cause::Kind::kNone) << what;
+  if (d.without_it)
+    check_single_cause(problem, d, what, counts);
+  else
+    check_several_causes(problem, robot, d, what, counts);
+}
+
 /// Random problems: what the diagnosis says to be enough is enough, and where it says that no
 /// single thing is enough, none is.
 TEST(Cause, WithoutItPathsGoOn) {
   const std::uint64_t base = seed("Cause");
   const auto robots = all_robots();
   const int wanted = trials(40);
-  int infeasible = 0, started = 0, named = 0, confirmed = 0, none_named = 0, none_exists = 0,
-      together = 0, together_confirmed = 0;
-  std::map<std::string, std::array<int, 2>> kinds;
-  for (int trial = 0; infeasible < wanted; ++trial) {
+  CauseCounts counts;
+  for (int trial = 0; counts.infeasible < wanted; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
-        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const PreparedRobot robot(problem);
-    const PlanResult result = plan(robot, problem);
-    if (result.status != PlanStatus::kInfeasible) continue;
-    ++infeasible;
-    started += problem.start.has_value();
-    const Diagnosis& d = result.diagnosis;
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " " + problem.source + " layer " +
-                             std::to_string(d.reached_layer.value_or(-1)) + ": " + words(d.cause);
-    ASSERT_NE(d.cause.kind, Cause::Kind::kNone) << what;
-    if (d.without_it) {
-      EXPECT_TRUE(d.together.empty()) << what;
-      const auto relaxed = without(d.cause, problem);
-      const bool helps = relaxed && further(plan(*relaxed), d);
-      ++named;
-      confirmed += helps;
-      auto& [count, good] = kinds[to_string(d.cause.kind)];
-      ++count;
-      good += helps;
-      if (!helps) std::printf("does not help: %s\n", what.c_str());
-      continue;
-    }
-    ++none_named;
-    bool helps = false;
-    for (const Cause& cause : all_causes(problem, robot.world(), robot.arm().chain)) {
-      const auto relaxed = without(cause, problem);
-      if (!relaxed || !further(plan(*relaxed), d)) continue;
-      std::printf("would have helped: %s %s: %s\n", words(cause).c_str(), cause.object.c_str(),
-                  what.c_str());
-      helps = true;
-      break;
-    }
-    none_exists += !helps;
-    if (d.together.empty()) continue;
-    std::optional<Problem> relaxed = without(d.cause, problem);
-    for (const Cause& cause : d.together)
-      if (relaxed) relaxed = without(cause, *relaxed);
-    ++together;
-    together_confirmed += relaxed && further(plan(*relaxed), d);
+    check_causes(random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random),
+                 "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial),
+                 counts);
+    if (HasFatalFailure()) return;
   }
-  for (const auto& [kind, counts] : kinds)
-    std::printf("%s: %d named, %d confirmed\n", kind.c_str(), counts[0], counts[1]);
+  for (const auto& [kind, numbers] : counts.kinds)
+    std::printf("%s: %d named, %d confirmed\n", kind.c_str(), numbers[0], numbers[1]);
   std::printf(
       "%d infeasible, %d with a start; one thing named in %d, confirmed in %d; said to need "
       "several in %d, true of %d; what was "
       "named "
       "together helps in %d of %d\n",
-      infeasible, started, named, confirmed, none_named, none_exists, together_confirmed, together);
-  EXPECT_GE(confirmed, 0.95 * named);
-  EXPECT_GE(confirmed + none_exists, 0.95 * infeasible);
-  EXPECT_GE(together_confirmed, 0.9 * together);
-  EXPECT_GE(named, wanted / 3);
+      counts.infeasible, counts.started, counts.named, counts.confirmed, counts.none_named,
+      counts.none_exists, counts.together_confirmed, counts.together);
+  EXPECT_GE(counts.confirmed, 0.95 * counts.named);
+  EXPECT_GE(counts.confirmed + counts.none_exists, 0.95 * counts.infeasible);
+  EXPECT_GE(counts.together_confirmed, 0.9 * counts.together);
+  EXPECT_GE(counts.named, wanted / 3);
 }
 
 /// A cause that was not found in time says so, and is not silent.
