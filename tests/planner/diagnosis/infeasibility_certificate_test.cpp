@@ -131,26 +131,32 @@ InfeasibilityCertificate::Layer* some_layer(InfeasibilityCertificate& certificat
   return found.empty() ? nullptr : *some(found, random);
 }
 
-const std::vector<std::pair<std::string, Forgery>>& forgeries() {
-  const auto has_removed = [](const InfeasibilityCertificate::Layer& layer) {
-    return !layer.removed.empty();
-  };
-  const auto has_edges = [](const InfeasibilityCertificate::Layer& layer) {
-    return !layer.edges.empty();
-  };
-  const auto has_reached = [](const InfeasibilityCertificate::Layer& layer) {
-    return !layer.reached.empty();
-  };
-  static const std::vector<std::pair<std::string, Forgery>> all = {
+using Forgeries = std::vector<std::pair<std::string, Forgery>>;
+
+bool has_removed(const InfeasibilityCertificate::Layer& layer) {
+  return !layer.removed.empty();
+}
+
+bool has_edges(const InfeasibilityCertificate::Layer& layer) {
+  return !layer.edges.empty();
+}
+
+bool has_reached(const InfeasibilityCertificate::Layer& layer) {
+  return !layer.reached.empty();
+}
+
+/// Returns forgeries that change which nodes of a layer are removed.
+Forgeries forgeries_of_removed_nodes() {
+  return {
       {"witness of nodes taken out",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer =
              some_layer(certificate, random, has_removed);
          if (layer) layer->removed.erase(some(layer->removed, random));
          return layer != nullptr;
        }},
       {"range of nodes shorter",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer =
              some_layer(certificate, random, [](const InfeasibilityCertificate::Layer& l) {
                return std::any_of(l.removed.begin(), l.removed.end(),
@@ -165,9 +171,9 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          return true;
        }},
       {"range of nodes wider, into one reached",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer =
-             some_layer(certificate, random, [&](const InfeasibilityCertificate::Layer& l) {
+             some_layer(certificate, random, [](const InfeasibilityCertificate::Layer& l) {
                return has_removed(l) && has_reached(l);
              });
          if (layer)
@@ -175,8 +181,14 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
                std::max(layer->reached.back().last, layer->removed.back().slots.last + 1);
          return layer != nullptr;
        }},
+  };
+}
+
+/// Returns forgeries that change which nodes of a layer are reached.
+Forgeries forgeries_of_reached_nodes() {
+  return {
       {"reached nodes become removed ones",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer =
              some_layer(certificate, random, has_reached);
          if (!layer || certificate.witnesses.empty()) return false;
@@ -187,7 +199,7 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          return true;
        }},
       {"reached node taken out",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer =
              some_layer(certificate, random, has_reached);
          if (!layer) return false;
@@ -198,18 +210,30 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
            random.coin() ? ++range->first : --range->last;
          return true;
        }},
+  };
+}
+
+/// Returns forgeries that change the edges of a layer.
+Forgeries forgeries_of_edges() {
+  return {
       {"witness of edges taken out",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_edges);
          if (layer) layer->edges.erase(some(layer->edges, random));
          return layer != nullptr;
        }},
       {"count of edges",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_edges);
          if (layer) some(layer->edges, random)->count += random.coin() ? 1 : -1;
          return layer != nullptr;
        }},
+  };
+}
+
+/// Returns forgeries that change which layers a certificate has.
+Forgeries forgeries_of_layers() {
+  return {
       {"last layer taken out",
        [](InfeasibilityCertificate& certificate, Random&) {
          certificate.band.pop_back();
@@ -221,6 +245,12 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
              certificate.layers - static_cast<int>(certificate.band.size()) + 1;
          return true;
        }},
+  };
+}
+
+/// Returns forgeries that name witnesses which do not exist.
+Forgeries forgeries_of_witnesses() {
+  return {
       {"witness that the problem does not have",
        [](InfeasibilityCertificate& certificate, Random& random) {
          if (certificate.witnesses.empty()) return false;
@@ -230,7 +260,7 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          return true;
        }},
       {"witness that is not listed",
-       [=](InfeasibilityCertificate& certificate, Random& random) {
+       [](InfeasibilityCertificate& certificate, Random& random) {
          InfeasibilityCertificate::Layer* const layer =
              some_layer(certificate, random, has_removed);
          if (layer)
@@ -239,6 +269,18 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          return layer != nullptr;
        }},
   };
+}
+
+/// Returns all forgeries, in the order in which they draw from the random generator.
+const Forgeries& forgeries() {
+  static const Forgeries all = [] {
+    Forgeries joined;
+    for (const Forgeries& some_of :
+         {forgeries_of_removed_nodes(), forgeries_of_reached_nodes(), forgeries_of_edges(),
+          forgeries_of_layers(), forgeries_of_witnesses()})
+      joined.insert(joined.end(), some_of.begin(), some_of.end());
+    return joined;
+  }();
   return all;
 }
 
@@ -301,96 +343,149 @@ Problem beyond_a_turn(const TestRobot& robot, Random& random) {
   return problem;
 }
 
-TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesAreRefused) {
-  const std::uint64_t base = seed("Cut");
-  std::vector<TestRobot> robots = all_robots();
-  Random of_robots(base);
-  for (const TestRobot& robot : inexact_robots(of_robots)) robots.push_back(robot);
-  const std::size_t grids = robots.size();
-  const TestRobot wound = wound_robot();
-  for (const TestRobot& robot : {arm_of_data("panda_like"), arm_of_data("gen3_like"), wound})
-    robots.push_back(robot);
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("swivel_cut_test_" + std::to_string(getpid()) + ".json");
-
-  const int wanted = trials(120);
+/// Counts the certificates that are verified and the forged ones that are refused.
+struct CertificateTally {
   int infeasible = 0, started = 0, continuous = 0, by_nodes = 0, by_edges = 0, arcs = 0,
       windings = 0, bytes = 0, still_proofs = 0;
   std::map<std::string, int> forged, kinds;
-  for (int trial = 0; infeasible < wanted; ++trial) {
-    Random random(base + static_cast<std::uint64_t>(trial));
-    const std::size_t number = static_cast<std::size_t>(trial) % robots.size();
-    const Problem problem = number + 1 == robots.size() && random.coin()
-                                ? beyond_a_turn(wound, random)
-                                : random_task(robots[number], number >= grids, random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " " + problem.source;
-    const auto robot = std::make_shared<const PreparedRobot>(problem);
-    Planner planner(robot, problem);
-    PlanOptions options;
-    options.planner = trial % 7 == 0 ? PlannerKind::kEagerDp : PlannerKind::kLazy;
-    const PlanResult result = planner.plan(options);
-    if (result.status == PlanStatus::kSolved) {
-      if (trial % 10 == 0) {
-        EXPECT_THROW(static_cast<void>(prove_infeasible(planner.view())), InvalidArgument) << what;
-      }
-      continue;
-    }
-    ++infeasible;
-    const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
-    Plain plain(problem, *robot, certificate);
-    ASSERT_EQ(plain.fault(certificate), "") << what;
-    const CertificateCheck check = verify_certificate(*robot, problem, certificate);
-    ASSERT_TRUE(check.passed) << what << ": " << check.failure;
-    const std::string text = io::to_json(certificate);
-    io::write_file(file, text);
-    ASSERT_EQ(io::load_certificate(file), certificate) << what;
+};
 
-    const CertificateCounts counts = count(certificate);
-    bool nodes = false, edges = false;
-    for (std::size_t k = 0; k < certificate.witnesses.size(); ++k) {
-      nodes |= counts.by_witness[k].nodes > 0;
-      edges |= counts.by_witness[k].edges > 0;
-      ++kinds[to_string(certificate.witnesses[k].kind)];
-    }
-    started += problem.start.has_value();
-    continuous += problem.limits.edges == EdgeMode::kContinuous;
-    by_nodes += nodes;
-    by_edges += edges;
-    arcs += number >= grids;
-    windings += !certificate.windings.empty();
-    bytes = std::max(bytes, static_cast<int>(text.size()));
+/// The robots of the random problems. Those from `grids` on are planned on arcs; the last one is
+/// wound_robot().
+struct CertificateRobots {
+  std::vector<TestRobot> all;
+  std::size_t grids = 0;
+};
 
-    for (const auto& [name, forge] : forgeries()) {
-      InfeasibilityCertificate bad = certificate;
-      if (!forge(bad, random)) continue;
-      if (verify_certificate(*robot, problem, bad).passed) {  // by chance it may be a proof as well
-        ASSERT_EQ(plain.fault(bad), "") << what << ": " << name;
-        ++still_proofs;
-      } else {
-        ++forged[name];
-      }
+CertificateRobots certificate_robots(std::uint64_t base) {
+  CertificateRobots robots{.all = all_robots()};
+  Random of_robots(base);
+  for (const TestRobot& robot : inexact_robots(of_robots)) robots.all.push_back(robot);
+  robots.grids = robots.all.size();
+  for (const TestRobot& robot :
+       {arm_of_data("panda_like"), arm_of_data("gen3_like"), wound_robot()})
+    robots.all.push_back(robot);
+  return robots;
+}
+
+/// Verifies the certificate by plain loops and by the check, and reads it back from `file`.
+void expect_verified(const Problem& problem, const PreparedRobot& robot,
+                     const InfeasibilityCertificate& certificate, Plain& plain,
+                     const std::filesystem::path& file, const std::string& what,
+                     CertificateTally& tally) {
+  ASSERT_EQ(plain.fault(certificate), "") << what;
+  const CertificateCheck check = verify_certificate(robot, problem, certificate);
+  ASSERT_TRUE(check.passed) << what << ": " << check.failure;
+  const std::string text = io::to_json(certificate);
+  io::write_file(file, text);
+  ASSERT_EQ(io::load_certificate(file), certificate) << what;
+  tally.bytes = std::max(tally.bytes, static_cast<int>(text.size()));
+}
+
+/// Adds what a verified certificate of the problem shows to the tally.
+void tally_certificate(const Problem& problem, const InfeasibilityCertificate& certificate,
+                       CertificateTally& tally) {
+  const CertificateCounts counts = count(certificate);
+  bool nodes = false, edges = false;
+  for (std::size_t k = 0; k < certificate.witnesses.size(); ++k) {
+    nodes |= counts.by_witness[k].nodes > 0;
+    edges |= counts.by_witness[k].edges > 0;
+    ++tally.kinds[to_string(certificate.witnesses[k].kind)];
+  }
+  tally.started += problem.start.has_value();
+  tally.continuous += problem.limits.edges == EdgeMode::kContinuous;
+  tally.by_nodes += nodes;
+  tally.by_edges += edges;
+  tally.windings += !certificate.windings.empty();
+}
+
+/// Forges the certificate in every way that it allows and expects each forgery to be refused, or to
+/// be a proof as well.
+void expect_forgeries_refused(const Problem& problem, const PreparedRobot& robot,
+                              const InfeasibilityCertificate& certificate, Plain& plain,
+                              Random& random, const std::string& what, CertificateTally& tally) {
+  for (const auto& [name, forge] : forgeries()) {
+    InfeasibilityCertificate bad = certificate;
+    if (!forge(bad, random)) continue;
+    if (verify_certificate(robot, problem, bad).passed) {  // by chance it may be a proof as well
+      ASSERT_EQ(plain.fault(bad), "") << what << ": " << name;
+      ++tally.still_proofs;
+    } else {
+      ++tally.forged[name];
     }
   }
-  std::filesystem::remove(file);
+}
+
+/// Plans one problem and, where it is infeasible, checks its certificate and forged ones.
+void check_certificate(const Problem& problem, int trial, Random& random,
+                       const std::filesystem::path& file, const std::string& what,
+                       CertificateTally& tally) {
+  const auto robot = std::make_shared<const PreparedRobot>(problem);
+  Planner planner(robot, problem);
+  PlanOptions options;
+  options.planner = trial % 7 == 0 ? PlannerKind::kEagerDp : PlannerKind::kLazy;
+  const PlanResult result = planner.plan(options);
+  if (result.status == PlanStatus::kSolved) {
+    if (trial % 10 == 0) {
+      EXPECT_THROW(static_cast<void>(prove_infeasible(planner.view())), InvalidArgument) << what;
+    }
+    return;
+  }
+  ++tally.infeasible;
+  const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
+  Plain plain(problem, *robot, certificate);
+  expect_verified(problem, *robot, certificate, plain, file, what, tally);
+  if (::testing::Test::HasFatalFailure()) return;
+  tally_certificate(problem, certificate, tally);
+  expect_forgeries_refused(problem, *robot, certificate, plain, random, what, tally);
+}
+
+/// Prints the tally and expects enough certificates and forgeries of every kind.
+void expect_tally(const CertificateTally& tally, int wanted) {
   std::printf(
       "%d certificates of %d verified twice: %d with a start, %d with motions, %d on arcs (%d with "
       "windings); by nodes %d, by "
       "edges %d; at most %d bytes\n",
-      infeasible, wanted, started, continuous, arcs, windings, by_nodes, by_edges, bytes);
-  for (const auto& [kind, times] : kinds) std::printf("  %s in %d\n", kind.c_str(), times);
+      tally.infeasible, wanted, tally.started, tally.continuous, tally.arcs, tally.windings,
+      tally.by_nodes, tally.by_edges, tally.bytes);
+  for (const auto& [kind, times] : tally.kinds) std::printf("  %s in %d\n", kind.c_str(), times);
   int refused = 0;
-  for (const auto& [name, times] : forged)
+  for (const auto& [name, times] : tally.forged)
     std::printf("  forged: %s: %d refused\n", name.c_str(), times), refused += times;
-  std::printf("  %d forged ones prove the same\n", still_proofs);
-  EXPECT_LE(still_proofs, refused / 50 + 1);
-  EXPECT_GE(started, at_least(30));
-  EXPECT_GE(arcs, at_least(12));
-  EXPECT_GE(by_edges, at_least(20));
-  EXPECT_GE(windings, at_least(1));
-  EXPECT_GE(kinds.size(), static_cast<std::size_t>(at_least(7)));
-  EXPECT_GE(forged.size(), static_cast<std::size_t>(at_least(10)));
+  std::printf("  %d forged ones prove the same\n", tally.still_proofs);
+  EXPECT_LE(tally.still_proofs, refused / 50 + 1);
+  EXPECT_GE(tally.started, at_least(30));
+  EXPECT_GE(tally.arcs, at_least(12));
+  EXPECT_GE(tally.by_edges, at_least(20));
+  EXPECT_GE(tally.windings, at_least(1));
+  EXPECT_GE(tally.kinds.size(), static_cast<std::size_t>(at_least(7)));
+  EXPECT_GE(tally.forged.size(), static_cast<std::size_t>(at_least(10)));
   EXPECT_GE(refused, at_least(500));
+}
+
+TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesAreRefused) {
+  const std::uint64_t base = seed("Cut");
+  const auto [robots, grids] = certificate_robots(base);
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("swivel_cut_test_" + std::to_string(getpid()) + ".json");
+  const int wanted = trials(120);
+  CertificateTally tally;
+  for (int trial = 0; tally.infeasible < wanted; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const std::size_t number = static_cast<std::size_t>(trial) % robots.size();
+    const Problem problem = number + 1 == robots.size() && random.coin()
+                                ? beyond_a_turn(robots.back(), random)
+                                : random_task(robots[number], number >= grids, random);
+    const int before = tally.infeasible;
+    check_certificate(problem, trial, random, file,
+                      "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                          std::to_string(trial) + " " + problem.source,
+                      tally);
+    if (HasFatalFailure()) return;
+    tally.arcs += number >= grids && tally.infeasible > before;
+  }
+  std::filesystem::remove(file);
+  expect_tally(tally, wanted);
 }
 
 /// A check of the caller's is a witness that only those can verify who have it.
