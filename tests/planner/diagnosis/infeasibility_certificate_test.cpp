@@ -357,6 +357,7 @@ struct CertificateRobots {
   std::size_t grids = 0;
 };
 
+/// Lists S-R-S arms with exact and inexact dimensions (`base` seeds these), then arms on arcs.
 CertificateRobots certificate_robots(std::uint64_t base) {
   CertificateRobots robots{.all = all_robots()};
   Random of_robots(base);

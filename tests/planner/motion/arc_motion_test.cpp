@@ -54,99 +54,151 @@ std::string first_of(const CheckResult& check) {
   return check.failures.empty() ? "" : check.failures[0];
 }
 
+/// Counts the problems of one arm.
+struct ArmCounts {
+  int solved = 0, executable = 0, refined = 0;
+  std::map<std::string, int> reasons;  ///< why motions are refused, and how often
+};
+
+/// Counts the problems of all arms.
+struct MotionCounts {
+  int within_windows = 0, solved = 0, executable = 0, refined = 0, cheaper = 0, starts = 0,
+      samples = 0, mean_of = 0;
+  double mean = 0;             ///< the sum of the costs of refined paths over those before
+  std::vector<double> slower;  ///< durations over ideal ones
+};
+
+/// A random problem of an arm and how its motion is timed.
+struct MotionTask {
+  Problem problem;
+  bool windows = false;  ///< whether the waypoints have windows of roll
+  std::string what;
+  TimingOptions timing;
+};
+
+/// Draws a problem of the arm, its cost of roll and windows of roll, and speeds of its motion.
+MotionTask random_motion_task(const Arm& arm, int trial, Random& random) {
+  MotionTask task;
+  Problem& problem = task.problem;
+  problem = with_motion_defaults(motion_problem(arm.robot, random, arm.roll));
+  if (problem.roll) problem.limits.roll_slope = random.uniform(3, 20);
+  if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.5, 20);
+  task.windows = problem.roll && !problem.roll->circle() && random.coin();
+  if (task.windows) draw_windows(problem, random, problem.start ? (*problem.start)[kDof - 1] : 0.0);
+  task.what = problem.source + " trial " + std::to_string(trial);
+  task.timing = TimingOptions{.speed = random.coin() ? 0.05 : 0.2,
+                              .turn_speed = 0.5,
+                              .rate = random.coin() ? 250.0 : 1000.0};
+  return task;
+}
+
+/// Expects the refined path to be no dearer than the one before and to pass the check of rows.
+void expect_refined_path(const MotionTask& task, const PreparedRobot& robot, const Refined& path,
+                         ArmCounts& of_arm, MotionCounts& counts) {
+  const Problem& problem = task.problem;
+  const std::string& what = task.what;
+  const Chain& chain = robot.arm().chain;
+  EXPECT_LE(path.cost, path.cost_before) << what;
+  EXPECT_NE(path.refined, !path.reason.empty()) << what;
+  EXPECT_LE(most_deviation(chain, problem_path(problem, chain), path.rows), 1e-8) << what;
+  const CheckResult rows = check_trajectory(robot, problem, path.rows);
+  EXPECT_TRUE(rows.passed) << what << ": " << first_of(rows);
+  EXPECT_NEAR(rows.cost, path.cost, 1e-6) << what;
+  if (problem.start) {
+    EXPECT_EQ(path.rows[0].q, *problem.start) << what;
+    ++counts.starts;
+  }
+  of_arm.refined += path.refined;
+  counts.within_windows += path.refined && task.windows;
+  counts.cheaper += path.cost < path.cost_before - 1e-6;
+  counts.mean += path.cost_before > 0 ? path.cost / path.cost_before : 1;
+  ++counts.mean_of;
+}
+
+/// Expects the motion in time to pass the check of motions and to begin at the start.
+void expect_executable(const MotionTask& task, const PreparedRobot& robot, const TimedPath& motion,
+                       MotionCounts& counts) {
+  const Problem& problem = task.problem;
+  const std::string& what = task.what;
+  counts.samples += static_cast<int>(motion.rows.size());
+  counts.slower.push_back(motion.duration / motion.ideal);
+  const CheckResult check = check_motion(robot, problem, motion.rows);
+  EXPECT_TRUE(check.passed) << what << ": " << first_of(check);
+  ASSERT_TRUE(check.motion) << what;
+  for (const auto& peak : check.motion->peaks) EXPECT_LE(peak.ratio, 1 + 1e-6) << what;
+  if (problem.start) {
+    EXPECT_LE((motion.rows[0].row.q - *problem.start).lpNorm<Eigen::Infinity>(), 1e-8) << what;
+  }
+  if (!robot.arm().chain.roll) return;
+  for (const TimedRow& row : motion.rows) EXPECT_EQ(row.row.phi, row.row.q[kDof - 1]) << what;
+}
+
+/// Plans, refines and times one problem, and checks the path and its motion.
+void check_task(const MotionTask& task, ArmCounts& of_arm, MotionCounts& counts) {
+  const std::string& what = task.what;
+  Planner planner(task.problem);
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const MotionPlan plan = plan_motion(planner, options, true, task.timing);
+  if (plan.result.status != PlanStatus::kSolved) return;
+  ++of_arm.solved;
+  ASSERT_TRUE(plan.refinement && plan.motion) << what;
+  const PreparedRobot robot(task.problem);
+  expect_refined_path(task, robot, *plan.refinement, of_arm, counts);
+  ASSERT_NE(plan.motion->motion.has_value(), plan.motion->failure.has_value()) << what;
+  if (!plan.motion->motion) {
+    EXPECT_FALSE(plan.motion->failure->reason.empty()) << what;
+    ++of_arm.reasons[plan.motion->failure->reason];
+    return;
+  }
+  ++of_arm.executable;
+  expect_executable(task, robot, *plan.motion->motion, counts);
+}
+
+/// Prints the counts of one arm and adds them to those of all arms.
+void add_arm(const std::string& name, const ArmCounts& of_arm, int count, MotionCounts& counts) {
+  std::printf("%s: %d of %d solved, %d refined, %d executable\n", name.c_str(), of_arm.solved,
+              count, of_arm.refined, of_arm.executable);
+  for (const auto& [reason, times] : of_arm.reasons)
+    std::printf("  %d refused: %s\n", times, reason.c_str());
+  EXPECT_GE(of_arm.solved, at_least(1)) << name;
+  counts.solved += of_arm.solved;
+  counts.executable += of_arm.executable;
+  counts.refined += of_arm.refined;
+}
+
 /// What is executable is right, and what is refused has a reason: random problems of every arm,
 /// planned, refined and timed.
 TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
   const std::uint64_t base = seed("ArcMotions");
   const std::vector<Arm> all = arms();
   const int count = trials(12);
-  int within_windows = 0, solved_in_all = 0, executable_in_all = 0, refined_in_all = 0, cheaper = 0,
-      starts = 0, samples = 0, mean_of = 0;
-  double mean = 0;
-  std::vector<double> slower;
+  MotionCounts counts;
   for (std::size_t which = 0; which < all.size(); ++which) {
-    int solved = 0, executable = 0, refined = 0;
-    std::map<std::string, int> reasons;
+    ArmCounts of_arm;
     for (int trial = 0; trial < count; ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial) * all.size() + which);
-      Problem problem =
-          with_motion_defaults(motion_problem(all[which].robot, random, all[which].roll));
-      if (problem.roll) problem.limits.roll_slope = random.uniform(3, 20);
-      if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.5, 20);
-      const bool windows = problem.roll && !problem.roll->circle() && random.coin();
-      if (windows) draw_windows(problem, random, problem.start ? (*problem.start)[kDof - 1] : 0.0);
-      const std::string what = problem.source + " trial " + std::to_string(trial);
-      Planner planner(problem);
-      PlanOptions options;
-      options.planner = PlannerKind::kLazy;
-      const TimingOptions timing{.speed = random.coin() ? 0.05 : 0.2,
-                                 .turn_speed = 0.5,
-                                 .rate = random.coin() ? 250.0 : 1000.0};
-      const MotionPlan plan = plan_motion(planner, options, true, timing);
-      if (plan.result.status != PlanStatus::kSolved) continue;
-      ++solved;
-      ASSERT_TRUE(plan.refinement && plan.motion) << what;
-      const Refined& path = *plan.refinement;
-      const PreparedRobot robot(problem);
-      const Chain& chain = robot.arm().chain;
-      EXPECT_LE(path.cost, path.cost_before) << what;
-      EXPECT_NE(path.refined, !path.reason.empty()) << what;
-      EXPECT_LE(most_deviation(chain, problem_path(problem, chain), path.rows), 1e-8) << what;
-      const CheckResult rows = check_trajectory(robot, problem, path.rows);
-      EXPECT_TRUE(rows.passed) << what << ": " << first_of(rows);
-      EXPECT_NEAR(rows.cost, path.cost, 1e-6) << what;
-      if (problem.start) {
-        EXPECT_EQ(path.rows[0].q, *problem.start) << what;
-        ++starts;
-      }
-      refined += path.refined;
-      within_windows += path.refined && windows;
-      cheaper += path.cost < path.cost_before - 1e-6;
-      mean += path.cost_before > 0 ? path.cost / path.cost_before : 1;
-      ++mean_of;
-      ASSERT_NE(plan.motion->motion.has_value(), plan.motion->failure.has_value()) << what;
-      if (!plan.motion->motion) {
-        EXPECT_FALSE(plan.motion->failure->reason.empty()) << what;
-        ++reasons[plan.motion->failure->reason];
-        continue;
-      }
-      ++executable;
-      const TimedPath& motion = *plan.motion->motion;
-      samples += static_cast<int>(motion.rows.size());
-      slower.push_back(motion.duration / motion.ideal);
-      const CheckResult check = check_motion(robot, problem, motion.rows);
-      EXPECT_TRUE(check.passed) << what << ": " << first_of(check);
-      ASSERT_TRUE(check.motion) << what;
-      for (const auto& peak : check.motion->peaks) EXPECT_LE(peak.ratio, 1 + 1e-6) << what;
-      if (problem.start) {
-        EXPECT_LE((motion.rows[0].row.q - *problem.start).lpNorm<Eigen::Infinity>(), 1e-8) << what;
-      }
-      if (!chain.roll) continue;
-      for (const TimedRow& row : motion.rows) EXPECT_EQ(row.row.phi, row.row.q[kDof - 1]) << what;
+      check_task(random_motion_task(all[which], trial, random), of_arm, counts);
+      if (HasFatalFailure()) return;
     }
-    std::printf("%s: %d of %d solved, %d refined, %d executable\n", all[which].robot.name.c_str(),
-                solved, count, refined, executable);
-    for (const auto& [reason, times] : reasons)
-      std::printf("  %d refused: %s\n", times, reason.c_str());
-    EXPECT_GE(solved, at_least(1)) << all[which].robot.name;
-    solved_in_all += solved;
-    executable_in_all += executable;
-    refined_in_all += refined;
+    add_arm(all[which].robot.name, of_arm, count, counts);
   }
+  std::vector<double>& slower = counts.slower;
   std::sort(slower.begin(), slower.end());
   ASSERT_FALSE(slower.empty());
   std::printf(
       "in all %d solved (%d with a start), %d refined, %d cheaper, mean cost %.4f of before; %d "
       "executable, %d samples, "
       "duration over ideal %.3f in the median and %.3f at the 95th percentile\n",
-      solved_in_all, starts, refined_in_all, cheaper, mean / mean_of, executable_in_all, samples,
-      slower[slower.size() / 2], slower[slower.size() * 95 / 100]);
-  EXPECT_GE(refined_in_all, at_least(solved_in_all * 3 / 5));
-  EXPECT_GE(cheaper, at_least(solved_in_all / 2));
-  EXPECT_GE(executable_in_all, at_least(solved_in_all * 9 / 10));
-  EXPECT_GE(starts, at_least(3));
-  std::printf("%d refined within windows of roll\n", within_windows);
-  EXPECT_GE(within_windows, at_least(1));
+      counts.solved, counts.starts, counts.refined, counts.cheaper, counts.mean / counts.mean_of,
+      counts.executable, counts.samples, slower[slower.size() / 2],
+      slower[slower.size() * 95 / 100]);
+  EXPECT_GE(counts.refined, at_least(counts.solved * 3 / 5));
+  EXPECT_GE(counts.cheaper, at_least(counts.solved / 2));
+  EXPECT_GE(counts.executable, at_least(counts.solved * 9 / 10));
+  EXPECT_GE(counts.starts, at_least(3));
+  std::printf("%d refined within windows of roll\n", counts.within_windows);
+  EXPECT_GE(counts.within_windows, at_least(1));
 }
 
 }  // namespace

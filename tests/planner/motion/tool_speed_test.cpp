@@ -49,70 +49,100 @@ std::vector<Case> cases() {
   return all;
 }
 
+/// A random problem of an arm and how its motion is timed.
+struct SpeedTask {
+  Problem problem;
+  double speed = 0;            ///< of the tool, m/s
+  std::optional<double> turn;  ///< speed of the tool's rotation, rad/s
+  double rate = 0;             ///< rows per second
+  bool limit = false;          ///< whether the speeds are limits of the problem
+  bool spot = false;           ///< whether the tool turns on the spot
+};
+
+/// Draws a problem, a speed of the tool and a rate at which the motion has few rows.
+SpeedTask random_speed_task(const Case& which, Random& random) {
+  constexpr double kRows = 6000;  // that a motion has at most, about
+  SpeedTask task;
+  Problem& problem = task.problem;
+  problem = with_motion_defaults(motion_problem(which.robot, random, which.roll));
+  task.speed = 0.0005 * std::pow(1000, random.uniform(0, 1));  // 0.5 mm/s to 0.5 m/s
+  double length = 0;
+  for (std::size_t k = 1; k < problem.waypoints.size(); ++k) {
+    const double way = (problem.waypoints[k].position - problem.waypoints[k - 1].position).norm();
+    length += way;
+    task.spot = task.spot || way == 0;
+  }
+  const double rates[] = {20, 125, 250, 1000};
+  task.rate =
+      std::min(rates[random.below(4)], std::max(5.0, std::floor(kRows * task.speed / length)));
+  task.turn = random.coin() ? std::optional(random.uniform(0.05, 1)) : std::nullopt;
+  task.limit = random.coin();
+  if (task.limit)
+    problem.limits.tool_speed = task.speed, problem.limits.tool_turn_speed = task.turn;
+  return task;
+}
+
+/// Counts the motions, and which of them are fast, slow or limited.
+struct SpeedCounts {
+  int timed = 0, as_fast = 0, slowest = 0, with_turn = 0, limited = 0, on_the_spot = 0;
+};
+
+/// Plans and times one problem and expects the tool to be no faster than asked.
+void check_speed(const SpeedTask& task, const std::string& trace, Random& random,
+                 SpeedCounts& counts) {
+  const auto& [problem, speed, turn, rate, limit, spot] = task;
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  Planner planner(problem);
+  // A limit of the problem is kept by motions that are asked to be faster as well.
+  const MotionPlan plan =
+      plan_motion(planner, options, random.coin(),
+                  TimingOptions{.speed = limit ? 1.5 * speed : speed,
+                                .turn_speed = limit || !turn ? std::nullopt : turn,
+                                .rate = rate});
+  if (!plan.motion || !plan.motion->motion) return;
+  SCOPED_TRACE(trace + ", " + std::to_string(speed) + " m/s, " + std::to_string(rate));
+  const TimedPath& motion = *plan.motion->motion;
+  const PreparedRobot robot(problem);
+  const Fastest most = fastest(robot.arm().chain, motion);
+  const double rounding = 1e-9 * rate;  // m/s and rad/s, of joints by Newton steps
+  EXPECT_LE(most.along, speed * (1 + 1e-6) + rounding);
+  if (turn) {
+    EXPECT_LE(most.turning, *turn * (1 + 1e-6) + rounding);
+  }
+  EXPECT_EQ(motion.speed, speed);
+  const CheckResult check = check_motion(robot, problem, motion.rows);
+  EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures[0]);
+  ++counts.timed;
+  counts.as_fast += most.along > 0.99 * speed;
+  counts.slowest += speed < 0.002;
+  counts.with_turn += turn.has_value();
+  counts.limited += limit;
+  counts.on_the_spot += spot;
+}
+
 TEST(ToolSpeed, IsAtMostTheOneAskedFor) {
   const std::uint64_t base = seed("ToolSpeed");
   const std::vector<Case> all = cases();
-  constexpr double kRows = 6000;  // that a motion has at most, about
-  int timed = 0, as_fast = 0, slowest = 0, with_turn = 0, limited = 0, on_the_spot = 0;
+  SpeedCounts counts;
   for (int trial = 0; trial < trials(90); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Case& which = all[static_cast<std::size_t>(trial) % all.size()];
-    Problem problem = with_motion_defaults(motion_problem(which.robot, random, which.roll));
-    const double speed = 0.0005 * std::pow(1000, random.uniform(0, 1));  // 0.5 mm/s to 0.5 m/s
-    double length = 0;
-    bool spot = false;
-    for (std::size_t k = 1; k < problem.waypoints.size(); ++k) {
-      const double way = (problem.waypoints[k].position - problem.waypoints[k - 1].position).norm();
-      length += way;
-      spot = spot || way == 0;
-    }
-    const double rates[] = {20, 125, 250, 1000};
-    const double rate =
-        std::min(rates[random.below(4)], std::max(5.0, std::floor(kRows * speed / length)));
-    const std::optional<double> turn =
-        random.coin() ? std::optional(random.uniform(0.05, 1)) : std::nullopt;
-    const bool limit = random.coin();
-    if (limit) problem.limits.tool_speed = speed, problem.limits.tool_turn_speed = turn;
-    PlanOptions options;
-    options.planner = PlannerKind::kLazy;
-    Planner planner(problem);
-    // A limit of the problem is kept by motions that are asked to be faster as well.
-    const MotionPlan plan =
-        plan_motion(planner, options, random.coin(),
-                    TimingOptions{.speed = limit ? 1.5 * speed : speed,
-                                  .turn_speed = limit || !turn ? std::nullopt : turn,
-                                  .rate = rate});
-    if (!plan.motion || !plan.motion->motion) continue;
-    SCOPED_TRACE(which.robot.name + " " + std::to_string(trial) + ", " + std::to_string(speed) +
-                 " m/s, " + std::to_string(rate));
-    const TimedPath& motion = *plan.motion->motion;
-    const PreparedRobot robot(problem);
-    const Fastest most = fastest(robot.arm().chain, motion);
-    const double rounding = 1e-9 * rate;  // m/s and rad/s, of joints by Newton steps
-    EXPECT_LE(most.along, speed * (1 + 1e-6) + rounding);
-    if (turn) {
-      EXPECT_LE(most.turning, *turn * (1 + 1e-6) + rounding);
-    }
-    EXPECT_EQ(motion.speed, speed);
-    const CheckResult check = check_motion(robot, problem, motion.rows);
-    EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures[0]);
-    ++timed;
-    as_fast += most.along > 0.99 * speed;
-    slowest += speed < 0.002;
-    with_turn += turn.has_value();
-    limited += limit;
-    on_the_spot += spot;
+    const SpeedTask task = random_speed_task(which, random);
+    check_speed(task, which.robot.name + " " + std::to_string(trial), random, counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d motions, %d as fast as asked, %d below 2 mm/s, %d with a turn speed, %d with limits, %d "
       "that turn on the spot\n",
-      timed, as_fast, slowest, with_turn, limited, on_the_spot);
-  EXPECT_GE(timed, at_least(25));
-  EXPECT_GE(as_fast, at_least(15));
-  EXPECT_GE(slowest, at_least(3));
-  EXPECT_GE(with_turn, at_least(8));
-  EXPECT_GE(limited, at_least(8));
-  EXPECT_GE(on_the_spot, at_least(5));
+      counts.timed, counts.as_fast, counts.slowest, counts.with_turn, counts.limited,
+      counts.on_the_spot);
+  EXPECT_GE(counts.timed, at_least(25));
+  EXPECT_GE(counts.as_fast, at_least(15));
+  EXPECT_GE(counts.slowest, at_least(3));
+  EXPECT_GE(counts.with_turn, at_least(8));
+  EXPECT_GE(counts.limited, at_least(8));
+  EXPECT_GE(counts.on_the_spot, at_least(5));
 }
 
 /// The tool comes out of a turn on the spot into a straight line: travel that was nearly all
