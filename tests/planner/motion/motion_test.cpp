@@ -377,88 +377,118 @@ TEST(Motion, PassesTheCheckOfMotions) {
   EXPECT_LE(not_executable, solved / 3);
 }
 
-TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
-  constexpr double kForgiven = kVerdictBand + 1e-6;
+/// Counts the motions that are executed and the points that are asked about on them.
+struct ClearanceCounts {
   int executed = 0, refused = 0, near = 0;
   std::int64_t asked = 0;
-  double least = 1;
+  double least = 1;  ///< margin to the clearance, m
+};
+
+/// Draws a problem before a ball, with layers that lie far apart or close together at times.
+Problem random_before_ball(const TestRobot& robot, Random& random) {
+  Problem problem = motion_problem(robot, random);
+  problem = with_motion_defaults(problem);
+  EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
+  if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
+  const double ds = random.uniform(0, 1);
+  if (ds < 0.3) problem.resolution.ds = 0.04, problem.limits.tool_path_error.reset();
+  if (ds > 0.8) problem.resolution.ds = 0.002;
+  return problem;
+}
+
+/// The ball is as large as leaves a path, so that the path must pass near it.
+void enlarge_ball(Problem& problem, const PlanOptions& options) {
+  double solvable = 0.02, blocked = 0.2;
+  for (int k = 0; k < 5; ++k) {
+    problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
+    const bool solved = swivel::plan(problem, options).status == PlanStatus::kSolved;
+    (solved ? solvable : blocked) = (solvable + blocked) / 2;
+  }
+  problem.scene[0].shape = Sphere{solvable};
+}
+
+/// Margins are told of the path that is executed.
+void expect_margin_of_path(const PlanResult& result, World::Query& query) {
+  double margin = std::numeric_limits<double>::infinity();
+  for (const TrajectoryRow& row : result.trajectory)
+    if (const auto clearance = query.clearance(row.q))
+      margin = std::min(margin, clearance->margin());
+  if (result.min_margin) {
+    EXPECT_NEAR(result.min_margin->margin, margin, 1e-9);
+  }
+}
+
+/// Expects the clearance on every seventh move of the motion: at its row alone where only nodes are
+/// asked for, else at eleven points.
+void expect_clearance(const Problem& problem, const std::vector<TimedRow>& rows,
+                      World::Query& query, int trial, ClearanceCounts& counts) {
+  constexpr double kForgiven = kVerdictBand + 1e-6;
+  bool comes_near = false;
+  for (std::size_t k = 0; k + 1 < rows.size(); k += 7)
+    for (int part = 0; part <= (problem.limits.edges == EdgeMode::kNodes ? 0 : 10); ++part) {
+      const Config q = rows[k].row.q + part / 10. * (rows[k + 1].row.q - rows[k].row.q);
+      const auto clearance = query.clearance(q);
+      if (!clearance) continue;
+      ++counts.asked;
+      counts.least = std::min(counts.least, clearance->margin());
+      EXPECT_GE(clearance->margin(), -kForgiven)
+          << "trial " << trial << " t = " << rows[k].t << " part " << part;
+      comes_near = comes_near || clearance->margin() < 2e-3;
+    }
+  counts.near += comes_near;
+}
+
+/// Plans, refines and times one problem before a ball and checks the clearance of its motion.
+void check_clearance(Problem problem, int trial, ClearanceCounts& counts) {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  options.evidence.postures = true;
+  enlarge_ball(problem, options);
+  Planner planner(problem);
+  const MotionPlan plan = plan_motion(planner, options, true,
+                                      TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+  if (plan.result.status != PlanStatus::kSolved) return;
+  ASSERT_TRUE(plan.refinement);
+  ASSERT_TRUE(plan.motion);
+  EXPECT_FALSE(plan.stopped);
+  EXPECT_NEAR(plan.result.cost, plan.refinement->cost, 1e-9);
+  EXPECT_LE(plan.result.cost, plan.result.lattice.cost + 0.05);  // of rows, of nodes
+  ASSERT_EQ(plan.result.trajectory.size(), plan.lattice_path.size());
+  if (!plan.motion->motion) {
+    ++counts.refused;
+    std::printf("trial %d: %s at s = %.4f\n", trial, plan.motion->failure->reason.c_str(),
+                plan.motion->failure->s);
+    return;
+  }
+  ++counts.executed;
+  const PreparedRobot robot(problem);
+  const World world(robot.world(), problem);
+  World::Query query(world);
+  expect_margin_of_path(plan.result, query);
+  const auto& rows = plan.motion->motion->rows;
+  expect_clearance(problem, rows, query, trial, counts);
+  EXPECT_TRUE(check_motion(robot, problem, rows).passed);
+}
+
+TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
+  ClearanceCounts counts;
   const std::uint64_t base = seed("Between");
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < trials(16); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
-        motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    problem = with_motion_defaults(problem);
-    EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
-    if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
-    const double ds = random.uniform(0, 1);
-    if (ds < 0.3) problem.resolution.ds = 0.04, problem.limits.tool_path_error.reset();
-    if (ds > 0.8) problem.resolution.ds = 0.002;
-    PlanOptions options;
-    options.planner = PlannerKind::kLazy;
-    options.evidence.postures = true;
-    // The ball is as large as leaves a path, so that the path must pass near it.
-    double solvable = 0.02, blocked = 0.2;
-    const auto planned = [&](double radius) {
-      problem.scene[0].shape = Sphere{radius};
-      Planner planner(problem);
-      return plan_motion(planner, options, true,
-                         TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
-    };
-    for (int k = 0; k < 5; ++k) {
-      problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
-      const bool solved = swivel::plan(problem, options).status == PlanStatus::kSolved;
-      (solved ? solvable : blocked) = (solvable + blocked) / 2;
-    }
-    const MotionPlan plan = planned(solvable);
-    if (plan.result.status != PlanStatus::kSolved) continue;
-    ASSERT_TRUE(plan.refinement);
-    ASSERT_TRUE(plan.motion);
-    EXPECT_FALSE(plan.stopped);
-    EXPECT_NEAR(plan.result.cost, plan.refinement->cost, 1e-9);
-    EXPECT_LE(plan.result.cost, plan.result.lattice.cost + 0.05);  // of rows, of nodes
-    ASSERT_EQ(plan.result.trajectory.size(), plan.lattice_path.size());
-    if (!plan.motion->motion) {
-      ++refused;
-      std::printf("trial %d: %s at s = %.4f\n", trial, plan.motion->failure->reason.c_str(),
-                  plan.motion->failure->s);
-      continue;
-    }
-    ++executed;
-    const PreparedRobot robot(problem);
-    const World world(robot.world(), problem);
-    World::Query query(world);
-    // Margins are told of the path that is executed.
-    double margin = std::numeric_limits<double>::infinity();
-    for (const TrajectoryRow& row : plan.result.trajectory)
-      if (const auto clearance = query.clearance(row.q))
-        margin = std::min(margin, clearance->margin());
-    if (plan.result.min_margin) {
-      EXPECT_NEAR(plan.result.min_margin->margin, margin, 1e-9);
-    }
-    const auto& rows = plan.motion->motion->rows;
-    bool comes_near = false;
-    for (std::size_t k = 0; k + 1 < rows.size(); k += 7)
-      for (int part = 0; part <= (problem.limits.edges == EdgeMode::kNodes ? 0 : 10); ++part) {
-        const Config q = rows[k].row.q + part / 10. * (rows[k + 1].row.q - rows[k].row.q);
-        const auto clearance = query.clearance(q);
-        if (!clearance) continue;
-        ++asked;
-        least = std::min(least, clearance->margin());
-        EXPECT_GE(clearance->margin(), -kForgiven)
-            << "trial " << trial << " t = " << rows[k].t << " part " << part;
-        comes_near = comes_near || clearance->margin() < 2e-3;
-      }
-    near += comes_near;
-    EXPECT_TRUE(check_motion(robot, problem, rows).passed);
+    check_clearance(
+        random_before_ball(robots[static_cast<std::size_t>(trial) % robots.size()], random), trial,
+        counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d executed, %d refused, %lld points, %d motions within 2 mm of the clearance, least margin "
       "%.4f mm\n",
-      executed, refused, static_cast<long long>(asked), near, 1e3 * least);
-  EXPECT_GE(executed, at_least(5));
-  EXPECT_GE(near, at_least(3));
-  EXPECT_LE(refused, executed / 4);
+      counts.executed, counts.refused, static_cast<long long>(counts.asked), counts.near,
+      1e3 * counts.least);
+  EXPECT_GE(counts.executed, at_least(5));
+  EXPECT_GE(counts.near, at_least(3));
+  EXPECT_LE(counts.refused, counts.executed / 4);
 }
 
 std::string said_of_postures(const TimedPath& motion) {
@@ -507,13 +537,7 @@ TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
     problem.limits.tool_path_error.reset();
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
-    double solvable = 0.02, blocked = 0.2;
-    for (int k = 0; k < 5; ++k) {
-      problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
-      (swivel::plan(problem, options).status == PlanStatus::kSolved ? solvable : blocked) =
-          (solvable + blocked) / 2;
-    }
-    problem.scene[0].shape = Sphere{solvable};
+    enlarge_ball(problem, options);
     Planner planner(problem);
     const MotionPlan plan = plan_motion(
         planner, options, false, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
