@@ -59,103 +59,140 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
   }
 }
 
+/// Counts the random problems by what they have, and the questions that the lazy planner asks.
+struct AgreementCounts {
+  int reduced = 0, near_motions = 0;
+  int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0,
+      detours = 0, chosen = 0;
+  std::int64_t proved = 0, lazy_fcl_calls = 0;
+};
+
+/// Plans the problem with every planner, with all evidence, in the order of kPlanners.
+std::vector<PlanResult> plan_with_all(const Problem& problem) {
+  std::vector<PlanResult> results;
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options;
+    options.planner = planner;
+    options.threads = 2;
+    options.evidence = Evidence::all();
+    results.push_back(plan(problem, options));
+  }
+  return results;
+}
+
+/// Expects the path of least cost that brute force finds, and that it passes the check.
+void expect_true_path(const Problem& problem, const PlanResult& result, const Answer& truth,
+                      const std::string& what, AgreementCounts& counts) {
+  counts.chosen += truth.chosen;
+  ASSERT_EQ(result.lattice.cost, truth.cost) << what;
+  const PreparedRobot robot(problem);
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  for (int i = 0; i < lattice.layers(); ++i) {
+    const int slot = truth.slots[static_cast<std::size_t>(i)];
+    ASSERT_EQ(result.trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot)) << what;
+    ASSERT_EQ(result.trajectory[static_cast<std::size_t>(i)].branch, lattice.branch_of(slot))
+        << what;
+    if (i > 0)
+      counts.label_changes += lattice.solution_of(slot) !=
+                              lattice.solution_of(truth.slots[static_cast<std::size_t>(i) - 1]);
+  }
+  const CheckResult check = check_trajectory(problem, result.trajectory);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
+}
+
+/// Expects the layers that brute force finds to be reached and to be empty. `may_be_incomplete`
+/// allows a diagnosis that ends before it has asked about every layer.
+void expect_true_diagnosis(const Diagnosis& diagnosis, const Answer& truth, bool may_be_incomplete,
+                           const std::string& what) {
+  ASSERT_EQ(diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+  ASSERT_FALSE(words(diagnosis.cause).empty()) << what;
+  ASSERT_TRUE(diagnosis.complete || may_be_incomplete) << what;
+  if (!diagnosis.complete) return;
+  std::vector<int> empty;
+  for (const EmptyLayers& run : diagnosis.empty_layers)
+    for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
+  ASSERT_EQ(empty, truth.empty) << what;
+}
+
+/// Compares the answers of all planners to one problem with each other and with brute force.
+void check_agreement(const Problem& problem, bool near_by_design, const std::string& what,
+                     AgreementCounts& counts) {
+  const Answer truth = truth_of(problem);
+  const std::vector<PlanResult> results = plan_with_all(problem);
+  const auto& lazy = results[2].counters;
+  counts.proved += lazy.proved_free + lazy.proved_colliding;
+  counts.lazy_fcl_calls += lazy.fcl_calls;
+  ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
+  for (std::size_t k = 1; k < results.size(); ++k) {
+    expect_same(results[0], results[k], what + " planner " + results[k].planner);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  const bool moves_continuously = problem.limits.edges == EdgeMode::kContinuous;
+  counts.reduced += !results[0].reduced_pairs.empty();
+  counts.near_motions += !results[0].reduced_pairs.empty() && truth.solved && moves_continuously;
+  counts.continuous += moves_continuously;
+  counts.started += problem.start.has_value();
+  counts.obstacles += !problem.scene.empty();
+  if (truth.solved) {
+    ++counts.solved;
+    counts.detours += lazy.iterations > 1;
+    expect_true_path(problem, results[0], truth, what, counts);
+  } else {
+    ++counts.infeasible;
+    // Pairs that are near by design cost questions, of which a diagnosis asks so many and no
+    // more.
+    expect_true_diagnosis(results[0].diagnosis, truth, near_by_design, what);
+  }
+}
+
+/// Prints the counts and expects enough problems of every kind among `count`.
+void expect_counts(const AgreementCounts& counts, int count) {
+  std::printf(
+      "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, "
+      "%d with a start, %d with "
+      "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
+      count, counts.solved, counts.detours, counts.label_changes, counts.infeasible,
+      counts.continuous, counts.started, counts.obstacles, static_cast<long long>(counts.proved),
+      static_cast<long long>(counts.lazy_fcl_calls));
+  std::printf(
+      "%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among "
+      "equal costs\n",
+      counts.reduced, counts.near_motions, counts.chosen);
+  EXPECT_GE(counts.chosen, at_least(count / 32));
+  EXPECT_GE(counts.reduced, at_least(count / 24));
+  EXPECT_GE(counts.near_motions, at_least(3));
+  EXPECT_GE(counts.solved, at_least(count / 4));
+  EXPECT_GT(counts.proved, 10 * counts.lazy_fcl_calls);
+  EXPECT_GE(counts.infeasible, at_least(count / 20));
+  EXPECT_GE(counts.continuous, at_least(count / 5));
+  EXPECT_GE(counts.started, at_least(count / 10));
+  EXPECT_GE(counts.detours, at_least(count / 20));
+}
+
 TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Agreement");
   const auto robots = all_robots();
   // Whose own bodies are near each other, and no SRDF says so.
   const std::vector<TestRobot> bare{near_wrist_robot(), without_srdf(data_robot("sda5f")),
                                     without_srdf(data_robot("iiwa14"))};
-  int reduced = 0, near_motions = 0;
-  int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0,
-      detours = 0, chosen = 0;
-  std::int64_t proved = 0, lazy_fcl_calls = 0;
+  AgreementCounts counts;
   const int count = trials(320);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
+    const bool near_by_design = trial % 8 == 7;
     const Problem problem =
-        random_problem(trial % 8 == 7 ? bare[static_cast<std::size_t>(trial / 8) % bare.size()]
+        random_problem(near_by_design ? bare[static_cast<std::size_t>(trial / 8) % bare.size()]
                                       : robots[static_cast<std::size_t>(trial) % robots.size()],
                        random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " robot " + problem.source;
-    const Answer truth = truth_of(problem);
-    std::vector<PlanResult> results;
-    for (const PlannerKind planner : kPlanners) {
-      PlanOptions options;
-      options.planner = planner;
-      options.threads = 2;
-      options.evidence = Evidence::all();
-      results.push_back(plan(problem, options));
-    }
-    proved += results[2].counters.proved_free + results[2].counters.proved_colliding;
-    lazy_fcl_calls += results[2].counters.fcl_calls;
-    ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
-    for (std::size_t k = 1; k < results.size(); ++k) {
-      expect_same(results[0], results[k], what + " planner " + results[k].planner);
-      if (HasFatalFailure()) return;
-    }
-    reduced += !results[0].reduced_pairs.empty();
-    near_motions += !results[0].reduced_pairs.empty() && truth.solved &&
-                    problem.limits.edges == EdgeMode::kContinuous;
-    continuous += problem.limits.edges == EdgeMode::kContinuous;
-    started += problem.start.has_value();
-    obstacles += !problem.scene.empty();
-    if (truth.solved) {
-      ++solved;
-      chosen += truth.chosen;
-      ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
-      const PreparedRobot robot(problem);
-      const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-      const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
-      for (int i = 0; i < lattice.layers(); ++i) {
-        const int slot = truth.slots[static_cast<std::size_t>(i)];
-        ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot))
-            << what;
-        ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].branch,
-                  lattice.branch_of(slot))
-            << what;
-        if (i > 0)
-          label_changes += lattice.solution_of(slot) !=
-                           lattice.solution_of(truth.slots[static_cast<std::size_t>(i) - 1]);
-      }
-      detours += results[2].counters.iterations > 1;
-      const CheckResult check = check_trajectory(problem, results[0].trajectory);
-      ASSERT_TRUE(check.passed) << what << ": "
-                                << (check.failures.empty() ? "" : check.failures[0]);
-      ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
-    } else {
-      ++infeasible;
-      ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
-      ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
-      // Pairs that are near by design cost questions, of which a diagnosis asks so many and no
-      // more.
-      ASSERT_TRUE(results[0].diagnosis.complete || trial % 8 == 7) << what;
-      if (!results[0].diagnosis.complete) continue;
-      std::vector<int> empty;
-      for (const EmptyLayers& run : results[0].diagnosis.empty_layers)
-        for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
-      ASSERT_EQ(empty, truth.empty) << what;
-    }
+    check_agreement(problem, near_by_design,
+                    "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                        " robot " + problem.source,
+                    counts);
+    if (HasFatalFailure()) return;
   }
-  std::printf(
-      "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, "
-      "%d with a start, %d with "
-      "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
-      count, solved, detours, label_changes, infeasible, continuous, started, obstacles,
-      static_cast<long long>(proved), static_cast<long long>(lazy_fcl_calls));
-  std::printf(
-      "%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among "
-      "equal costs\n",
-      reduced, near_motions, chosen);
-  EXPECT_GE(chosen, at_least(count / 32));
-  EXPECT_GE(reduced, at_least(count / 24));
-  EXPECT_GE(near_motions, at_least(3));
-  EXPECT_GE(solved, at_least(count / 4));
-  EXPECT_GT(proved, 10 * lazy_fcl_calls);
-  EXPECT_GE(infeasible, at_least(count / 20));
-  EXPECT_GE(continuous, at_least(count / 5));
-  EXPECT_GE(started, at_least(count / 10));
-  EXPECT_GE(detours, at_least(count / 20));
+  expect_counts(counts, count);
 }
 
 /// PlanOptions::fcl_alone beside own proofs: fresh, and by a planner that remembers, after an
@@ -319,6 +356,71 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
   }
 }
 
+/// A problem whose start may be in one of the slivers at the ends of the joints' ranges.
+struct SliverCase {
+  Problem problem;
+  int in_sliver = 0;  ///< how many joints start in the sliver at their upper limit
+};
+
+/// Draws the case; `wide` gives joint 4 a range of over 64 turns.
+SliverCase random_sliver_case(bool wide, Random& random) {
+  const std::array slivers{random.uniform(0, 1e-3), random.uniform(0, 1e-3)};
+  const TestRobot robot = with_limits(windings_robot(), [&](int number, Joint& joint) {
+    if (number == 0) joint.lower = -kPi, joint.upper = kPi + slivers[0];
+    if (number == 4 && wide) joint.lower = -1000, joint.upper = 3000;
+    if (number == 6) joint.lower = -kTwoPi, joint.upper = kTwoPi + slivers[1];
+  });
+  SliverCase drawn;
+  Problem& problem = drawn.problem;
+  problem = random_problem(robot, random);
+  const Chain chain = arm_of(robot).chain;
+  Config q = random_config(chain, random);
+  if (random.coin(0.8)) q[4] = random.uniform(-3, 3);
+  for (const int j : {0, 6}) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    const double sliver = slivers[j == 0 ? 0 : 1];
+    if (random.coin(0.3))
+      q[j] = limit.lower + random.uniform(0, sliver);
+    else if (random.coin(0.6))
+      q[j] = limit.upper - random.uniform(0, sliver), ++drawn.in_sliver;
+  }
+  Config end = q;
+  for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
+  problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(end))};
+  problem.limits.step_error = std::nullopt;
+  problem.limits.joint_margin = 0;
+  problem.limits.tool_path_error = 0.1;
+  problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 1));
+  problem.start = q;
+  return drawn;
+}
+
+/// Compares all planners with brute force, and expects a warning where a range is too wide.
+void check_slivers(const Problem& problem, const Answer& truth, bool wide,
+                   const std::string& what) {
+  std::vector<PlanResult> results;
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options;
+    options.planner = planner;
+    options.threads = 2;
+    results.push_back(plan(problem, options));
+    ASSERT_EQ(results.back().lattice.grid->windings, 2) << what;
+    expect_same(results[0], results.back(), what + " planner " + results.back().planner);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
+  const auto of_limits = [](const std::string& warning) {
+    return warning.find("turns apart") != std::string::npos;
+  };
+  ASSERT_EQ(std::none_of(results[0].warnings.begin(), results[0].warnings.end(), of_limits), !wide)
+      << what;
+  if (!truth.solved) return;
+  ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
+  ASSERT_EQ(results[0].trajectory[0].q, *problem.start) << what;
+  const CheckResult check = check_trajectory(problem, results[0].trajectory);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+}
+
 /// Ranges of a turn and a sliver, two turns and a sliver, and over 64 turns; a start at the limits,
 /// in the slivers and beside them.
 TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
@@ -327,58 +429,14 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const std::array slivers{random.uniform(0, 1e-3), random.uniform(0, 1e-3)};
-    const TestRobot robot = with_limits(windings_robot(), [&](int number, Joint& joint) {
-      if (number == 0) joint.lower = -kPi, joint.upper = kPi + slivers[0];
-      if (number == 4 && trial % 3 == 0) joint.lower = -1000, joint.upper = 3000;
-      if (number == 6) joint.lower = -kTwoPi, joint.upper = kTwoPi + slivers[1];
-    });
-    Problem problem = random_problem(robot, random);
-    const Chain chain = arm_of(robot).chain;
-    Config q = random_config(chain, random);
-    if (random.coin(0.8)) q[4] = random.uniform(-3, 3);
-    for (const int j : {0, 6}) {
-      const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-      const double sliver = slivers[j == 0 ? 0 : 1];
-      if (random.coin(0.3))
-        q[j] = limit.lower + random.uniform(0, sliver);
-      else if (random.coin(0.6))
-        q[j] = limit.upper - random.uniform(0, sliver), ++in_sliver;
-    }
-    Config end = q;
-    for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
-    problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(end))};
-    problem.limits.step_error = std::nullopt;
-    problem.limits.joint_margin = 0;
-    problem.limits.tool_path_error = 0.1;
-    problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 1));
-    problem.start = q;
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    const Answer truth = truth_of(problem);
+    const bool wide = trial % 3 == 0;
+    const SliverCase drawn = random_sliver_case(wide, random);
+    in_sliver += drawn.in_sliver;
+    const Answer truth = truth_of(drawn.problem);
     (truth.solved ? solved : infeasible) += 1;
-    std::vector<PlanResult> results;
-    for (const PlannerKind planner : kPlanners) {
-      PlanOptions options;
-      options.planner = planner;
-      options.threads = 2;
-      results.push_back(plan(problem, options));
-      ASSERT_EQ(results.back().lattice.grid->windings, 2) << what;
-      expect_same(results[0], results.back(), what + " planner " + results.back().planner);
-      if (HasFatalFailure()) return;
-    }
-    ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
-    const auto of_limits = [](const std::string& warning) {
-      return warning.find("turns apart") != std::string::npos;
-    };
-    ASSERT_EQ(std::none_of(results[0].warnings.begin(), results[0].warnings.end(), of_limits),
-              trial % 3 != 0)
-        << what;
-    if (!truth.solved) continue;
-    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
-    ASSERT_EQ(results[0].trajectory[0].q, q) << what;
-    const CheckResult check = check_trajectory(problem, results[0].trajectory);
-    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    check_slivers(drawn.problem, truth, wide,
+                  "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
+    if (HasFatalFailure()) return;
   }
   std::printf("%d problems: %d solved, %d infeasible; %d joints began in a sliver\n", count, solved,
               infeasible, in_sliver);
