@@ -2,8 +2,8 @@
 """Finds lines of sources that are wider than 100 columns, and functions longer than 60 lines.
 Sources are files with an extension or a name of SOURCES, and files that begin with `#!`.
 
-layout_test.py SOURCE [--functions]      prints file:line and what was found; exit code 1 where a
-line is too wide, with --functions also where a function of C++ is too long
+layout_test.py SOURCE     prints file:line and what was found; exit code 1 where a line is too wide
+or a function of C++ is too long
 """
 import pathlib
 import re
@@ -79,7 +79,6 @@ def is_source(name, content):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    judge_functions = "--functions" in sys.argv
     files = subprocess.run(
         ["git", "ls-files", "-z"], cwd=root, capture_output=True, text=True, check=True
     ).stdout.split("\0")
@@ -102,12 +101,11 @@ def main():
             bodies += 1
             if lines > MOST_LINES and not name.startswith(LISTS):
                 long += 1
-                if judge_functions:
-                    print(f"{name}:{number}: a function of {lines} lines; at most {MOST_LINES}")
+                print(f"{name}:{number}: a function of {lines} lines; at most {MOST_LINES}")
     print(f"{faults} lines too wide, {long} of {bodies} functions too long")
     if bodies < 1000 or scripts < 10:
         sys.exit("too few were read")
-    sys.exit(faults > 0 or (judge_functions and long > 0))
+    sys.exit(faults > 0 or long > 0)
 
 
 main()

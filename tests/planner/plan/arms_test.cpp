@@ -68,92 +68,117 @@ Problem random_task(const TestRobot& robot, Random& random) {
   return problem;
 }
 
+/// Counts the random problems by what they have.
+struct ArmsCounts {
+  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0,
+      sampled = 0, chosen = 0;
+};
+
+/// Plans the problem with every planner, expects the same answer of each and the verdict of brute
+/// force, and appends the results in the order of kPlanners.
+void plan_with_all(const PreparedRobot& robot, const Problem& problem, const Answer& truth,
+                   const std::string& what, std::vector<PlanResult>& results) {
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options;
+    options.planner = planner;
+    options.threads = 2;
+    options.evidence = Evidence::all();
+    results.push_back(plan(robot, problem, options));
+    const PlanResult& result = results.back();
+    ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+    ASSERT_TRUE(result.lattice.arcs && !result.lattice.grid) << what;
+    ASSERT_EQ(result.lattice.complete, robot.arm_class().complete()) << what;
+    ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
+    ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
+    for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+      ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q)
+          << what << ' ' << result.planner << " row " << i;
+    ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer)
+        << what << ' ' << result.planner;
+    ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause) << what << ' ' << result.planner;
+    ASSERT_EQ(result.partial.size(), results[0].partial.size()) << what << ' ' << result.planner;
+  }
+}
+
+/// Expects the path of least cost that brute force finds on the lattice, and that it passes the
+/// check.
+void expect_true_path(const PreparedRobot& robot, const Problem& problem, const Lattice& lattice,
+                      const Answer& truth, const PlanResult& result, const std::string& what) {
+  const Chain& chain = robot.arm().chain;
+  ASSERT_EQ(result.lattice.cost, truth.cost) << what;
+  for (std::size_t i = 0; i < truth.slots.size(); ++i) {
+    const Config off = result.trajectory[i].q - *lattice.node(static_cast<int>(i), truth.slots[i]);
+    for (std::size_t j = 0; j < kDof; ++j)
+      if (!chain.limit[j].continuous) {
+        ASSERT_LT(std::abs(off[static_cast<Eigen::Index>(j)]), 1e-9) << what << " row " << i;
+      }
+  }
+  const CheckResult check = check_trajectory(robot, problem, result.trajectory);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
+}
+
+/// Compares the answers of all planners to one problem with each other and with brute force.
+void check_agreement(const Problem& problem, const std::string& what, ArmsCounts& counts) {
+  const PreparedRobot robot(problem);
+  const bool complete = robot.arm_class().complete();
+  ASSERT_EQ(robot.arm_class().kind, complete ? ArmKind::kArcs : ArmKind::kSampled) << what;
+  counts.sampled += !complete;
+  const Chain& chain = robot.arm().chain;
+  const ToolPath path = problem_path(problem, chain);
+  const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
+  const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
+  const EdgeRule rule = robot.world().edge_rule(robot.radii());
+  const Answer truth =
+      brute_force(*turns_apart, robot.world(), rule, [](int, int, int) { return true; });
+
+  std::vector<PlanResult> results;
+  plan_with_all(robot, problem, truth, what, results);
+  if (::testing::Test::HasFatalFailure()) return;
+  counts.started += problem.start.has_value();
+  counts.continuous += problem.limits.edges == EdgeMode::kContinuous;
+  counts.obstacles += !problem.scene.empty();
+  if (!truth.solved) {
+    ++counts.infeasible;
+    ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+    ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
+    return;
+  }
+  ++counts.solved;
+  counts.chosen += truth.chosen;
+  counts.wound += results[0].lattice.nodes != circles.nodes();
+  expect_true_path(robot, problem, *turns_apart, truth, results[0], what);
+}
+
 /// Every planner finds what the definition says: the least cost over nodes whose joints' values are
 /// all told apart.
 TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Arms");
   const auto robots = arms();
-  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0,
-      sampled = 0, chosen = 0;
+  ArmsCounts counts;
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Problem problem =
         random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
-                             std::to_string(trial) + " robot " + problem.source;
-    const PreparedRobot robot(problem);
-    const bool complete = robot.arm_class().complete();
-    ASSERT_EQ(robot.arm_class().kind, complete ? ArmKind::kArcs : ArmKind::kSampled) << what;
-    sampled += !complete;
-    const Chain& chain = robot.arm().chain;
-    const ToolPath path = problem_path(problem, chain);
-    const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
-    const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
-    const Lattice& lattice = *turns_apart;
-    const EdgeRule rule = robot.world().edge_rule(robot.radii());
-    const Answer truth =
-        brute_force(lattice, robot.world(), rule, [](int, int, int) { return true; });
-
-    std::vector<PlanResult> results;
-    for (const PlannerKind planner : kPlanners) {
-      PlanOptions options;
-      options.planner = planner;
-      options.threads = 2;
-      options.evidence = Evidence::all();
-      results.push_back(plan(robot, problem, options));
-      const PlanResult& result = results.back();
-      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved)
-          << what << ' ' << result.planner;
-      ASSERT_TRUE(result.lattice.arcs && !result.lattice.grid) << what;
-      ASSERT_EQ(result.lattice.complete, complete) << what;
-      ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
-      ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
-      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q)
-            << what << ' ' << result.planner << " row " << i;
-      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer)
-          << what << ' ' << result.planner;
-      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause)
-          << what << ' ' << result.planner;
-      ASSERT_EQ(result.partial.size(), results[0].partial.size()) << what << ' ' << result.planner;
-    }
-    started += problem.start.has_value();
-    continuous += problem.limits.edges == EdgeMode::kContinuous;
-    obstacles += !problem.scene.empty();
-    if (!truth.solved) {
-      ++infeasible;
-      ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
-      ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
-      continue;
-    }
-    ++solved;
-    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
-    for (std::size_t i = 0; i < truth.slots.size(); ++i) {
-      const Config off =
-          results[0].trajectory[i].q - *lattice.node(static_cast<int>(i), truth.slots[i]);
-      for (std::size_t j = 0; j < kDof; ++j)
-        if (!chain.limit[j].continuous) {
-          ASSERT_LT(std::abs(off[static_cast<Eigen::Index>(j)]), 1e-9) << what << " row " << i;
-        }
-    }
-    chosen += truth.chosen;
-    const CheckResult check = check_trajectory(robot, problem, results[0].trajectory);
-    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
-    ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
-    wound += results[0].lattice.nodes != circles.nodes();
+    check_agreement(problem,
+                    "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                        " robot " + problem.source,
+                    counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d solved (%d with windings, %d whose start was chosen among equal costs), %d "
       "infeasible, %d with a start, %d "
       "continuous, %d with obstacles\n",
-      count, solved, wound, chosen, infeasible, started, continuous, obstacles);
-  EXPECT_GE(solved, at_least(count / 4));
-  EXPECT_GE(infeasible, at_least(count / 20));
-  EXPECT_GE(started, at_least(count / 10));
-  EXPECT_GE(continuous, at_least(count / 5));
-  EXPECT_GE(sampled, at_least(count / 8));
-  EXPECT_GE(chosen, at_least(count / 40));
+      count, counts.solved, counts.wound, counts.chosen, counts.infeasible, counts.started,
+      counts.continuous, counts.obstacles);
+  EXPECT_GE(counts.solved, at_least(count / 4));
+  EXPECT_GE(counts.infeasible, at_least(count / 20));
+  EXPECT_GE(counts.started, at_least(count / 10));
+  EXPECT_GE(counts.continuous, at_least(count / 5));
+  EXPECT_GE(counts.sampled, at_least(count / 8));
+  EXPECT_GE(counts.chosen, at_least(count / 40));
 }
 
 /// A path that turns the last joint on from near its limit: the first answer on circles leaves the
@@ -269,125 +294,175 @@ double plain_roll_cost(const Problem& problem, const std::vector<TrajectoryRow>&
   return sum;
 }
 
+/// Counts the random problems, and on how many of them the cost of the roll has an effect.
+struct RollCounts {
+  int solved = 0, infeasible = 0, straighter = 0, dearer = 0, hooked = 0, windows = 0;
+};
+
+/// A cost of the caller's own, a wave over the third joint.
+struct Wave final : StateCost {
+  [[nodiscard]] std::string name() const override { return "wave"; }
+  void costs(std::span<const Config> states, std::span<double> costs) override {
+    for (std::size_t k = 0; k < states.size(); ++k)
+      costs[k] = 0.2 + 0.2 * std::sin(5 * states[k][2]);
+  }
+};
+
+/// A random problem with the weight that `cost.roll` is to have in it, and the caller's own cost.
+struct RollCostCase {
+  Problem problem;
+  double weight = 0;
+  Hooks hooks;
+};
+
+/// Draws a problem of the arm of six joints whose tool may turn within `roll`.
+RollCostCase random_roll_cost_case(const char* name, const Roll& roll, Random& random) {
+  RollCostCase drawn;
+  Problem& problem = drawn.problem;
+  problem = motion_problem(arm_of_data(name), random, roll);
+  problem.smooth.reset();
+  if (problem.roll->lower > 0) problem.start.reset();  // it stands unturned
+  problem.waypoints.resize(2 + static_cast<std::size_t>(random.below(2)));
+  problem.resolution = {
+      .ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6)};
+  problem.limits.joint_step = 1;
+  problem.limits.tool_path_error = 0.05;
+  problem.limits.roll_slope = random.uniform(10, 30);
+  problem.limits.edges = random.coin() ? EdgeMode::kContinuous : EdgeMode::kNodes;
+  problem.limits.edge_tolerance = 0.005;
+  problem.cost.weights[6] = random.coin(0.3) ? 0.5 : 0;
+  if (!problem.roll->circle() && random.coin())
+    draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
+  drawn.weight = std::array{0.3, 3.0, 30.0, 1e5}[static_cast<std::size_t>(random.below(4))];
+  if (random.coin(0.3)) drawn.hooks.cost = std::make_shared<Wave>();
+  return drawn;
+}
+
+/// Finds the answer by brute force, where the roll turns no faster than `roll_slope` allows.
+Answer truth_of(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+                const Lattice& lattice, const Hooks& hooks) {
+  const auto turns_slowly = [&](int layer, int a, int b) {
+    const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
+    return std::abs(std::remainder((*lattice.node(layer + 1, b))[6] - (*lattice.node(layer, a))[6],
+                                   kTwoPi)) <= most_turn;
+  };
+  return brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), turns_slowly,
+                     hooks);
+}
+
+/// Plans the problem with every planner, expects the answer of brute force of each, and sets
+/// `first` to the first planner's result where there is a path.
+void plan_as_brute_force(const PreparedRobot& robot, const Problem& problem, const Hooks& hooks,
+                         const Answer& truth, const std::string& what,
+                         std::optional<PlanResult>& first) {
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options;
+    options.planner = planner;
+    options.threads = 2;
+    options.hooks = hooks;
+    const PlanResult result = plan(robot, problem, options);
+    ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+    if (!truth.solved) continue;
+    ASSERT_EQ(result.cost, truth.cost) << what << ' ' << result.planner;
+    if (!first) first = result;
+    ASSERT_EQ(result.trajectory.size(), first->trajectory.size()) << what;
+    for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+      ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q)
+          << what << ' ' << result.planner << " row " << i;
+  }
+}
+
+/// Expects the path to cost its moves and its roll, and to be turned no more than the `free` one,
+/// which is planned with a weight of `least` on the roll. `unit` is the lattice's unit of cost.
+void expect_cost_of_roll(const PreparedRobot& robot, const Problem& problem,
+                         const PlanResult& found, const PlanResult& free, double least, double unit,
+                         bool hooked, const std::string& what, RollCounts& counts) {
+  const CheckResult check = check_trajectory(robot, problem, found.trajectory);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  Problem unturned = problem;
+  unturned.cost.roll = 0;
+  const double moves = check_trajectory(robot, unturned, found.trajectory).cost;
+  const double rounding =
+      1e-9 * (1 + check.cost) + 2e-12 * unit * static_cast<double>(found.trajectory.size());
+  ASSERT_NEAR(check.cost, moves + plain_roll_cost(problem, found.trajectory),
+              1e-9 * (1 + check.cost))
+      << what;
+  if (hooked) {
+    ++counts.hooked;
+    return;
+  }
+  ASSERT_NEAR(check.cost, found.cost, rounding) << what;
+  // With hardly any cost the moves are no dearer, and the tool is turned no less.
+  const double here = plain_roll_cost(problem, found.trajectory),
+               there = plain_roll_cost(problem, free.trajectory);
+  ASSERT_LE(free.cost, moves + least * here / problem.cost.roll + rounding) << what;
+  ASSERT_LE(here, there + 1e-9 * (1 + there)) << what;
+  counts.straighter += here < 0.9 * there;
+  counts.dearer += moves > free.cost + 1e-6;
+}
+
+/// Compares all planners with brute force on one problem and checks the cost of the path's roll.
+void check_roll_cost(const RollCostCase& drawn, const std::string& what, RollCounts& counts) {
+  Problem problem = drawn.problem;
+  const PreparedRobot robot(problem);
+  constexpr double kLeast = 1e-6;  // with some cost the nodes are the same
+  problem.cost.roll = kLeast;
+  const PlanResult free = plan(robot, problem);
+  problem.cost.roll = drawn.weight;
+  const Chain& chain = robot.arm().chain;
+  const ToolPath path = problem_path(problem, chain);
+  const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
+  const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
+  const Answer truth = truth_of(robot, problem, path, *turns_apart, drawn.hooks);
+  std::optional<PlanResult> first;
+  plan_as_brute_force(robot, problem, drawn.hooks, truth, what, first);
+  if (::testing::Test::HasFatalFailure()) return;
+  if (!truth.solved) {
+    ++counts.infeasible;
+    return;
+  }
+  ++counts.solved;
+  if (problem.waypoints[0].roll) {
+    ++counts.windows;
+    for (int i = 0; i < path.size(); ++i)
+      ASSERT_LE(
+          outside_windows(problem, path, i, first->trajectory[static_cast<std::size_t>(i)].q[6]),
+          1e-8)
+          << what;
+  }
+  ASSERT_EQ(free.status, PlanStatus::kSolved) << what;
+  expect_cost_of_roll(robot, problem, *first, free, kLeast, turns_apart->cost_unit(),
+                      drawn.hooks.cost != nullptr, what, counts);
+}
+
 /// `cost.roll` is part of what all planners and brute force find least.
 TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
   const std::uint64_t base = seed("Arms.RollCost");
   const std::vector<std::pair<const char*, Roll>> robots{
       {"kr6_like", Roll{}}, {"ur5e_like", Roll{-0.8, 0.8}}, {"kr6_like", Roll{2.6, 4}}};
-  int solved = 0, infeasible = 0, straighter = 0, dearer = 0, hooked = 0, windows = 0;
+  RollCounts counts;
   const int count = trials(54);
-  struct Wave final : StateCost {
-    [[nodiscard]] std::string name() const override { return "wave"; }
-    void costs(std::span<const Config> states, std::span<double> costs) override {
-      for (std::size_t k = 0; k < states.size(); ++k)
-        costs[k] = 0.2 + 0.2 * std::sin(5 * states[k][2]);
-    }
-  };
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const auto& [name, roll] = robots[static_cast<std::size_t>(trial) % robots.size()];
-    Problem problem = motion_problem(arm_of_data(name), random, roll);
-    problem.smooth.reset();
-    if (problem.roll->lower > 0) problem.start.reset();  // it stands unturned
-    problem.waypoints.resize(2 + static_cast<std::size_t>(random.below(2)));
-    problem.resolution = {
-        .ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6)};
-    problem.limits.joint_step = 1;
-    problem.limits.tool_path_error = 0.05;
-    problem.limits.roll_slope = random.uniform(10, 30);
-    problem.limits.edges = random.coin() ? EdgeMode::kContinuous : EdgeMode::kNodes;
-    problem.limits.edge_tolerance = 0.005;
-    problem.cost.weights[6] = random.coin(0.3) ? 0.5 : 0;
-    if (!problem.roll->circle() && random.coin())
-      draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
-    const std::string what =
-        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
-    const PreparedRobot robot(problem);
-    constexpr double kLeast = 1e-6;  // with some cost the nodes are the same
-    problem.cost.roll = kLeast;
-    const PlanResult free = plan(robot, problem);
-    problem.cost.roll = std::array{0.3, 3.0, 30.0, 1e5}[static_cast<std::size_t>(random.below(4))];
-    Hooks hooks;
-    if (random.coin(0.3)) hooks.cost = std::make_shared<Wave>();
-    const Chain& chain = robot.arm().chain;
-    const ToolPath path = problem_path(problem, chain);
-    const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
-    const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
-    const Lattice& lattice = *turns_apart;
-    const auto turns_slowly = [&](int layer, int a, int b) {
-      const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
-      return std::abs(std::remainder(
-                 (*lattice.node(layer + 1, b))[6] - (*lattice.node(layer, a))[6], kTwoPi)) <=
-             most_turn;
-    };
-    const Answer truth = brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()),
-                                     turns_slowly, hooks);
-    std::optional<PlanResult> first;
-    for (const PlannerKind planner : kPlanners) {
-      PlanOptions options;
-      options.planner = planner;
-      options.threads = 2;
-      options.hooks = hooks;
-      const PlanResult result = plan(robot, problem, options);
-      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved)
-          << what << ' ' << result.planner;
-      if (!truth.solved) continue;
-      ASSERT_EQ(result.cost, truth.cost) << what << ' ' << result.planner;
-      if (!first) first = result;
-      ASSERT_EQ(result.trajectory.size(), first->trajectory.size()) << what;
-      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
-        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q)
-            << what << ' ' << result.planner << " row " << i;
-    }
-    if (!truth.solved) {
-      ++infeasible;
-      continue;
-    }
-    ++solved;
-    if (problem.waypoints[0].roll) {
-      ++windows;
-      for (int i = 0; i < path.size(); ++i)
-        ASSERT_LE(
-            outside_windows(problem, path, i, first->trajectory[static_cast<std::size_t>(i)].q[6]),
-            1e-8)
-            << what;
-    }
-    ASSERT_EQ(free.status, PlanStatus::kSolved) << what;
-    const CheckResult check = check_trajectory(robot, problem, first->trajectory);
-    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
-    Problem unturned = problem;
-    unturned.cost.roll = 0;
-    const double moves = check_trajectory(robot, unturned, first->trajectory).cost;
-    const double rounding =
-        1e-9 * (1 + check.cost) +
-        2e-12 * lattice.cost_unit() * static_cast<double>(first->trajectory.size());
-    ASSERT_NEAR(check.cost, moves + plain_roll_cost(problem, first->trajectory),
-                1e-9 * (1 + check.cost))
-        << what;
-    if (hooks.cost) {
-      ++hooked;
-      continue;
-    }
-    ASSERT_NEAR(check.cost, first->cost, rounding) << what;
-    // With hardly any cost the moves are no dearer, and the tool is turned no less.
-    const double here = plain_roll_cost(problem, first->trajectory),
-                 there = plain_roll_cost(problem, free.trajectory);
-    ASSERT_LE(free.cost, moves + kLeast * here / problem.cost.roll + rounding) << what;
-    ASSERT_LE(here, there + 1e-9 * (1 + there)) << what;
-    straighter += here < 0.9 * there;
-    dearer += moves > free.cost + 1e-6;
+    check_roll_cost(
+        random_roll_cost_case(name, roll, random),
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name,
+        counts);
+    if (HasFatalFailure()) return;
   }
   std::printf(
       "%d problems: %d solved, %d of them with a cost of the caller's own, %d with windows of "
       "roll, %d infeasible; %d straighter, "
       "%d "
       "of dearer moves\n",
-      count, solved, hooked, windows, infeasible, straighter, dearer);
-  EXPECT_GE(windows, at_least(count / 18));
-  EXPECT_GE(solved, at_least(count / 3));
-  EXPECT_GE(hooked, at_least(count / 12));
-  EXPECT_GE(straighter, at_least(count / 6));
-  EXPECT_GE(dearer, at_least(count / 12));
+      count, counts.solved, counts.hooked, counts.windows, counts.infeasible, counts.straighter,
+      counts.dearer);
+  EXPECT_GE(counts.windows, at_least(count / 18));
+  EXPECT_GE(counts.solved, at_least(count / 3));
+  EXPECT_GE(counts.hooked, at_least(count / 12));
+  EXPECT_GE(counts.straighter, at_least(count / 6));
+  EXPECT_GE(counts.dearer, at_least(count / 12));
 }
 
 TEST(Arms, AStartThatDoesNotFitIsBadInput) {

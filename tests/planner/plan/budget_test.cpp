@@ -6,7 +6,9 @@
 #include <ctime>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "cost_to_go/grid/chord_lower_bound.hpp"
 #include "diagnosis/diagnosis.hpp"
@@ -60,87 +62,108 @@ TEST(Budget, AFlagComesBeforeTheDeadline) {
   EXPECT_FALSE(Budget(1e-9).cancelled());
 }
 
-TEST(Budget, NoStageGoesOnWhenItIsSpent) {
-  const Problem problem = infeasible();
-  const Budget spent(1e-12);
-  const PreparedRobot robot(problem);
-  const auto waypoints = waypoints_in_base(problem);
-  const ToolPath path(waypoints, problem.resolution, problem.source);
-  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const World world(robot.world(), problem.scene);
-  const EdgeRule rule = world.edge_rule(robot.radii());
-  Executor executor(2);
-  const auto validity = [&] {
-    return CollisionValidity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn,
-                             executor, 4, spent);
-  };
-  const auto long_path = [&] {
-    Resolution fine = problem.resolution;
-    fine.ds = 1e-5;
-    return ToolPath(waypoints, fine, problem.source, spent);
-  };
+/// A problem without a path, what its stages need, and a budget that is spent.
+struct SpentPlan {
+  using Stages = std::vector<std::pair<const char*, std::function<void()>>>;
+
+  Problem problem = infeasible();
+  Budget spent{1e-12};
+  PreparedRobot robot{problem};
+  std::vector<Waypoint> waypoints = waypoints_in_base(problem);
+  ToolPath path{waypoints, problem.resolution, problem.source};
+  SrsLattice lattice{robot.arm().chain, robot.srs(), path, problem};
+  World world{robot.world(), problem.scene};
+  EdgeRule rule = world.edge_rule(robot.radii());
+  Executor executor{2};
   Config q = Config::Zero(), away = Config::Constant(0.5);
-  const auto togo_of = make_cost_to_go(lattice, Pruning::kByBound, spent);
-  CostToGo& cost_to_go = *togo_of;
+  std::unique_ptr<CostToGo> cost_to_go = make_cost_to_go(lattice, Pruning::kByBound, spent);
   SearchCounters counters;
   EagerOutcome eager;
   Diagnosis diagnosis;
-  const std::pair<const char*, std::function<void()>> stages[] = {
-      {"robot", [&] { PreparedRobot(problem, spent); }},
-      {"tool path", [&] { long_path(); }},
-      {"lattice", [&] { SrsLattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
-      {"scene", [&] { World(robot.world(), problem.scene, spent); }},
-      {"chord bound", [&] { ChordLowerBound(lattice, spent); }},
-      {"sweep", [&] { cost_to_go.sweep(lattice.layers() - 1); }},
-      {"search",
-       [&] {
-         auto asked = validity();
-         static_cast<void>(path_first(cost_to_go, asked, {}, counters));
-       }},
-      {"furthest layer",
-       [&] {
-         auto asked = validity();
-         static_cast<void>(deepest_valid_layer(cost_to_go, asked, {}, counters));
-       }},
-      {"nodes",
-       [&] {
-         auto asked = validity();
-         const NodeQuestion question{0, 0, q};
-         NodeAnswer answer;
-         asked.nodes({&question, 1}, {&answer, 1});
-       }},
-      {"edges",
-       [&] {
-         auto asked = validity();
-         const EdgeQuestion question{0, 0, 1, q, q};
-         std::uint8_t answer = 0;
-         asked.edges({&question, 1}, {&answer, 1});
-       }},
-      {"one edge",
-       [&] {
-         World::Query query(world, DistanceProofs::kOn);
-         static_cast<void>(edge_blocked(query, rule, q, away, spent));
-       }},
-      {"eager",
-       [&] {
-         auto asked = validity();
-         eager_search(lattice, asked, spent, eager);
-       }},
-      {"eager_dp",
-       [&] {
-         auto asked = validity();
-         eager_dp(lattice, asked, spent, eager);
-       }},
-      {"diagnosis",
-       [&] {
-         diagnose(lattice, world, rule, {0, 0, 0, 0}, true, spent, diagnosis);
-       }},
-  };
-  for (const auto& [name, stage] : stages) EXPECT_THROW(stage(), Stopped) << name;
-  EXPECT_EQ(cost_to_go.edges(), 0);
-  EXPECT_EQ(eager.ik_nodes, 0);
-  EXPECT_FALSE(diagnosis.complete);
-  EXPECT_EQ(diagnosis.reached_layer, 3);
+
+  CollisionValidity validity() {
+    return {lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, 4, spent};
+  }
+
+  /// Returns the stages that make what a search needs.
+  Stages of_preparation() {
+    return {
+        {"robot", [this] { PreparedRobot(problem, spent); }},
+        {"tool path",
+         [this] {
+           Resolution fine = problem.resolution;
+           fine.ds = 1e-5;
+           ToolPath(waypoints, fine, problem.source, spent);
+         }},
+        {"lattice", [this] { SrsLattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
+        {"scene", [this] { World(robot.world(), problem.scene, spent); }},
+        {"chord bound", [this] { ChordLowerBound(lattice, spent); }},
+        {"sweep", [this] { cost_to_go->sweep(lattice.layers() - 1); }},
+    };
+  }
+  /// Returns the stages that ask about nodes and edges.
+  Stages of_questions() {
+    return {
+        {"nodes",
+         [this] {
+           auto asked = validity();
+           const NodeQuestion question{0, 0, q};
+           NodeAnswer answer;
+           asked.nodes({&question, 1}, {&answer, 1});
+         }},
+        {"edges",
+         [this] {
+           auto asked = validity();
+           const EdgeQuestion question{0, 0, 1, q, q};
+           std::uint8_t answer = 0;
+           asked.edges({&question, 1}, {&answer, 1});
+         }},
+        {"one edge",
+         [this] {
+           World::Query query(world, DistanceProofs::kOn);
+           static_cast<void>(edge_blocked(query, rule, q, away, spent));
+         }},
+    };
+  }
+  /// Returns the stages that search, or say why there is no path.
+  Stages of_searches() {
+    return {
+        {"search",
+         [this] {
+           auto asked = validity();
+           static_cast<void>(path_first(*cost_to_go, asked, {}, counters));
+         }},
+        {"furthest layer",
+         [this] {
+           auto asked = validity();
+           static_cast<void>(deepest_valid_layer(*cost_to_go, asked, {}, counters));
+         }},
+        {"eager",
+         [this] {
+           auto asked = validity();
+           eager_search(lattice, asked, spent, eager);
+         }},
+        {"eager_dp",
+         [this] {
+           auto asked = validity();
+           eager_dp(lattice, asked, spent, eager);
+         }},
+        {"diagnosis",
+         [this] {
+           diagnose(lattice, world, rule, {0, 0, 0, 0}, true, spent, diagnosis);
+         }},
+    };
+  }
+};
+
+TEST(Budget, NoStageGoesOnWhenItIsSpent) {
+  SpentPlan plan;
+  for (const auto& stages : {plan.of_preparation(), plan.of_questions(), plan.of_searches()})
+    for (const auto& [name, stage] : stages) EXPECT_THROW(stage(), Stopped) << name;
+  EXPECT_EQ(plan.cost_to_go->edges(), 0);
+  EXPECT_EQ(plan.eager.ik_nodes, 0);
+  EXPECT_FALSE(plan.diagnosis.complete);
+  EXPECT_EQ(plan.diagnosis.reached_layer, 3);
 }
 
 /// Cancelled at the beginning of one stage after the other, which progress tells.

@@ -78,82 +78,106 @@ std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chai
   return layers;
 }
 
+/// A random problem of an arm of the robot, whose path begins at the tool's pose at `start`.
+struct ListedCase {
+  Problem problem;
+  Config start;
+};
+
+ListedCase random_listed_case(const TestRobot& robot, const Chain& chain, Random& random) {
+  Problem problem = random_problem(robot, random);
+  problem.limits.step_error.reset();
+  problem.limits.joint_step = random.uniform(0.5, 1.5);
+  if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
+  problem.start.reset();
+  const Config start = random_config(chain, random);
+  problem.waypoints[0] = waypoint_of(chain.tool(start));
+  Config end = start;
+  for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
+  problem.waypoints = {waypoint_of(chain.tool(start)), waypoint_of(chain.tool(end))};
+  problem.resolution = {.ds = 0.04, .dphi = 0.3, .dalpha = 0.3};
+  return {std::move(problem), start};
+}
+
+/// Searches a lattice with every planner and expects what brute force found.
+struct EverySearch {
+  const ExplicitLattice& lattice;
+  const World& world;
+  EdgeRule rule;
+  EdgeMode edges;
+  Answer truth;
+  std::string what;
+  Executor executor{1};
+  Budget never;
+  int rounds = 0, removed = 0;
+
+  void expect_truth(const SlotPath& slots, double cost, int deepest, const char* planner) const {
+    ASSERT_EQ(!slots.empty(), truth.solved) << what << ' ' << planner;
+    ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
+    if (truth.solved) {
+      ASSERT_EQ(cost, truth.cost) << what << ' ' << planner;
+    } else {
+      ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
+    }
+  }
+  /// `search` is eager_search() or eager_dp().
+  template <class Search>
+  void eagerly(const Search& search, const char* planner) {
+    CollisionValidity validity(lattice, world, rule, edges, DistanceProofs::kOff, executor, 0,
+                               never);
+    EagerOutcome found;
+    search(lattice, validity, never, found);
+    expect_truth(found.path, found.cost, found.deepest.value_or(-1), planner);
+  }
+  void lazily(int batch) {
+    CollisionValidity validity(lattice, world, rule, edges, DistanceProofs::kOn, executor,
+                               batch == 1 ? 1 : 4, never);
+    const auto cost_to_go = make_cost_to_go(lattice);
+    cost_to_go->sweep(lattice.layers() - 1);
+    SearchCounters counters;
+    const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
+    rounds += static_cast<int>(counters.iterations);
+    int deepest = -1;
+    if (found.path.empty())
+      deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
+    expect_truth(found.path, found.cost, deepest, "lazy");
+    for (const Verdict verdict : cost_to_go->verdicts().nodes())
+      removed += verdict == Verdict::kRemoved;
+  }
+};
+
 TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
   const std::uint64_t base = seed("ExplicitLattice.Agreement");
   const TestRobot robot = offset_robot();
   const ArmModel arm = arm_of(robot);
-  int solved = 0, infeasible = 0, rounds = 0, shared = 0;
+  int solved = 0, infeasible = 0, rounds = 0, removed = 0;
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robot, random);
-    problem.limits.step_error.reset();
-    problem.limits.joint_step = random.uniform(0.5, 1.5);
-    if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
-    problem.start.reset();
-    const Config start = random_config(arm.chain, random);
-    problem.waypoints[0] = waypoint_of(arm.chain.tool(start));
-    Config end = start;
-    for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
-    problem.waypoints = {waypoint_of(arm.chain.tool(start)), waypoint_of(arm.chain.tool(end))};
-    problem.resolution = {.ds = 0.04, .dphi = 0.3, .dalpha = 0.3};
+    const auto [problem, start] = random_listed_case(robot, arm.chain, random);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
     const ExplicitLattice lattice(arm.chain, path, problem,
                                   random_layers(arm.chain, path, start, random));
     const World world(*robot.model, arm, problem);
     const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
-    const Answer truth = brute_force(lattice, world, rule, [](int, int, int) { return true; });
-    (truth.solved ? solved : infeasible) += 1;
-
-    Executor executor(1);
-    const Budget never;
-    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest,
-                                  const char* planner) {
-      ASSERT_EQ(!slots.empty(), truth.solved) << what << ' ' << planner;
-      ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
-      if (truth.solved) {
-        ASSERT_EQ(cost, truth.cost) << what << ' ' << planner;
-      } else {
-        ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
-      }
-    };
-    {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff,
-                                 executor, 0, never);
-      EagerOutcome found;
-      eager_search(lattice, validity, never, found);
-      expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
-    }
-    {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff,
-                                 executor, 0, never);
-      EagerOutcome found;
-      eager_dp(lattice, validity, never, found);
-      expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager_dp");
-    }
-    for (const int batch : {1, 32}) {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn,
-                                 executor, batch == 1 ? 1 : 4, never);
-      const auto cost_to_go = make_cost_to_go(lattice);
-      cost_to_go->sweep(lattice.layers() - 1);
-      SearchCounters counters;
-      const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
-      rounds += static_cast<int>(counters.iterations);
-      int deepest = -1;
-      if (found.path.empty())
-        deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
-      expect_truth(found.path, found.cost, deepest, "lazy");
-      int removed = 0;
-      for (const Verdict verdict : cost_to_go->verdicts().nodes())
-        removed += verdict == Verdict::kRemoved;
-      shared += removed;
-    }
+    EverySearch searches{lattice,
+                         world,
+                         rule,
+                         problem.limits.edges,
+                         brute_force(lattice, world, rule, [](int, int, int) { return true; }),
+                         what};
+    (searches.truth.solved ? solved : infeasible) += 1;
+    searches.eagerly(eager_search, "eager");
+    searches.eagerly(eager_dp, "eager_dp");
+    for (const int batch : {1, 32}) searches.lazily(batch);
     if (HasFatalFailure()) return;
+    rounds += searches.rounds;
+    removed += searches.removed;
   }
   std::printf("%d solved, %d infeasible, %d rounds, %d nodes removed\n", solved, infeasible, rounds,
-              shared);
+              removed);
   EXPECT_GE(solved, at_least(count / 10 + 1));
   EXPECT_GE(infeasible, at_least(count / 10 + 1));
   EXPECT_GE(rounds, at_least(2 * count + 1));
@@ -238,76 +262,104 @@ TEST(ExplicitLattice, ALimitThatEndsTheNodesIsNamed) {
   EXPECT_GT(diagnosis.cause.by().value_or(0), 0);
 }
 
+/// Counts what is compared between a grid and the list of its nodes.
+struct GridCounts {
+  int solved = 0, infeasible = 0, removals = 0;
+};
+
+/// The cost-to-go of a grid and of the list of its nodes. slots[i][k] is the grid's slot of node k
+/// of layer i of the list.
+struct GridAndList {
+  std::unique_ptr<CostToGo> grid, list;
+  std::vector<std::vector<int>> slots;
+};
+
+/// Removes from both a node or an edge of the best path, or all nodes of a layer, and repairs both.
+/// `wanted` and `found` are the best path by slots of the grid and of the list.
+void remove_from_both(const GridAndList& both, const SlotPath& wanted, const SlotPath& found,
+                      bool whole_layer, Random& random) {
+  const int layers = both.grid->lattice().layers(), layer = random.below(layers);
+  const auto i = static_cast<std::size_t>(layer);
+  if (whole_layer) {
+    for (std::size_t k = 0; k < both.slots[i].size(); ++k) {
+      both.grid->verdicts().remove_node(layer, both.slots[i][k]);
+      both.list->verdicts().remove_node(layer, static_cast<int>(k));
+    }
+  } else if (random.coin() && layer + 1 < layers) {
+    both.grid->remove_edge(layer, wanted[i], wanted[i + 1]);
+    both.list->remove_edge(layer, found[i], found[i + 1]);
+  } else {
+    both.grid->verdicts().remove_node(layer, wanted[i]);
+    both.list->verdicts().remove_node(layer, found[i]);
+  }
+  both.grid->repair();
+  both.list->repair();
+}
+
+/// Compares the best paths of both, over five removals or until there is none.
+void compare_grid_and_list(const GridAndList& both, Random& random, const std::string& what,
+                           GridCounts& counts) {
+  for (int round = 0; round < 5; ++round) {
+    ASSERT_EQ(both.grid->best(), both.list->best()) << what;
+    std::int64_t expansions = 0;
+    const SlotPath wanted = best_path(*both.grid, expansions),
+                   found = best_path(*both.list, expansions);
+    ASSERT_EQ(wanted.size(), found.size()) << what;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      ASSERT_EQ(wanted[i], both.slots[i][static_cast<std::size_t>(found[i])]) << what;
+    if (found.empty()) {
+      ASSERT_EQ(both.grid->deepest_reachable(), both.list->deepest_reachable()) << what;
+      ++counts.infeasible;
+      return;
+    }
+    ++counts.solved;
+    remove_from_both(both, wanted, found, round == 3, random);
+    ++counts.removals;
+  }
+}
+
 TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
   const std::uint64_t base = seed("ExplicitLattice.Grid");
-  int solved = 0, infeasible = 0, removals = 0;
+  GridCounts counts;
   const auto robots = all_robots();
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
-        random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
+    Problem problem = random_problem(robot, random);
     problem.limits.arm_slope = 1e6;  // any arm angle may follow any other
     problem.limits.step_error.reset();
     problem.start.reset();
-    const ArmModel arm = arm_of(robots[static_cast<std::size_t>(trial) % robots.size()]);
+    const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, what);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
     const SrsLattice grid(arm.chain, srs, path, problem);
     std::vector<std::vector<ExplicitLattice::Point>> layers(
         static_cast<std::size_t>(grid.layers()));
-    std::vector<std::vector<int>> slots(layers.size());  // of the grid
+    GridAndList both;
+    both.slots.resize(layers.size());
     std::vector<Lattice::Node> nodes;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       grid.layer_nodes(static_cast<int>(i), nodes);
       for (const Lattice::Node& node : nodes) {
         layers[i].push_back({.q = node.q});
-        slots[i].push_back(node.slot);
+        both.slots[i].push_back(node.slot);
       }
     }
     const ExplicitLattice listed(arm.chain, path, problem, std::move(layers));
-    const auto of_grid = make_cost_to_go(grid), of_list = make_cost_to_go(listed);
-    of_grid->sweep(grid.layers() - 1);
-    of_list->sweep(listed.layers() - 1);
-    for (int round = 0; round < 5; ++round) {
-      ASSERT_EQ(of_grid->best(), of_list->best()) << what;
-      std::int64_t expansions = 0;
-      const SlotPath wanted = best_path(*of_grid, expansions),
-                     found = best_path(*of_list, expansions);
-      ASSERT_EQ(wanted.size(), found.size()) << what;
-      for (std::size_t i = 0; i < found.size(); ++i)
-        ASSERT_EQ(wanted[i], slots[i][static_cast<std::size_t>(found[i])]) << what;
-      if (found.empty()) {
-        ASSERT_EQ(of_grid->deepest_reachable(), of_list->deepest_reachable()) << what;
-        ++infeasible;
-        break;
-      }
-      ++solved;
-      const int layer = random.below(grid.layers());
-      const auto i = static_cast<std::size_t>(layer);
-      if (round == 3) {  // a wall across all of a layer
-        for (std::size_t k = 0; k < slots[i].size(); ++k) {
-          of_grid->verdicts().remove_node(layer, slots[i][k]);
-          of_list->verdicts().remove_node(layer, static_cast<int>(k));
-        }
-      } else if (random.coin() && layer + 1 < grid.layers()) {
-        of_grid->remove_edge(layer, wanted[i], wanted[i + 1]);
-        of_list->remove_edge(layer, found[i], found[i + 1]);
-      } else {
-        of_grid->verdicts().remove_node(layer, wanted[i]);
-        of_list->verdicts().remove_node(layer, found[i]);
-      }
-      ++removals;
-      of_grid->repair();
-      of_list->repair();
-    }
+    both.grid = make_cost_to_go(grid);
+    both.list = make_cost_to_go(listed);
+    both.grid->sweep(grid.layers() - 1);
+    both.list->sweep(listed.layers() - 1);
+    compare_grid_and_list(both, random, what, counts);
+    if (HasFatalFailure()) return;
   }
-  std::printf("%d paths compared, %d problems without one, %d removals\n", solved, infeasible,
-              removals);
-  EXPECT_GE(solved, at_least(2 * count + 1));
-  EXPECT_GE(infeasible, at_least(count / 2 + 1));
+  std::printf("%d paths compared, %d problems without one, %d removals\n", counts.solved,
+              counts.infeasible, counts.removals);
+  EXPECT_GE(counts.solved, at_least(2 * count + 1));
+  EXPECT_GE(counts.infeasible, at_least(count / 2 + 1));
 }
 
 }  // namespace
