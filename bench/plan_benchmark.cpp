@@ -31,6 +31,7 @@
 #include "settings.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -122,7 +123,8 @@ bool in_time(const PlanResult& result) {
 struct SlowPlan {
   /// s; the limit if the plan took more.
   double s = 0;
-  bool has_row = false;  ///< whether its own row was measured
+  bool has_row = false;    ///< whether its own row was measured
+  bool too_large = false;  ///< the plan was refused: the eager graph does not fit in memory
 };
 std::map<std::string, SlowPlan> slow_plans;
 
@@ -137,14 +139,28 @@ void note_time(const std::string& label, const PlanResult& result, bool for_its_
   if (s > kOncePerProcess) slow_plans[label] = {s, for_its_row || slow_plan(label).has_row};
 }
 
-/// Returns the time of one eager plan, ms; nothing if it takes more than the limit.
+/// Plans; returns nothing, and notes it, where the planner refuses a graph that does not fit in
+/// memory.
+std::optional<PlanResult> plan_if_it_fits(const std::string& label, const Scene& scene,
+                                          const Problem& problem, const PlanOptions& options) {
+  try {
+    return plan(prepared(scene).robot, problem, options);
+  } catch (const InputError&) {
+    slow_plans[label] = {.s = plan_limit, .has_row = false, .too_large = true};
+    return std::nullopt;
+  }
+}
+
+/// Returns the time of one eager plan, ms; nothing if it takes more than the limit, or does not fit
+/// in memory.
 std::optional<double> eager_ms(const std::string& label, const Scene& scene, const Problem& problem,
                                PlannerKind planner) {
   if (const SlowPlan slow = slow_plan(label); slow.s > 0)
     return slow.s < plan_limit ? std::optional(1e3 * slow.s) : std::nullopt;
-  const PlanResult result = plan(prepared(scene).robot, problem, options_for(planner, 1));
-  note_time(label, result, false);
-  return in_time(result) ? std::optional(result.time_ms.at("plan")) : std::nullopt;
+  const auto result = plan_if_it_fits(label, scene, problem, options_for(planner, 1));
+  if (!result) return std::nullopt;
+  note_time(label, *result, false);
+  return in_time(*result) ? std::optional(result->time_ms.at("plan")) : std::nullopt;
 }
 
 /// Times of an eager plan before and after the row that is compared with it.
@@ -172,14 +188,15 @@ void run(benchmark::State& state, const Scene& scene, const Case& what,
          const bench::Setting& setting) {
   const std::string label = label_of(scene, what, setting);
   const auto not_run = [&] {
-    state.SkipWithError(formatted("not run: more than %g s a plan", plan_limit).c_str());
+    state.SkipWithError(slow_plan(label).too_large
+                            ? "not run: more memory than there is"
+                            : formatted("not run: more than %g s a plan", plan_limit).c_str());
   };
   if (const SlowPlan slow = slow_plan(label); slow.s >= plan_limit)
     return not_run();
   else if (slow.has_row && slow.s > kOnce)
     return state.SkipWithError("not repeated: a plan takes seconds");
-  const Prepared& of = prepared(scene);
-  Problem problem = of.problem;
+  Problem problem = prepared(scene).problem;
   bench::set_resolution(problem, setting);
   problem.limits.edges = what.edges;
   const auto eager_times = [&](PlannerKind planner, bool asked) {
@@ -195,7 +212,12 @@ void run(benchmark::State& state, const Scene& scene, const Case& what,
   PlanResult result;
   double ms = 0;
   for (auto _ : state) {
-    result = plan(of.robot, problem, options);
+    auto found = plan_if_it_fits(label, scene, problem, options);
+    if (!found) {
+      not_run();
+      return;
+    }
+    result = *std::move(found);
     benchmark::DoNotOptimize(result.trajectory.data());
     note_time(label, result, true);
     if (!in_time(result)) {
