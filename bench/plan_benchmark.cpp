@@ -184,6 +184,25 @@ struct EagerTimes {
   }
 };
 
+/// Sets the counters of a row to the work of its last plan.
+void count_work(benchmark::State& state, const PlanResult& result) {
+  state.SetItemsProcessed(state.iterations() * result.lattice.nodes);
+  const Counters& work = result.counters;
+  for (const auto& [name, value] : {std::pair{"nodes_checked", work.nodes_checked},
+                                    {"edges_checked", work.edges_checked},
+                                    {"fcl_calls", work.fcl_calls},
+                                    {"certified", work.proved_free + work.proved_colliding},
+                                    {"expansions", work.expansions},
+                                    {"iterations", work.iterations},
+                                    {"ik_nodes", work.ik_nodes},
+                                    {"edges", work.edges}})
+    state.counters[name] = static_cast<double>(value);
+  state.counters["nodes"] = static_cast<double>(result.lattice.nodes);
+  state.counters["layers"] = result.lattice.layers;
+  state.counters["cost"] = result.cost;
+  state.counters["solved"] = result.status == PlanStatus::kSolved;
+}
+
 void run(benchmark::State& state, const Scene& scene, const Case& what,
          const bench::Setting& setting) {
   const std::string label = label_of(scene, what, setting);
@@ -227,22 +246,7 @@ void run(benchmark::State& state, const Scene& scene, const Case& what,
     ms += result.time_ms.at("plan");
   }
   if (!in_time(result)) return;
-  const auto nodes = static_cast<double>(result.lattice.nodes);
-  state.SetItemsProcessed(state.iterations() * result.lattice.nodes);
-  const Counters& work = result.counters;
-  for (const auto& [name, value] : {std::pair{"nodes_checked", work.nodes_checked},
-                                    {"edges_checked", work.edges_checked},
-                                    {"fcl_calls", work.fcl_calls},
-                                    {"certified", work.proved_free + work.proved_colliding},
-                                    {"expansions", work.expansions},
-                                    {"iterations", work.iterations},
-                                    {"ik_nodes", work.ik_nodes},
-                                    {"edges", work.edges}})
-    state.counters[name] = static_cast<double>(value);
-  state.counters["nodes"] = nodes;
-  state.counters["layers"] = result.lattice.layers;
-  state.counters["cost"] = result.cost;
-  state.counters["solved"] = result.status == PlanStatus::kSolved;
+  count_work(state, result);
   state.counters["plan_ms"] = ms / static_cast<double>(state.iterations());
   eager.measure();
   eager_dp.measure();
