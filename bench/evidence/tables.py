@@ -307,7 +307,7 @@ def pieces(data):
         "ik/closed_form_libm": "IK, closed form with libm",
         "forward_kinematics": "forward kinematics", "jacobian": "Jacobian",
         "manipulability": "manipulability", "step_error": "step error (one end)",
-        "tool_path_error": "tool-path error of an edge", "a_star/expansion": "A*, an expansion",
+        "tool_path_error": "tool-path error of an edge", "a_star/expansion": "A\\*, an expansion",
         "posture/fcl": "posture: FCL", "posture/certificates": "posture: certificates, then FCL",
         "posture/kept": "posture of a path: clearances kept",
         "motion/fcl": "motion of an edge: FCL",
