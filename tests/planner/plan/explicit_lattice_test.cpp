@@ -338,19 +338,17 @@ TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
     const SrsLattice grid(arm.chain, srs, path, problem);
     std::vector<std::vector<ExplicitLattice::Point>> layers(
         static_cast<std::size_t>(grid.layers()));
-    GridAndList both;
-    both.slots.resize(layers.size());
+    std::vector<std::vector<int>> slots(layers.size());
     std::vector<Lattice::Node> nodes;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       grid.layer_nodes(static_cast<int>(i), nodes);
       for (const Lattice::Node& node : nodes) {
         layers[i].push_back({.q = node.q});
-        both.slots[i].push_back(node.slot);
+        slots[i].push_back(node.slot);
       }
     }
     const ExplicitLattice listed(arm.chain, path, problem, std::move(layers));
-    both.grid = make_cost_to_go(grid);
-    both.list = make_cost_to_go(listed);
+    const GridAndList both{make_cost_to_go(grid), make_cost_to_go(listed), std::move(slots)};
     both.grid->sweep(grid.layers() - 1);
     both.list->sweep(listed.layers() - 1);
     compare_grid_and_list(both, random, what, counts);
