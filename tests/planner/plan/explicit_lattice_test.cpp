@@ -5,6 +5,9 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "brute_force.hpp"
 #include "diagnosis/diagnosis.hpp"
