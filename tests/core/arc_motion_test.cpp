@@ -13,6 +13,7 @@
 #include "swivel/core/motion/arc_lengths.hpp"
 #include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/motion/time_path.hpp"
+#include "worst_rates.hpp"
 
 namespace swivel {
 namespace {
@@ -71,28 +72,6 @@ std::optional<Drifting> drifting(const Chain& chain, Random& random) {
   return d;
 }
 
-/// Compares the rates of rows that follow each other every 1 / rate seconds with those allowed, by
-/// differences, at rest before and after. Returns the number of samples; `worst` keeps the largest
-/// ratios of speed, acceleration and jerk.
-int compare_rates(const std::vector<TimedRow>& rows, double rate, const JointRates& rates,
-                  double (&worst)[3]) {
-  const double dt = 1 / rate;
-  const auto n = static_cast<std::ptrdiff_t>(rows.size());
-  const auto q = [&](std::ptrdiff_t k) {
-    return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
-  };
-  int samples = 0;
-  for (std::ptrdiff_t k = -3; k < n + 3; ++k) {
-    const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
-                 j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
-    worst[0] = std::max(worst[0], (v.cwiseAbs().array() / rates.speed.array()).maxCoeff());
-    worst[1] = std::max(worst[1], (a.cwiseAbs().array() / rates.acceleration.array()).maxCoeff());
-    worst[2] = std::max(worst[2], (j.cwiseAbs().array() / rates.jerk.array()).maxCoeff());
-    ++samples;
-  }
-  return samples;
-}
-
 TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
   const std::uint64_t base = seed("ArcMotion");
   const std::vector<Chain> all = chains();
@@ -132,7 +111,7 @@ TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     const TimingResult result = time_path(*motion, rates, options);
     ASSERT_TRUE(result.motion) << trial << ": " << result.failure->reason;
     ++timed;
-    samples += compare_rates(result.motion->rows, options.rate, rates, worst);
+    samples += keep_worst_rates(result.motion->rows, 1 / options.rate, rates, worst);
   }
   std::printf(
       "%d motions, %d samples, %d places: within %.2g of the path, %.2g rad of the rows; worst "

@@ -85,7 +85,8 @@ void check_bits(const std::vector<const CircleKernels*>& units, const TripleCirc
               std::memcmp(scalar.out.data(), other.out.data(), scalar.out.size() * sizeof(double)))
         << units[unit]->name;
   }
-  for (std::size_t k = 0; k < s.size(); ++k) {  // one at a time: the same bits however asked
+  // An arm angle that is solved alone has the same bits as among others.
+  for (std::size_t k = 0; k < s.size(); ++k) {
     const Angles alone = run(*units.back(), shoulder, shift, base, {s[k]}, {c[k]});
     for (std::size_t row = 0; row < 8; ++row)
       ASSERT_EQ(alone.out[row], scalar.out[row * s.size() + k]);

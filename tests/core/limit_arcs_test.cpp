@@ -202,7 +202,8 @@ void check_nodes(const Lattices& lattices, int layer, LayerNodes& nodes, LayerNo
   const auto& [grid, lattice] = lattices;
   const int n = lattice.angles();
   lattice.solve(layer, nodes);
-  // Any run, around the circle as well, gives the same bits.
+  // A run of angles, which may go on past the last angle to the first, gives the same bits as the
+  // whole layer.
   const int first = random.below(n), count = 1 + random.below(2 * n);
   lattice.solve(layer, first, count, run);
   std::vector<char> stands(static_cast<std::size_t>(lattice.width()), 0);

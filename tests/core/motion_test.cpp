@@ -16,6 +16,7 @@
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
 #include "swivel/core/problem/tool_path.hpp"
+#include "worst_rates.hpp"
 
 namespace swivel {
 namespace {
@@ -351,23 +352,6 @@ std::optional<Followed> followed(const TestRobot& robot, Random& random,
     f.rows.push_back({f.path->layer(i).s, phi, branch, q});
   }
   return f;
-}
-
-/// Keeps the largest ratios of speed, acceleration and jerk of the rows, by differences over dt
-/// (s), to the rates.
-void keep_worst_rates(const std::vector<TimedRow>& rows, double dt, const JointRates& rates,
-                      double (&worst)[3]) {
-  const auto n = static_cast<std::ptrdiff_t>(rows.size());
-  const auto q = [&](std::ptrdiff_t k) {  // at rest before and after
-    return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
-  };
-  for (std::ptrdiff_t k = -3; k < n + 3; ++k) {
-    const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
-                 j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
-    worst[0] = std::max(worst[0], (v.cwiseAbs().array() / rates.speed.array()).maxCoeff());
-    worst[1] = std::max(worst[1], (a.cwiseAbs().array() / rates.acceleration.array()).maxCoeff());
-    worst[2] = std::max(worst[2], (j.cwiseAbs().array() / rates.jerk.array()).maxCoeff());
-  }
 }
 
 /// Checks that the k-th row, k > 0, has the tool on its path at no more than the speed asked for

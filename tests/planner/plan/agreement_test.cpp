@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brute_force.hpp"
+#include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -26,9 +27,6 @@ Answer truth_of(const Problem& problem) {
   return brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()),
                      [&](int layer, int a, int b) { return window_allows(lattice, layer, a, b); });
 }
-
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
-                                     PlannerKind::kParallel};
 
 void expect_same(const PlanResult& a, const PlanResult& b, const std::string& what) {
   ASSERT_EQ(a.status, b.status) << what;
@@ -70,13 +68,8 @@ struct AgreementCounts {
 /// Plans the problem with every planner, with all evidence, in the order of kPlanners.
 std::vector<PlanResult> plan_with_all(const Problem& problem) {
   std::vector<PlanResult> results;
-  for (const PlannerKind planner : kPlanners) {
-    PlanOptions options;
-    options.planner = planner;
-    options.threads = 2;
-    options.evidence = Evidence::all();
-    results.push_back(plan(problem, options));
-  }
+  for (const PlannerKind planner : kPlanners)
+    results.push_back(plan(problem, with_all_evidence(planner)));
   return results;
 }
 

@@ -9,6 +9,7 @@
 
 #include "brute_force.hpp"
 #include "motion_problem.hpp"
+#include "planners.hpp"
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -24,9 +25,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
-                                     PlannerKind::kParallel};
 
 TestRobot arm_of_data(const std::string& name) {
   TestRobot robot = data_robot(name);
@@ -79,11 +77,7 @@ struct ArmsCounts {
 void plan_with_all(const PreparedRobot& robot, const Problem& problem, const Answer& truth,
                    const std::string& what, std::vector<PlanResult>& results) {
   for (const PlannerKind planner : kPlanners) {
-    PlanOptions options;
-    options.planner = planner;
-    options.threads = 2;
-    options.evidence = Evidence::all();
-    results.push_back(plan(robot, problem, options));
+    results.push_back(plan(robot, problem, with_all_evidence(planner)));
     const PlanResult& result = results.back();
     ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
     ASSERT_TRUE(result.lattice.arcs && !result.lattice.grid) << what;

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "brute_force.hpp"
+#include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -146,9 +147,6 @@ PlanOptions options_for(PlannerKind planner) {
   options.threads = 2;
   return options;
 }
-
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
-                                     PlannerKind::kParallel};
 
 /// Holds one random problem with rules and costs of the caller's own, and its answer by brute
 /// force.

@@ -7,6 +7,7 @@
 
 #include "brute_force.hpp"
 #include "inexact_robots.hpp"
+#include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
@@ -20,9 +21,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
-                                     PlannerKind::kParallel};
 
 struct Laid {
   explicit Laid(const Problem& problem)
@@ -109,11 +107,7 @@ void check_problem(const Problem& problem, const std::string& what, Counts& coun
   const Answer truth = truth_of(laid);
   std::vector<PlanResult> results;
   for (const PlannerKind planner : kPlanners) {
-    PlanOptions options;
-    options.planner = planner;
-    options.threads = 2;
-    options.evidence = Evidence::all();
-    results.push_back(plan(laid.robot, problem, options));
+    results.push_back(plan(laid.robot, problem, with_all_evidence(planner)));
     expect_same_answer(results.back(), results[0], truth, what);
     if (::testing::Test::HasFatalFailure()) return;
   }

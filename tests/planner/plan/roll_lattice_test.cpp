@@ -8,6 +8,7 @@
 
 #include "brute_force.hpp"
 #include "inexact_robots.hpp"
+#include "planners.hpp"
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -31,9 +32,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
-                                     PlannerKind::kParallel};
 
 /// Arms of the data folder and made here, with limits of less and of more than a turn, without
 /// limits, and not exactly S-R-S.
@@ -241,11 +239,7 @@ void check_problem(const Problem& problem, const std::string& what, Counts& coun
   const Truth truth = truth_of(robot, path, problem, counts);
   std::optional<PlanResult> first;
   for (const PlannerKind planner : kPlanners) {
-    PlanOptions options;
-    options.planner = planner;
-    options.threads = 2;
-    options.evidence = Evidence::all();
-    const PlanResult result = plan(robot, problem, options);
+    const PlanResult result = plan(robot, problem, with_all_evidence(planner));
     if (!first) first = result;
     expect_same_answer(result, *first, truth, what);
     if (::testing::Test::HasFatalFailure()) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
@@ -24,9 +25,6 @@ PlanOptions options_for(PlannerKind planner) {
   options.threads = 2;
   return options;
 }
-
-constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy,
-                                     PlannerKind::kParallel};
 
 /// A random problem; every third turns on the spot first.
 Problem turning_problem(const TestRobot& robot, Random& random, int trial) {
