@@ -139,13 +139,14 @@ void note_time(const std::string& label, const PlanResult& result, bool for_its_
   if (s > kOncePerProcess) slow_plans[label] = {s, for_its_row || slow_plan(label).has_row};
 }
 
-/// Plans; returns nothing, and notes it, where the planner refuses a graph that does not fit in
-/// memory.
+/// Plans; returns nothing, and notes it, where the eager planner refuses a graph that does not fit
+/// in memory.
 std::optional<PlanResult> plan_if_it_fits(const std::string& label, const Scene& scene,
                                           const Problem& problem, const PlanOptions& options) {
   try {
     return plan(prepared(scene).robot, problem, options);
   } catch (const InputError&) {
+    if (options.planner != PlannerKind::kEager) throw;
     slow_plans[label] = {.s = plan_limit, .has_row = false, .too_large = true};
     return std::nullopt;
   }

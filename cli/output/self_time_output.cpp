@@ -15,7 +15,8 @@ namespace swivel::cli {
 
 void print_self_times(const Timeline& timeline) {
   constexpr std::size_t kMostLines = 12;
-  const std::vector<SelfTime> times = self_times(timeline.events());
+  const std::vector<Timeline::Event> events = timeline.events();
+  const std::vector<SelfTime> times = self_times(events);
   const auto sum_from = [&](std::size_t first) {
     SelfTime sum;
     for (std::size_t k = first; k < times.size(); ++k) {
@@ -38,7 +39,7 @@ void print_self_times(const Timeline& timeline) {
   if (shown < times.size())
     print(std::to_string(times.size() - shown) + " other stages", sum_from(shown));
   std::int64_t indices = 0, arena_ns = 0;
-  for (const Timeline::Event& event : timeline.events())
+  for (const Timeline::Event& event : events)
     if (std::string_view(event.name) == Executor::kHelperSpan) {
       ++indices;
       arena_ns += event.end_ns - event.begin_ns;
