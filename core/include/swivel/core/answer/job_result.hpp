@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swivel/core/answer/plan.hpp"
+#include "swivel/core/problem/job.hpp"
+
+namespace swivel {
+
+/// A part of a planned job: a run of a stroke, or a transition.
+struct JobPart {
+  /// The run; of a transition, none.
+  std::optional<StrokeRun> run;
+  double cost = 0;
+  /// Of a run: at the layers of its problem (problem_of_run()). Of a transition: the joint
+  /// configurations between which the joints move straight, at least two; s, phi and branch mean
+  /// nothing.
+  std::vector<TrajectoryRow> rows;
+};
+
+/// What a job's plan found out about one run.
+struct RunResult {
+  StrokeRun run;
+  PlanStatus status = PlanStatus::kSolved;  ///< whether the run by itself has a path
+  double least_cost = 0;                    ///< of the run by itself, if it has a path
+  LatticeInfo lattice;
+  Measures measures;                        ///< of the job's rows
+  std::optional<Diagnosis> diagnosis = {};  ///< of a run that has no path by itself
+};
+
+/// What was asked and found about the transitions of a job.
+struct TransitionCounters {
+  std::int64_t pairs = 0;     ///< transitions of which it was asked whether they are free
+  std::int64_t searches = 0;  ///< searches for a way around obstacles
+  std::int64_t rounds = 0;    ///< candidate jobs tried
+};
+
+/// The result of planning a job.
+struct JobResult {
+  PlanStatus status = PlanStatus::kInfeasible;
+  /// Cost of all parts: of the nodes of runs in their lattices, and of the joint moves of
+  /// transitions in the same metric.
+  double cost = 0;
+  /// No job in this order costs less, if its transitions are those that the planner finds.
+  double bound = 0;
+  /// No job in this order costs less, whatever its transitions.
+  double bound_any = 0;
+  /// Transitions and runs in the order in which they are executed; empty unless solved.
+  std::vector<JobPart> parts;
+  std::vector<RunResult> runs;  ///< in the order in which they are executed
+  /// Where there is no job though each run has a path: index in `runs` of the run that no
+  /// transition leads to, runs.size() for the way home.
+  std::optional<std::size_t> no_transition_to;
+  /// The two bodies that bar the straight transition there.
+  std::optional<std::array<std::string, 2>> barred_by;
+  std::string planner;
+  int threads = 1;
+  Counters counters;
+  TransitionCounters transitions;
+  std::map<std::string, double> time_ms;  ///< by stage
+  bool checked = false;                   ///< the parts were verified by check_job()
+  std::array<std::string, kDof> joint_names;
+  std::vector<HeldJoint> held;
+  std::vector<SpecialPair> dropped_pairs, reduced_pairs;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace swivel

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swivel/core/problem/problem.hpp"
+
+namespace swivel {
+
+/// One run of the tool on the workpiece, as a job has many of them: a task with a name. Its
+/// `start`, `start_at` and `rolls` are unset.
+struct Stroke : Task {
+  std::string name;
+  /// True: the tool may run from the last waypoint to the first.
+  bool reversible = false;
+  /// Where the tool stands before the stroke and after it, m, in the tool frame of the waypoint at
+  /// which the run begins or ends; e.g. (0, 0, -0.05) for 50 mm against the tool's z axis. The tool
+  /// comes and leaves on a straight line without turning. Zero: no such line.
+  Vector3d approach = Vector3d::Zero(), retract = Vector3d::Zero();
+  /// Speed of the tool along the stroke, m/s, instead of Job::process_speed.
+  std::optional<double> process_speed;
+  /// Speed of the tool from each waypoint to the next, m/s, instead of process_speed; empty: none.
+  std::vector<double> feed;
+};
+
+/// In which order the strokes of a job are run: as they are listed, or in the cheapest order that
+/// is found, reversible ones in either direction.
+enum class StrokeOrder { kGiven, kBest };
+
+/// A job: strokes with transitions between them, from a home configuration and back to it.
+/// Transitions are moves in joint space, on which the tool follows no path. Everything but the
+/// strokes' tasks is shared by all strokes.
+struct Job : Robot {
+  std::string source;  ///< problem file, for messages
+  std::vector<SceneObject> scene;
+  std::vector<Variation> vary;
+  std::vector<Stroke> strokes;
+  /// The joint configuration from which the job starts and at which it ends, rad; unset: it starts
+  /// at the first stroke and ends at the last one.
+  std::optional<Config> home;
+  StrokeOrder order = StrokeOrder::kGiven;
+  /// Speed of the tool along strokes, m/s; unset: limits.tool_speed.
+  std::optional<double> process_speed;
+  /// The share of the joints' speeds that transitions may use, more than 0 and at most 1.
+  double rapid = 1;
+};
+
+/// A stroke of a job in one of its directions.
+struct StrokeRun {
+  std::size_t stroke = 0;  ///< index in Job::strokes
+  bool reversed = false;   ///< from the last waypoint to the first
+  bool operator==(const StrokeRun&) const = default;
+};
+
+/// Returns the waypoints of a run in the stroke's path frame, with those at which its approach
+/// begins and its retract ends.
+[[nodiscard]] std::vector<Waypoint> waypoints_of_run(const Stroke& stroke, bool reversed);
+
+/// Returns the problem that one run of a job poses by itself. Its path begins with the approach and
+/// ends with the retract; its `source` names the stroke.
+[[nodiscard]] Problem problem_of_run(const Job& job, const StrokeRun& run);
+
+/// Returns which rows of a run's waypoints_of_run() belong to the stroke: the first and the last.
+struct ProcessWaypoints {
+  std::size_t first = 0, last = 0;
+};
+[[nodiscard]] ProcessWaypoints process_waypoints(const Stroke& stroke);
+
+/// Throws InvalidArgument for a job that makes no sense whatever the robot: what validate(Problem)
+/// refuses of any of its runs, no strokes, names that are empty or taken, a start in a stroke, a
+/// home that is not finite, speeds that are not positive, feeds that are not one per waypoint.
+void validate(const Job& job);
+
+}  // namespace swivel

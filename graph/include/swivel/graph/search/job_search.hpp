@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
+#include "swivel/graph/search/path_first.hpp"
+#include "swivel/graph/verdicts/parallel_for.hpp"
+#include "swivel/graph/verdicts/validity.hpp"
+
+namespace swivel {
+
+/// A question how to get from the last configuration of a run to the first one of the next.
+struct TransitionQuestion {
+  /// 0: from home to the first run; k: from run k - 1 to run k; number of runs: home.
+  int transition = 0;
+  Config from, to;  ///< joints of the two nodes, rad
+  /// True: a way around obstacles is searched for, if no straight one and none known is free.
+  bool thorough = false;
+};
+/// The answer to a TransitionQuestion.
+struct TransitionAnswer {
+  /// kUnknown: neither the straight move nor a way known before is free, and none was searched for.
+  /// kRemoved: a thorough search found no way.
+  Verdict verdict = Verdict::kUnknown;
+  double cost = 0;  ///< of the way that was found, if kValid; at least Transitions::distance()
+};
+
+/// What a job's search needs to know of transitions.
+class Transitions {
+ public:
+  virtual ~Transitions() = default;
+  /// Returns the cost of a straight move in joint space: a lower bound of what any transition
+  /// costs, a multiple of 2^-40 Lattice::cost_unit().
+  [[nodiscard]] virtual double distance(const Config& from, const Config& to) const = 0;
+  /// Sets answers[k] to the answer to questions[k]. Both spans have equal size. The answers depend
+  /// on the questions asked so far in their order alone. Throws Stopped.
+  virtual void find(std::span<const TransitionQuestion> questions,
+                    std::span<TransitionAnswer> answers) = 0;
+};
+
+/// A run of a job as its search sees it.
+struct SearchedRun {
+  CostToGo* cost_to_go = nullptr;  ///< made with Pruning::kNone
+  Validity* validity = nullptr;    ///< asked by one thread at a time
+};
+
+/// How search_job() searches.
+struct JobSearchOptions {
+  PathFirstOptions paths;  ///< how each run is validated
+  /// Most thorough searches for transitions; after these the cheapest job found so far is returned.
+  int most_searches = 200;
+  ParallelFor work;  ///< shares runs among threads; the result is the same
+};
+
+/// A job that was found, or what is known of it.
+struct JobOutcome {
+  bool decided = false;  ///< false: stopped by the budget
+  /// Index of a run that has no path by itself; none if all have one.
+  std::optional<std::size_t> run_without_path;
+  /// Index of the transition for which no way was found from any end to any begin.
+  std::optional<std::size_t> transition_without_way;
+  std::vector<SlotPath> paths;  ///< of each run; empty if no job was found
+  double cost = kUnreachable;   ///< of the job found
+  /// No job whose transitions are those that Transitions finds costs less.
+  double bound = 0;
+  /// No job costs less whatever its transitions: 0 until all runs are known to be valid.
+  double bound_any = 0;
+  std::vector<double> least_costs;                  ///< of each run by itself; kUnreachable: none
+  std::vector<double> run_costs, transition_costs;  ///< of the job found
+  std::int64_t rounds = 0, pairs = 0, searches = 0;
+};
+
+/// Finds the cheapest job: a path through each run in the given order, joined by transitions, from
+/// `home` and back to it where it is given. Works as path_first() does, on the runs' lattices
+/// joined to one: a backward program over the runs gives each end node the least cost of the rest
+/// of the job (Verdicts::raise_exit_costs()), the cheapest job is taken, its nodes and edges are
+/// validated, then its transitions, what fails is removed or raised, and so on. Values only ever
+/// rise, so the value of the best job that is left is a lower bound throughout. A greedy job, which
+/// runs each stroke at the least cost after the one before, is found first; the result never costs
+/// more. Does not throw Stopped: `outcome` then has the cheapest job known.
+[[nodiscard]] JobOutcome search_job(std::span<const SearchedRun> runs, Transitions& transitions,
+                                    const std::optional<Config>& home,
+                                    const JobSearchOptions& options);
+
+}  // namespace swivel
