@@ -28,7 +28,7 @@ void CostToGo::sweep(int goal_layer) {
   goal_ = goal_layer;
   compute(goal_layer);
   if (unremoved_ == Unremoved::kUnknown && goal_ == lattice().layers() - 1 &&
-      verdicts_.removed() == 0)
+      verdicts_.removed() == 0 && !verdicts_.has_exit_costs())
     unremoved_ = Unremoved::kPresent;
 }
 

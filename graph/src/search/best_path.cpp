@@ -132,10 +132,15 @@ bool PathCache::still_optimal_from(int layer, Earlier& earlier, const CostToGo& 
 }
 
 SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, PathCache* earlier) {
-  const TraceSpan span("best path");
   const int first = cost_to_go.first_slot();
-  if (first < 0) return {};
+  return first < 0 ? SlotPath() : best_path_from(first, cost_to_go, expansions, earlier);
+}
+
+SlotPath best_path_from(int first, CostToGo& cost_to_go, std::int64_t& expansions,
+                        PathCache* earlier) {
+  const TraceSpan span("best path");
   const double cost = cost_to_go.at(0, first);
+  if (cost == kUnreachable) return {};
   if (cost >= PathCache::kExact * cost_to_go.lattice().cost_unit()) earlier = nullptr;
   const ImplicitLattice graph(cost_to_go);
   Records records;

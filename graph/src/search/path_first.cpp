@@ -1,519 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/graph/search/path_first.hpp"
 
-#include <algorithm>
-#include <deque>
-#include <optional>
 #include <stdexcept>
-#include <type_traits>
-#include <unordered_map>
-#include <unordered_set>
-#include <utility>
 
-#include "swivel/core/base/timeline.hpp"
+#include "search/path_validator.hpp"
 
 namespace swivel {
 
 namespace {
 
-/// Orders layers by how worthwhile it is to ask about them: where failures were found lately first,
-/// then along the path.
-class FailFirst {
- public:
-  explicit FailFirst(int layers) : score_(static_cast<std::size_t>(layers), 0.0) {}
-  void failed(int layer) {
-    // An obstacle blocks a stretch of layers, so the same place in neighbouring layers is asked
-    // about too.
-    for (int i = std::max(0, layer - 2);
-         i <= std::min(static_cast<int>(score_.size()) - 1, layer + 2); ++i)
-      score_[static_cast<std::size_t>(i)] += i == layer ? 1.0 : 0.5;
-  }
-  void next_round() {
-    for (double& score : score_) score *= 0.8;
-  }
-  void order(std::vector<int>& layers) const {
-    const auto score = [&](int layer) { return score_[static_cast<std::size_t>(layer)]; };
-    // Most layers never failed.
-    const auto others = std::stable_partition(layers.begin(), layers.end(),
-                                              [&](int layer) { return score(layer) > 0; });
-    std::stable_sort(layers.begin(), others, [&](int a, int b) { return score(a) > score(b); });
-  }
-
- private:
-  std::vector<double> score_;
-};
-
-class Search {
- public:
-  Search(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options)
-      : cost_to_go_(cost_to_go),
-        verdicts_(cost_to_go.verdicts()),
-        lattice_(cost_to_go.lattice()),
-        validity_(validity),
-        options_(options),
-        fail_first_(lattice_.layers()) {}
-
-  SearchOutcome run(SearchCounters& counters, const PriorFailures& first) {
-    ask(std::span<const NodeQuestion>(first.nodes));
-    ask(std::span<const EdgeQuestion>(first.edges));
-    if (verdicts_.removed() > 0 && !verdicts_.pending.empty()) cost_to_go_.repair();
-    const std::int64_t first_iteration = counters.iterations;
-    for (;;) {
-      cost_to_go_.budget().poll();
-      const SlotPath path = best_path(cost_to_go_, counters.expansions, &earlier_);
-      if (path.empty()) return {};
-      earlier_.add(path, cost_to_go_);
-      if (counters.iterations == first_iteration) first_cost_ = cost_to_go_.best();
-      counters.candidate = path;
-      ++counters.iterations;
-      if (validity_.asks_costs() && costs_more(path)) {
-        cost_to_go_.repair();
-        continue;
-      }
-      fail_first_.next_round();
-      const std::int64_t removed = verdicts_.removed();
-      if (valid(path)) return {path, cost_to_go_.at(0, path.front())};
-      if (bars_a_layer()) return {};
-      if (verdicts_.removed() == removed)
-        throw std::logic_error("a round of the search removed nothing: it would never end");
-      cost_to_go_.repair();
-    }
-  }
-
-  /// Removes the suspects that fail, before the first sweep. Ends where fewer than half of some
-  /// fail.
-  void check_failure_hints(std::span<const FailureHint> failure_hints) {
-    constexpr std::size_t kAtOnce = 64;
-    std::vector<NodeQuestion> questions;
-    for (std::size_t first = 0; first < failure_hints.size(); first += kAtOnce) {
-      cost_to_go_.budget().poll();
-      questions.clear();
-      for (const FailureHint& x :
-           failure_hints.subspan(first, std::min(kAtOnce, failure_hints.size() - first)))
-        if (x.layer < lattice_.layers() && x.slot < lattice_.slots(x.layer) &&
-            verdicts_.node(x.layer, x.slot) == Verdict::kUnknown)
-          if (const auto q = cost_to_go_.node(x.layer, x.slot))
-            questions.push_back({x.layer, x.slot, *q, x.suspected});
-      if (2 * ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return;
-    }
-  }
-
- private:
-  struct Failure {
-    int layer, slot;
-    FailureId failure;
-  };
-  static std::int64_t key(int layer, int slot) { return (std::int64_t{layer} << 32) + slot; }
-
-  /// Asks what the path's nodes cost, where that is not known, and notes it. Returns true where a
-  /// node costs more than was known. A node's neighbours often cost as much, and each round in
-  /// which a path turns out to cost more asks about twice as many of them as the one before: so
-  /// rounds are few where every node costs something, and questions are few where hardly any does.
-  bool costs_more(const SlotPath& path) {
-    const TraceSpan span("costs");
-    std::vector<NodeQuestion> questions;
-    std::unordered_set<std::int64_t> asked;
-    const auto ask_about = [&](int layer, int slot) {
-      if (verdicts_.knows_cost(layer, slot) || cost_to_go_.at(layer, slot) == kUnreachable) return;
-      if (!asked.insert(key(layer, slot)).second) return;
-      if (questions.size() % 256 == 0) cost_to_go_.budget().poll();
-      questions.push_back({layer, slot, cost_to_go_.config(layer, slot)});
-    };
-    for (int layer = 0; layer < static_cast<int>(path.size()); ++layer) {
-      const int slot = path[static_cast<std::size_t>(layer)];
-      if (verdicts_.knows_cost(layer, slot)) continue;
-      ask_about(layer, slot);
-      for (const int by : {-1, 1})
-        for (int beside = slot, k = 0; k < cost_reach_; ++k) {
-          beside = lattice_.neighbour_in_redundancy(layer, beside, by);
-          if (beside < 0 || beside == slot) break;
-          ask_about(layer, beside);
-        }
-    }
-    bool more = false;
-    std::vector<double> costs;
-    constexpr std::size_t kMost = 4096;  // at once, so that the budget is polled
-    for (std::size_t first = 0; first < questions.size(); first += kMost) {
-      const auto some = std::span<const NodeQuestion>(questions).subspan(
-          first, std::min(kMost, questions.size() - first));
-      costs.assign(some.size(), 0.0);
-      validity_.costs(some, costs);
-      for (std::size_t k = 0; k < some.size(); ++k) {
-        more = more || (costs[k] > verdicts_.cost(some[k].layer, some[k].slot) &&
-                        path[static_cast<std::size_t>(some[k].layer)] == some[k].slot);
-        verdicts_.set_cost(some[k].layer, some[k].slot, costs[k]);
-      }
-    }
-    if (more) cost_reach_ = std::max(1, std::min(2 * cost_reach_, kMostReach));
-    return more;
-  }
-
-  /// Asks what is not known of the path, where failures were found first, and removes what fails.
-  /// Returns true if the path is valid.
-  bool valid(const SlotPath& path) {
-    const TraceSpan span("candidate path");
-    const int layers = static_cast<int>(path.size());
-    // joints at the layers that are asked about
-    std::vector<std::optional<Config>> solved(path.size());
-    const auto joints = [&](int layer) -> const Config& {
-      auto& q = solved[static_cast<std::size_t>(layer)];
-      if (!q) q = cost_to_go_.config(layer, path[static_cast<std::size_t>(layer)]);
-      return *q;
-    };
-    const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
-    asked_ = 0;
-    failed_on_path_.clear();
-    region_questions_left_ = most_region_questions();
-    // Where paths cost so much more than the first, obstacles block most of them, and each path
-    // would find a little more of the same region.
-    if (!deferred_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
-      expand_reached_regions();
-      for (int i = 0; i < layers; ++i)
-        if (verdicts_.node(i, path[at(i)]) == Verdict::kRemoved) return false;
-    }
-    const auto node_unknown = [&](int i) {
-      return verdicts_.node(i, path[at(i)]) == Verdict::kUnknown;
-    };
-    const auto node = [&](int i) { return NodeQuestion{i, path[at(i)], joints(i)}; };
-    if (!all_valid<NodeQuestion>(layers, layers, node_unknown, node)) return false;
-    if (!validity_.asks_edges()) return true;
-    const auto edge_unknown = [&](int i) {
-      return verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown;
-    };
-    const auto edge = [&](int i) {
-      return EdgeQuestion{i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)};
-    };
-    return all_valid<EdgeQuestion>(layers - 1, layers, edge_unknown, edge);
-  }
-
-  /// Asks about a path's nodes or edges, from layers 0 ... count - 1, and the regions around those
-  /// that fail. Where some fail, the others are asked about all the same as long as that costs less
-  /// than the next round will: many rounds would each find one of them. Returns true if all asked
-  /// are valid.
-  template <class Question, class Unknown, class Make>
-  bool all_valid(int count, int layers, const Unknown& unknown, const Make& question) {
-    std::vector<int> open;
-    for (int i = 0; i < count; ++i)
-      if (unknown(i)) open.push_back(i);
-    fail_first_.order(open);
-    const auto known = layers - static_cast<std::int64_t>(open.size());
-    bool all = true;
-    std::vector<Question> some;
-    for (std::size_t next = 0;
-         next < open.size() && (all || asked_ < options_.min_questions_per_iteration);) {
-      cost_to_go_.budget().poll(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
-      some.clear();
-      for (; next < open.size() && some.size() < batch(); ++next)
-        if (unknown(open[next])) some.push_back(question(open[next]));
-      const auto failed = ask(std::span<const Question>(some));
-      for (const auto& x : failed) fail_first_.failed(x.layer);
-      if (failed.empty()) continue;
-      all = false;
-      if constexpr (std::is_same_v<Question, NodeQuestion>)
-        failed_on_path_.insert(failed_on_path_.end(), failed.begin(), failed.end());
-      expand_failed_region(failed);
-    }
-    return all;
-  }
-
-  /// Returns true if all nodes fail in one of the layers at which the path failed; the first layers
-  /// come first, since less is left to reach before them. A layer is asked about only where no path
-  /// within the limit of the sweep has a node left in it: questions about its other nodes take less
-  /// than a sweep with a higher limit, and end at the first node that is valid.
-  bool bars_a_layer() {
-    std::sort(failed_on_path_.begin(), failed_on_path_.end(),
-              [](const Failure& a, const Failure& b) { return a.layer < b.layer; });
-    int slots_left = 100'000;  // so that looking through wide layers takes no longer than a round
-    for (int last = -1; const Failure& x : failed_on_path_)
-      if (std::exchange(last, x.layer) != x.layer && slots_left > 0 &&
-          !any_left(x.layer, slots_left) && all_fail(x))
-        return true;
-    return false;
-  }
-  [[nodiscard]] bool any_left(int layer, int& slots_left) const {
-    for (int slot = 0; slot < lattice_.slots(layer); ++slot, --slots_left)
-      if (cost_to_go_.at(layer, slot) != kUnreachable &&
-          verdicts_.node(layer, slot) != Verdict::kRemoved)
-        return true;
-    return false;
-  }
-  /// Returns true if all nodes of a layer fail as this one did. A few that lie apart are asked
-  /// about first, then the others in order, since questions about neighbours take less.
-  bool all_fail(const Failure& like) {
-    constexpr int kApart = 16;
-    const int slots = lattice_.slots(like.layer);
-    std::vector<NodeQuestion> questions;
-    const auto ask_from = [&](int first, int step) {
-      for (int slot = first; slot < slots;) {
-        questions.clear();
-        for (; slot < slots && questions.size() < kRegionQuestionsAtOnce; slot += step) {
-          const Verdict known = verdicts_.node(like.layer, slot);
-          if (known == Verdict::kValid) return false;
-          if (known == Verdict::kRemoved) continue;
-          if (const auto q = cost_to_go_.node(like.layer, slot))
-            questions.push_back({like.layer, slot, *q, like.failure});
-        }
-        if (ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return false;
-      }
-      return true;
-    };
-    const int step = std::max(1, slots / kApart);
-    return ask_from(step / 2, step) && ask_from(0, 1);
-  }
-
-  /// Asks about the region of failing nodes around those just found, breadth first along the path
-  /// and the coordinate: an obstacle blocks many neighbours, and each found now saves a round. It
-  /// is asked only whether the scene blocks them: proving them valid involves the robot's own
-  /// pairs, too, which take long since they are near by design, and few of these nodes come to lie
-  /// on a path.
-  void expand_failed_region(const std::vector<Failure>& failed) {
-    std::deque<Failure> frontier;
-    expand_failed_region(failed, frontier);
-  }
-
-  /// Continues regions that ended at nodes which no path reached at the cost of that time, and
-  /// which paths reach by now.
-  void expand_reached_regions() {
-    std::deque<Failure> frontier;
-    std::erase_if(deferred_, [&](const Failure& x) {
-      const bool known = verdicts_.node(x.layer, x.slot) != Verdict::kUnknown;
-      if (!known && cost_to_go_.at(x.layer, x.slot) == kUnreachable) return false;
-      if (!known) frontier.push_back(x);
-      return true;
-    });
-    expand_failed_region({}, frontier);
-  }
-
-  /// Neighbours of a region that are asked about at once.
-  struct Wave {
-    std::vector<NodeQuestion> questions;
-    std::vector<NodeAnswer> answers;
-    std::vector<std::int64_t> keys;  // of the questions
-    void clear() {
-      questions.clear();
-      answers.clear();
-      keys.clear();
-    }
-    [[nodiscard]] bool has(std::int64_t key) const {
-      return std::find(keys.begin(), keys.end(), key) != keys.end();
-    }
-  };
-  /// Adds the neighbours of a failing node that are not known to the frontier of its region.
-  void add_neighbours(const Failure& x, std::deque<Failure>& frontier) const {
-    const auto add = [&](int layer, int slot) {
-      if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown)
-        frontier.push_back({layer, slot, x.failure});
-    };
-    for (const int by : {-1, 1})
-      if (x.layer + by <= cost_to_go_.goal_layer())
-        add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.slot, by));
-    for (const int by : {1, -1})
-      for (const int slot : {lattice_.neighbour_in_redundancy(x.layer, x.slot, by),
-                             lattice_.neighbour_in_roll(x.layer, x.slot, by)})
-        add(x.layer, slot);
-  }
-  /// Returns how many neighbours the next wave has at most. While one wave is asked about, the next
-  /// is made: a wave takes about half of the frontier, so that there mostly is another.
-  [[nodiscard]] std::size_t most_in_wave(const std::deque<Failure>& frontier) const {
-    constexpr std::size_t kFewest = 16;
-    const std::size_t at_once = options_.overlap_region_questions
-                                    ? std::max(kFewest, frontier.size() / 2)
-                                    : kRegionQuestionsAtOnce;
-    return std::min(
-        {at_once, kRegionQuestionsAtOnce, static_cast<std::size_t>(region_questions_left_)});
-  }
-  /// Takes neighbours from the frontier into a wave, but for those that are known, or in the wave
-  /// `asked`. Defers those that no path reaches.
-  void fill(Wave& wave, const Wave& asked, std::deque<Failure>& frontier) {
-    for (const std::size_t enough = most_in_wave(frontier);
-         !frontier.empty() && wave.questions.size() < enough;) {
-      const auto [layer, slot, failure] = frontier.front();
-      frontier.pop_front();
-      if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
-      if (wave.has(key(layer, slot)) || asked.has(key(layer, slot))) continue;
-      if (cost_to_go_.at(layer, slot) == kUnreachable) {
-        deferred_.push_back({layer, slot, failure});
-        continue;
-      }
-      if (const auto known = clear_of_scene_.find(key(layer, slot));
-          known != clear_of_scene_.end() && known->second == failure)
-        continue;
-      wave.questions.push_back(
-          {layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
-      wave.keys.push_back(key(layer, slot));
-    }
-    region_questions_left_ -= static_cast<int>(wave.questions.size());
-    wave.answers.assign(wave.questions.size(), {});
-  }
-  /// Notes the answers to a wave and clears it. The frontier grows around the nodes that failed.
-  void take_wave(Wave& wave, std::deque<Failure>& frontier) {
-    for (const Failure& node : take(wave.questions, wave.answers)) add_neighbours(node, frontier);
-    wave.clear();
-  }
-  void expand_failed_region(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
-    for (const Failure& node : failed) add_neighbours(node, frontier);
-    Wave before, now, next;
-    for (fill(now, before, frontier); !now.questions.empty();) {
-      if (options_.overlap_region_questions)
-        validity_.nodes_overlapped(now.questions, now.answers, [&] {
-          const TraceSpan span("neighbours");
-          take_wave(before, frontier);
-          fill(next, now, frontier);
-        });
-      else
-        validity_.nodes(now.questions, now.answers);
-      std::swap(before, now);
-      std::swap(now, next);  // which leaves it empty
-      if (!now.questions.empty()) continue;
-      take_wave(before, frontier);
-      fill(now, before, frontier);
-    }
-  }
-
-  /// Asks about the region of failing edges around those just found: neighbours of a failing edge,
-  /// and its continuations along the path, often fail as it does.
-  void expand_failed_region(const std::vector<EdgeQuestion>& failed) {
-    struct Edge {
-      int layer, a, b;
-      bool operator==(const Edge&) const = default;
-    };
-    std::deque<Edge> frontier;
-    const auto add = [&](int layer, int a, int b) {
-      if (a >= 0 && b >= 0) frontier.push_back({layer, a, b});
-    };
-    const auto add_neighbours = [&](const EdgeQuestion& x) {
-      const auto shifted = [&](int layer, int slot, int by) {
-        return by == 0 ? slot : lattice_.neighbour_in_redundancy(layer, slot, by);
-      };
-      constexpr std::pair<int, int> kShifts[] = {{0, 1},  {0, -1}, {1, 0},
-                                                 {-1, 0}, {1, 1},  {-1, -1}};
-      for (const auto& [da, db] : kShifts)
-        add(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
-      for (const int by : {-1, 1})
-        if (x.layer + by >= 0 && x.layer + by < cost_to_go_.goal_layer())
-          add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.a, by),
-              lattice_.neighbour_along_path(x.layer + 1, x.b, by));
-    };
-    for (const EdgeQuestion& edge : failed) add_neighbours(edge);
-    std::vector<Edge> asked;
-    std::vector<EdgeQuestion> questions;
-    for (int& left = region_questions_left_; left > 0 && !frontier.empty();) {
-      asked.clear();
-      questions.clear();
-      while (!frontier.empty() &&
-             questions.size() < std::min(kRegionQuestionsAtOnce, static_cast<std::size_t>(left))) {
-        const Edge x = frontier.front();
-        frontier.pop_front();
-        if (cost_to_go_.at(x.layer, x.a) == kUnreachable ||
-            cost_to_go_.at(x.layer + 1, x.b) == kUnreachable ||
-            verdicts_.node(x.layer, x.a) == Verdict::kRemoved ||
-            verdicts_.node(x.layer + 1, x.b) == Verdict::kRemoved ||
-            verdicts_.edge(x.layer, x.a, x.b) != Verdict::kUnknown ||
-            !lattice_.in_window(x.layer, x.a, x.b) ||
-            std::find(asked.begin(), asked.end(), x) != asked.end())
-          continue;
-        const EdgeQuestion edge{x.layer, x.a, x.b, cost_to_go_.config(x.layer, x.a),
-                                cost_to_go_.config(x.layer + 1, x.b)};
-        if (!lattice_.step_allowed(x.layer, lattice_.delta(edge.qa, edge.qb))) continue;
-        asked.push_back(x);
-        questions.push_back(edge);
-      }
-      left -= static_cast<int>(questions.size());
-      for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions)))
-        add_neighbours(edge);
-    }
-  }
-  [[nodiscard]] int most_region_questions() const {
-    return options_.region_questions +
-           static_cast<int>(std::min<std::int64_t>(
-               lattice_.nodes() / options_.nodes_per_region_question, 1'000'000));
-  }
-
-  /// Notes the answers to questions about nodes. Returns the nodes that failed.
-  std::vector<Failure> take(std::span<const NodeQuestion> questions,
-                            std::span<const NodeAnswer> answers) {
-    asked_ += static_cast<std::int64_t>(questions.size());
-    std::vector<Failure> failed;
-    failed.reserve(questions.size());
-    for (std::size_t k = 0; k < questions.size(); ++k) {
-      const NodeQuestion& x = questions[k];
-      if (answers[k].valid) {
-        if (x.only_scene)
-          clear_of_scene_[key(x.layer, x.slot)] = x.suspected;
-        else
-          verdicts_.keep_node(x.layer, x.slot);
-      } else {
-        if (answers[k].shared)
-          lattice_.slots_with_same_body_poses(x.layer, x.slot, answers[k].groups, same_poses_);
-        else
-          same_poses_.assign(1, x.slot);
-        verdicts_.remove_nodes(x.layer, same_poses_);
-        failed.push_back({x.layer, x.slot, answers[k].failure});
-      }
-    }
-    return failed;
-  }
-
-  /// Asks about nodes and notes the answers. Returns the nodes that failed.
-  std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
-    answers_.assign(questions.size(), {});
-    validity_.nodes(questions, answers_);
-    return take(questions, answers_);
-  }
-
-  std::vector<EdgeQuestion> ask(std::span<const EdgeQuestion> questions) {
-    asked_ += static_cast<std::int64_t>(questions.size());
-    std::vector<EdgeQuestion> failed;
-    edge_answers_.assign(questions.size(), 0);
-    validity_.edges(questions, edge_answers_);
-    for (std::size_t k = 0; k < questions.size(); ++k) {
-      const EdgeQuestion& x = questions[k];
-      if (edge_answers_[k]) {
-        verdicts_.keep_edge(x.layer, x.a, x.b);
-      } else {
-        cost_to_go_.remove_edge(x.layer, x.a, x.b);
-        failed.push_back(x);
-      }
-    }
-    return failed;
-  }
-
-  [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
-
-  CostToGo& cost_to_go_;
-  Verdicts& verdicts_;
-  const Lattice& lattice_;
-  Validity& validity_;
-  PathFirstOptions options_;
-  PathCache earlier_;
-  static constexpr int kMostReach = 1 << 20;
-  int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
-  std::int64_t asked_ = 0;               // questions in this round
-  std::vector<Failure> failed_on_path_;  // in this round
-  int region_questions_left_ = 0;        // questions about neighbours left in this round
-  static constexpr std::size_t kRegionQuestionsAtOnce = 32;
-  // The failure that expand_failed_region() asked about last, by key(), for nodes that the scene
-  // did not block.
-  std::unordered_map<std::int64_t, FailureId> clear_of_scene_;
-  static constexpr double kMuchDearer = 1.2;
-  double first_cost_ = 0;          // cost of the first path
-  std::vector<Failure> deferred_;  // nodes at which regions ended
-  FailFirst fail_first_;
-  std::vector<NodeAnswer> answers_;
-  std::vector<std::uint8_t> edge_answers_;
-  std::vector<int> same_poses_;
-};
+/// Searches for the first valid path, with failures of an earlier search asked about first.
+SearchOutcome search(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
+                     SearchCounters& counters, const PriorFailures& first) {
+  const Verdicts& verdicts = cost_to_go.verdicts();
+  PathValidator validator(cost_to_go, validity, options);
+  PathCache earlier;
+  validator.ask_again(first);
+  if (verdicts.removed() > 0 && !verdicts.pending.empty()) cost_to_go.repair();
+  return first_valid_path(cost_to_go, validity, validator, earlier, counters);
+}
 
 }  // namespace
 
+SearchOutcome first_valid_path(CostToGo& cost_to_go, const Validity& validity,
+                               PathValidator& validator, PathCache& earlier,
+                               SearchCounters& counters) {
+  for (;;) {
+    cost_to_go.budget().poll();
+    const SlotPath path = best_path(cost_to_go, counters.expansions, &earlier);
+    if (path.empty()) return {};
+    earlier.add(path, cost_to_go);
+    validator.begin();
+    counters.candidate = path;
+    ++counters.iterations;
+    if (validity.asks_costs() && validator.costs_more(path)) {
+      cost_to_go.repair();
+      continue;
+    }
+    const std::int64_t removed = cost_to_go.verdicts().removed();
+    if (validator.valid(path)) return {path, cost_to_go.at(0, path.front())};
+    if (validator.bars_a_layer()) return {};
+    if (cost_to_go.verdicts().removed() == removed)
+      throw std::logic_error("a round of the search removed nothing: it would never end");
+    cost_to_go.repair();
+  }
+}
+
 SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                          SearchCounters& counters, const PriorFailures& first) {
-  return Search(cost_to_go, validity, options).run(counters, first);
+  return search(cost_to_go, validity, options, counters, first);
 }
 
 void check_failure_hints(CostToGo& cost_to_go, Validity& validity,
                          std::span<const FailureHint> failure_hints) {
-  if (!failure_hints.empty()) Search(cost_to_go, validity, {}).check_failure_hints(failure_hints);
+  if (!failure_hints.empty())
+    PathValidator(cost_to_go, validity, {}).check_failure_hints(failure_hints);
 }
 
 int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
@@ -523,7 +64,7 @@ int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirs
     if (optimistic < 0) return -1;
     const std::int64_t removed = cost_to_go.verdicts().removed();
     cost_to_go.sweep(optimistic);
-    if (!Search(cost_to_go, validity, options).run(counters, {}).path.empty()) return optimistic;
+    if (!search(cost_to_go, validity, options, counters, {}).path.empty()) return optimistic;
     if (cost_to_go.verdicts().removed() == removed)
       throw std::logic_error("a round of the search removed nothing: it would never end");
   }

@@ -30,6 +30,7 @@ void Verdicts::clear() {
   known_.clear();
   begin_costs();
   cost_known_.clear();
+  exit_costs_.clear();
   edge_.clear();
   removed_edges_.clear();
   pending.clear();
@@ -77,16 +78,37 @@ void Verdicts::remove_edge(int layer, int a, int b, double cost) {
   pending[layer].tails.push_back(a);
 }
 
-void Verdicts::set_cost(int layer, int slot, double cost) {
-  if (cost_known_.empty()) cost_known_.resize(node_.size());
-  cost_known_[index(layer, slot)] = 1;
-  if (cost == this->cost(layer, slot)) return;
+std::vector<double>& Verdicts::costs_of(int layer) {
   const auto at = static_cast<std::size_t>(layer);
   costs_.resize(first_.size());
   if (costs_[at].empty())
     costs_[at].resize((at + 1 < first_.size() ? first_[at + 1] : node_.size()) - first_[at]);
-  costs_[at][static_cast<std::size_t>(slot)] = cost;
-  pending[layer].raised.push_back(slot);
+  return costs_[at];
+}
+
+void Verdicts::set_cost(int layer, int slot, double cost) {
+  if (cost_known_.empty()) cost_known_.resize(node_.size());
+  cost_known_[index(layer, slot)] = 1;
+  if (static_cast<std::size_t>(layer) + 1 == first_.size()) cost += exit_cost(slot);
+  const double before = this->cost(layer, slot);
+  if (cost == before) return;
+  costs_of(layer)[static_cast<std::size_t>(slot)] = cost;
+  pending[layer].raised.push_back({slot, cost - before});
+}
+
+void Verdicts::raise_exit_costs(std::span<const double> costs) {
+  if (exit_costs_.empty()) exit_costs_.resize(costs.size());
+  const int last = static_cast<int>(first_.size()) - 1;
+  std::vector<double>* all = nullptr;
+  std::vector<Pending::Raise>* raised = nullptr;
+  for (std::size_t slot = 0; slot < costs.size(); ++slot) {
+    const double by = costs[slot] - exit_costs_[slot];
+    if (!(by > 0)) continue;
+    if (!all) all = &costs_of(last), raised = &pending[last].raised;
+    (*all)[slot] += by;
+    exit_costs_[slot] = costs[slot];
+    raised->push_back({static_cast<int>(slot), by});
+  }
 }
 
 const Verdicts::RemovedEdges* Verdicts::removed_edges(int layer) const {

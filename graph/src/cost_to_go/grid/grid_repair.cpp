@@ -208,10 +208,10 @@ class GridCostToGo::RemovalSweep {
   /// Adds their costs to nodes that cost more now. They are first computed with the layer after as
   /// it was; where that changed too, they are relaxed next.
   void raise(int side, int layer, const Verdicts::Pending& now) {
-    for (const int slot : now.raised)
+    for (const auto& [slot, by] : now.raised)
       if (side_of(slot) == side)
         if (const double value = of_.at(layer, slot); value != kUnreachable)
-          set(layer, slot, verdicts_.cost(layer, slot) + value);
+          set(layer, slot, value + by);
   }
   void remove(int side, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.nodes)

@@ -287,8 +287,9 @@ void RollCostToGo::compute_removals() {
     stale.clear();
     changed.clear();
     if (const auto found = verdicts_.pending.find(layer); found != verdicts_.pending.end()) {
-      for (const auto* slots : {&found->second.nodes, &found->second.tails, &found->second.raised})
+      for (const auto* slots : {&found->second.nodes, &found->second.tails})
         stale.insert(stale.end(), slots->begin(), slots->end());
+      for (const auto& raise : found->second.raised) stale.push_back(raise.slot);
       verdicts_.pending.erase(found);
     }
     if (ahead.size() + stale.size() > kMany) {

@@ -49,6 +49,10 @@ class PathCache {
 /// layer until it meets an earlier path, where such are given. Adds to `expansions`.
 [[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions,
                                  PathCache* earlier = nullptr);
+/// Returns the best path from a slot of layer 0, the smallest slots first among equals; empty when
+/// there is none. The cost-to-go must be whole (Pruning::kNone). Adds to `expansions`.
+[[nodiscard]] SlotPath best_path_from(int first_slot, CostToGo& cost_to_go,
+                                      std::int64_t& expansions, PathCache* earlier = nullptr);
 
 /// What a search found.
 struct SearchOutcome {

@@ -52,7 +52,7 @@ class Verdicts {
   [[nodiscard]] std::int64_t removed() const { return removed_; }
 
   /// Returns what a node costs besides the edges to and from it: by the lattice alone
-  /// (Lattice::node_cost()) until the Validity has said more.
+  /// (Lattice::node_cost()) until the Validity has said more; exit costs included.
   [[nodiscard]] double cost(int layer, int slot) const {
     const double* costs = this->costs(layer);
     return costs ? costs[slot] : 0;
@@ -71,6 +71,17 @@ class Verdicts {
   /// alone.
   void set_cost(int layer, int slot, double cost);
 
+  /// Returns what must be paid for going on from a node of the last layer; 0 at first.
+  [[nodiscard]] double exit_cost(int slot) const {
+    return exit_costs_.empty() ? 0 : exit_costs_[static_cast<std::size_t>(slot)];
+  }
+  /// Returns true if raise_exit_costs() has been called.
+  [[nodiscard]] bool has_exit_costs() const { return !exit_costs_.empty(); }
+  /// Raises exit costs: they count like costs of the last layer's nodes. `costs` has one for each
+  /// slot, a multiple of 2^-40 Lattice::cost_unit() or infinite, not less than before. Values
+  /// follow at the next CostToGo::repair() or sweep().
+  void raise_exit_costs(std::span<const double> costs);
+
   /// A removed edge as one of its nodes sees it.
   struct HalfEdge {
     int other = 0;  ///< slot of the other node
@@ -86,9 +97,14 @@ class Verdicts {
 
   /// What has changed in a layer since the cost-to-go was last repaired.
   struct Pending {
-    std::vector<int> nodes;   ///< slots removed
-    std::vector<int> tails;   ///< slots that lost an edge
-    std::vector<int> raised;  ///< slots that cost more than they did
+    std::vector<int> nodes;  ///< slots removed
+    std::vector<int> tails;  ///< slots that lost an edge
+    /// A slot that costs more than it did.
+    struct Raise {
+      int slot = 0;
+      double by = 0;
+    };
+    std::vector<Raise> raised;
   };
   std::map<int, Pending> pending;
 
@@ -110,6 +126,8 @@ class Verdicts {
   }
 
   void begin_costs();
+  /// Returns the costs of a layer's slots, to be changed.
+  [[nodiscard]] std::vector<double>& costs_of(int layer);
 
   const Lattice* lattice_;
   std::vector<std::size_t> first_;  // of each layer
@@ -118,6 +136,7 @@ class Verdicts {
   std::vector<std::size_t> known_;
   std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
   std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is
+  std::vector<double> exit_costs_;          // by slot of the last layer; empty where all are 0
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
   std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
   std::int64_t removed_ = 0;

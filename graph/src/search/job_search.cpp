@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The search of a job joins the lattices of its runs to one graph: every end node of a run may be
+// followed by every begin node of the next, at the cost of a transition. Its cost-to-go is that of
+// the runs, each with the cheapest way on as the exit costs of its last layer, computed from the
+// last run to the first. As with single paths, what turns out to be invalid is removed and what
+// turns out to cost more is raised, so that the value of the best job left is always a lower bound.
+#include "swivel/graph/search/job_search.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "search/path_validator.hpp"
+#include "search/transition_costs.hpp"
+#include "swivel/core/base/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+using Asked = TransitionCosts::Asked;
+
+/// A run with what the search knows of it.
+struct Run {
+  Run(const SearchedRun& run, const PathFirstOptions& options)
+      : cost_to_go(run.cost_to_go),
+        validity(run.validity),
+        validator(*run.cost_to_go, *run.validity, options) {}
+  CostToGo* cost_to_go;
+  Validity* validity;
+  PathValidator validator;
+  PathCache earlier;
+  SearchCounters counters;
+  std::vector<double> rest;                     // cost from each begin node to the end of the job
+  std::vector<std::size_t> order;               // begin nodes by ascending rest
+  std::vector<TransitionCosts::Onward> onward;  // from each end node
+  bool swept_with_exits = false;
+  SlotPath path;       // of the candidate job
+  bool valid = false;  // the last answer about `path`
+};
+
+/// A pair of nodes of one transition.
+struct Pair {
+  int transition = 0;
+  std::size_t end = 0, begin = 0;
+};
+
+/// A job: a path through each run, and the pair of nodes of each transition.
+struct Candidate {
+  std::vector<SlotPath> paths;
+  std::vector<Pair> pairs;
+};
+
+std::vector<EndNode> nodes_of(CostToGo& cost_to_go, int layer) {
+  std::vector<EndNode> nodes;
+  for (int slot = 0; slot < cost_to_go.lattice().slots(layer); ++slot)
+    if (cost_to_go.verdicts().node(layer, slot) != Verdict::kRemoved)
+      if (const auto q = cost_to_go.node(layer, slot)) nodes.push_back({slot, *q});
+  return nodes;
+}
+
+std::size_t index_of(const std::vector<EndNode>& nodes, int slot) {
+  const auto found = std::lower_bound(nodes.begin(), nodes.end(), slot,
+                                      [](const EndNode& n, int s) { return n.slot < s; });
+  return static_cast<std::size_t>(found - nodes.begin());
+}
+
+class JobSearch {
+ public:
+  JobSearch(std::span<const SearchedRun> runs, Transitions& transitions,
+            const std::optional<Config>& home, const JobSearchOptions& options, JobOutcome& outcome)
+      : transitions_(transitions), home_(home), options_(options), outcome_(outcome) {
+    runs_.reserve(runs.size());
+    for (const SearchedRun& run : runs) runs_.emplace_back(run, options.paths);
+  }
+
+  void run() {
+    if (!find_runs_alone()) return;
+    begin_transitions();
+    find_greedy_job();
+    while (improve()) {
+    }
+    outcome_.decided = true;
+  }
+
+ private:
+  [[nodiscard]] int last() const { return static_cast<int>(runs_.size()); }
+  [[nodiscard]] Run& at(int k) { return runs_[static_cast<std::size_t>(k)]; }
+  /// Returns the costs of transition k: to run k from the run before it or from home; 0 and last()
+  /// exist only with a home.
+  [[nodiscard]] TransitionCosts& costs(int k) { return *costs_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] bool exists(int transition) const {
+    return home_ || (transition > 0 && transition < last());
+  }
+
+  /// Finds the best valid path of each run by itself. Returns false if one has none.
+  bool find_runs_alone() {
+    const TraceSpan span("runs alone");
+    std::vector<SearchOutcome> found(runs_.size());
+    options_.work.for_each(last(), [&](int k, int) {
+      Run& run = at(k);
+      run.cost_to_go->sweep(run.cost_to_go->lattice().layers() - 1);
+      found[static_cast<std::size_t>(k)] = first_valid_path(
+          *run.cost_to_go, *run.validity, run.validator, run.earlier, run.counters);
+    });
+    outcome_.least_costs.assign(runs_.size(), kUnreachable);
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      if (!found[k].path.empty())
+        outcome_.least_costs[k] = found[k].cost;
+      else if (!outcome_.run_without_path)
+        outcome_.run_without_path = k;
+    }
+    outcome_.decided = outcome_.run_without_path.has_value();
+    return !outcome_.run_without_path;
+  }
+
+  void begin_transitions() {
+    const TraceSpan span("distances");
+    const std::vector<EndNode> home =
+        home_ ? std::vector<EndNode>{{0, *home_}} : std::vector<EndNode>();
+    costs_.resize(runs_.size() + 1);
+    for (int k = 0; k <= last(); ++k) {
+      if (!exists(k)) continue;
+      costs_[static_cast<std::size_t>(k)].emplace(
+          transitions_,
+          k == 0 ? home
+                 : nodes_of(*at(k - 1).cost_to_go, at(k - 1).cost_to_go->lattice().layers() - 1),
+          k == last() ? home : nodes_of(*at(k).cost_to_go, 0));
+    }
+  }
+
+  // --- the greedy job
+
+  /// Takes each run at the least cost after the one before, and the first transition found to it.
+  void find_greedy_job() {
+    const TraceSpan span("greedy job");
+    Candidate job;
+    std::vector<double> run_costs;
+    std::size_t end = 0;
+    for (int k = 0; k <= last(); ++k) {
+      if (k == last()) {
+        if (exists(k) && !greedy_transition({k, end, 0}, job)) return;
+        break;
+      }
+      Run& run = at(k);
+      for (bool found = false; !found;) {
+        if (exists(k)) {
+          take_rest(k);
+          const auto onward = costs(k).onward(end, run.rest, run.order);
+          if (onward.cost == kUnreachable) return;
+          run.path = best_path_from(costs(k).begins()[onward.begin].slot, *run.cost_to_go,
+                                    run.counters.expansions, &run.earlier);
+          found = validate(run) && greedy_transition({k, end, onward.begin}, job);
+          // a begin node that no way leads to is left out of this job alone
+          if (!found && run.valid) return;
+        } else {
+          run.path = best_path(*run.cost_to_go, run.counters.expansions, &run.earlier);
+          found = validate(run);
+        }
+      }
+      job.paths.push_back(run.path);
+      run_costs.push_back(run.cost_to_go->at(0, run.path.front()));
+      if (exists(k + 1)) end = index_of(costs(k + 1).ends(), run.path.back());
+    }
+    take_job(job, run_costs);
+  }
+  bool greedy_transition(const Pair& pair, Candidate& job) {
+    job.pairs.push_back(pair);
+    return ask({pair}, true).front().verdict == Verdict::kValid;
+  }
+
+  // --- questions
+
+  /// Asks about the candidate path of a run and what its nodes cost. Returns true if it is valid
+  /// and costs what was known; else values are made exact again.
+  static bool validate(Run& run) {
+    run.validator.begin();
+    const std::int64_t removed = run.cost_to_go->verdicts().removed();
+    ++run.counters.iterations;
+    if (run.validity->asks_costs() && run.validator.costs_more(run.path)) {
+      run.valid = false;
+    } else {
+      run.valid = run.validator.valid(run.path);
+      if (!run.valid && run.cost_to_go->verdicts().removed() == removed)
+        throw std::logic_error("a round of the search removed nothing: it would never end");
+    }
+    if (!run.cost_to_go->verdicts().pending.empty()) run.cost_to_go->repair();
+    return run.valid;
+  }
+
+  /// Asks about pairs of transitions and notes the answers. They are raised once all runs of the
+  /// cheapest job are valid: until then its value bounds the cost of any job.
+  std::vector<TransitionAnswer> ask(const std::vector<Pair>& pairs, bool thorough) {
+    std::vector<TransitionQuestion> questions;
+    for (const auto& [k, end, begin] : pairs)
+      questions.push_back({k, costs(k).ends()[end].q, costs(k).begins()[begin].q, thorough});
+    std::vector<TransitionAnswer> answers(pairs.size());
+    transitions_.find(questions, answers);
+    outcome_.pairs += static_cast<std::int64_t>(pairs.size());
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      const auto& [k, end, begin] = pairs[n];
+      const bool known = answers[n].verdict != Verdict::kUnknown;
+      if (thorough && !(answers[n].cost <= costs(k).at(end, begin))) ++outcome_.searches;
+      costs(k).set_asked(end, begin, known ? Asked::kThoroughly : Asked::kInPassing);
+      if (!known) continue;
+      const double cost = answers[n].verdict == Verdict::kValid ? answers[n].cost : kUnreachable;
+      noted_.push_back({pairs[n], cost});
+    }
+    return answers;
+  }
+  /// Raises the costs that were noted. Returns true if one of them rose.
+  bool raise_noted() {
+    bool any = false;
+    for (const auto& [pair, cost] : noted_) {
+      TransitionCosts& known = costs(pair.transition);
+      if (!(cost > known.at(pair.end, pair.begin))) continue;
+      known.raise(pair.end, pair.begin, cost);
+      any = true;
+    }
+    noted_.clear();
+    raised_ = raised_ || any;
+    return any;
+  }
+
+  // --- rounds
+
+  /// Tries the cheapest job that is left. Returns false once the cheapest job is known.
+  bool improve() {
+    ++outcome_.rounds;
+    at(0).cost_to_go->budget().poll();
+    update_values();
+    Candidate job = cheapest_job();
+    if (job.paths.empty()) {
+      if (outcome_.cost == kUnreachable) outcome_.transition_without_way = first_barred();
+      outcome_.bound = outcome_.cost;
+      return false;
+    }
+    outcome_.bound = std::min(value_, outcome_.cost);
+    if (!raised_) outcome_.bound_any = outcome_.bound;
+    if (outcome_.cost <= value_) return false;
+    if (!validate_runs() || raise_noted()) return true;
+    return !take_if_transitions_hold(job);
+  }
+
+  /// Computes what the rest of the job costs from all begin nodes, from the last run to the first.
+  void update_values() {
+    const TraceSpan span("job values");
+    for (int k = last() - 1; k >= 0; --k) {
+      if (exists(k + 1)) raise_exits(k);
+      if (exists(k)) take_rest(k);
+    }
+  }
+  void raise_exits(int k) {
+    Run& run = at(k);
+    const TransitionCosts& next = costs(k + 1);
+    static const std::vector<double> kDone{0};
+    static const std::vector<std::size_t> kFirst{0};
+    const bool home = k + 1 == last();
+    const std::vector<double>& rest = home ? kDone : at(k + 1).rest;
+    const std::vector<std::size_t>& order = home ? kFirst : at(k + 1).order;
+    run.onward.resize(next.ends().size());
+    std::vector<double> exits(static_cast<std::size_t>(
+        run.cost_to_go->lattice().slots(run.cost_to_go->lattice().layers() - 1)));
+    for (std::size_t end = 0; end < next.ends().size(); ++end) {
+      TransitionCosts::Onward& onward = run.onward[end];
+      // costs only rise, so the way on stays the cheapest as long as it costs what it did
+      if (onward.cost == kUnreachable ||
+          next.at(end, onward.begin) + rest[onward.begin] != onward.cost)
+        onward = next.onward(end, rest, order);
+      exits[static_cast<std::size_t>(next.ends()[end].slot)] = onward.cost;
+    }
+    Verdicts& verdicts = run.cost_to_go->verdicts();
+    verdicts.raise_exit_costs(exits);
+    if (!std::exchange(run.swept_with_exits, true))
+      run.cost_to_go->sweep(run.cost_to_go->lattice().layers() - 1);
+    else if (!verdicts.pending.empty())
+      run.cost_to_go->repair();
+  }
+  void take_rest(int k) {
+    Run& run = at(k);
+    const std::vector<EndNode>& begins = costs(k).begins();
+    run.rest.resize(begins.size());
+    for (std::size_t n = 0; n < begins.size(); ++n)
+      run.rest[n] = run.cost_to_go->at(0, begins[n].slot);
+    run.order = TransitionCosts::by_rest(run.rest);
+  }
+
+  /// Returns the cheapest job by what is known, and sets value_ to its cost; an empty one if none
+  /// is left.
+  Candidate cheapest_job() {
+    Candidate job;
+    value_ = kUnreachable;
+    int slot = -1;
+    if (home_) {
+      const auto onward = costs(0).onward(0, at(0).rest, at(0).order);
+      if (onward.cost == kUnreachable) return job;
+      value_ = onward.cost;
+      job.pairs.push_back({0, 0, onward.begin});
+      slot = costs(0).begins()[onward.begin].slot;
+    } else {
+      slot = at(0).cost_to_go->first_slot();
+      if (slot < 0) return job;
+      value_ = at(0).cost_to_go->at(0, slot);
+    }
+    for (int k = 0; k < last(); ++k) {
+      Run& run = at(k);
+      run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
+      run.earlier.add(run.path, *run.cost_to_go);
+      job.paths.push_back(run.path);
+      if (!exists(k + 1)) continue;
+      const std::size_t end = index_of(costs(k + 1).ends(), run.path.back());
+      job.pairs.push_back({k + 1, end, run.onward[end].begin});
+      if (k + 1 < last()) slot = costs(k + 1).begins()[run.onward[end].begin].slot;
+    }
+    return job;
+  }
+
+  bool validate_runs() {
+    const TraceSpan span("validate runs");
+    options_.work.for_each(last(), [&](int k, int) { validate(at(k)); });
+    return std::all_of(runs_.begin(), runs_.end(), [](const Run& run) { return run.valid; });
+  }
+
+  /// Asks about the transitions of a job whose runs are valid. Takes the job if a way was found for
+  /// each. Returns true if nothing cheaper can be left.
+  bool take_if_transitions_hold(const Candidate& job) {
+    const TraceSpan span("transitions");
+    std::vector<Pair> open;
+    for (const Pair& pair : job.pairs)
+      if (costs(pair.transition).asked(pair.end, pair.begin) != Asked::kThoroughly)
+        open.push_back(pair);
+    std::vector<double> run_costs;
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      const SlotPath& path = job.paths[k];
+      run_costs.push_back(runs_[k].cost_to_go->at(0, path.front()) -
+                          runs_[k].cost_to_go->verdicts().exit_cost(path.back()));
+    }
+    if (!open.empty() && outcome_.searches >= options_.most_searches) return true;
+    const auto answers = ask(open, true);
+    std::vector<Pair> dearer;
+    for (std::size_t n = 0; n < open.size(); ++n) {
+      const double straight = costs(open[n].transition).at(open[n].end, open[n].begin);
+      if (answers[n].verdict == Verdict::kValid && answers[n].cost <= straight) continue;
+      dearer.push_back(open[n]);
+    }
+    raise_noted();
+    take_job(job, run_costs);
+    if (dearer.empty()) return true;
+    for (const Pair& pair : dearer) ask_around(pair);
+    raise_noted();
+    return false;
+  }
+
+  /// Asks in passing about pairs near one whose straight move is barred, as far as they are cheaper
+  /// than the way around: an obstacle bars many neighbours alike, and the way around one serves the
+  /// others.
+  void ask_around(const Pair& barred) {
+    constexpr std::size_t kMostAtOnce = 96;
+    const int k = barred.transition;
+    const TransitionCosts& known = costs(k);
+    int& reach = reach_[static_cast<std::size_t>(k)];
+    reach = std::min(kMostReach, std::max(kLeastReach, 2 * reach));
+    const std::vector<double> done{0};
+    const std::vector<double>& rest = k == last() ? done : at(k).rest;
+    const double most = known.at(barred.end, barred.begin) + rest[barred.begin];
+    struct Near {
+      double cost;
+      Pair pair;
+    };
+    std::vector<Near> near;
+    const auto range = [&](std::size_t centre, std::size_t count) {
+      const auto w = static_cast<std::size_t>(reach);
+      return std::pair{centre < w ? 0 : centre - w, std::min(count, centre + w + 1)};
+    };
+    const auto [first_end, last_end] = range(barred.end, known.ends().size());
+    const auto [first_begin, last_begin] = range(barred.begin, known.begins().size());
+    for (std::size_t end = first_end; end < last_end; ++end)
+      for (std::size_t begin = first_begin; begin < last_begin; ++begin) {
+        const double cost = known.at(end, begin) + rest[begin];
+        if (cost < most && known.asked(end, begin) == Asked::kNothing)
+          near.push_back({cost, {k, end, begin}});
+      }
+    std::stable_sort(near.begin(), near.end(),
+                     [](const Near& a, const Near& b) { return a.cost < b.cost; });
+    std::vector<Pair> pairs;
+    for (const Near& x : near)
+      if (pairs.size() < kMostAtOnce) pairs.push_back(x.pair);
+    if (!pairs.empty()) ask(pairs, false);
+  }
+
+  /// Takes a valid job whose transitions are known if it is the cheapest so far.
+  void take_job(const Candidate& job, const std::vector<double>& run_costs) {
+    std::vector<double> transition_costs;
+    double cost = 0;
+    for (const double run : run_costs) cost += run;
+    for (const Pair& pair : job.pairs) {
+      double known = costs(pair.transition).at(pair.end, pair.begin);
+      for (const auto& [noted, more] : noted_)
+        if (noted.transition == pair.transition && noted.end == pair.end &&
+            noted.begin == pair.begin)
+          known = std::max(known, more);
+      transition_costs.push_back(known);
+      cost += known;
+    }
+    if (!(cost < outcome_.cost)) return;
+    outcome_.cost = cost;
+    outcome_.paths = job.paths;
+    outcome_.run_costs = run_costs;
+    outcome_.transition_costs = transition_costs;
+  }
+
+  /// Returns the last transition over which no begin node has a way to the end of the job.
+  [[nodiscard]] std::size_t first_barred() {
+    for (int k = last(); k > 0; --k)
+      if (exists(k) && std::all_of(at(k - 1).onward.begin(), at(k - 1).onward.end(),
+                                   [](const auto& x) { return x.cost == kUnreachable; }))
+        return static_cast<std::size_t>(k);
+    return 0;
+  }
+
+  static constexpr int kLeastReach = 4, kMostReach = 24;
+  Transitions& transitions_;
+  const std::optional<Config>& home_;
+  const JobSearchOptions& options_;
+  JobOutcome& outcome_;
+  std::vector<Run> runs_;
+  std::vector<std::optional<TransitionCosts>> costs_;  // by transition
+  std::map<std::size_t, int> reach_;                   // of ask_around(), by transition
+  struct Noted {
+    Pair pair;
+    double cost;
+  };
+  std::vector<Noted> noted_;     // answers that are not raised yet
+  bool raised_ = false;          // the cost of a transition
+  double value_ = kUnreachable;  // cost of the cheapest job by what is known
+};
+
+}  // namespace
+
+JobOutcome search_job(std::span<const SearchedRun> runs, Transitions& transitions,
+                      const std::optional<Config>& home, const JobSearchOptions& options) {
+  JobOutcome outcome;
+  try {
+    JobSearch(runs, transitions, home, options, outcome).run();
+  } catch (const Stopped&) {
+  }
+  return outcome;
+}
+
+}  // namespace swivel
