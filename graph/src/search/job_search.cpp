@@ -52,11 +52,16 @@ struct Candidate {
   std::vector<Pair> pairs;
 };
 
+/// Returns the nodes of a layer that are not removed, with the joints of their rows.
 std::vector<EndNode> nodes_of(CostToGo& cost_to_go, int layer) {
+  const Lattice& lattice = cost_to_go.lattice();
   std::vector<EndNode> nodes;
-  for (int slot = 0; slot < cost_to_go.lattice().slots(layer); ++slot)
-    if (cost_to_go.verdicts().node(layer, slot) != Verdict::kRemoved)
-      if (const auto q = cost_to_go.node(layer, slot)) nodes.push_back({slot, *q});
+  for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+    if (cost_to_go.verdicts().node(layer, slot) == Verdict::kRemoved) continue;
+    const auto q = cost_to_go.node(layer, slot);
+    if (const auto row = q ? lattice.exact_config(layer, slot, *q) : std::nullopt)
+      nodes.push_back({slot, *row});
+  }
   return nodes;
 }
 
@@ -260,8 +265,9 @@ class JobSearch {
     const std::vector<double>& rest = home ? kDone : at(k + 1).rest;
     const std::vector<std::size_t>& order = home ? kFirst : at(k + 1).order;
     run.onward.resize(next.ends().size());
-    std::vector<double> exits(static_cast<std::size_t>(
-        run.cost_to_go->lattice().slots(run.cost_to_go->lattice().layers() - 1)));
+    std::vector<double> exits(static_cast<std::size_t>(run.cost_to_go->lattice().slots(
+                                  run.cost_to_go->lattice().layers() - 1)),
+                              kUnreachable);
     for (std::size_t end = 0; end < next.ends().size(); ++end) {
       TransitionCosts::Onward& onward = run.onward[end];
       // costs only rise, so the way on stays the cheapest as long as it costs what it did

@@ -10,8 +10,8 @@
 
 namespace swivel {
 
-/// A node at which a run may end or begin: its slot in the last or first layer, and its joints,
-/// rad.
+/// A node at which a run may end or begin: its slot in the last or first layer, and the joints of
+/// its row (Lattice::exact_config()), rad.
 struct EndNode {
   int slot = 0;
   Config q = Config::Zero();

@@ -16,7 +16,7 @@ namespace swivel {
 struct TransitionQuestion {
   /// 0: from home to the first run; k: from run k - 1 to run k; number of runs: home.
   int transition = 0;
-  Config from, to;  ///< joints of the two nodes, rad
+  Config from, to;  ///< joints of the two nodes' rows, rad
   /// True: a way around obstacles is searched for, if no straight one and none known is free.
   bool thorough = false;
 };

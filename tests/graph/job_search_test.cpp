@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Jobs of several runs against a plain program over all nodes of all runs and all transitions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
+#include "robots.hpp"
+#include "swivel/core/lattice/explicit_lattice.hpp"
+#include "swivel/graph/search/job_search.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// Returns a number in [0, 1) that the arguments alone decide.
+double chance(std::uint64_t seed, std::uint64_t a, std::uint64_t b, std::uint64_t c = 0) {
+  std::uint64_t x = seed;
+  for (const std::uint64_t y : {a, b, c}) {
+    x = (x ^ y) * 0x9e3779b97f4a7c15ull;
+    x ^= x >> 29;
+    x *= 0xbf58476d1ce4e5b9ull;
+    x ^= x >> 32;
+  }
+  return static_cast<double>(x >> 11) * 0x1.0p-53;
+}
+
+/// A validity of which chance decides: shares of nodes and edges fail, and nodes may cost
+/// something.
+class FakeValidity : public Validity {
+ public:
+  FakeValidity(const Lattice& lattice, std::uint64_t seed, double nodes_fail, double edges_fail,
+               double cost)
+      : lattice_(&lattice),
+        seed_(seed),
+        nodes_fail_(nodes_fail),
+        edges_fail_(edges_fail),
+        cost_(cost) {}
+  [[nodiscard]] bool node(int layer, int slot) const {
+    return chance(seed_, as(layer), as(slot)) >= nodes_fail_;
+  }
+  [[nodiscard]] bool edge(int layer, int a, int b) const {
+    return chance(seed_ + 1, as(layer), as(a), as(b)) >= edges_fail_;
+  }
+  [[nodiscard]] double cost(int layer, int slot) const {
+    return cost_ == 0 ? 0 : lattice_->rounded_cost(cost_ * chance(seed_ + 2, as(layer), as(slot)));
+  }
+  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
+    for (std::size_t k = 0; k < questions.size(); ++k)
+      answers[k].valid = node(questions[k].layer, questions[k].slot);
+  }
+  void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override {
+    for (std::size_t k = 0; k < questions.size(); ++k)
+      answers[k] = edge(questions[k].layer, questions[k].a, questions[k].b);
+  }
+  [[nodiscard]] bool asks_edges() const override { return edges_fail_ > 0; }
+  void costs(std::span<const NodeQuestion> questions, std::span<double> costs) override {
+    for (std::size_t k = 0; k < questions.size(); ++k)
+      costs[k] = cost(questions[k].layer, questions[k].slot);
+  }
+  [[nodiscard]] bool asks_costs() const override { return cost_ > 0; }
+
+ private:
+  static std::uint64_t as(int x) { return static_cast<std::uint64_t>(x); }
+  const Lattice* lattice_;
+  std::uint64_t seed_;
+  double nodes_fail_, edges_fail_, cost_;
+};
+
+/// Transitions of which chance decides: most straight moves are free, some lead around something,
+/// some have no way. In passing, some ways around are known.
+class FakeTransitions : public Transitions {
+ public:
+  FakeTransitions(const Lattice& lattice, std::uint64_t seed, double barred, double without_way)
+      : lattice_(&lattice), seed_(seed), barred_(barred), without_way_(without_way) {}
+  [[nodiscard]] double distance(const Config& from, const Config& to) const override {
+    return lattice_->edge_cost(lattice_->delta(from, to));
+  }
+  /// Returns what the transition costs: the definition.
+  [[nodiscard]] double cost(int transition, const Config& from, const Config& to) const {
+    const double x = draw(transition, from, to, 0);
+    if (x < without_way_) return kUnreachable;
+    if (x >= barred_) return distance(from, to);
+    return distance(from, to) +
+           lattice_->rounded_cost(lattice_->cost_unit() * 2 * draw(transition, from, to, 1));
+  }
+  void find(std::span<const TransitionQuestion> questions,
+            std::span<TransitionAnswer> answers) override {
+    for (std::size_t k = 0; k < questions.size(); ++k) {
+      const TransitionQuestion& x = questions[k];
+      const double cost = this->cost(x.transition, x.from, x.to);
+      const bool straight = cost == distance(x.from, x.to);
+      const bool known = straight || x.thorough ||
+                         (cost != kUnreachable && draw(x.transition, x.from, x.to, 2) < 0.5);
+      if (known)
+        answers[k] = cost == kUnreachable ? TransitionAnswer{Verdict::kRemoved, 0}
+                                          : TransitionAnswer{Verdict::kValid, cost};
+      else
+        answers[k] = {};
+    }
+  }
+
+ private:
+  [[nodiscard]] double draw(int transition, const Config& from, const Config& to,
+                            std::uint64_t salt) const {
+    std::uint64_t hash = salt;
+    for (const Config* q : {&from, &to})
+      for (int j = 0; j < kDof; ++j)
+        hash = static_cast<std::uint64_t>(
+            0x1p52 * chance(hash, static_cast<std::uint64_t>((*q)[j] * 1e9 + 1e12), 1));
+    return chance(seed_, hash, static_cast<std::uint64_t>(transition));
+  }
+  const Lattice* lattice_;
+  std::uint64_t seed_;
+  double barred_, without_way_;
+};
+
+/// A random job: its lattices with what chance says of them.
+struct RandomJob {
+  std::vector<std::unique_ptr<ToolPath>> paths;
+  std::vector<std::unique_ptr<Lattice>> lattices;
+  std::vector<std::unique_ptr<FakeValidity>> validities;
+  std::unique_ptr<FakeTransitions> transitions;
+  std::optional<Config> home;
+};
+
+std::unique_ptr<Lattice> random_list(const Chain& chain, const ToolPath& path,
+                                     const Problem& problem, const Config& q0, Random& random) {
+  std::vector<std::vector<ExplicitLattice::Point>> points(static_cast<std::size_t>(path.size()));
+  for (auto& layer : points)
+    for (int k = 1 + random.below(9); k > 0; --k) {
+      Config q = q0;
+      for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.6, 0.6);
+      layer.push_back({.q = q});
+    }
+  return std::make_unique<ExplicitLattice>(chain, path, problem, std::move(points));
+}
+
+/// Draws a job. With `grids`, its runs are lattices of arm angles, else lists of nodes.
+RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& srs, bool grids,
+                     Random& random) {
+  RandomJob job;
+  const std::uint64_t base = static_cast<std::uint64_t>(random.uniform(0, 1e15));
+  const int runs = 1 + random.below(grids ? 3 : 5);
+  const double nodes_fail = random.coin(0.3) ? 0 : random.uniform(0, 0.4),
+               edges_fail = random.coin(0.3) ? 0 : random.uniform(0, 0.4),
+               cost = random.coin(0.3) ? random.uniform(0, 0.5) : 0;
+  const Config q0 = random_config(arm.chain, random);
+  for (int k = 0; k < runs; ++k) {
+    Problem problem = problem_for(robot);
+    Config q = q0;
+    for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.5, 0.5);
+    q = q.cwiseMax(q0.array().matrix() - Config::Constant(0.5));
+    Config end = q;
+    for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.3, 0.3);
+    problem.waypoints = {waypoint_of(arm.chain.tool(q)), waypoint_of(arm.chain.tool(end))};
+    const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+    problem.resolution = {
+        .ds = length / (1 + random.below(4)), .dphi = random.uniform(0.35, 0.5), .dalpha = 10};
+    problem.limits.arm_slope = 1e6;
+    problem.limits.joint_step = random.uniform(0.6, 1.5);
+    job.paths.push_back(
+        std::make_unique<ToolPath>(waypoints_in_base(problem), problem.resolution, "test"));
+    const ToolPath& path = *job.paths.back();
+    if (grids)
+      job.lattices.push_back(std::make_unique<SrsLattice>(arm.chain, srs, path, problem));
+    else
+      job.lattices.push_back(random_list(arm.chain, path, problem, q0, random));
+    job.validities.push_back(std::make_unique<FakeValidity>(
+        *job.lattices.back(), base + static_cast<std::uint64_t>(10 * k), nodes_fail, edges_fail,
+        cost));
+  }
+  const double barred = random.coin(0.3) ? 0 : random.uniform(0, 0.9);
+  job.transitions = std::make_unique<FakeTransitions>(*job.lattices.front(), base + 7, barred,
+                                                      random.coin(0.2) ? barred : barred * 0.2);
+  if (random.coin(0.7)) {
+    job.home = q0;
+    for (int j = 0; j < kDof; ++j) (*job.home)[j] += random.uniform(-0.5, 0.5);
+  }
+  return job;
+}
+
+/// Returns the least cost of a job by the definition, over every node of every run; transitions
+/// cost what `transition(k, from, to)` says. Sets `alone` to the least costs of the runs alone.
+template <class Cost>
+double plain_cost(const RandomJob& job, const Cost& transition, std::vector<double>& alone) {
+  const int runs = static_cast<int>(job.lattices.size());
+  alone.assign(job.lattices.size(), kUnreachable);
+  std::vector<Lattice::Node> begins;  // of the run after
+  std::vector<double> rest;
+  if (job.home) begins = {{0, *job.home}}, rest = {0};
+  std::vector<Lattice::Node> nodes, next;
+  for (int k = runs - 1; k >= 0; --k) {
+    const Lattice& lattice = *job.lattices[static_cast<std::size_t>(k)];
+    const FakeValidity& validity = *job.validities[static_cast<std::size_t>(k)];
+    std::vector<double> values, own, after, after_own;
+    for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
+      lattice.layer_nodes(layer, nodes);
+      values.assign(nodes.size(), kUnreachable);
+      own = values;
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        if (!validity.node(layer, nodes[a].slot)) continue;
+        const double cost = validity.cost(layer, nodes[a].slot);
+        if (layer + 1 == lattice.layers()) {
+          own[a] = cost;
+          if (k + 1 == runs && !job.home) values[a] = cost;
+          for (std::size_t f = 0; f < begins.size(); ++f)
+            values[a] =
+                std::min(values[a], cost + (transition(k + 1, nodes[a].q, begins[f].q) + rest[f]));
+          continue;
+        }
+        for (std::size_t b = 0; b < next.size(); ++b) {
+          const Config delta = lattice.delta(nodes[a].q, next[b].q);
+          if (!lattice.in_window(layer, nodes[a].slot, next[b].slot) ||
+              !lattice.step_allowed(layer, delta) ||
+              (validity.asks_edges() && !validity.edge(layer, nodes[a].slot, next[b].slot)))
+            continue;
+          const double edge = lattice.edge_cost(delta);
+          values[a] = std::min(values[a], cost + (edge + after[b]));
+          own[a] = std::min(own[a], cost + (edge + after_own[b]));
+        }
+      }
+      after.swap(values);
+      after_own.swap(own);
+      next.swap(nodes);
+    }
+    for (const double value : after_own)
+      alone[static_cast<std::size_t>(k)] = std::min(alone[static_cast<std::size_t>(k)], value);
+    begins = next;
+    rest = after;
+  }
+  double best = kUnreachable;
+  for (std::size_t f = 0; f < begins.size(); ++f)
+    best = std::min(best, (job.home ? transition(0, *job.home, begins[f].q) : 0.0) + rest[f]);
+  return best;
+}
+
+JobOutcome search(const RandomJob& job, const ParallelFor& work = {}) {
+  std::vector<std::unique_ptr<CostToGo>> values;
+  std::vector<SearchedRun> runs;
+  for (std::size_t k = 0; k < job.lattices.size(); ++k) {
+    values.push_back(make_cost_to_go(*job.lattices[k]));
+    runs.push_back({values.back().get(), job.validities[k].get()});
+  }
+  JobSearchOptions options;
+  options.most_searches = 100'000;
+  options.work = work;
+  return search_job(runs, *job.transitions, job.home, options);
+}
+
+ParallelFor threads(int count) {
+  return {count, [count](int parts, const std::function<void(int, int)>& body) {
+            std::atomic<int> next{0};
+            std::vector<std::jthread> team;
+            for (int worker = 0; worker < count; ++worker)
+              team.emplace_back([&, worker] {
+                for (int part = next++; part < parts; part = next++) body(part, worker);
+              });
+          }};
+}
+
+/// Counts what the jobs met.
+struct Met {
+  int jobs = 0, solved = 0, without_run = 0, without_way = 0, dearer = 0, rounds = 0;
+};
+
+/// Expects a job's paths to be valid, joined, and to cost what it says.
+void expect_valid(const RandomJob& job, const JobOutcome& found, const std::string& what) {
+  double cost = 0;
+  std::optional<Config> before = job.home;
+  for (std::size_t k = 0; k < job.lattices.size(); ++k) {
+    const Lattice& lattice = *job.lattices[k];
+    const FakeValidity& validity = *job.validities[k];
+    const SlotPath& path = found.paths[k];
+    ASSERT_EQ(static_cast<int>(path.size()), lattice.layers()) << what;
+    const Config first = *lattice.node(0, path[0]);
+    if (before) cost += job.transitions->cost(static_cast<int>(k), *before, first);
+    double run = 0;
+    for (int layer = 0; layer < lattice.layers(); ++layer) {
+      const int slot = path[static_cast<std::size_t>(layer)];
+      ASSERT_TRUE(validity.node(layer, slot)) << what;
+      run += validity.cost(layer, slot);
+      if (layer == 0) continue;
+      const int a = path[static_cast<std::size_t>(layer) - 1];
+      const Config delta = lattice.delta(*lattice.node(layer - 1, a), *lattice.node(layer, slot));
+      ASSERT_TRUE(lattice.step_allowed(layer - 1, delta)) << what;
+      ASSERT_TRUE(!validity.asks_edges() || validity.edge(layer - 1, a, slot)) << what;
+      run += lattice.edge_cost(delta);
+    }
+    ASSERT_EQ(run, found.run_costs[k]) << what;
+    cost += run;
+    before = *lattice.node(lattice.layers() - 1, path.back());
+  }
+  if (job.home)
+    cost += job.transitions->cost(static_cast<int>(job.lattices.size()), *before, *job.home);
+  ASSERT_EQ(cost, found.cost) << what;
+}
+
+void expect_plain_program(const RandomJob& job, const std::string& what, Met& met) {
+  std::vector<double> alone;
+  const double straight = plain_cost(
+      job, [&](int, const Config& a, const Config& b) { return job.transitions->distance(a, b); },
+      alone);
+  const double best = plain_cost(
+      job, [&](int k, const Config& a, const Config& b) { return job.transitions->cost(k, a, b); },
+      alone);
+  const JobOutcome found = search(job);
+  ++met.jobs;
+  ASSERT_TRUE(found.decided) << what;
+  ASSERT_EQ(found.least_costs, alone) << what;
+  ASSERT_EQ(found.cost, best) << what;
+  met.rounds += static_cast<int>(found.rounds);
+  const auto lacking = std::find(alone.begin(), alone.end(), kUnreachable);
+  ASSERT_EQ(found.run_without_path.has_value(), lacking != alone.end()) << what;
+  if (lacking != alone.end()) {
+    ASSERT_EQ(*found.run_without_path, static_cast<std::size_t>(lacking - alone.begin())) << what;
+    ++met.without_run;
+    return;
+  }
+  ASSERT_EQ(found.transition_without_way.has_value(), best == kUnreachable) << what;
+  met.without_way += best == kUnreachable;
+  if (best == kUnreachable) return;
+  ++met.solved;
+  met.dearer += best > straight;
+  ASSERT_EQ(found.bound, best) << what;
+  ASSERT_LE(found.bound_any, straight) << what;
+  expect_valid(job, found, what);
+  if (::testing::Test::HasFatalFailure()) return;
+  const JobOutcome again = search(job, threads(3));
+  ASSERT_EQ(again.paths, found.paths) << what;
+  ASSERT_EQ(again.pairs, found.pairs) << what;
+  ASSERT_EQ(again.rounds, found.rounds) << what;
+}
+
+void expect_plain_programs(bool grids, int usual) {
+  const std::uint64_t base = seed(grids ? "JobSearch grids" : "JobSearch lists");
+  Random random(base);
+  Met met;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (int trial = 0; trial < trials(usual); ++trial) {
+      const RandomJob job = random_job(robot, arm, srs, grids, random);
+      expect_plain_program(job,
+                           "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name +
+                               " trial " + std::to_string(trial),
+                           met);
+      if (::testing::Test::HasFatalFailure()) return;
+    }
+  }
+  std::printf(
+      "%d jobs, %d solved (%d dearer than straight transitions), %d with a run without "
+      "path, %d without a way, %d rounds\n",
+      met.jobs, met.solved, met.dearer, met.without_run, met.without_way, met.rounds);
+  EXPECT_GE(met.solved, at_least(100));
+  EXPECT_GE(met.dearer, at_least(60));
+  EXPECT_GE(met.without_run, at_least(5));
+}
+
+TEST(JobSearch, CostsAreThoseOfAPlainProgramOverListsOfNodes) {
+  expect_plain_programs(false, 150);
+}
+TEST(JobSearch, CostsAreThoseOfAPlainProgramOverArmAngles) {
+  expect_plain_programs(true, 40);
+}
+
+}  // namespace
+}  // namespace swivel
