@@ -65,11 +65,31 @@ Eigen::Matrix<double, 5, 4> derivative_weights(const double* places, double x) {
 /// tool's speeds per metre of it.
 struct PathSample {
   double x = 0;  // m of travel
+  double s = 0;  // m along the path
   Config q, first, second, third;
   double along = 0, turning = 0;  // m/m and rad/m
   // 1/m: over a straight move of the joints the tool strays by this times the square of the travel.
   double chord = 0;
 };
+
+/// The least and the largest speed of the tool that is asked for on a stretch of the path, m/s.
+struct AskedSpeeds {
+  double least = 0, most = 0;
+};
+/// Returns the speeds asked for from s = `from` to s = `to`, m, the ends included.
+AskedSpeeds speeds_between(const TimingOptions& options, double from, double to) {
+  constexpr double kSame = 1e-9;  // m
+  AskedSpeeds found{kInfinity, 0};
+  double speed = options.speed, since = -kInfinity;
+  for (std::size_t k = 0; k <= options.speeds.size(); ++k) {
+    const bool last = k == options.speeds.size();
+    const double until = last ? kInfinity : options.speeds[k].s;
+    if (since <= to + kSame && until >= from - kSame)
+      found = {std::min(found.least, speed), std::max(found.most, speed)};
+    if (!last) speed = options.speeds[k].speed, since = until;
+  }
+  return found;
+}
 
 /// The joint and rate that slow a place down.
 struct SpeedLimiter {
@@ -97,7 +117,8 @@ class RestToRest {
     filter_ = std::max(filter_, 1e-4);
     for (std::size_t k = 0; k < n_; ++k) {
       const PathSample& place = places_[k];
-      asked_[k] = r(options.speed, place.along > kStill ? place.along : 0);
+      asked_[k] = r(speeds_between(options, place.s, place.s).least,
+                    place.along > kStill ? place.along : 0);
       if (options.turn_speed)
         asked_[k] = std::min(asked_[k], r(*options.turn_speed, place.turning));
       if (options.chord)
@@ -439,6 +460,14 @@ std::vector<double> places_between(const PathMotion& motion, double from, double
   return graded;
 }
 
+/// Returns how far along its path, m, the tool is at a travel.
+double s_at(const ToolPath& path, double travel) {
+  const PathLayer& layer = path.layer(path.step_at(travel));
+  const double way = path.layer(path.step_at(travel) + 1).travel - layer.travel;
+  const double share = way > 0 ? std::clamp((travel - layer.travel) / way, 0.0, 1.0) : 0;
+  return layer.s + share * layer.step_length;
+}
+
 /// Computes joints and tool at the places, and their derivatives by the travel. Returns where the
 /// arm has no solution, none where it has one everywhere.
 std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, bool chords,
@@ -448,6 +477,7 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
   std::vector<Pose> tool(n);
   for (std::size_t k = 0; k < n; ++k) {
     places[k].x = xs[k];
+    places[k].s = s_at(motion.path(), xs[k]);
     tool[k] = motion.path().at_travel(xs[k]);
     const auto q = motion.joints(xs[k]);
     if (!q) {
@@ -709,7 +739,10 @@ class Samples {
   [[nodiscard]] double tool_share(std::size_t k) const {
     if (k == 0) return 0;
     const double along = (tool_[k].translation() - tool_[k - 1].translation()).norm() *
-                         options_->rate / options_->speed;
+                         options_->rate /
+                         speeds_between(*options_, s_at(motion_->path(), travel_[k - 1]),
+                                        s_at(motion_->path(), travel_[k]))
+                             .most;
     if (!options_->turn_speed) return along;
     return std::max(along,
                     angle_between(tool_[k - 1], tool_[k]) * options_->rate / *options_->turn_speed);

@@ -34,6 +34,7 @@ void validate(const Stroke& stroke) {
   if (!stroke.approach.allFinite() || !stroke.retract.allFinite())
     throw InvalidArgument(name + "approach, retract: allowed are finite numbers");
   require_speed(stroke.process_speed, name + "process_speed");
+  require_speed(stroke.approach_speed, name + "approach_speed");
   if (!stroke.feed.empty() && stroke.feed.size() != stroke.waypoints.size())
     throw InvalidArgument(name + "feed: allowed is one for each waypoint");
   for (const double feed : stroke.feed) require_speed(feed, name + "feed");
@@ -84,6 +85,7 @@ void validate(const Job& job) {
   if (job.home && !job.home->allFinite())
     throw InvalidArgument("home: allowed are finite numbers, rad");
   require_speed(job.process_speed, "process_speed");
+  require_speed(job.approach_speed, "approach_speed");
   if (!(job.rapid > 0 && job.rapid <= 1))
     throw InvalidArgument("rapid: allowed are numbers above 0 and at most 1");
 }

@@ -226,6 +226,8 @@ TimingOptions within_limits(TimingOptions options, const Limits& limits,
   };
   lower(options.speed, limits.tool_speed,
         "a tool speed of %.6g m/s is asked for: limits.tool_speed allows %.6g m/s, which is kept");
+  if (limits.tool_speed)
+    for (SpeedFrom& from : options.speeds) from.speed = std::min(from.speed, *limits.tool_speed);
   if (!options.turn_speed) options.turn_speed = limits.tool_turn_speed;
   if (options.turn_speed)
     lower(*options.turn_speed, limits.tool_turn_speed,
@@ -242,6 +244,7 @@ void require_positive(const TimingOptions& options) {
                             formatted("%.9g", value) + ": allowed is a finite number > 0");
   };
   positive(options.speed, "speed");
+  for (const SpeedFrom& from : options.speeds) positive(from.speed, "speeds");
   positive(options.turn_speed.value_or(1), "turn_speed");
   positive(options.rate, "rate");
   positive(options.chord.value_or(1), "chord");

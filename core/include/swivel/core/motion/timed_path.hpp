@@ -33,9 +33,17 @@ struct JointRates {
   };
   std::vector<Assumed> assumed;
 };
+/// A speed of the tool that holds from a place of the path on.
+struct SpeedFrom {
+  double s = 0;      ///< m along the path
+  double speed = 0;  ///< m/s; > 0
+};
 /// How time_path() times a motion.
 struct TimingOptions {
   double speed = 0;  ///< m/s of the tool along its path; > 0
+  /// Other speeds, each from its place to that of the next; ascending. Before the first, `speed`
+  /// holds.
+  std::vector<SpeedFrom> speeds = {};
   /// Most turning speed of the tool, rad/s; unset: as fast as the joints allow where the path only
   /// turns.
   std::optional<double> turn_speed;

@@ -21,6 +21,8 @@ struct Stroke : Task {
   Vector3d approach = Vector3d::Zero(), retract = Vector3d::Zero();
   /// Speed of the tool along the stroke, m/s, instead of Job::process_speed.
   std::optional<double> process_speed;
+  /// Speed of the tool along approach and retract, m/s, instead of Job::approach_speed.
+  std::optional<double> approach_speed;
   /// Speed of the tool from each waypoint to the next, m/s, instead of process_speed; empty: none.
   std::vector<double> feed;
 };
@@ -37,12 +39,16 @@ struct Job : Robot {
   std::vector<SceneObject> scene;
   std::vector<Variation> vary;
   std::vector<Stroke> strokes;
+  /// What transitions keep: clearances on motions, joint margin, joint rates.
+  Limits limits;
   /// The joint configuration from which the job starts and at which it ends, rad; unset: it starts
   /// at the first stroke and ends at the last one.
   std::optional<Config> home;
   StrokeOrder order = StrokeOrder::kGiven;
   /// Speed of the tool along strokes, m/s; unset: limits.tool_speed.
   std::optional<double> process_speed;
+  /// Speed of the tool along approaches and retracts, m/s; unset: that of the stroke.
+  std::optional<double> approach_speed;
   /// The share of the joints' speeds that transitions may use, more than 0 and at most 1.
   double rapid = 1;
 };

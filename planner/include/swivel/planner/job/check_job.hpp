@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/problem/job.hpp"
+#include "swivel/planner/verify/check.hpp"
+
+namespace swivel {
+
+/// The result of an independent check of a planned job.
+struct JobCheckResult {
+  bool passed = false;
+  std::vector<std::string> failures;  ///< one line each, with the part; at most 20
+  std::int64_t failure_count = 0;     ///< number of all failures
+  double cost = 0;                    ///< of all moves, by the job's metric
+  std::vector<CheckResult> runs;      ///< of the parts that are runs, in their order
+};
+
+/// Proves a job from its problem alone, or tells what is wrong with it:
+/// - every stroke is run once, in the order of the job unless that may be chosen, and from the last
+///   waypoint to the first only if it is reversible;
+/// - each run keeps what check_trajectory() demands of its own problem (problem_of_run());
+/// - between two runs there is one transition, before the first and after the last run one from and
+///   to home, if there is a home; each begins where the part before ends, and ends where the next
+///   one begins (1e-9 rad; the roll of a six-joint arm aside);
+/// - on transitions, where joints move straight from row to row, joints are within their limits
+///   less joint_margin (1e-9 rad) and nothing comes nearer than the clearance of motions, by FCL.
+/// Throws InvalidArgument for what validate(Job) refuses and unless the robot was prepared for the
+/// job, InputError as plan_job() does, and Stopped.
+[[nodiscard]] JobCheckResult check_job(const PreparedRobot& robot, const Job& job,
+                                       const std::vector<JobPart>& parts,
+                                       const CheckOptions& options = {});
+
+/// Returns true if the tool begins at rows.front() nearer to the stroke's last waypoint than to its
+/// first, by position and then by angle.
+[[nodiscard]] bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job,
+                                           std::size_t stroke,
+                                           const std::vector<TrajectoryRow>& rows);
+
+}  // namespace swivel

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/motion/job_motion.hpp"
+#include "swivel/core/problem/job.hpp"
+#include "swivel/planner/job/check_job.hpp"
+
+namespace swivel {
+
+class PreparedRobot;
+
+/// How time_job() times a job.
+struct JobTimingOptions {
+  /// Speed of the tool along all strokes, m/s, instead of those of the job.
+  std::optional<double> speed;
+  std::optional<double> turn_speed;  ///< rad/s, most turning speed of the tool on runs
+  double rate = 250;                 ///< samples a second; > 0
+};
+
+/// Returns the job with the defaults that timed motions use for what it leaves unset, as
+/// with_motion_defaults() does for each of its strokes.
+[[nodiscard]] Job with_motion_defaults(Job job);
+
+/// Times a planned job from rest to rest and proves its samples. Runs are timed by
+/// time_trajectory(): along a stroke at JobTimingOptions::speed, else the feed of the waypoint,
+/// else the stroke's process_speed, else the job's, else limits.tool_speed; along approach and
+/// retract at approach_speed. limits.tool_speed is kept everywhere. Transitions are timed by
+/// time_joint_moves(). The tool rests between parts and at the corners of transitions. The job is
+/// completed by with_motion_defaults(). Throws InputError where a stroke has no speed or a joint no
+/// speed limit, InvalidArgument as plan_job() does and for parts that are not those of the job, and
+/// Stopped.
+[[nodiscard]] JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
+                                       const std::vector<JobPart>& parts,
+                                       const JobTimingOptions& options, const Budget& budget = {});
+
+/// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
+/// of parts, with runs judged as check_motion() judges them; the rates of transitions as
+/// check_motion() judges rates, with Job::rapid of the joints' speeds; and that events are at the
+/// first samples at or after the begin and the end of each stroke. Throws as check_job() does.
+[[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& job,
+                                              const std::vector<StrokeRun>& order,
+                                              const JobMotion& motion,
+                                              const CheckOptions& options = {});
+
+}  // namespace swivel

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/job/check_job.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "job/process_range.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/motion/time_path.hpp"
+#include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "verify/check_rates.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kSame = 1e-9;          // rad
+constexpr std::size_t kMostLines = 20;  // of failures
+
+class JobCheck {
+ public:
+  /// Prepares the check of a job's parts; `timed` holds their rows with times, or is null.
+  JobCheck(const PreparedRobot& robot, const Job& job, const std::vector<JobPart>& parts,
+           const CheckOptions& options, const std::vector<std::vector<TimedRow>>* timed = nullptr)
+      : robot_(robot),
+        chain_(robot.arm().chain),
+        job_(job),
+        parts_(parts),
+        timed_(timed),
+        options_(options) {
+    Problem between = problem_of_run(job, {0, false});
+    between.limits = job.limits;
+    if (timed)
+      between.limits.edge_tolerance = std::min(between.limits.edge_tolerance, kVerdictBand);
+    world_.emplace(robot.world(), between, options.budget, kVerdictBand);
+    rule_ = world_->edge_rule(robot.radii());
+    query_.emplace(*world_, options.margins ? DistanceProofs::kOff : DistanceProofs::kOn);
+  }
+
+  JobCheckResult run() {
+    if (examine_order())
+      for (std::size_t k = 0; k < parts_.size(); ++k)
+        parts_[k].run ? examine_run(k) : examine_transition(k);
+    result_.passed = result_.failure_count == 0;
+    return std::move(result_);
+  }
+
+ private:
+  void fail(const std::string& line) {
+    ++result_.failure_count;
+    if (result_.failures.size() < kMostLines) result_.failures.push_back(line);
+  }
+  /// Returns the name of a part for messages.
+  [[nodiscard]] std::string name(std::size_t k) const {
+    if (parts_[k].run) return "stroke '" + job_.strokes[parts_[k].run->stroke].name + "'";
+    if (k + 1 < parts_.size() && parts_[k + 1].run)
+      return "transition to '" + job_.strokes[parts_[k + 1].run->stroke].name + "'";
+    return "transition home";
+  }
+
+  /// Examines which parts there are. Returns false if they cannot be examined further.
+  bool examine_order() {
+    std::vector<StrokeRun> runs;
+    bool alternate = true;
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const bool transition = !parts_[k].run;
+      alternate = alternate && transition == ((k % 2 == 0) == job_.home.has_value());
+      if (transition) continue;
+      if (parts_[k].run->stroke >= job_.strokes.size()) {
+        fail("part " + std::to_string(k + 1) + ": the job has no such stroke");
+        return false;
+      }
+      runs.push_back(*parts_[k].run);
+    }
+    if (parts_.empty() || (parts_.size() % 2 == 1) == false || !alternate) {
+      fail(job_.home ? "parts: allowed are a transition, a stroke, a transition, ..., a transition"
+                     : "parts: allowed are a stroke, a transition, a stroke, ..., a stroke");
+      return false;
+    }
+    std::vector<int> times(job_.strokes.size());
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const Stroke& stroke = job_.strokes[runs[k].stroke];
+      ++times[runs[k].stroke];
+      if (runs[k].reversed && !stroke.reversible)
+        fail("stroke '" + stroke.name + "' is run backwards: allowed is its own direction");
+      if (job_.order == StrokeOrder::kGiven && runs[k].stroke != k)
+        fail("stroke '" + stroke.name + "' is number " + std::to_string(k + 1) +
+             ": allowed is the given order, in which it is number " +
+             std::to_string(runs[k].stroke + 1));
+    }
+    for (std::size_t k = 0; k < times.size(); ++k)
+      if (times[k] != 1)
+        fail("stroke '" + job_.strokes[k].name + "' is run " + std::to_string(times[k]) +
+             " times: allowed is once");
+    return true;
+  }
+
+  void examine_run(std::size_t k) {
+    const Problem problem = problem_of_run(job_, *parts_[k].run);
+    CheckResult result = timed_ ? check_motion(robot_, problem, (*timed_)[k], options_)
+                                : check_trajectory(robot_, problem, parts_[k].rows, options_);
+    for (const std::string& line : result.failures) fail(name(k) + ": " + line);
+    result_.failure_count +=
+        result.failure_count - static_cast<std::int64_t>(result.failures.size());
+    result_.cost += result.cost;
+    result_.runs.push_back(std::move(result));
+  }
+
+  void examine_transition(std::size_t k) {
+    const std::vector<TrajectoryRow>& rows = parts_[k].rows;
+    if (rows.size() < 2) return fail(name(k) + ": allowed are at least two rows");
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (!rows[i].q.allFinite())
+        return fail(name(k) + ": row " + std::to_string(i) + ": joints are not finite");
+    examine_end(k, rows.front().q, k > 0 ? before(k) : job_.home, "begins");
+    examine_end(k, rows.back().q, k + 1 < parts_.size() ? after(k) : job_.home, "ends");
+    for (std::size_t i = 0; i < rows.size(); ++i) examine_limits(k, i);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const auto pair = edge_blocked(*query_, rule_, rows[i - 1].q, rows[i].q, options_.budget);
+      if (!pair) continue;
+      const auto names = world_->names(*pair);
+      fail(name(k) + ": " +
+           formatted("rows %zu-%zu: '%s' and '%s' come closer than %.3f mm", i - 1, i,
+                     names[0].c_str(), names[1].c_str(),
+                     1e3 * world_->required_clearance(*pair).motion));
+    }
+    if (timed_) examine_times(k);
+    result_.cost += cost_of(rows);
+  }
+  /// Examines the rates of a timed transition.
+  void examine_times(std::size_t k) {
+    Limits limits = job_.limits;
+    limits.tool_speed.reset();
+    limits.tool_turn_speed.reset();
+    const JointRates rates = joint_rates(chain_, limits, job_.source);
+    limits.joint_speed.emplace();
+    for (std::size_t j = 0; j < kDof; ++j)
+      (*limits.joint_speed)[j] = job_.rapid * rates.speed[static_cast<Eigen::Index>(j)];
+    std::vector<Pose> tools;
+    for (const TimedRow& row : (*timed_)[k]) tools.push_back(chain_.tool(row.row.q));
+    static_cast<void>(examine_rates(chain_, limits, job_.source, (*timed_)[k], tools,
+                                    [&](const std::string& line) { fail(name(k) + ": " + line); }));
+  }
+  [[nodiscard]] std::optional<Config> before(std::size_t k) const {
+    if (parts_[k - 1].rows.empty()) return std::nullopt;
+    return parts_[k - 1].rows.back().q;
+  }
+  [[nodiscard]] std::optional<Config> after(std::size_t k) const {
+    if (parts_[k + 1].rows.empty()) return std::nullopt;
+    return parts_[k + 1].rows.front().q;
+  }
+  void examine_end(std::size_t k, const Config& q, const std::optional<Config>& other,
+                   const char* what) {
+    if (!other) return;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      if (chain_.roll && j + 1 == kDof) continue;
+      const auto i = static_cast<Eigen::Index>(j);
+      const bool home = (k == 0 && *what == 'b') || (k + 1 == parts_.size() && *what == 'e');
+      const JointLimit& limit = chain_.limit[j];
+      double off = q[i] - (*other)[i];
+      // a continuous joint is at home whatever its turn
+      if (home && (limit.continuous || limit.wide())) off = std::remainder(off, kTwoPi);
+      if (std::abs(off) <= kSame) continue;
+      fail(name(k) + ": " + what +
+           formatted(" %.3g rad away from %s, by joint '%s': allowed is no jump", std::abs(off),
+                     home ? "home" : "the stroke", chain_.joint_names[j].c_str()));
+      return;
+    }
+  }
+  void examine_limits(std::size_t k, std::size_t row) {
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const JointLimit& limit = chain_.limit[j];
+      if (limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof)) continue;
+      const double x = parts_[k].rows[row].q[static_cast<Eigen::Index>(j)];
+      const double lower = limit.lower + job_.limits.joint_margin,
+                   upper = limit.upper - job_.limits.joint_margin;
+      if (x >= lower - kSame && x <= upper + kSame) continue;
+      fail(name(k) + ": " +
+           formatted("row %zu: joint '%s' is at %.6g rad: allowed is %.6g to %.6g", row,
+                     chain_.joint_names[j].c_str(), x, lower, upper));
+    }
+  }
+  /// Returns what the moves of a transition cost. The roll of a six-joint arm costs nothing.
+  [[nodiscard]] double cost_of(const std::vector<TrajectoryRow>& rows) const {
+    const Cost& cost = job_.strokes.front().cost;
+    double sum = 0;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      double squares = 0, most = 0;
+      for (std::size_t j = 0; j < kDof; ++j) {
+        if (chain_.roll && j + 1 == kDof) continue;
+        const auto x = static_cast<Eigen::Index>(j);
+        const double scale =
+            cost.metric == CostMetric::kTime ? 1 / chain_.limit[j].velocity : cost.weights[j];
+        const double scaled = scale * (rows[i].q[x] - rows[i - 1].q[x]);
+        squares += scaled * scaled;
+        most = std::max(most, std::abs(scaled));
+      }
+      sum += cost.metric == CostMetric::kL2 ? std::sqrt(squares) : most;
+    }
+    return sum;
+  }
+
+  const PreparedRobot& robot_;
+  const Chain& chain_;
+  const Job& job_;
+  const std::vector<JobPart>& parts_;
+  const std::vector<std::vector<TimedRow>>* timed_;  // by part
+  const CheckOptions& options_;
+  std::optional<World> world_;
+  EdgeRule rule_;
+  std::optional<World::Query> query_;
+  JobCheckResult result_;
+};
+
+}  // namespace
+
+JobCheckResult check_job(const PreparedRobot& robot, const Job& job,
+                         const std::vector<JobPart>& parts, const CheckOptions& options) {
+  validate(job);
+  robot.require_prepared_for(problem_of_run(job, {0, false}));
+  return JobCheck(robot, job, parts, options).run();
+}
+
+namespace {
+
+/// Says what is wrong with the events of a timed job, if anything is.
+std::optional<std::string> fault_of_events(const Job& job, const std::vector<StrokeRun>& order,
+                                           const JobMotion& motion) {
+  std::vector<ProcessEvent> expected;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t part = job.home ? 2 * k + 1 : 2 * k;
+    while (next < motion.rows.size() && motion.part[next] < part) ++next;
+    std::size_t end = next;
+    while (end < motion.rows.size() && motion.part[end] == part) ++end;
+    const std::size_t first = next > 0 ? next - 1 : 0;  // the part begins at rest, where it was
+    if (first == end) return "stroke '" + job.strokes[order[k].stroke].name + "' has no rows";
+    const auto events = events_of_run(job, order[k], problem_of_run(job, order[k]),
+                                      std::span(motion.rows).subspan(first, end - first));
+    expected.insert(expected.end(), events.begin(), events.end());
+  }
+  if (motion.events.size() != expected.size())
+    return formatted("%zu events: allowed are %zu", motion.events.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const ProcessEvent &is = motion.events[k], &should = expected[k];
+    const std::string& name = job.strokes[should.stroke].name;
+    if (is.stroke != should.stroke || is.on != should.on || std::abs(is.t - should.t) > 1e-9 ||
+        std::abs(is.s - should.s) > 1e-9)
+      return formatted("event %zu: allowed is process %s of stroke '%s' at t = %.9g s", k + 1,
+                       should.on ? "on" : "off", name.c_str(), should.t);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& given,
+                                const std::vector<StrokeRun>& order, const JobMotion& motion,
+                                const CheckOptions& options) {
+  validate(given);
+  robot.require_prepared_for(problem_of_run(given, {0, false}));
+  const Job job = with_motion_defaults(given);
+  const std::size_t count = job.home ? 2 * order.size() + 1 : 2 * order.size() - 1;
+  std::vector<JobPart> parts(count);
+  std::vector<std::vector<TimedRow>> timed(count);
+  for (std::size_t k = 0; k < order.size(); ++k) parts[job.home ? 2 * k + 1 : 2 * k].run = order[k];
+  for (std::size_t k = 0; k < motion.rows.size(); ++k) {
+    const std::size_t part = motion.part[k];
+    if (part >= count || (k > 0 && part < motion.part[k - 1]))
+      throw InvalidArgument("JobMotion: part: allowed are indices of parts that ascend");
+    if (timed[part].empty() && k > 0) timed[part].push_back(motion.rows[k - 1]);
+    timed[part].push_back(motion.rows[k]);
+  }
+  for (std::size_t k = 0; k < count; ++k)
+    for (const TimedRow& row : timed[k]) parts[k].rows.push_back(row.row);
+  JobCheckResult result = JobCheck(robot, job, parts, options, &timed).run();
+  if (const auto fault = fault_of_events(job, order, motion)) {
+    result.failures.push_back(*fault);
+    ++result.failure_count;
+    result.passed = false;
+  }
+  return result;
+}
+
+bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job, std::size_t stroke,
+                             const std::vector<TrajectoryRow>& rows) {
+  if (rows.empty() || !rows.front().q.allFinite()) return false;
+  const Pose tool = robot.arm().chain.tool(rows.front().q);
+  const auto distance = [&](bool reversed) {
+    const Waypoint first = waypoints_in_base(problem_of_run(job, {stroke, reversed})).front();
+    return std::pair((first.position - tool.translation()).norm(),
+                     Quaterniond(tool.linear()).angularDistance(first.orientation));
+  };
+  const auto forward = distance(false), backward = distance(true);
+  if (std::abs(forward.first - backward.first) > 1e-6) return backward.first < forward.first;
+  return backward.second < forward.second;
+}
+
+}  // namespace swivel

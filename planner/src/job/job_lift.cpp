@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "job/job_lift.hpp"
+
+#include <cmath>
+
+namespace swivel {
+
+namespace {
+
+constexpr double kRounding = 1e-9;  // rad
+
+/// Returns true if a joint has limits, though the lattice treats it as a circle. The roll of the
+/// tool has none in transitions.
+bool is_bounded_circle(const Lattice& lattice, std::size_t j) {
+  const JointLimit& limit = lattice.chain().limit[j];
+  return lattice.continuous()[j] && !limit.continuous && !limit.wide() &&
+         !(lattice.chain().roll && j + 1 == kDof);
+}
+
+/// Notes the bounded joints that are outside of their limits at q.
+void note_off_limits(const Lattice& lattice, const Config& q, Lattice::Joints& off) {
+  const double margin = lattice.limits().joint_margin - kRounding;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    if (!is_bounded_circle(lattice, j)) continue;
+    const double x = q[static_cast<Eigen::Index>(j)];
+    const JointLimit& limit = lattice.chain().limit[j];
+    off[j] = off[j] || x < limit.lower + margin || x > limit.upper - margin;
+  }
+}
+
+}  // namespace
+
+Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice,
+                     const std::optional<Config>& home) {
+  Lattice::Joints off{};
+  std::optional<Config> end = home;
+  for (JobPart& part : parts) {
+    if (part.rows.empty()) {  // the run itself leaves the limits, whatever its turn
+      for (std::size_t j = 0; j < kDof; ++j) off[j] = is_bounded_circle(lattice, j);
+      return off;
+    }
+    Config last = part.rows.front().q;
+    if (end) last = *end + lattice.delta(*end, last);
+    Config before = part.rows.front().q;
+    for (TrajectoryRow& row : part.rows) {
+      // rows of runs come without jumps, ways of transitions as they were found
+      const Config step = part.run ? Config(row.q - before) : lattice.delta(before, row.q);
+      before = row.q;
+      row.q = last += step;
+      note_off_limits(lattice, row.q, off);
+    }
+    end = last;
+  }
+  if (!home) return off;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    if (is_bounded_circle(lattice, j)) off[j] = off[j] || std::abs((*end)[i] - (*home)[i]) > kPi;
+  }
+  return off;
+}
+
+}  // namespace swivel

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/job/plan_job.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "job/job_lift.hpp"
+#include "job/job_transitions.hpp"
+#include "job/order_estimate.hpp"
+#include "measure/measure_rows.hpp"
+#include "plan/stopwatch.hpp"
+#include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/scale.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/graph/search/job_search.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "validity/collision_validity.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// A run with what its search needs. Each is searched by one thread at a time.
+struct PlannedRun {
+  PlannedRun(const StrokeRun& of, Problem p, const PreparedRobot& robot, const World& w,
+             const Budget& budget)
+      : run(of),
+        problem(std::move(p)),
+        world(&w),
+        rule(w.edge_rule(robot.radii())),
+        path(path_within_scale(problem, robot.arm().chain, budget)),
+        lattice(make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget)) {}
+  StrokeRun run;
+  Problem problem;
+  const World* world;
+  EdgeRule rule;
+  ToolPath path;
+  std::unique_ptr<Lattice> lattice;
+  std::unique_ptr<CostToGo> cost_to_go;
+  Executor alone{1};
+  std::optional<CollisionValidity> validity;
+};
+
+class JobPlan {
+ public:
+  JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options)
+      : robot_(robot),
+        chain_(robot.arm().chain),
+        job_(job),
+        options_(options),
+        budget_(options.budget()),
+        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {}
+
+  JobResult plan() {
+    const TraceSpan span("plan job");
+    result_.planner = to_string(options_.planner);
+    result_.threads = executor_.threads();
+    result_.joint_names = chain_.joint_names;
+    result_.held = robot_.arm().held;
+    try {
+      Stopwatch watch;
+      lay_out();
+      result_.time_ms["lattice"] = watch.lap();
+      find();
+      result_.time_ms["find"] = watch.lap();
+      explain();
+      result_.time_ms["report"] = watch.lap();
+    } catch (const Stopped&) {
+      if (result_.status != PlanStatus::kSolved) result_.status = stopped_status();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] PlanStatus stopped_status() const {
+    return budget_.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
+  }
+  [[nodiscard]] ParallelFor work() {
+    return {executor_.threads(),
+            [this](int parts, const auto& body) { executor_.for_each(parts, body); }};
+  }
+
+  /// Returns the world of the job's bodies with some limits. Runs with equal limits share it.
+  const World& world_of(const Limits& limits, const Problem& problem) {
+    for (const auto& [known, world] : worlds_)
+      if (known == limits) return world;
+    worlds_.emplace_back(
+        limits, World(worlds_.empty() ? robot_.world() : worlds_.front().second, problem, budget_));
+    return worlds_.back().second;
+  }
+
+  std::vector<StrokeRun> choose_order() {
+    if (job_.order == StrokeOrder::kBest)
+      return cheapest_order(estimate_order_costs(robot_, job_, work(), budget_), budget_);
+    std::vector<StrokeRun> order;
+    for (std::size_t k = 0; k < job_.strokes.size(); ++k) order.push_back({k, false});
+    return order;
+  }
+  void lay_out() {
+    const std::vector<StrokeRun> order = choose_order();
+    std::vector<std::pair<Problem, const World*>> of;
+    for (const StrokeRun& run : order) {
+      Problem problem = problem_of_run(job_, run);
+      const World& world = world_of(problem.limits, problem);
+      of.emplace_back(std::move(problem), &world);
+    }
+    Problem between = of.front().first;
+    between.limits = job_.limits;
+    transition_world_ = &world_of(job_.limits, between);
+    runs_.resize(order.size());
+    executor_.for_each(static_cast<int>(order.size()), [&](int k, int) {
+      const auto i = static_cast<std::size_t>(k);
+      runs_[i] = std::make_unique<PlannedRun>(order[i], std::move(of[i].first), robot_,
+                                              *of[i].second, budget_);
+    });
+    collect_warnings();
+  }
+  void collect_warnings() {
+    const auto add = [&](const std::vector<std::string>& lines) {
+      for (const std::string& line : lines)
+        if (std::find(result_.warnings.begin(), result_.warnings.end(), line) ==
+            result_.warnings.end())
+          result_.warnings.push_back(line);
+    };
+    add(limit_warnings(chain_));
+    add(held_warnings(result_.held));
+    add(file_warnings(*job_.model, chain_));
+    add(scale_warnings(chain_, job_));
+    for (const auto& run : runs_) {
+      add(limit_scale_warnings(chain_, run->problem));
+      add(scale_warnings(chain_, run->path, job_.scene));
+    }
+    add(transition_world_->warnings());
+  }
+
+  /// Searches until the joints of the cheapest job keep their limits without jumps of whole turns:
+  /// lattices that treat a wide joint as a circle are replaced by such as tell its turns apart,
+  /// where the job leaves its limits.
+  void find() {
+    for (;;) {
+      JobTransitions transitions(robot_, *transition_world_, job_.limits, *runs_.front()->lattice,
+                                 distance_proofs(), executor_, budget_);
+      if (job_.home) require_home_clear(transitions);
+      const JobOutcome outcome = search(transitions);
+      note(outcome, transitions);
+      if (outcome.paths.empty()) return;
+      std::vector<JobPart> parts = parts_of(outcome, transitions);
+      const Lattice::Joints off = lift(parts, *runs_.front()->lattice, job_.home);
+      if (off == Lattice::Joints{}) {
+        result_.status = PlanStatus::kSolved;
+        result_.parts = std::move(parts);
+        return;
+      }
+      for (const auto& run : runs_) {
+        run->validity.reset();
+        run->cost_to_go.reset();
+        run->lattice = run->lattice->with_windings(off);
+      }
+    }
+  }
+  [[nodiscard]] DistanceProofs distance_proofs() const {
+    return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
+  }
+  void require_home_clear(JobTransitions& transitions) {
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double x = (*job_.home)[static_cast<Eigen::Index>(j)];
+      const JointLimit& limit = chain_.limit[j];
+      const bool none = limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof);
+      const double lower = limit.lower + job_.limits.joint_margin,
+                   upper = limit.upper - job_.limits.joint_margin;
+      if (!none && !(x >= lower && x <= upper))
+        throw InputError(job_.source, "home: joint '" + chain_.joint_names[j] + "' is at " +
+                                          formatted("%.6g", x) + " rad: allowed is " +
+                                          formatted("%.6g to %.6g", lower, upper));
+    }
+    if (const auto pair = transitions.barred(*job_.home))
+      throw InputError(job_.source, "home: '" + (*pair)[0] + "' and '" + (*pair)[1] +
+                                        "' come too near: allowed is a configuration that keeps "
+                                        "the clearance of motions");
+  }
+
+  JobOutcome search(JobTransitions& transitions) {
+    std::vector<SearchedRun> searched;
+    for (const auto& run : runs_) {
+      run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget_);
+      run->cost_to_go->set_single_use();
+      run->validity.emplace(*run->lattice, *run->world, run->rule, run->problem.limits.edges,
+                            distance_proofs(), run->alone, 1, budget_);
+      searched.push_back({run->cost_to_go.get(), &*run->validity});
+    }
+    JobSearchOptions options;
+    options.paths.batch = 8;
+    options.work = work();
+    return search_job(searched, transitions, job_.home, options);
+  }
+
+  /// Notes what a search did and found.
+  void note(const JobOutcome& outcome, const JobTransitions& transitions) {
+    result_.transitions.pairs += outcome.pairs;
+    result_.transitions.searches += outcome.searches;
+    result_.transitions.rounds += outcome.rounds;
+    for (const auto& run : runs_) add_counters(*run);
+    add_collision(transitions.counters());
+    result_.bound = outcome.bound;
+    result_.bound_any = outcome.bound_any;
+    result_.cost = outcome.paths.empty() ? 0 : outcome.cost;
+    result_.runs.clear();
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      RunResult run;
+      run.run = runs_[k]->run;
+      run.lattice = runs_[k]->lattice->describe();
+      run.lattice.method = robot_.arm_class().method();
+      run.lattice.complete = robot_.arm_class().complete();
+      if (k < outcome.least_costs.size()) {
+        run.least_cost = outcome.least_costs[k];
+        run.status = run.least_cost == kUnreachable ? PlanStatus::kInfeasible : PlanStatus::kSolved;
+      } else {
+        run.status = stopped_status();
+      }
+      result_.runs.push_back(std::move(run));
+    }
+    result_.no_transition_to = outcome.transition_without_way;
+    if (!outcome.decided && outcome.paths.empty()) throw Stopped();
+  }
+  void add_counters(const PlannedRun& run) {
+    Counters& sum = result_.counters;
+    sum.ik_nodes += run.cost_to_go->ik_nodes();
+    sum.edges += run.cost_to_go->edges();
+    sum.nodes_checked += run.validity->nodes_checked();
+    sum.edges_checked += run.validity->edges_checked();
+    add_collision(run.validity->counters());
+  }
+  void add_collision(const CollisionCounters& more) {
+    result_.counters.fcl_calls += more.fcl_calls;
+    result_.counters.proved_free += more.proved_free;
+    result_.counters.proved_colliding += more.proved_colliding;
+  }
+
+  /// Returns the parts of the job that was found, with joints as the lattices have them.
+  std::vector<JobPart> parts_of(const JobOutcome& outcome, const JobTransitions& transitions) {
+    std::vector<JobPart> parts;
+    std::optional<Config> end = job_.home;
+    std::size_t next_cost = 0;
+    const auto add_transition = [&](std::size_t k, const Config& to) {
+      JobPart part;
+      part.cost = outcome.transition_costs[next_cost++];
+      for (const Config& q : transitions.way(static_cast<int>(k), *end, to)) {
+        TrajectoryRow row;
+        row.q = q;
+        part.rows.push_back(row);
+      }
+      parts.push_back(std::move(part));
+    };
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      const Lattice& lattice = *runs_[k]->lattice;
+      const SlotPath& path = outcome.paths[k];
+      if (end) add_transition(k, *lattice.exact_config(0, path.front()));
+      JobPart part;
+      part.run = runs_[k]->run;
+      part.cost = outcome.run_costs[k];
+      part.rows = lattice.path_rows(path);
+      parts.push_back(std::move(part));
+      end = *lattice.exact_config(lattice.layers() - 1, path.back());
+    }
+    if (job_.home) add_transition(runs_.size(), *job_.home);
+    return parts;
+  }
+
+  /// Measures the runs of a job, or finds out why there is none.
+  void explain() {
+    if (result_.status == PlanStatus::kSolved) {
+      std::size_t k = 0;
+      for (const JobPart& part : result_.parts) {
+        if (!part.run) continue;
+        Measures& measures = result_.runs[k].measures;
+        measure_margins(chain_, runs_[k]->path, part.rows, measures);
+        measure_rows(robot_, runs_[k]->path, *runs_[k]->world, part.rows, options_.evidence,
+                     budget_, measures);
+        ++k;
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < result_.runs.size(); ++k)
+      if (result_.runs[k].status == PlanStatus::kInfeasible) {
+        PlanOptions alone = options_;
+        alone.check = false;
+        result_.runs[k].diagnosis = swivel::plan(robot_, runs_[k]->problem, alone).diagnosis;
+      }
+  }
+
+  const PreparedRobot& robot_;
+  const Chain& chain_;
+  const Job& job_;
+  const PlanOptions& options_;
+  Budget budget_;
+  Executor executor_;
+  std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
+  const World* transition_world_ = nullptr;
+  std::vector<std::unique_ptr<PlannedRun>> runs_;
+  JobResult result_;
+};
+
+void require_supported(const PlanOptions& options) {
+  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
+    throw InvalidArgument("planner: allowed for jobs are lazy and parallel");
+  if (options.hooks.check || options.hooks.cost)
+    throw InvalidArgument("hooks: allowed for jobs are none");
+}
+
+}  // namespace
+
+JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions& options) {
+  validate(job);
+  require_supported(options);
+  robot.require_prepared_for(problem_of_run(job, {0, false}));
+  return JobPlan(robot, job, options).plan();
+}
+
+JobResult plan_job(const Job& job, const PlanOptions& options) {
+  validate(job);
+  require_supported(options);
+  return plan_job(PreparedRobot(problem_of_run(job, {0, false})), job, options);
+}
+
+}  // namespace swivel

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "swivel/core/motion/job_motion.hpp"
+#include "swivel/core/problem/job.hpp"
+
+namespace swivel {
+
+/// Returns how far along the path each of its waypoints is, m from the first.
+[[nodiscard]] std::vector<double> waypoint_distances(const Problem& problem);
+
+/// Returns the moments at which the process is switched on and off in a timed run: at the first of
+/// its rows at or after the stroke's first waypoint, and at or after its last one.
+[[nodiscard]] std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
+                                                        const Problem& problem,
+                                                        std::span<const TimedRow> rows);
+
+}  // namespace swivel

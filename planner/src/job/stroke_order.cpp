@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "job/stroke_order.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace swivel {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostExact = 12;  // strokes
+
+using Runs = std::vector<std::size_t>;  // 2 * stroke + reversed
+
+std::vector<StrokeRun> as_order(const Runs& runs) {
+  std::vector<StrokeRun> order;
+  order.reserve(runs.size());
+  for (const std::size_t run : runs) order.push_back({run / 2, run % 2 == 1});
+  return order;
+}
+
+double cost_of(const OrderCosts& costs, const Runs& runs) {
+  double cost = costs.first[runs.front()] + costs.last[runs.back()];
+  for (std::size_t k = 1; k < runs.size(); ++k) cost += costs.follow[runs[k - 1]][runs[k]];
+  return cost;
+}
+
+/// Finds the cheapest order by Held and Karp: least[set][run] is the least cost of running the
+/// strokes of `set`, `run` of them last.
+Runs exact_order(const OrderCosts& costs, const Budget& budget) {
+  const std::size_t n = costs.strokes, runs = 2 * n, sets = std::size_t{1} << n;
+  struct Best {
+    double cost = kNone;
+    std::uint8_t before = 0;
+  };
+  std::vector<Best> least(sets * runs);
+  for (std::size_t run = 0; run < runs; ++run)
+    least[(std::size_t{1} << run / 2) * runs + run].cost = costs.first[run];
+  for (std::size_t set = 1; set < sets; ++set) {
+    if (set % 64 == 0) budget.poll();
+    for (std::size_t run = 0; run < runs; ++run) {
+      const double cost = least[set * runs + run].cost;
+      if (cost == kNone) continue;
+      for (std::size_t next = 0; next < runs; ++next) {
+        const std::size_t bit = std::size_t{1} << next / 2;
+        if (set & bit) continue;
+        Best& best = least[(set | bit) * runs + next];
+        if (cost + costs.follow[run][next] < best.cost)
+          best = {cost + costs.follow[run][next], static_cast<std::uint8_t>(run)};
+      }
+    }
+  }
+  std::size_t set = sets - 1, last = 0;
+  double cost = kNone;
+  for (std::size_t run = 0; run < runs; ++run)
+    if (least[set * runs + run].cost + costs.last[run] < cost)
+      cost = least[set * runs + run].cost + costs.last[run], last = run;
+  Runs order;
+  while (set != 0) {
+    order.insert(order.begin(), last);
+    const std::size_t before = least[set * runs + last].before;
+    set &= ~(std::size_t{1} << last / 2);
+    last = before;
+  }
+  return order;
+}
+
+/// Returns the order that takes the cheapest run next, from a first run on.
+Runs nearest_next(const OrderCosts& costs, std::size_t first) {
+  Runs order{first};
+  std::vector<bool> done(costs.strokes);
+  done[first / 2] = true;
+  while (order.size() < costs.strokes) {
+    std::size_t best = 0;
+    double least = kNone;
+    bool any = false;
+    for (std::size_t next = 0; next < 2 * costs.strokes; ++next) {
+      if (done[next / 2]) continue;
+      const double cost = costs.follow[order.back()][next];
+      if (!any || cost < least) least = cost, best = next, any = true;
+    }
+    done[best / 2] = true;
+    order.push_back(best);
+  }
+  return order;
+}
+
+/// Takes `tried` if it is cheaper than `order`.
+bool take_if_cheaper(const OrderCosts& costs, const Runs& tried, Runs& order, double& cost) {
+  const double of_tried = cost_of(costs, tried);
+  if (!(of_tried < cost)) return false;
+  order = tried;
+  cost = of_tried;
+  return true;
+}
+
+/// Improves an order by the first cheaper one among those with a stroke turned round, a stretch
+/// turned round, or up to three strokes moved elsewhere, either way round. Returns false if there
+/// is none.
+bool improve(const OrderCosts& costs, Runs& order, double& cost) {
+  const std::size_t n = order.size();
+  const auto turn = [](Runs& runs, std::size_t first, std::size_t last) {
+    std::reverse(runs.begin() + static_cast<std::ptrdiff_t>(first),
+                 runs.begin() + static_cast<std::ptrdiff_t>(last));
+    for (std::size_t k = first; k < last; ++k) runs[k] ^= 1;
+  };
+  Runs tried;
+  for (std::size_t first = 0; first < n; ++first)
+    for (std::size_t last = first + 1; last <= n; ++last) {
+      tried = order;
+      turn(tried, first, last);
+      if (take_if_cheaper(costs, tried, order, cost)) return true;
+      // a stretch in the other order, each stroke in its own direction
+      for (std::size_t k = first; k < last; ++k) tried[k] ^= 1;
+      if (take_if_cheaper(costs, tried, order, cost)) return true;
+    }
+  for (std::size_t length = 1; length <= 3 && length < n; ++length)
+    for (std::size_t first = 0; first + length <= n; ++first)
+      for (std::size_t to = 0; to + length <= n; ++to)
+        for (const bool turned : {false, true}) {
+          if (to == first) continue;
+          tried = order;
+          const auto at = tried.begin() + static_cast<std::ptrdiff_t>(first);
+          Runs moved(at, at + static_cast<std::ptrdiff_t>(length));
+          tried.erase(at, at + static_cast<std::ptrdiff_t>(length));
+          if (turned) turn(moved, 0, length);
+          tried.insert(tried.begin() + static_cast<std::ptrdiff_t>(to), moved.begin(), moved.end());
+          if (take_if_cheaper(costs, tried, order, cost)) return true;
+        }
+  return false;
+}
+
+Runs searched_order(const OrderCosts& costs, const Budget& budget) {
+  Runs best;
+  double least = kNone;
+  for (std::size_t first = 0; first < 2 * costs.strokes; ++first) {
+    Runs order = nearest_next(costs, first);
+    double cost = cost_of(costs, order);
+    do budget.poll();
+    while (improve(costs, order, cost));
+    if (best.empty() || cost < least) best = order, least = cost;
+  }
+  return best;
+}
+
+}  // namespace
+
+double cost_of_order(const OrderCosts& costs, const std::vector<StrokeRun>& order) {
+  Runs runs;
+  for (const StrokeRun& run : order) runs.push_back(2 * run.stroke + (run.reversed ? 1 : 0));
+  return cost_of(costs, runs);
+}
+
+std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget) {
+  return as_order(costs.strokes <= kMostExact ? exact_order(costs, budget)
+                                              : searched_order(costs, budget));
+}
+
+}  // namespace swivel

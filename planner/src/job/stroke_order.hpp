@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/problem/job.hpp"
+
+namespace swivel {
+
+/// What it costs to run strokes one after the other, by estimate. Run 2 k is stroke k as it is
+/// listed, run 2 k + 1 is stroke k from its last waypoint to its first; costs of runs that are not
+/// allowed are infinite.
+struct OrderCosts {
+  std::size_t strokes = 0;
+  std::vector<double> first, last;  ///< by run: to begin the job with it, and to end with it
+  std::vector<std::vector<double>> follow;  ///< [run][next run]: to go on with the next run
+};
+
+/// Returns what an order costs.
+[[nodiscard]] double cost_of_order(const OrderCosts& costs, const std::vector<StrokeRun>& order);
+
+/// Returns the cheapest order in which each stroke is run once: for up to twelve strokes the exact
+/// one, by the dynamic program over sets of strokes of Held and Karp (1962), beyond that the best
+/// of local searches from each first run, which move stretches of up to three strokes and turn
+/// stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
+[[nodiscard]] std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget);
+
+}  // namespace swivel

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/job/time_job.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "job/process_range.hpp"
+#include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/motion/joint_moves.hpp"
+#include "swivel/core/motion/time_path.hpp"
+#include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Returns the speed asked for along a stroke where the waypoints have no feed, m/s.
+double process_speed(const Job& job, const Stroke& stroke, const JobTimingOptions& options) {
+  for (const std::optional<double>& speed :
+       {options.speed, stroke.process_speed, job.process_speed, stroke.limits.tool_speed})
+    if (speed) return *speed;
+  throw InputError(job.source, "stroke '" + stroke.name +
+                                   "' has no speed: allowed are process_speed, a column feed of "
+                                   "its path, limits.tool_speed, or --speed");
+}
+
+/// Joins timed parts to one motion.
+class JobTimer {
+ public:
+  JobTimer(const PreparedRobot& robot, const Job& job, const std::vector<JobPart>& parts,
+           const JobTimingOptions& options, const Budget& budget)
+      : robot_(robot),
+        chain_(robot.arm().chain),
+        job_(job),
+        parts_(parts),
+        options_(options),
+        budget_(budget),
+        rates_(joint_rates(chain_, job.limits, job.source)) {}
+
+  JobTimingResult run() {
+    JobTimingResult result;
+    motion_.rate = options_.rate;
+    motion_.roll = chain_.roll;
+    for (const JointRates::Assumed& assumed : rates_.assumed)
+      motion_.warnings.push_back(assumed.text);
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      budget_.poll();
+      const std::optional<NoMotion> failure = parts_[k].run ? add_run(k) : add_transition(k);
+      if (!failure) continue;
+      result.failure = failure;
+      result.failed_part = k;
+      return result;
+    }
+    motion_.duration = motion_.rows.back().t;
+    result.motion = std::move(motion_);
+    return result;
+  }
+
+ private:
+  /// Adds the rows of a part after those before it. Its first row is at the same time as the last
+  /// one before it, and takes its place if it is that of a run, which says more.
+  void append(std::size_t k, const std::vector<TimedRow>& rows) {
+    const bool first = motion_.rows.empty();
+    const auto before =
+        first ? 0 : static_cast<std::int64_t>(std::llround(motion_.rows.back().t * motion_.rate));
+    if (!first && parts_[k].run) {
+      const double t = motion_.rows.back().t;
+      motion_.rows.back() = rows.front();
+      motion_.rows.back().t = t;
+    }
+    for (std::size_t i = first ? 0 : 1; i < rows.size(); ++i) {
+      TimedRow row = rows[i];
+      row.t = static_cast<double>(before + static_cast<std::int64_t>(i)) / motion_.rate;
+      motion_.rows.push_back(row);
+      motion_.part.push_back(k);
+    }
+  }
+
+  std::optional<NoMotion> add_transition(std::size_t k) {
+    std::vector<Config> corners;
+    for (const TrajectoryRow& row : parts_[k].rows) corners.push_back(row.q);
+    append(k, time_joint_moves(corners, rates_, job_.rapid, options_.rate));
+    return std::nullopt;
+  }
+
+  std::optional<NoMotion> add_run(std::size_t k) {
+    const StrokeRun& run = *parts_[k].run;
+    const Problem problem = problem_of_run(job_, run);
+    MotionResult timed =
+        time_trajectory(robot_, problem, parts_[k].rows, timing_of(run, problem), budget_);
+    if (!timed.motion) return timed.failure;
+    const std::size_t first = motion_.rows.empty() ? 0 : motion_.rows.size() - 1;
+    append(k, timed.motion->rows);
+    add_events(run, problem, first);
+    for (const std::string& warning : timed.motion->warnings)
+      if (std::find(motion_.warnings.begin(), motion_.warnings.end(), warning) ==
+          motion_.warnings.end())
+        motion_.warnings.push_back(warning);
+    timed.motion->rows.clear();
+    motion_.runs.push_back(std::move(*timed.motion));
+    return std::nullopt;
+  }
+
+  /// Returns the speeds of a run: the stroke's between its first and its last waypoint, and those
+  /// of approach and retract before and after.
+  [[nodiscard]] TimingOptions timing_of(const StrokeRun& run, const Problem& problem) const {
+    const Stroke& stroke = job_.strokes[run.stroke];
+    const std::vector<double> s = waypoint_distances(problem);
+    const ProcessWaypoints process = process_waypoints(stroke);
+    TimingOptions timing;
+    timing.rate = options_.rate;
+    timing.turn_speed = options_.turn_speed;
+    const double usual = process_speed(job_, stroke, options_);
+    timing.speed = stroke.approach_speed.value_or(job_.approach_speed.value_or(usual));
+    const std::size_t count = stroke.waypoints.size();
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      double speed = usual;
+      if (!options_.speed && !stroke.feed.empty())
+        speed = stroke.feed[run.reversed ? count - 2 - k : k];
+      timing.speeds.push_back({s[process.first + k], speed});
+    }
+    if (process.last + 1 < s.size()) timing.speeds.push_back({s[process.last], timing.speed});
+    return timing;
+  }
+  /// Adds the events of a run whose rows begin at motion_.rows[first].
+  void add_events(const StrokeRun& run, const Problem& problem, std::size_t first) {
+    for (const ProcessEvent& event :
+         events_of_run(job_, run, problem, std::span(motion_.rows).subspan(first)))
+      motion_.events.push_back(event);
+  }
+
+  const PreparedRobot& robot_;
+  const Chain& chain_;
+  const Job& job_;
+  const std::vector<JobPart>& parts_;
+  const JobTimingOptions& options_;
+  const Budget& budget_;
+  JointRates rates_;
+  JobMotion motion_;
+};
+
+}  // namespace
+
+Job with_motion_defaults(Job job) {
+  for (Stroke& stroke : job.strokes) {
+    if (!stroke.smooth) stroke.smooth.emplace();
+    keep_clearance_between_layers(stroke.limits);
+  }
+  keep_clearance_between_layers(job.limits);
+  return job;
+}
+
+JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
+                         const std::vector<JobPart>& parts, const JobTimingOptions& options,
+                         const Budget& budget) {
+  const TraceSpan span("time job");
+  validate(job);
+  robot.require_prepared_for(problem_of_run(job, {0, false}));
+  if (!(options.rate > 0 && std::isfinite(options.rate)))
+    throw InvalidArgument("rate: allowed are numbers above 0, samples a second");
+  const Job completed = with_motion_defaults(job);
+  return JobTimer(robot, completed, parts, options, budget).run();
+}
+
+}  // namespace swivel
