@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <stdexcept>
 
 #include "job/process_range.hpp"
 #include "swivel/collision/world/world.hpp"
@@ -285,6 +286,11 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& given,
     result.passed = false;
   }
   return result;
+}
+
+void require_passed(const JobCheckResult& result) {
+  if (!result.passed)
+    throw std::logic_error("the job does not pass its own check: " + result.failures.at(0));
 }
 
 bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job, std::size_t stroke,

@@ -14,6 +14,7 @@
 #include "job/order_estimate.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/stopwatch.hpp"
+#include "refine/keeps_branch.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
@@ -22,9 +23,12 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/job_search.hpp"
+#include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "validity/collision_validity.hpp"
+#include "validity/hooked_validity.hpp"
 
 namespace swivel {
 
@@ -49,17 +53,22 @@ struct PlannedRun {
   std::unique_ptr<CostToGo> cost_to_go;
   Executor alone{1};
   std::optional<CollisionValidity> validity;
+  std::optional<HookedValidity> hooked;
 };
 
 class JobPlan {
  public:
-  JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options)
+  /// Prepares the plan of a job. With `one_branch`, no run of an S-R-S arm changes its branch.
+  JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+          const Budget& budget, bool one_branch = false)
       : robot_(robot),
         chain_(robot.arm().chain),
         job_(job),
         options_(options),
-        budget_(options.budget()),
-        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {}
+        budget_(budget),
+        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {
+    if (one_branch) hooks_.check = std::make_shared<KeepsBranch>(robot.srs());
+  }
 
   JobResult plan() {
     const TraceSpan span("plan job");
@@ -73,6 +82,12 @@ class JobPlan {
       result_.time_ms["lattice"] = watch.lap();
       find();
       result_.time_ms["find"] = watch.lap();
+      if (options_.check && result_.status == PlanStatus::kSolved) {
+        require_passed(
+            check_job(robot_, job_, result_.parts, {.margins = false, .budget = budget_}));
+        result_.checked = true;
+        result_.time_ms["check"] = watch.lap();
+      }
       explain();
       result_.time_ms["report"] = watch.lap();
     } catch (const Stopped&) {
@@ -162,6 +177,7 @@ class JobPlan {
         return;
       }
       for (const auto& run : runs_) {
+        run->hooked.reset();
         run->validity.reset();
         run->cost_to_go.reset();
         run->lattice = run->lattice->with_windings(off);
@@ -196,7 +212,8 @@ class JobPlan {
       run->cost_to_go->set_single_use();
       run->validity.emplace(*run->lattice, *run->world, run->rule, run->problem.limits.edges,
                             distance_proofs(), run->alone, 1, budget_);
-      searched.push_back({run->cost_to_go.get(), &*run->validity});
+      run->hooked.emplace(*run->lattice, *run->validity, hooks_, budget_);
+      searched.push_back({run->cost_to_go.get(), &*run->hooked});
     }
     JobSearchOptions options;
     options.paths.batch = 8;
@@ -303,6 +320,7 @@ class JobPlan {
   const Job& job_;
   const PlanOptions& options_;
   Budget budget_;
+  Hooks hooks_;
   Executor executor_;
   std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
   const World* transition_world_ = nullptr;
@@ -317,19 +335,69 @@ void require_supported(const PlanOptions& options) {
     throw InvalidArgument("hooks: allowed for jobs are none");
 }
 
+/// Returns true if the rows of a run of the job are not all on one branch.
+bool any_changes_branch(const JobResult& job) {
+  return std::any_of(job.parts.begin(), job.parts.end(),
+                     [](const JobPart& part) { return part.run && changes_branch(part.rows); });
+}
+
+/// Plans a job of which motions are to be made: the cheapest, or the cheapest whose runs do not
+/// change branch if the cheapest does and there is one.
+JobResult plan_executable(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+                          const Budget& budget) {
+  JobResult found = JobPlan(robot, job, options, budget).plan();
+  if (found.status != PlanStatus::kSolved || !robot.arm_class().srs || !any_changes_branch(found))
+    return found;
+  JobResult other = JobPlan(robot, job, options, budget, true).plan();
+  if (other.status != PlanStatus::kSolved) return found;
+  other.warnings.push_back(
+      formatted("the cheapest job, of cost %.6g, jumps to another branch, which no controller can "
+                "follow: this is the cheapest that does not",
+                found.cost));
+  return other;
+}
+
 }  // namespace
 
 JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions& options) {
   validate(job);
   require_supported(options);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
-  return JobPlan(robot, job, options).plan();
+  return JobPlan(robot, job, options, options.budget()).plan();
 }
 
 JobResult plan_job(const Job& job, const PlanOptions& options) {
   validate(job);
   require_supported(options);
   return plan_job(PreparedRobot(problem_of_run(job, {0, false})), job, options);
+}
+
+JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
+                              const PlanOptions& options, const JobTimingOptions& timing) {
+  validate(job);
+  require_supported(options);
+  const Job completed = with_motion_defaults(job);
+  robot.require_prepared_for(problem_of_run(completed, {0, false}));
+  const Budget budget = options.budget();
+  JobMotionPlan plan;
+  plan.result = plan_executable(robot, completed, options, budget);
+  if (plan.result.status != PlanStatus::kSolved) return plan;
+  try {
+    Stopwatch watch;
+    plan.timing = time_job(robot, completed, plan.result.parts, timing, budget);
+    plan.result.time_ms["time"] = watch.lap();
+    if (options.check && plan.timing->motion) {
+      std::vector<StrokeRun> order;
+      for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+      require_passed(check_job_motion(robot, completed, order, *plan.timing->motion,
+                                      {.margins = false, .budget = budget}));
+      plan.result.time_ms["check motion"] = watch.lap();
+    }
+  } catch (const Stopped&) {
+    plan.timing.reset();
+    plan.stopped = true;
+  }
+  return plan;
 }
 
 }  // namespace swivel

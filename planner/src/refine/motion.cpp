@@ -10,6 +10,7 @@
 
 #include "measure/first_clearance_violation.hpp"
 #include "measure/measure_rows.hpp"
+#include "refine/keeps_branch.hpp"
 #include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
@@ -384,31 +385,6 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
 }
 
 namespace {
-
-/// Refuses every step from one branch to another.
-class KeepsBranch final : public StateCheck {
- public:
-  explicit KeepsBranch(const SrsArm& arm) : arm_(&arm) {}
-  [[nodiscard]] std::string name() const override { return "branch"; }
-  [[nodiscard]] bool concurrent() const override { return true; }
-  void states(std::span<const Config> states, std::span<bool> allowed) override {
-    std::fill_n(allowed.begin(), states.size(), true);
-  }
-  [[nodiscard]] bool checks_motions() const override { return true; }
-  void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
-    for (std::size_t k = 0; k < motions.size(); ++k)
-      allowed[k] = arm_->branch(motions[k].from) == arm_->branch(motions[k].to);
-  }
-
- private:
-  const SrsArm* arm_;
-};
-
-/// Returns true if the rows are not all on one branch.
-bool changes_branch(const std::vector<TrajectoryRow>& rows) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [&](const TrajectoryRow& row) { return row.branch != rows[0].branch; });
-}
 
 /// Returns the cheapest path. With `one_branch`, returns the cheapest that never changes branch if
 /// there is one.

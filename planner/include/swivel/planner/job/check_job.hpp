@@ -34,6 +34,10 @@ struct JobCheckResult {
                                        const std::vector<JobPart>& parts,
                                        const CheckOptions& options = {});
 
+/// Throws std::logic_error, with the first failure, if the result has not passed. For a program's
+/// own answers, which must never fail.
+void require_passed(const JobCheckResult& result);
+
 /// Returns true if the tool begins at rows.front() nearer to the stroke's last waypoint than to its
 /// first, by position and then by angle.
 [[nodiscard]] bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job,

@@ -8,6 +8,7 @@
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/problem/job.hpp"
 #include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel {
 
@@ -36,6 +37,19 @@ struct JobTimingOptions {
 [[nodiscard]] JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
                                        const std::vector<JobPart>& parts,
                                        const JobTimingOptions& options, const Budget& budget = {});
+
+/// The result of plan_job_motion(): a job and its motion in time.
+struct JobMotionPlan {
+  JobResult result;
+  std::optional<JobTimingResult> timing;  ///< set if there is a job, unless `stopped`
+  bool stopped = false;                   ///< there is a job, but time ran out before its motion
+};
+/// Plans a job completed by with_motion_defaults(), and times it. A job whose cheapest runs jump
+/// from branch to branch at a singularity is planned again without such steps, if that is possible.
+/// The time-out of `options` covers everything. Throws as plan_job() and time_job() do.
+[[nodiscard]] JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
+                                            const PlanOptions& options,
+                                            const JobTimingOptions& timing);
 
 /// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
 /// of parts, with runs judged as check_motion() judges them; the rates of transitions as
