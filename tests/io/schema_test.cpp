@@ -31,8 +31,28 @@ std::vector<Json> options(const Json& schema) {
   return {schema["anyOf"].begin(), schema["anyOf"].end()};
 }
 
-/// The object without the keys that exclude this one.
+const Json& strokes() {
+  static const Json kStrokes = Json::parse(R"([{"name": "a", "path": {"waypoints":
+      [{"xyz": [0.6, -0.1, 0.9]}, {"xyz": [0.6, 0.1, 0.9]}]}}])");
+  return kStrokes;
+}
+
+/// The problem with every section as a job.
+Json whole_job() {
+  Json job = whole_problem();
+  for (const char* const key : {"path", "start"}) job.erase(key);
+  job["strokes"] = strokes();
+  return job;
+}
+
+/// Makes the object, which is the problem itself or in it, one that may have the key: without keys
+/// that exclude it, with those that it needs.
 void make_room(Json& object, const Json& schema, const std::string& key) {
+  if (schema.contains("dependencies") && schema["dependencies"].contains(key))
+    for (const std::string needed : schema["dependencies"][key]) {
+      make_room(object, schema, needed);
+      object[needed] = strokes();
+    }
   if (!schema.contains("allOf")) return;
   for (const Json& choice : schema["allOf"]) {
     std::vector<std::string> keys;
@@ -80,13 +100,17 @@ struct Walk {
       if (option["type"] != "object" || !option.contains("properties")) continue;
       static const Json kSections = Json::parse(
           R"({"cylinder": {"radius": 0.1, "length": 0.1}, "capsule": {"radius": 0.1, "length": 0.1},
-              "sphere": {"radius": 0.1}})");
+              "sphere": {"radius": 0.1}, "approach": {"xyz": [0, 0, 0]},
+              "retract": {"xyz": [0, 0, 0]}, "home": {"joints": [0, 0, 0, 0, 0, 0, 0]}})");
       visit_object(problem, at);
       for (const auto& [key, value] : option["properties"].items()) {
         Place place{problem, at, key, value};
         make_room(place.problem[at], option, key);
         visit(place);
         if (kSections.contains(key)) place.problem[at][key] = kSections[key];
+        if (key == "strokes") place.problem[at][key] = strokes();
+        if (key == "path" && !place.problem[at].contains(key))
+          place.problem[at][key] = strokes()[0]["path"];
         (*this)(place.problem, value, at / key);
       }
     }
@@ -96,10 +120,18 @@ struct Walk {
 Problem load(const ProblemFolder& folder, const Json& problem) {
   return load_problem(folder.folder().write("problems/problem.yaml", problem.dump()));
 }
+Job load_as_job(const ProblemFolder& folder, const Json& problem) {
+  return load_job(folder.folder().write("problems/problem.yaml", problem.dump()));
+}
 
 std::string refusal(const ProblemFolder& folder, const Json& problem) {
   SCOPED_TRACE(problem.dump());
-  return input_error([&] { (void)load(folder, problem); });
+  return input_error([&] {
+    if (problem.contains("strokes"))
+      (void)load_as_job(folder, problem);
+    else
+      (void)load(folder, problem);
+  });
 }
 
 /// A value of a type that this key does not have.
@@ -132,7 +164,7 @@ TEST(ProblemSchema, EveryKeyIsRead) {
                    {": " + place.name()});
   }};
   walk(whole_problem(), Json::parse(problem_json_schema()), Json::json_pointer());
-  EXPECT_GE(keys, 90);
+  EXPECT_GE(keys, 150);
 }
 
 TEST(ProblemSchema, NoOtherKeyIsRead) {
@@ -185,19 +217,30 @@ TEST(ProblemSchema, RequiredKeys) {
         }
       };
   remove(whole_problem(), schema, Json::json_pointer());
-  EXPECT_GE(keys, 10);
+  remove(whole_job(), schema, Json::json_pointer());
+  EXPECT_GE(keys, 18);
+}
+
+/// Returns a problem or a job with all defaults that its keys have. Adds their number to `keys`.
+Json with_defaults(const Json& plain, int& keys) {
+  Json said = plain;
+  Walk walk{[&](const Place& place) {
+    if (!place.schema.contains("default") || place.key == "scale") return;
+    // Keys of a job are none of a problem, and the other way round.
+    if (!plain.contains(place.object) ||
+        place.problem[place.object].size() < plain[place.object].size())
+      return;
+    ++keys;
+    said[place.object][place.key] = place.schema["default"];
+  }};
+  walk(plain, Json::parse(problem_json_schema()), Json::json_pointer());
+  return said;
 }
 
 TEST(ProblemSchema, Defaults) {
   const ProblemFolder folder;
-  Json said = whole_problem();
   int keys = 0;
-  Walk walk{[&](const Place& place) {
-    if (!place.schema.contains("default") || place.key == "scale") return;
-    ++keys;
-    said[place.object][place.key] = place.schema["default"];
-  }};
-  walk(whole_problem(), Json::parse(problem_json_schema()), Json::json_pointer());
+  const Json said = with_defaults(whole_problem(), keys);
   EXPECT_GE(keys, 24);
   const Problem plain = load(folder, whole_problem()), explicitly = load(folder, said);
   Task without = plain, with = explicitly;
@@ -205,6 +248,25 @@ TEST(ProblemSchema, Defaults) {
   EXPECT_EQ(without, with);
   EXPECT_TRUE(plain.tool.isApprox(explicitly.tool));
   EXPECT_TRUE(plain.scene[0].pose.isApprox(explicitly.scene[0].pose));
+}
+
+TEST(ProblemSchema, DefaultsOfJobs) {
+  const ProblemFolder folder;
+  int keys = 0;
+  Json base = whole_job();
+  base["strokes"][0]["limits"] = Json::object();
+  const Json said = with_defaults(base, keys);
+  EXPECT_GE(keys, 40);
+  for (const char* const key : {"approach", "retract", "order", "rapid"})
+    EXPECT_TRUE(said.contains(key)) << key;
+  const Job plain = load_as_job(folder, whole_job()), explicitly = load_as_job(folder, said);
+  EXPECT_EQ(plain.order, explicitly.order);
+  EXPECT_EQ(plain.rapid, explicitly.rapid);
+  Stroke without = plain.strokes[0], with = explicitly.strokes[0];
+  EXPECT_EQ(without.reversible, with.reversible);
+  EXPECT_EQ(without.approach, with.approach);
+  EXPECT_EQ(without.retract, with.retract);
+  EXPECT_EQ(static_cast<const Task&>(without), static_cast<const Task&>(with));
 }
 
 }  // namespace

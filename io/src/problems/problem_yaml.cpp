@@ -5,6 +5,8 @@
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
+#include "problems/path_file.hpp"
+#include "problems/problem_reader.hpp"
 #include "robots/srdf.hpp"
 #include "robots/urdf.hpp"
 #include "schema/yaml_value.hpp"
@@ -85,474 +87,453 @@ Sphere sphere(const YamlValue& value) {
   return {value.section().require("radius").number()};
 }
 
-/// Calls `read` with another file. An InputError about that file is thrown again with the place of
-/// `key`, which names the file.
-template <class Read>
-auto with_key(const YamlValue& key, const fs::path& file, const Read& read) {
-  try {
-    return read(file);
-  } catch (const RobotKeyError&) {  // already tells the key that is wrong
-    throw;
-  } catch (const InputError& error) {
-    throw InputError(key.where() + ": " + error.what());
+}  // namespace
+
+Problem ProblemReader::read() {
+  require_one_path();
+  read_surroundings();
+  const YamlValue path = root_.require("path");
+  read_path(path);
+  read_task();
+  const ArmModel model = suitable_arm();
+  const auto limits = root_.find_filled("limits");
+  require_in_scale(model, path, limits ? std::vector{*limits} : std::vector<YamlValue>());
+  if (limits) require_arm_angle(model, *limits);
+  if (const auto value = root_.find_filled("start")) read_start(*value);
+  read_start_place();
+  read_cost();
+  read_vary();
+  return std::move(problem_);
+}
+
+void ProblemReader::require_one_path() const {
+  if (root_.find_filled("strokes")) {
+    const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
+    value.fail("makes this file a job, which `swivel plan` and io::load_job() take",
+               "a `path` here");
+  }
+  for (const Schema::Key& key : problem_schema().keys)
+    if (const auto value = root_.find_filled(key.name); value && !key.beside.empty())
+      value->fail("is given without " + key.beside, "this key beside " + key.beside);
+}
+
+void ProblemReader::read_surroundings() {
+  problem_.source = file_.string();
+  read_robot(root_.require("robot"));
+  read_scene();
+}
+
+void ProblemReader::read_task() {
+  if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
+  if (const auto value = root_.find_filled("limits")) read_limits(*value);
+  if (const auto value = root_.find_filled("refine")) read_refine(*value);
+}
+
+fs::path ProblemReader::resolve(const YamlValue& name) const {
+  return (file_.parent_path() / name.text()).lexically_normal();
+}
+
+std::string ProblemReader::link_name(const YamlValue& value) const {
+  const std::string name = value.text();
+  if (problem_.model->find_link(name) >= 0) return name;
+  std::vector<std::string> known;
+  for (const Link& link : problem_.model->links) known.push_back(link.name);
+  value.fail("unknown link '" + name + "', nearest is '" + nearest_name(name, known) + "'",
+             "a link of " + problem_.model->source);
+}
+
+bool ProblemReader::is_attached(const std::string& name) const {
+  return std::any_of(problem_.attached.begin(), problem_.attached.end(),
+                     [&](const auto& body) { return body.name == name; });
+}
+
+bool ProblemReader::is_object(const std::string& name) const {
+  return std::any_of(problem_.scene.begin(), problem_.scene.end(),
+                     [&](const auto& object) { return object.name == name; });
+}
+
+void ProblemReader::read_robot(const YamlValue& value) {
+  const YamlSection section = value.section();
+  const YamlValue urdf = section.require("urdf");
+  const auto srdf = section.find_filled("srdf");
+  const YamlValue base = section.require("base_link"), tip = section.require("tip_link");
+  const auto packages = read_packages(section);
+  RobotOptions options;
+  if (const auto without = section.find_filled("without"))
+    for (const YamlValue& link : without->items()) options.without.push_back(link.text());
+  if (const auto limits = root_.find_filled("limits"))
+    if (const auto soft = limits->section().find("soft_limits"))
+      options.soft_limits = word(*soft, {true, false});
+  const UrdfRobot robot = at_their_keys([&] {
+    return with_key(urdf, resolve(urdf),
+                    [&](const fs::path& file) { return load_urdf(file, packages, options); });
+  });
+  if (srdf)
+    with_key(*srdf, resolve(*srdf),
+             [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
+  problem_.model = robot.model;
+  problem_.base_link = link_name(base);
+  problem_.tip_link = link_name(tip);
+  if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section());
+  if (const auto hold = section.find_filled("hold")) read_hold(*hold);
+  if (const auto attached = section.find_filled("attached"))
+    for (const YamlValue& item : attached->items()) read_attached(item);
+  if (problem_.attached.size() > kMostBodies)
+    value.fail(std::to_string(problem_.attached.size()) + " attached bodies",
+               "at most " + std::to_string(kMostBodies));
+}
+
+Packages ProblemReader::read_packages(const YamlSection& section) const {
+  Packages packages;
+  const auto value = section.find_filled("packages");
+  if (!value) return packages;
+  for (const auto& [name, folder] : value->entries()) {
+    std::error_code error;
+    const fs::path path = resolve(folder);
+    if (!fs::is_directory(path, error))
+      folder.fail("no such folder: " + path.string(), "an existing folder");
+    packages[name] = path;
+  }
+  return packages;
+}
+
+std::vector<std::string> ProblemReader::joint_names() const {
+  std::vector<std::string> names;
+  for (const Joint& joint : problem_.model->joints) names.push_back(joint.name);
+  return names;
+}
+
+void ProblemReader::read_hold(const YamlValue& value) {
+  for (const auto& [joint, position] : value.entries()) {
+    if (problem_.model->find_joint(joint) < 0)
+      position.fail(
+          "unknown joint '" + joint + "', nearest is '" + nearest_name(joint, joint_names()) + "'",
+          "a joint of " + problem_.model->source);
+    problem_.hold[joint] = position.number();
   }
 }
 
-class ProblemReader {
- public:
-  explicit ProblemReader(const fs::path& file)
-      : file_(file), root_(load_yaml(file, problem_schema()).section()) {}
+void ProblemReader::read_attached(const YamlValue& value) {
+  const YamlSection section = value.section();
+  AttachedBody body;
+  const YamlValue name = section.require("name");
+  body.name = name.name();
+  if (problem_.model->find_link(body.name) >= 0)
+    name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
+  if (is_attached(body.name))
+    name.fail("'" + body.name + "' is attached twice", "a name of its own");
+  body.shape = shape(section);
+  body.pose = pose(section);
+  const auto link = section.find_filled("link");
+  body.link = link ? link_name(*link) : problem_.tip_link;
+  problem_.attached.push_back(std::move(body));
+}
 
-  Problem read() {
-    problem_.source = file_.string();
-    read_robot(root_.require("robot"));
-    read_scene();
-    read_path(root_.require("path"));
-    if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
-    if (const auto value = root_.find_filled("limits")) read_limits(*value);
-    require_suitable_arm();
-    if (const auto value = root_.find_filled("start")) read_start(*value);
-    read_start_place();
-    if (const auto value = root_.find_filled("cost")) read_cost(*value);
-    if (const auto value = root_.find_filled("refine")) read_refine(*value);
-    if (const auto value = root_.find_filled("vary")) read_vary(*value);
-    return std::move(problem_);
-  }
+Shape ProblemReader::shape(const YamlSection& section) {
+  const auto [kind, value] = *section.chosen("mesh");
+  const auto scale = section.find_filled("scale");
+  if (scale && kind != "mesh") scale->fail("scale of a " + kind, "scale with mesh only");
+  if (kind == "box") return Box{value.vector3()};
+  if (kind == "cylinder") return round_shape<Cylinder>(value);
+  if (kind == "capsule") return round_shape<Capsule>(value);
+  if (kind == "sphere") return sphere(value);
+  const fs::path mesh = resolve(value);
+  const Vector3d factors = scale ? mesh_scale(*scale) : Vector3d::Ones();
+  return with_key(value, mesh,
+                  [&](const fs::path& file) { return load_mesh(file, factors, meshes_); });
+}
 
- private:
-  [[nodiscard]] fs::path resolve(const YamlValue& name) const {
-    return (file_.parent_path() / name.text()).lexically_normal();
-  }
+Vector3d ProblemReader::mesh_scale(const YamlValue& value) {
+  const Vector3d factors =
+      value.is_sequence() ? value.vector3() : Vector3d::Constant(value.number());
+  if ((factors.array() == 0).any()) value.fail("is zero", "a number or [x, y, z], none of them 0");
+  return factors;
+}
 
-  std::string link_name(const YamlValue& value) const {
-    const std::string name = value.text();
-    if (problem_.model->find_link(name) >= 0) return name;
-    std::vector<std::string> known;
-    for (const Link& link : problem_.model->links) known.push_back(link.name);
-    value.fail("unknown link '" + name + "', nearest is '" + nearest_name(name, known) + "'",
-               "a link of " + problem_.model->source);
-  }
-
-  [[nodiscard]] bool is_attached(const std::string& name) const {
-    return std::any_of(problem_.attached.begin(), problem_.attached.end(),
-                       [&](const auto& body) { return body.name == name; });
-  }
-  [[nodiscard]] bool is_object(const std::string& name) const {
-    return std::any_of(problem_.scene.begin(), problem_.scene.end(),
-                       [&](const auto& object) { return object.name == name; });
-  }
-
-  /// Calls `work`. A RobotKeyError is thrown again as an InputError at the line of that key of
-  /// `robot`.
-  template <class Work>
-  auto at_their_keys(const Work& work) const {
-    try {
-      return work();
-    } catch (const RobotKeyError& error) {
-      std::optional<YamlValue> value = root_.require("robot").section().find(error.key());
-      if (!value) throw;
-      if (error.key() == "hold")
-        for (const auto& [joint, position] : value->entries())
-          if (joint == error.entry()) value = position;
-      if (error.key() == "without")
-        for (const YamlValue& link : value->items())
-          if (link.text() == error.entry()) value = link;
-      throw InputError(value->where(), error.fault());
-    }
-  }
-
-  void read_robot(const YamlValue& value) {
-    const YamlSection section = value.section();
-    const YamlValue urdf = section.require("urdf");
-    const auto srdf = section.find_filled("srdf");
-    const YamlValue base = section.require("base_link"), tip = section.require("tip_link");
-    const auto packages = read_packages(section);
-    RobotOptions options;
-    if (const auto without = section.find_filled("without"))
-      for (const YamlValue& link : without->items()) options.without.push_back(link.text());
-    if (const auto limits = root_.find_filled("limits"))
-      if (const auto soft = limits->section().find("soft_limits"))
-        options.soft_limits = word(*soft, {true, false});
-    const UrdfRobot robot = at_their_keys([&] {
-      return with_key(urdf, resolve(urdf),
-                      [&](const fs::path& file) { return load_urdf(file, packages, options); });
-    });
-    if (srdf)
-      with_key(*srdf, resolve(*srdf),
-               [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
-    problem_.model = robot.model;
-    problem_.base_link = link_name(base);
-    problem_.tip_link = link_name(tip);
-    if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section());
-    if (const auto hold = section.find_filled("hold")) read_hold(*hold);
-    if (const auto attached = section.find_filled("attached"))
-      for (const YamlValue& item : attached->items()) read_attached(item);
-    if (problem_.attached.size() > kMostBodies)
-      value.fail(std::to_string(problem_.attached.size()) + " attached bodies",
-                 "at most " + std::to_string(kMostBodies));
-  }
-
-  [[nodiscard]] Packages read_packages(const YamlSection& section) const {
-    Packages packages;
-    const auto value = section.find_filled("packages");
-    if (!value) return packages;
-    for (const auto& [name, folder] : value->entries()) {
-      std::error_code error;
-      const fs::path path = resolve(folder);
-      if (!fs::is_directory(path, error))
-        folder.fail("no such folder: " + path.string(), "an existing folder");
-      packages[name] = path;
-    }
-    return packages;
-  }
-
-  [[nodiscard]] std::vector<std::string> joint_names() const {
-    std::vector<std::string> names;
-    for (const Joint& joint : problem_.model->joints) names.push_back(joint.name);
-    return names;
-  }
-
-  void read_hold(const YamlValue& value) {
-    for (const auto& [joint, position] : value.entries()) {
-      if (problem_.model->find_joint(joint) < 0)
-        position.fail("unknown joint '" + joint + "', nearest is '" +
-                          nearest_name(joint, joint_names()) + "'",
-                      "a joint of " + problem_.model->source);
-      problem_.hold[joint] = position.number();
-    }
-  }
-
-  void read_attached(const YamlValue& value) {
-    const YamlSection section = value.section();
-    AttachedBody body;
+void ProblemReader::read_scene() {
+  const auto value = root_.find_filled("scene");
+  if (!value) return;
+  const std::vector<YamlValue> items = value->items();
+  if (items.size() > kMostBodies)
+    value->fail(std::to_string(items.size()) + " objects",
+                "at most " + std::to_string(kMostBodies));
+  for (const YamlValue& item : items) {
+    const YamlSection section = item.section();
     const YamlValue name = section.require("name");
-    body.name = name.name();
-    if (problem_.model->find_link(body.name) >= 0)
-      name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
-    if (is_attached(body.name))
-      name.fail("'" + body.name + "' is attached twice", "a name of its own");
-    body.shape = shape(section);
-    body.pose = pose(section);
-    const auto link = section.find_filled("link");
-    body.link = link ? link_name(*link) : problem_.tip_link;
-    problem_.attached.push_back(std::move(body));
+    SceneObject object;
+    object.name = name.name();
+    if (object.name == problem_.base_link)
+      name.fail("'" + object.name + "' is the base link", "a name of its own");
+    if (is_attached(object.name))
+      name.fail("'" + object.name + "' is an attached body", "a name of its own");
+    if (is_object(object.name))
+      name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
+    object.shape = shape(section);
+    object.pose = pose(section);
+    if (const auto allow = section.find_filled("allow")) read_allowed(*allow, object);
+    problem_.scene.push_back(std::move(object));
   }
+}
 
-  Shape shape(const YamlSection& section) {
-    const auto [kind, value] = *section.chosen("mesh");
-    const auto scale = section.find_filled("scale");
-    if (scale && kind != "mesh") scale->fail("scale of a " + kind, "scale with mesh only");
-    if (kind == "box") return Box{value.vector3()};
-    if (kind == "cylinder") return round_shape<Cylinder>(value);
-    if (kind == "capsule") return round_shape<Capsule>(value);
-    if (kind == "sphere") return sphere(value);
-    const fs::path mesh = resolve(value);
-    const Vector3d factors = scale ? mesh_scale(*scale) : Vector3d::Ones();
-    return with_key(value, mesh,
-                    [&](const fs::path& file) { return load_mesh(file, factors, meshes_); });
+void ProblemReader::read_allowed(const YamlValue& value, SceneObject& object) const {
+  const auto add = [&](const YamlValue& where, const Allowed& allowed) {
+    if (problem_.model->find_link(allowed.body) < 0 && !is_attached(allowed.body))
+      where.fail("unknown body '" + allowed.body + "'",
+                 "a link of the robot or the name of an attached body");
+    if (const auto fault = depth_fault(problem_, object, allowed))
+      where.fail(fault->what, fault->allowed);
+    object.allow.push_back(allowed);
+  };
+  if (value.is_map())
+    for (const auto& [body, depth] : value.entries()) add(depth, {body, depth.number()});
+  else
+    for (const YamlValue& body : value.items()) add(body, {body.text()});
+}
+
+void ProblemReader::read_path(const YamlValue& value) {
+  const YamlSection section = value.section();
+  if (const auto smooth = section.find("smooth")) read_smooth(*smooth);
+  if (const auto roll = section.find_filled("roll")) read_roll(*roll);
+  path_roll_ = problem_.roll;
+  problem_.path_frame = problem_.base_link;
+  if (const auto frame = section.find_filled("frame")) {
+    problem_.path_frame = frame->text();
+    if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame))
+      frame->fail("unknown frame '" + problem_.path_frame + "'",
+                  "'" + problem_.base_link + "' or the name of a scene object");
   }
-
-  static Vector3d mesh_scale(const YamlValue& value) {
-    const Vector3d factors =
-        value.is_sequence() ? value.vector3() : Vector3d::Constant(value.number());
-    if ((factors.array() == 0).any())
-      value.fail("is zero", "a number or [x, y, z], none of them 0");
-    return factors;
+  const auto [key, poses] = *section.chosen("waypoints");
+  if (feeds_) feeds_->clear();
+  if (key == "file") {
+    PathFile path = with_key(poses, resolve(poses), [&](const fs::path& file) {
+      return load_path_file(file, feeds_.has_value());
+    });
+    problem_.waypoints = std::move(path.waypoints);
+    if (feeds_) *feeds_ = std::move(path.feeds);
+  } else {
+    read_waypoints(poses);
   }
+  if (problem_.waypoints.front().roll) narrow_roll(poses);
+}
 
-  void read_scene() {
-    const auto value = root_.find_filled("scene");
-    if (!value) return;
-    const std::vector<YamlValue> items = value->items();
-    if (items.size() > kMostBodies)
-      value->fail(std::to_string(items.size()) + " objects",
-                  "at most " + std::to_string(kMostBodies));
-    for (const YamlValue& item : items) {
-      const YamlSection section = item.section();
-      const YamlValue name = section.require("name");
-      SceneObject object;
-      object.name = name.name();
-      if (object.name == problem_.base_link)
-        name.fail("'" + object.name + "' is the base link", "a name of its own");
-      if (is_attached(object.name))
-        name.fail("'" + object.name + "' is an attached body", "a name of its own");
-      if (is_object(object.name))
-        name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
-      object.shape = shape(section);
-      object.pose = pose(section);
-      if (const auto allow = section.find_filled("allow")) read_allowed(*allow, object);
-      problem_.scene.push_back(std::move(object));
+void ProblemReader::read_waypoints(const YamlValue& value) {
+  for (const YamlValue& item : value.items()) {
+    problem_.waypoints.push_back(waypoint(item));
+    if (problem_.waypoints.back().roll.has_value() != problem_.waypoints.front().roll.has_value())
+      item.fail("roll is given at some waypoints alone", "a roll at each waypoint, or at none");
+  }
+  if (problem_.waypoints.size() < 2)
+    value.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)",
+               "at least two waypoints");
+}
+
+void ProblemReader::narrow_roll(const YamlValue& poses) {
+  if (!problem_.roll)
+    poses.fail("says how far the tool may stand turned, but the roll is not free",
+               "path.roll beside it");
+  // A window of a whole turn has ends, so that it is no circle.
+  constexpr double kHalf = kPi - 1e-6;
+  Roll all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < problem_.waypoints.size(); ++k) {
+    Roll& window = *problem_.waypoints[k].roll;
+    if (window.circle()) window = {-kHalf, kHalf};
+    if (!problem_.roll->circle()) {
+      window = {std::max(window.lower, problem_.roll->lower),
+                std::min(window.upper, problem_.roll->upper)};
+      if (!(window.lower <= window.upper))
+        poses.fail("waypoint " + std::to_string(k) + " (from 0) allows no roll that path.roll does",
+                   "rolls in common");
     }
+    all = {std::min(all.lower, window.lower), std::max(all.upper, window.upper)};
   }
+  if (all.circle() || !(all.lower < all.upper))
+    poses.fail("allows rolls from " + format_double(all.lower) + " to " + format_double(all.upper) +
+                   " in all",
+               "more than one, less than a turn");
+  problem_.roll = all;
+}
 
-  void read_allowed(const YamlValue& value, SceneObject& object) const {
-    const auto add = [&](const YamlValue& where, const Allowed& allowed) {
-      if (problem_.model->find_link(allowed.body) < 0 && !is_attached(allowed.body))
-        where.fail("unknown body '" + allowed.body + "'",
-                   "a link of the robot or the name of an attached body");
-      if (const auto fault = depth_fault(problem_, object, allowed))
-        where.fail(fault->what, fault->allowed);
-      object.allow.push_back(allowed);
-    };
-    if (value.is_map())
-      for (const auto& [body, depth] : value.entries()) add(depth, {body, depth.number()});
-    else
-      for (const YamlValue& body : value.items()) add(body, {body.text()});
+void ProblemReader::read_roll(const YamlValue& value) {
+  problem_.roll = Roll{};
+  problem_.cost.weights.back() = 0;
+  if (!value.is_sequence()) {
+    constexpr const char* kAllowed = "free, or [lower, upper] in rad";
+    if (value.is_map()) value.fail("is a map", kAllowed);
+    if (value.text() != "free") value.fail("is '" + value.text() + "'", kAllowed);
+    return;
   }
+  const std::vector<double> ends = value.numbers();
+  problem_.roll = Roll{ends[0], ends[1]};
+  if (!(ends[0] < ends[1])) value.fail("is empty", "[lower, upper] with lower < upper");
+}
 
-  void read_path(const YamlValue& value) {
-    const YamlSection section = value.section();
-    if (const auto smooth = section.find("smooth")) read_smooth(*smooth);
-    if (const auto roll = section.find_filled("roll")) read_roll(*roll);
-    problem_.path_frame = problem_.base_link;
-    if (const auto frame = section.find_filled("frame")) {
-      problem_.path_frame = frame->text();
-      if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame))
-        frame->fail("unknown frame '" + problem_.path_frame + "'",
-                    "'" + problem_.base_link + "' or the name of a scene object");
-    }
-    const auto [key, poses] = *section.chosen("waypoints");
-    if (key == "file") {
-      problem_.waypoints =
-          with_key(poses, resolve(poses), [](const fs::path& file) { return load_path(file); });
+void ProblemReader::read_smooth(const YamlValue& value) {
+  problem_.smooth = value.is_null() ? PathSmoothing{0, 0} : PathSmoothing{};
+  if (value.is_null()) return;
+  const YamlSection section = value.section();
+  set(section, "position", problem_.smooth->position);
+  set(section, "angle", problem_.smooth->angle);
+}
+
+void ProblemReader::read_refine(const YamlValue& value) {
+  const YamlSection section = value.section();
+  set(section, "smoothing", problem_.refinement.smoothing);
+  set(section, "joint_margin", problem_.refinement.joint_margin);
+  set(section, "singular_margin", problem_.refinement.singular_margin);
+}
+
+void ProblemReader::read_resolution(const YamlValue& value) {
+  const YamlSection section = value.section();
+  Resolution& resolution = problem_.resolution;
+  set(section, "ds", resolution.ds);
+  set(section, "dphi", resolution.dphi);
+  set(section, "dalpha", resolution.dalpha);
+  set(section, "arc", resolution.arc);
+  set(section, "droll", resolution.droll);
+  set(section, "knot", resolution.knot);
+  if (const auto arcs = section.find("arcs")) resolution.arcs = word(*arcs, {false, true});
+}
+
+void ProblemReader::read_limits(const YamlValue& value) {
+  const YamlSection section = value.section();
+  Limits& limits = problem_.limits;
+  set(section, "clearance", limits.clearance);
+  set(section, "self_clearance", limits.self_clearance);
+  set(section, "manipulability", limits.manipulability);
+  set(section, "joint_margin", limits.joint_margin);
+  set(section, "joint_step", limits.joint_step);
+  set(section, "arm_slope", limits.arm_slope);
+  set(section, "roll_slope", limits.roll_slope);
+  set(section, "step_error", limits.step_error);
+  set(section, "tool_path_error", limits.tool_path_error);
+  set(section, "tool_angle_error", limits.tool_angle_error);
+  set(section, "tool_speed", limits.tool_speed);
+  set(section, "tool_turn_speed", limits.tool_turn_speed);
+  set(section, "edge_clearance", limits.edge_clearance);
+  set(section, "edge_tolerance", limits.edge_tolerance);
+  set(section, "joint_speed", limits.joint_speed);
+  set(section, "joint_acceleration", limits.joint_acceleration);
+  set(section, "joint_jerk", limits.joint_jerk);
+  if (const auto edges = section.find("edges"))
+    limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
+}
+
+std::vector<double> ProblemReader::joint_numbers(const YamlValue& value) const {
+  if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 && arm().chain.roll)
+    value.fail("has 6 entries",
+               "a list of 7 numbers: one for each of the six joints, base to tip, and a seventh "
+               "for the roll of the tool");
+  return value.numbers();
+}
+
+ArmModel ProblemReader::arm() const {
+  return build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold,
+                   problem_.tool, problem_.roll);
+}
+
+ArmModel ProblemReader::suitable_arm() const {
+  return at_their_keys([&] { return arm(); });
+}
+
+void ProblemReader::require_in_scale(const ArmModel& model, const YamlValue& path,
+                                     const std::vector<YamlValue>& limits) const {
+  for (const LargeLength& found : large_lengths(model.chain, problem_)) {
+    std::optional<YamlValue> value;
+    if (found.section == "path.smooth") {
+      if (const auto smooth = path.section().find_filled("smooth"))
+        value = smooth->section().find(found.key);
     } else {
-      for (const YamlValue& item : poses.items()) {
-        problem_.waypoints.push_back(waypoint(item));
-        if (problem_.waypoints.back().roll.has_value() !=
-            problem_.waypoints.front().roll.has_value())
-          item.fail("roll is given at some waypoints alone", "a roll at each waypoint, or at none");
-      }
-      if (problem_.waypoints.size() < 2)
-        poses.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)",
-                   "at least two waypoints");
+      for (const YamlValue& section : limits)
+        if (const auto given = section.section().find(found.key)) value = given;
     }
-    if (problem_.waypoints.front().roll) narrow_roll(poses);
+    if (value) value->fail(found.fault, formatted("at most %.3g", found.most));
   }
+}
 
-  /// Limits the window of rolls of each waypoint to the range of path.roll, and that range to what
-  /// all windows cover together. Throws InputError if a window becomes empty, if the roll is not
-  /// free, or if the windows cover only one roll or a whole turn.
-  void narrow_roll(const YamlValue& poses) {
-    if (!problem_.roll)
-      poses.fail("says how far the tool may stand turned, but the roll is not free",
-                 "path.roll beside it");
-    // A window of a whole turn has ends, so that it is no circle.
-    constexpr double kHalf = kPi - 1e-6;
-    Roll all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (std::size_t k = 0; k < problem_.waypoints.size(); ++k) {
-      Roll& window = *problem_.waypoints[k].roll;
-      if (window.circle()) window = {-kHalf, kHalf};
-      if (!problem_.roll->circle()) {
-        window = {std::max(window.lower, problem_.roll->lower),
-                  std::min(window.upper, problem_.roll->upper)};
-        if (!(window.lower <= window.upper))
-          poses.fail(
-              "waypoint " + std::to_string(k) + " (from 0) allows no roll that path.roll does",
-              "rolls in common");
-      }
-      all = {std::min(all.lower, window.lower), std::max(all.upper, window.upper)};
-    }
-    if (all.circle() || !(all.lower < all.upper))
-      poses.fail("allows rolls from " + format_double(all.lower) + " to " +
-                     format_double(all.upper) + " in all",
-                 "more than one, less than a turn");
-    problem_.roll = all;
+void ProblemReader::require_arm_angle(const ArmModel& model, const YamlValue& limits) const {
+  const auto slope = limits.section().find("arm_slope");
+  if (!slope) return;
+  if (!classify(model.chain, problem_.model->source).srs)
+    slope->fail("is given, but the arm has no arm angle, since it is not S-R-S",
+                "no such key for this arm");
+}
+
+void ProblemReader::read_start(const YamlValue& value) {
+  const YamlValue joints = value.section().require("joints");
+  problem_.start = Config::Map(joint_numbers(joints).data());
+}
+
+void ProblemReader::read_start_place() {
+  const auto at = root_.find_filled("start_at"), tolerance = root_.find_filled("start_tolerance");
+  for (const auto& value : {at, tolerance})
+    if (value && !problem_.start) value->fail("is given without start", "this key beside start");
+  if (at) problem_.start_at = at->number();
+  if (!tolerance) return;
+  problem_.start_tolerance = tolerance->number();
+  if (problem_.start_tolerance > kMostStartTolerance)
+    tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
+}
+
+void ProblemReader::read_cost() {
+  const auto value = root_.find_filled("cost");
+  if (!value) return;
+  const YamlSection section = value->section();
+  if (const auto metric = section.find("metric"))
+    problem_.cost.metric = word(*metric, {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime});
+  if (const auto weights = section.find_filled("weights")) {
+    const std::vector<double> values = joint_numbers(*weights);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!weight_allowed(values[k]))
+        weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
+    std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
   }
-
-  void read_roll(const YamlValue& value) {
-    problem_.roll = Roll{};
-    problem_.cost.weights.back() = 0;
-    if (!value.is_sequence()) {
-      constexpr const char* kAllowed = "free, or [lower, upper] in rad";
-      if (value.is_map()) value.fail("is a map", kAllowed);
-      if (value.text() != "free") value.fail("is '" + value.text() + "'", kAllowed);
-      return;
-    }
-    const std::vector<double> ends = value.numbers();
-    problem_.roll = Roll{ends[0], ends[1]};
-    if (!(ends[0] < ends[1])) value.fail("is empty", "[lower, upper] with lower < upper");
+  if (const auto roll = section.find("roll")) {
+    problem_.cost.roll = roll->number();
+    if (!weight_allowed(problem_.cost.roll))
+      roll->fail("is " + format_double(problem_.cost.roll), kAllowedWeights);
+    if (problem_.cost.roll > 0 && !problem_.roll)
+      roll->fail("is given, but no roll is free",
+                 "this key beside path.roll, of arms of six joints");
   }
+}
 
-  /// Reads path.smooth. null stands for the polyline itself, whatever the command smooths by
-  /// default.
-  void read_smooth(const YamlValue& value) {
-    problem_.smooth = value.is_null() ? PathSmoothing{0, 0} : PathSmoothing{};
-    if (value.is_null()) return;
-    const YamlSection section = value.section();
-    set(section, "position", problem_.smooth->position);
-    set(section, "angle", problem_.smooth->angle);
+void ProblemReader::read_vary() {
+  const auto value = root_.find_filled("vary");
+  if (!value) return;
+  for (const YamlValue& item : value->items()) {
+    const YamlSection section = item.section();
+    const YamlValue object = section.require("object");
+    if (!is_object(object.text()))
+      object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
+    problem_.vary.push_back(
+        {object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
   }
+}
 
-  void read_refine(const YamlValue& value) {
-    const YamlSection section = value.section();
-    set(section, "smoothing", problem_.refinement.smoothing);
-    set(section, "joint_margin", problem_.refinement.joint_margin);
-    set(section, "singular_margin", problem_.refinement.singular_margin);
-  }
+void ProblemReader::set(const YamlSection& section, const char* key, double& target) {
+  if (const auto value = section.find(key)) target = value->number();
+}
 
-  void read_resolution(const YamlValue& value) {
-    const YamlSection section = value.section();
-    Resolution& resolution = problem_.resolution;
-    set(section, "ds", resolution.ds);
-    set(section, "dphi", resolution.dphi);
-    set(section, "dalpha", resolution.dalpha);
-    set(section, "arc", resolution.arc);
-    set(section, "droll", resolution.droll);
-    set(section, "knot", resolution.knot);
-    if (const auto arcs = section.find("arcs")) resolution.arcs = word(*arcs, {false, true});
-  }
+void ProblemReader::set(const YamlSection& section, const char* key,
+                        std::optional<double>& target) {
+  if (const auto value = section.find(key))
+    target = value->is_null() ? std::nullopt : std::optional(value->number());
+}
 
-  void read_limits(const YamlValue& value) {
-    const YamlSection section = value.section();
-    Limits& limits = problem_.limits;
-    set(section, "clearance", limits.clearance);
-    set(section, "self_clearance", limits.self_clearance);
-    set(section, "manipulability", limits.manipulability);
-    set(section, "joint_margin", limits.joint_margin);
-    set(section, "joint_step", limits.joint_step);
-    set(section, "arm_slope", limits.arm_slope);
-    set(section, "roll_slope", limits.roll_slope);
-    set(section, "step_error", limits.step_error);
-    set(section, "tool_path_error", limits.tool_path_error);
-    set(section, "tool_angle_error", limits.tool_angle_error);
-    set(section, "tool_speed", limits.tool_speed);
-    set(section, "tool_turn_speed", limits.tool_turn_speed);
-    set(section, "edge_clearance", limits.edge_clearance);
-    set(section, "edge_tolerance", limits.edge_tolerance);
-    set(section, "joint_speed", limits.joint_speed);
-    set(section, "joint_acceleration", limits.joint_acceleration);
-    set(section, "joint_jerk", limits.joint_jerk);
-    if (const auto edges = section.find("edges"))
-      limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
-  }
-
-  /// Returns one number for each joint of the arm, base to tip. An arm of six joints has a seventh
-  /// number, for the roll of the tool.
-  [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const {
-    if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 &&
-        arm().chain.roll)
-      value.fail("has 6 entries",
-                 "a list of 7 numbers: one for each of the six joints, base to tip, and a seventh "
-                 "for the roll of the tool");
-    return value.numbers();
-  }
-
-  [[nodiscard]] ArmModel arm() const {
-    return build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold,
-                     problem_.tool, problem_.roll);
-  }
-
-  /// Throws InputError, at the key in the problem file, for values that do not suit the robot's
-  /// file or an arm of this kind and size.
-  void require_suitable_arm() const {
-    const ArmModel model = at_their_keys([&] { return arm(); });
-    for (const LargeLength& found : large_lengths(model.chain, problem_)) {
-      const bool smooth = found.section == "path.smooth";
-      const auto section =
-          smooth ? root_.require("path").section().find("smooth") : root_.find_filled("limits");
-      const auto value = section ? section->section().find(found.key) : std::nullopt;
-      if (value) value->fail(found.fault, formatted("at most %.3g", found.most));
-    }
-    require_arm_angle(model);
-  }
-
-  /// Throws InputError if limits.arm_slope is given for an arm that has no arm angle.
-  void require_arm_angle(const ArmModel& model) const {
-    const auto limits = root_.find_filled("limits");
-    const auto slope = limits ? limits->section().find("arm_slope") : std::nullopt;
-    if (!slope) return;
-    if (!classify(model.chain, problem_.model->source).srs)
-      slope->fail("is given, but the arm has no arm angle, since it is not S-R-S",
-                  "no such key for this arm");
-  }
-
-  void read_start(const YamlValue& value) {
-    const YamlValue joints = value.section().require("joints");
-    problem_.start = Config::Map(joint_numbers(joints).data());
-  }
-
-  void read_start_place() {
-    const auto at = root_.find_filled("start_at"), tolerance = root_.find_filled("start_tolerance");
-    for (const auto& value : {at, tolerance})
-      if (value && !problem_.start) value->fail("is given without start", "this key beside start");
-    if (at) problem_.start_at = at->number();
-    if (!tolerance) return;
-    problem_.start_tolerance = tolerance->number();
-    if (problem_.start_tolerance > kMostStartTolerance)
-      tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
-  }
-
-  void read_cost(const YamlValue& value) {
-    const YamlSection section = value.section();
-    if (const auto metric = section.find("metric"))
-      problem_.cost.metric = word(*metric, {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime});
-    if (const auto weights = section.find_filled("weights")) {
-      const std::vector<double> values = joint_numbers(*weights);
-      for (std::size_t k = 0; k < values.size(); ++k)
-        if (!weight_allowed(values[k]))
-          weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
-      std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
-    }
-    if (const auto roll = section.find("roll")) {
-      problem_.cost.roll = roll->number();
-      if (!weight_allowed(problem_.cost.roll))
-        roll->fail("is " + format_double(problem_.cost.roll), kAllowedWeights);
-      if (problem_.cost.roll > 0 && !problem_.roll)
-        roll->fail("is given, but no roll is free",
-                   "this key beside path.roll, of arms of six joints");
-    }
-  }
-
-  void read_vary(const YamlValue& value) {
-    for (const YamlValue& item : value.items()) {
-      const YamlSection section = item.section();
-      const YamlValue object = section.require("object");
-      if (!is_object(object.text()))
-        object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
-      problem_.vary.push_back(
-          {object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
-    }
-  }
-
-  /// Sets a number if its key is present; otherwise keeps the default.
-  static void set(const YamlSection& section, const char* key, double& target) {
-    if (const auto value = section.find(key)) target = value->number();
-  }
-  /// Sets a limit if its key is present; an explicit null means that there is no such limit.
-  static void set(const YamlSection& section, const char* key, std::optional<double>& target) {
-    if (const auto value = section.find(key))
-      target = value->is_null() ? std::nullopt : std::optional(value->number());
-  }
-
-  /// Sets a limit that is given as one number for all joints or as one for each.
-  void set(const YamlSection& section, const char* key,
-           std::optional<std::array<double, kDof>>& target) const {
-    const auto value = section.find(key);
-    if (!value) return;
-    target.reset();
-    if (value->is_null()) return;
-    target.emplace();
-    if (!value->is_sequence()) return target->fill(value->number());
-    const std::vector<double> values = joint_numbers(*value);
-    std::copy(values.begin(), values.end(), target->begin());
-  }
-
-  /// Returns what a word stands for. `values` are in the order of the schema's words.
-  template <class Enum>
-  static Enum word(const YamlValue& value, std::initializer_list<Enum> values) {
-    return std::vector<Enum>(values).at(value.word());
-  }
-
-  const fs::path& file_;
-  YamlSection root_;
-  Problem problem_;
-  MeshCache meshes_;
-};
-
-}  // namespace
+void ProblemReader::set(const YamlSection& section, const char* key,
+                        std::optional<std::array<double, kDof>>& target) const {
+  const auto value = section.find(key);
+  if (!value) return;
+  target.reset();
+  if (value->is_null()) return;
+  target.emplace();
+  if (!value->is_sequence()) return target->fill(value->number());
+  const std::vector<double> values = joint_numbers(*value);
+  std::copy(values.begin(), values.end(), target->begin());
+}
 
 Problem load_problem(const fs::path& yaml) {
-  return ProblemReader(yaml).read();
+  return ProblemReader(yaml, load_yaml(yaml, problem_schema()).section()).read();
 }
 
 }  // namespace swivel::io

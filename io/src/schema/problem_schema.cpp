@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "schema/schema.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/job.hpp"
 
 namespace swivel::io {
 
@@ -97,13 +97,19 @@ Schema robot() {
       });
 }
 
+/// Returns the schema of `joints`: one number for each, base to tip.
+Schema configuration() {
+  return section("", {{"joints", numbers(kDof, kFinite), "rad", required(),
+                       "base to tip; of six joints the roll of the tool is the seventh"}});
+}
+
 Schema path() {
   const PathSmoothing smooth;
   const Keys window{{"roll", numbers(2, kFinite), "rad", optional(),
                      "with `roll` of the path: `[lower, upper]`, what it may be there, at all "
                      "waypoints or at none; in between the ends "
                      "are linear"}};
-  return section(
+  Schema keys = section(
       "path",
       {
           {"frame", text(), "", in_words("`base_link`"),
@@ -132,6 +138,7 @@ Schema path() {
            "of seven"},
       },
       {{{"waypoints", "file"}, true}});
+  return refusing(std::move(keys), {not_yet("end"), not_yet("closed")});
 }
 
 Schema scene() {
@@ -292,34 +299,103 @@ Schema vary() {
       }));
 }
 
+/// Returns the schema of where the tool stands before a stroke or after it.
+Schema offset() {
+  return either(
+      number(kExtent),
+      section("", {{"xyz", numbers(3, kCoordinate), "m", required(), "in the tool frame there"}}));
+}
+
+/// Returns the keys that each stroke may have in place of the job's.
+Keys keys_of_strokes(const char* other) {
+  const auto presence = [&] { return other ? in_words(other) : otherwise(0.0); };
+  return {
+      {"approach", offset(), "m", presence(),
+       "from where the tool comes to a stroke, on a straight line without turning: so far against "
+       "its z axis, or `{xyz: [x, y, z]}` in the tool frame of the first waypoint; 0: no such "
+       "line"},
+      {"retract", offset(), "m", presence(),
+       "where it goes after a stroke, alike; in the tool frame of the last waypoint"},
+      {"process_speed", number(kPositive), "m/s", in_words(other ? other : "`limits.tool_speed`"),
+       "speed of the tool along strokes, see [speeds](#speeds)"},
+  };
+}
+
+Schema strokes() {
+  Schema limits_of_stroke =
+      section("", join(join(clearance_limits(), joint_and_path_limits()), speed_limits()));
+  std::erase_if(limits_of_stroke.keys,
+                [](const Schema::Key& key) { return key.name == "soft_limits"; });
+  limits_of_stroke.refused = {
+      {"soft_limits", "is of the robot", "this key in the `limits` of the file"}};
+  const Keys first{
+      {"name", text(), "", required(), "a name of its own, without commas and quotes", "a name"},
+      {"path", path(), "", required(), "its [path](#path)", "a section with waypoints or file"},
+      {"reversible", boolean(), "", otherwise("false"),
+       "whether the tool may run from the last waypoint to the first as well"}};
+  const Keys last{{"limits", std::move(limits_of_stroke), "", optional(),
+                   "[limits](#limits) in place of the file's, key by key"}};
+  Schema stroke = section("stroke", join(join(first, keys_of_strokes("that of the job")), last));
+  return list(refusing(std::move(stroke),
+                       {not_yet("lift"),
+                        not_yet("closed"),
+                        not_yet("end"),
+                        {"start", "is of problems with one path", "`home`, of a job as a whole"}}));
+}
+
+/// Returns the keys that only jobs have.
+Keys job_keys() {
+  Keys keys =
+      join({{"home", configuration(), "", in_words("the job begins and ends at its strokes"),
+             "`{joints: [...]}`, seven numbers (rad): where the arm starts and where it "
+             "returns to"},
+            {"order", one_of({"given", "best"}), "", otherwise("given"),
+             "of the strokes: as listed, or the cheapest that is found"},
+            {"rapid", number(kShare), "", otherwise(Job().rapid),
+             "share of the joints' speeds in transitions"}},
+           keys_of_strokes(nullptr));
+  for (Schema::Key& key : keys) key.beside = "strokes";
+  return in_group("job", std::move(keys));
+}
+
+Keys start_keys() {
+  const Task d;
+  return {
+      {"start", configuration(), "", in_words("Swivel chooses"),
+       "`{joints: [...]}`, seven numbers (rad): the configuration at the first waypoint"},
+      {"start_at", or_null(number(kExtent)), "m", in_words("the beginning"),
+       "where on the path the `start` stands, along the whole of it"},
+      {"start_tolerance", or_null(number(kStartTolerance)), "m, rad", otherwise(d.start_tolerance),
+       "how far from the path the tool may stand at the `start`"},
+  };
+}
+
 }  // namespace
 
 const Schema& problem_schema() {
-  const Task d;
-  static const Schema schema = section(
-      "problem",
-      {
-          {"robot", robot(), "", required(), "the [robot](#robot)",
-           "a section with urdf, base_link, tip_link"},
-          {"path", path(), "", required(), "the [path](#path) of the tool",
-           "a section with waypoints or file"},
-          {"scene", scene(), "", optional(), "the [bodies](#scene) that stand around"},
-          {"resolution", resolution(), "", optional(), "how fine the [lattice](#resolution) is"},
-          {"limits", limits(), "", optional(), "what is to be [kept](#limits)"},
-          {"start",
-           section("", {{"joints", numbers(kDof, kFinite), "rad", required(),
-                         "base to tip; of six joints the roll of the tool is the seventh"}}),
-           "", in_words("Swivel chooses"),
-           "`{joints: [...]}`, seven numbers (rad): the configuration at the first waypoint"},
-          {"start_at", or_null(number(kExtent)), "m", in_words("the beginning"),
-           "where on the path the `start` stands, along the whole of it"},
-          {"start_tolerance", or_null(number(kStartTolerance)), "m, rad",
-           otherwise(d.start_tolerance), "how far from the path the tool may stand at the `start`"},
-          {"cost", cost(), "", optional(), "what is [summed](#cost) over the steps of the path"},
-          {"refine", refine(), "", optional(), "what [refining](#refine) weighs and keeps"},
-          {"vary", vary(), "", optional(),
-           "uniform random offsets of objects, for [campaigns](#vary)"},
-      });
+  static const Schema schema = [] {
+    const Keys what{
+        {"robot", robot(), "", required(), "the [robot](#robot)",
+         "a section with urdf, base_link, tip_link"},
+        {"path", path(), "", in_words("**required**, or `strokes`"),
+         "the [path](#path) of the tool",
+         "a section with waypoints or file; or `strokes`, of a job"},
+        {"strokes", strokes(), "", optional(), "of a [job](#jobs) instead: the strokes"},
+        {"scene", scene(), "", optional(), "the [bodies](#scene) that stand around"},
+        {"resolution", resolution(), "", optional(), "how fine the [lattice](#resolution) is"},
+        {"limits", limits(), "", optional(), "what is to be [kept](#limits)"}};
+    const Keys how{
+        {"cost", cost(), "", optional(), "what is [summed](#cost) over the steps of the path"},
+        {"refine", refine(), "", optional(), "what [refining](#refine) weighs and keeps"},
+        {"vary", vary(), "", optional(),
+         "uniform random offsets of objects, for [campaigns](#vary)"}};
+    return refusing(section("problem", join(join(join(what, start_keys()), how), job_keys()),
+                            {{{"path", "strokes"}, true},
+                             {{"start", "strokes"}},
+                             {{"start_at", "strokes"}},
+                             {{"start_tolerance", "strokes"}}}),
+                    {not_yet("lift")});
+  }();
   return schema;
 }
 

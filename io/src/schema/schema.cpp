@@ -88,6 +88,16 @@ Schema section(std::string name, std::vector<Schema::Key> keys,
   return schema;
 }
 
+Schema::Refusal not_yet(std::string key) {
+  std::string allowed = "no `" + key + "`";
+  return {std::move(key), "is not supported yet", std::move(allowed)};
+}
+
+Schema refusing(Schema section, std::vector<Schema::Refusal> keys) {
+  section.refused = std::move(keys);
+  return section;
+}
+
 std::vector<Schema::Key> join(std::vector<Schema::Key> first,
                               const std::vector<Schema::Key>& second) {
   first.insert(first.end(), second.begin(), second.end());

@@ -34,6 +34,7 @@ inline constexpr Range kExtent{"a number >= 0, at most 1000", 0, kMostMetres};  
 inline constexpr Range kLength{kLengthAllowed, 0, kMostMetres, true};                          // m
 // rad
 inline constexpr Range kTurn{"a finite number > 0, at most 2*pi", 0, kTwoPi, true};
+inline constexpr Range kShare{"a number > 0, at most 1", 0, 1, true};
 inline constexpr Range kStartTolerance{"a number > 0, at most 0.1", 0, kMostStartTolerance, true};
 
 /// The schema of one value: its type, and what that type allows.
@@ -48,6 +49,12 @@ struct Schema {
     [[nodiscard]] std::string allowed() const;
   };
 
+  /// A key that a section refuses with words of its own, since people expect it there.
+  struct Refusal {
+    std::string key, what;
+    std::string allowed;  ///< completes "allowed is ..."
+  };
+
   // implicit, and elsewhere: Clang needs a vector's type whole where its member is initialised
   Schema(Type what);
   Type type;
@@ -56,10 +63,11 @@ struct Schema {
   std::vector<std::string> words = {};  ///< of words: one of these
   /// of lists and of maps with free keys: the schema of an item
   std::vector<Schema> item = {};
-  std::string name = {};             ///< of sections: the name of its table
-  std::vector<Key> keys;             ///< of sections
-  std::vector<Choice> choices = {};  ///< of sections
-  std::vector<Schema> others = {};   ///< schemas that are allowed instead
+  std::string name = {};              ///< of sections: the name of its table
+  std::vector<Key> keys;              ///< of sections
+  std::vector<Choice> choices = {};   ///< of sections
+  std::vector<Refusal> refused = {};  ///< of sections: keys that they do not have
+  std::vector<Schema> others = {};    ///< schemas that are allowed instead
   bool nullable = false;
 
   /// Returns the schema of the given type: this one, or one that is allowed instead. Throws
@@ -88,7 +96,13 @@ struct Schema::Key {
   std::string meaning;
   std::string allowed = {};  ///< completes "is missing: allowed is ..."; empty: as the type says
   const char* group = "";    ///< the table that describes it, where it is not the section's own
+  std::string beside = {};   ///< the key beside which alone it may stand; empty: any
 };
+
+/// Returns the refusal of a key that is not built yet.
+[[nodiscard]] Schema::Refusal not_yet(std::string key);
+/// Returns the section with keys that it refuses in words of its own.
+[[nodiscard]] Schema refusing(Schema section, std::vector<Schema::Refusal> keys);
 
 /// Returns the schema of a number in a range.
 [[nodiscard]] Schema number(const Range& range = kFinite);
@@ -141,6 +155,8 @@ inline constexpr int kResultVersion = 1;
 [[nodiscard]] const Schema& campaign_schema();
 /// Returns the schema of a row of a trajectory's CSV file, whose keys are the columns.
 [[nodiscard]] const Schema& trajectory_schema();
+/// Returns the schema of a row of a job's CSV file, whose keys are the columns.
+[[nodiscard]] const Schema& job_trajectory_schema();
 /// Returns the schema of a row of a timed motion's CSV file, whose keys are the columns.
 [[nodiscard]] const Schema& motion_schema();
 

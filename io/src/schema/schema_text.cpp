@@ -62,6 +62,8 @@ Json section_json(const Schema& schema, Absent absent) {
   if (!required.empty()) json["required"] = std::move(required);
   for (const Schema::Choice& choice : schema.choices) choices.push_back(choice_json(choice));
   if (!choices.empty()) json["allOf"] = std::move(choices);
+  for (const Schema::Key& key : schema.keys)
+    if (!key.beside.empty()) json["dependencies"][key.name] = {key.beside};
   return json;
 }
 

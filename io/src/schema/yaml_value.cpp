@@ -109,6 +109,13 @@ void YamlValue::count(std::size_t more) const {
          "at most " + std::to_string(kMostValues) + " in a file, aliases counted each time");
 }
 
+bool YamlValue::boolean() const {
+  static_cast<void>(schema_->as(Schema::Type::kBoolean));
+  const std::string word = node_.IsScalar() ? node_.Scalar() : "";
+  if (word != "true" && word != "false") fail(shown(node_) + " is neither", "true or false");
+  return word == "true";
+}
+
 std::vector<YamlValue> YamlValue::items() const {
   if (!node_.IsSequence()) fail(shown(node_) + " is not a list", "a list");
   const Schema& schema = schema_->as(Schema::Type::kList).item.front();
@@ -151,6 +158,8 @@ YamlSection YamlValue::section() const {
   const Schema& schema = schema_->as(Schema::Type::kSection);
   auto found = map([&](const std::string& name, const YamlValue& value) -> const Schema& {
     if (const Schema::Key* const key = schema.find(name)) return key->value;
+    for (const Schema::Refusal& refused : schema.refused)
+      if (refused.key == name) value.fail(refused.what, refused.allowed);
     const std::vector<std::string> known = schema.key_names();
     value.fail("unknown key, nearest known key is '" + nearest_name(name, known) + "'",
                "one of " + joined(known));

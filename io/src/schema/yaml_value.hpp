@@ -46,6 +46,8 @@ class YamlValue {
   [[nodiscard]] std::string name() const;
   /// Returns the index of the value among the schema's words.
   [[nodiscard]] std::size_t word() const;
+  /// Returns true or false, as these words of YAML 1.2 say.
+  [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::vector<YamlValue> items() const;
   /// Returns the entries of a map with free keys: names and values.
   [[nodiscard]] std::vector<std::pair<std::string, YamlValue>> entries() const;

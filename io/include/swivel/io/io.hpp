@@ -5,6 +5,7 @@
 #include "swivel/io/files/files.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/motions/trajectory.hpp"
+#include "swivel/io/problems/job.hpp"
 #include "swivel/io/problems/problem.hpp"
 #include "swivel/io/results/result.hpp"
 #include "swivel/io/robots/robot.hpp"

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads the sections of problem files, for problems and for jobs.
+#pragma once
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robots/urdf.hpp"
+#include "schema/yaml_value.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/robot_key_error.hpp"
+#include "swivel/core/problem/problem.hpp"
+#include "swivel/io/meshes/mesh.hpp"
+
+namespace swivel::io {
+
+/// Calls `read` with another file. An InputError about that file is thrown again with the place of
+/// `key`, which names the file.
+template <class Read>
+auto with_key(const YamlValue& key, const std::filesystem::path& file, const Read& read) {
+  try {
+    return read(file);
+  } catch (const RobotKeyError&) {  // already tells the key that is wrong
+    throw;
+  } catch (const InputError& error) {
+    throw InputError(key.where() + ": " + error.what());
+  }
+}
+
+/// Reads a problem file section by section into one problem. Every function throws InputError at
+/// the line of the key that is wrong.
+class ProblemReader {
+ public:
+  ProblemReader(std::filesystem::path file, YamlSection root)
+      : file_(std::move(file)), root_(std::move(root)) {}
+
+  /// Reads the file as a problem, which has one path. Throws InputError for a job.
+  Problem read();
+
+ protected:
+  /// Reads the robot and the bodies about it into `problem_`: `robot`, `scene`.
+  void read_surroundings();
+  /// Reads `path` into `problem_`: frame, waypoints, smoothing, roll, and feeds where `feeds_` is
+  /// set.
+  void read_path(const YamlValue& value);
+  /// Reads `resolution`, `limits` and `refine` of the file into `problem_`.
+  void read_task();
+  /// Replaces the limits of `problem_` that the section `limits` has.
+  void read_limits(const YamlValue& value);
+  /// Reads `cost` of the file into `problem_`. The roll must be known.
+  void read_cost();
+  /// Reads `vary` of the file into `problem_`.
+  void read_vary();
+
+  [[nodiscard]] std::string link_name(const YamlValue& value) const;
+  /// Returns one number for each joint of the arm, base to tip. An arm of six joints has a seventh
+  /// number, for the roll of the tool.
+  [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const;
+
+  /// Returns the arm. Throws InputError, at the key in the problem file, for values of `robot` that
+  /// do not suit the robot's file.
+  [[nodiscard]] ArmModel suitable_arm() const;
+  /// Throws InputError for lengths of `problem_` that are out of all proportion to the arm, at
+  /// their key: in the `path` that they were read from, or in the last of the sections `limits`
+  /// that has the key.
+  void require_in_scale(const ArmModel& model, const YamlValue& path,
+                        const std::vector<YamlValue>& limits) const;
+  /// Throws InputError if the section `limits` has an arm_slope and the arm no arm angle.
+  void require_arm_angle(const ArmModel& model, const YamlValue& limits) const;
+
+  /// Returns what a word stands for. `values` are in the order of the schema's words.
+  template <class Enum>
+  static Enum word(const YamlValue& value, std::initializer_list<Enum> values) {
+    return std::vector<Enum>(values).at(value.word());
+  }
+
+  std::filesystem::path file_;
+  YamlSection root_;
+  Problem problem_;
+  /// `path.roll` of the path that was read last, as the file has it; in `problem_` it is narrowed
+  /// to what the windows of the waypoints allow.
+  std::optional<Roll> path_roll_;
+  /// Where a path's CSV file may have feeds: those of the path that was read last, m/s.
+  std::optional<std::vector<double>> feeds_;
+
+ private:
+  [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;
+  [[nodiscard]] bool is_attached(const std::string& name) const;
+  [[nodiscard]] bool is_object(const std::string& name) const;
+
+  /// Calls `work`. A RobotKeyError is thrown again as an InputError at the line of that key of
+  /// `robot`.
+  template <class Work>
+  auto at_their_keys(const Work& work) const {
+    try {
+      return work();
+    } catch (const RobotKeyError& error) {
+      std::optional<YamlValue> value = root_.require("robot").section().find(error.key());
+      if (!value) throw;
+      if (error.key() == "hold")
+        for (const auto& [joint, position] : value->entries())
+          if (joint == error.entry()) value = position;
+      if (error.key() == "without")
+        for (const YamlValue& link : value->items())
+          if (link.text() == error.entry()) value = link;
+      throw InputError(value->where(), error.fault());
+    }
+  }
+
+  void read_robot(const YamlValue& value);
+  [[nodiscard]] Packages read_packages(const YamlSection& section) const;
+  [[nodiscard]] std::vector<std::string> joint_names() const;
+  void read_hold(const YamlValue& value);
+  void read_attached(const YamlValue& value);
+  Shape shape(const YamlSection& section);
+  static Vector3d mesh_scale(const YamlValue& value);
+  void read_scene();
+  void read_allowed(const YamlValue& value, SceneObject& object) const;
+  void read_waypoints(const YamlValue& value);
+  /// Limits the window of rolls of each waypoint to the range of path.roll, and that range to what
+  /// all windows cover together. Throws InputError if a window becomes empty, if the roll is not
+  /// free, or if the windows cover only one roll or a whole turn.
+  void narrow_roll(const YamlValue& poses);
+  void read_roll(const YamlValue& value);
+  /// Reads path.smooth. null stands for the polyline itself, whatever the command smooths by
+  /// default.
+  void read_smooth(const YamlValue& value);
+  void read_refine(const YamlValue& value);
+  void read_resolution(const YamlValue& value);
+  [[nodiscard]] ArmModel arm() const;
+  void read_start(const YamlValue& value);
+  void read_start_place();
+  void require_one_path() const;
+
+  /// Sets a number if its key is present; otherwise keeps the default.
+  static void set(const YamlSection& section, const char* key, double& target);
+  /// Sets a limit if its key is present; an explicit null means that there is no such limit.
+  static void set(const YamlSection& section, const char* key, std::optional<double>& target);
+  /// Sets a limit that is given as one number for all joints or as one for each.
+  void set(const YamlSection& section, const char* key,
+           std::optional<std::array<double, kDof>>& target) const;
+
+  MeshCache meshes_;
+};
+
+}  // namespace swivel::io
