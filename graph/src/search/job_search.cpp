@@ -137,42 +137,49 @@ class JobSearch {
 
   // --- the greedy job
 
-  /// Takes each run at the least cost after the one before, and the first transition found to it.
+  /// Finds the job that takes each run at the least cost after the one before, with straight
+  /// transitions, before values say what the rest of the job costs. It is the first job found if
+  /// its transitions are free; else ways around are sought only once the cheapest job needs them
+  /// too.
   void find_greedy_job() {
     const TraceSpan span("greedy job");
-    Candidate job;
-    std::vector<double> run_costs;
     std::size_t end = 0;
-    for (int k = 0; k <= last(); ++k) {
-      if (k == last()) {
-        if (exists(k) && !greedy_transition({k, end, 0}, job)) return;
-        break;
-      }
+    for (int k = 0; k < last(); ++k) {
       Run& run = at(k);
-      for (bool found = false; !found;) {
+      std::size_t begin = 0;
+      do {
+        int slot = run.cost_to_go->first_slot();
         if (exists(k)) {
           take_rest(k);
-          const auto onward = costs(k).onward(end, run.rest, run.order);
-          if (onward.cost == kUnreachable) return;
-          run.path = best_path_from(costs(k).begins()[onward.begin].slot, *run.cost_to_go,
-                                    run.counters.expansions, &run.earlier);
-          found = validate(run) && greedy_transition({k, end, onward.begin}, job);
-          // a begin node that no way leads to is left out of this job alone
-          if (!found && run.valid) return;
-        } else {
-          run.path = best_path(*run.cost_to_go, run.counters.expansions, &run.earlier);
-          found = validate(run);
+          begin = costs(k).onward(end, run.rest, run.order).begin;
+          slot = costs(k).begins()[begin].slot;
         }
-      }
-      job.paths.push_back(run.path);
-      run_costs.push_back(run.cost_to_go->at(0, run.path.front()));
+        run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
+      } while (!validate(run));
+      if (exists(k)) greedy_.pairs.push_back({k, end, begin});
+      greedy_.paths.push_back(run.path);
+      greedy_costs_.push_back(run.cost_to_go->at(0, run.path.front()));
       if (exists(k + 1)) end = index_of(costs(k + 1).ends(), run.path.back());
     }
-    take_job(job, run_costs);
+    if (exists(last())) greedy_.pairs.push_back({last(), end, 0});
+    for (const TransitionAnswer& answer : ask(greedy_.pairs, false))
+      if (answer.verdict != Verdict::kValid) return;
+    take_greedy_job();
   }
-  bool greedy_transition(const Pair& pair, Candidate& job) {
-    job.pairs.push_back(pair);
-    return ask({pair}, true).front().verdict == Verdict::kValid;
+  void take_greedy_job() {
+    take_job(greedy_, greedy_costs_);
+    greedy_ = {};
+  }
+  /// Searches for ways around where the greedy job's transitions are barred, and takes the job if
+  /// there are.
+  void complete_greedy_job() {
+    if (greedy_.paths.empty()) return;
+    std::vector<Pair> open;
+    for (const Pair& pair : greedy_.pairs)
+      if (costs(pair.transition).asked(pair.end, pair.begin) != Asked::kThoroughly)
+        open.push_back(pair);
+    ask(open, true);
+    take_greedy_job();
   }
 
   // --- questions
@@ -343,7 +350,7 @@ class JobSearch {
                           runs_[k].cost_to_go->verdicts().exit_cost(path.back()));
     }
     if (!open.empty() && outcome_.searches >= options_.most_searches) return true;
-    const auto answers = ask(open, true);
+    const std::vector<TransitionAnswer> answers = find_ways(open);
     std::vector<Pair> dearer;
     for (std::size_t n = 0; n < open.size(); ++n) {
       const double straight = costs(open[n].transition).at(open[n].end, open[n].begin);
@@ -356,6 +363,21 @@ class JobSearch {
     for (const Pair& pair : dearer) ask_around(pair);
     raise_noted();
     return false;
+  }
+
+  /// Returns the answers about pairs of the cheapest job: in passing, then thoroughly where no way
+  /// is known. Before the first thorough search the greedy job is completed.
+  std::vector<TransitionAnswer> find_ways(const std::vector<Pair>& pairs) {
+    std::vector<TransitionAnswer> answers = ask(pairs, false);
+    std::vector<Pair> barred;
+    for (std::size_t n = 0; n < pairs.size(); ++n)
+      if (answers[n].verdict == Verdict::kUnknown) barred.push_back(pairs[n]);
+    if (barred.empty()) return answers;
+    complete_greedy_job();
+    const std::vector<TransitionAnswer> found = ask(barred, true);
+    for (std::size_t n = 0, next = 0; n < pairs.size(); ++n)
+      if (answers[n].verdict == Verdict::kUnknown) answers[n] = found[next++];
+    return answers;
   }
 
   /// Asks in passing about pairs near one whose straight move is barred, as far as they are cheaper
@@ -437,9 +459,11 @@ class JobSearch {
     Pair pair;
     double cost;
   };
-  std::vector<Noted> noted_;     // answers that are not raised yet
-  bool raised_ = false;          // the cost of a transition
-  double value_ = kUnreachable;  // cost of the cheapest job by what is known
+  Candidate greedy_;                  // until it is taken
+  std::vector<double> greedy_costs_;  // of its runs
+  std::vector<Noted> noted_;          // answers that are not raised yet
+  bool raised_ = false;               // the cost of a transition
+  double value_ = kUnreachable;       // cost of the cheapest job by what is known
 };
 
 }  // namespace

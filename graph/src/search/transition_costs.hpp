@@ -29,11 +29,16 @@ class TransitionCosts {
   [[nodiscard]] const std::vector<EndNode>& begins() const { return begins_; }
   /// Returns the cost from an end node to a begin node; kUnreachable where there is no way.
   [[nodiscard]] double at(std::size_t end, std::size_t begin) const {
-    if (!distances_.empty()) return distances_[end * begins_.size() + begin];
-    const auto found = raised_.find(key(end, begin));
-    return found != raised_.end() ? found->second : distance(end, begin);
+    if (raised_ends_[end]) {
+      const auto found = raised_.find(key(end, begin));
+      if (found != raised_.end()) return found->second;
+    }
+    return transitions_->distance(ends_[end].q, begins_[begin].q);
   }
-  void raise(std::size_t end, std::size_t begin, double cost);
+  void raise(std::size_t end, std::size_t begin, double cost) {
+    raised_ends_[end] = true;
+    raised_[key(end, begin)] = cost;
+  }
 
   /// What has been asked about a pair of nodes.
   enum class Asked : std::uint8_t { kNothing, kInPassing, kThoroughly };
@@ -62,14 +67,11 @@ class TransitionCosts {
   [[nodiscard]] std::uint64_t key(std::size_t end, std::size_t begin) const {
     return static_cast<std::uint64_t>(end) * begins_.size() + begin;
   }
-  [[nodiscard]] double distance(std::size_t end, std::size_t begin) const {
-    return transitions_->distance(ends_[end].q, begins_[begin].q);
-  }
 
   const Transitions* transitions_;
   std::vector<EndNode> ends_, begins_;
-  std::vector<double> distances_;  // [end][begin]; empty where pairs are too many to keep
-  std::unordered_map<std::uint64_t, double> raised_;  // where distances_ is empty
+  std::vector<bool> raised_ends_;  // ends of which a pair is raised
+  std::unordered_map<std::uint64_t, double> raised_;
   std::unordered_map<std::uint64_t, Asked> asked_;
 };
 
