@@ -95,11 +95,14 @@ CsvTable::CsvTable(const std::filesystem::path& file,
                                      headers.begin());
 }
 
-CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header)
-    : file_(std::move(file)) {
+void read_csv_rows(
+    const std::string& file, std::string_view rest, const CsvHeader& header,
+    const std::function<void(const CsvPlace&, const std::vector<std::string>&)>& take) {
   constexpr std::size_t kMostRows = 1'000'000, kMostLineBytes = std::size_t{1} << 20;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
+  std::vector<std::string> columns;
   bool header_seen = false;
+  std::size_t rows = 0;
   for (int line_number = 1; !rest.empty(); ++line_number) {
     const auto end = rest.find('\n');
     const std::string_view line = trimmed(rest.substr(0, end));
@@ -107,39 +110,57 @@ CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header
     if (line.empty()) continue;
     // A field takes many times its bytes.
     if (line.size() > kMostLineBytes)
-      bad_input(at_line(file_, line_number), "has " + std::to_string(line.size()) + " bytes",
+      bad_input(at_line(file, line_number), "has " + std::to_string(line.size()) + " bytes",
                 "a line of at most 1 MiB");
     std::vector<std::string> fields = csv_fields(line, line.size());
     if (!header_seen) {
-      header.require(fields, at_line(file_, line_number));
-      columns_ = std::move(fields);
+      header.require(fields, at_line(file, line_number));
+      columns = std::move(fields);
       header_seen = true;
       continue;
     }
-    if (rows() == kMostRows)
-      bad_input(at_line(file_, line_number), "too many data rows",
+    if (rows == kMostRows)
+      bad_input(at_line(file, line_number), "too many data rows",
                 "at most " + std::to_string(kMostRows));
-    lines_.push_back(line_number);
-    if (fields.size() != columns_.size())
-      bad_input(where(rows() - 1), "has " + std::to_string(fields.size()) + " columns",
-                std::to_string(columns_.size()) + " columns: " + joined(columns_));
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      const auto value = to_number<double>(fields[k]);
-      if (!value || !std::isfinite(*value))
-        bad_input(where(rows() - 1) + ": " + columns_[k], "'" + fields[k] + "' is not a number",
-                  "a finite number");
-      values_.push_back(*value);
-    }
+    const CsvPlace place{file, rows++, line_number};
+    if (fields.size() != columns.size())
+      bad_input(place.where(), "has " + std::to_string(fields.size()) + " columns",
+                std::to_string(columns.size()) + " columns: " + joined(columns));
+    take(place, fields);
   }
-  if (!header_seen) bad_input(file_, "is empty", header.allowed + " and at least two data rows");
-  if (rows() < 2)
-    bad_input(file_, "has " + std::to_string(rows()) + " data row(s)",
+  if (!header_seen) bad_input(file, "is empty", header.allowed + " and at least two data rows");
+  if (rows < 2)
+    bad_input(file, "has " + std::to_string(rows) + " data row(s)",
               "at least two data rows after the header");
 }
 
-std::string CsvTable::where(std::size_t k) const {
-  return at_line(file_, lines_[k]) + ": data row " + std::to_string(k + 1) +
+std::string CsvPlace::where() const {
+  return at_line(file, line) + ": data row " + std::to_string(row + 1) +
          " (counted from 1 after the header)";
+}
+
+CsvTable::CsvTable(std::string file, std::string_view text, const Header& header)
+    : file_(std::move(file)) {
+  const Header keep{header.allowed,
+                    [&](const std::vector<std::string>& columns, const std::string& where) {
+                      header.require(columns, where);
+                      columns_ = columns;
+                    }};
+  read_csv_rows(file_, text, keep,
+                [&](const CsvPlace& place, const std::vector<std::string>& fields) {
+                  lines_.push_back(place.line);
+                  for (std::size_t k = 0; k < columns_.size(); ++k) {
+                    const auto value = to_number<double>(fields[k]);
+                    if (!value || !std::isfinite(*value))
+                      bad_input(place.where() + ": " + columns_[k],
+                                "'" + fields[k] + "' is not a number", "a finite number");
+                    values_.push_back(*value);
+                  }
+                });
+}
+
+std::string CsvTable::where(std::size_t k) const {
+  return CsvPlace{file_, k, lines_[k]}.where();
 }
 
 }  // namespace swivel::io

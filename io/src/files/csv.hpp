@@ -25,17 +25,34 @@ namespace swivel::io {
 /// `most` + 1 fields, because a field takes many times its bytes.
 [[nodiscard]] std::vector<std::string> csv_fields(std::string_view line, std::size_t most);
 
+/// The headers that a table may have.
+struct CsvHeader {
+  std::string allowed;  ///< completes "allowed is ..." for an empty file
+  /// Throws InputError, prefixed by `where`, for a header that is not allowed.
+  std::function<void(const std::vector<std::string>& columns, const std::string& where)> require;
+};
+
+/// The place of a data row in a file.
+struct CsvPlace {
+  const std::string& file;
+  std::size_t row = 0;  ///< from 0
+  int line = 0;         ///< from 1
+  /// Returns it for messages: "<file>:<line>: data row <n> (counted from 1 after the header)".
+  [[nodiscard]] std::string where() const;
+};
+
+/// Calls `take` with the fields of every data row of a comma-separated table: as many as its header
+/// has columns. Blank lines are skipped, spaces around fields and a byte-order mark ignored. Throws
+/// InputError, also for fewer than two rows or more than a million.
+void read_csv_rows(
+    const std::string& file, std::string_view text, const CsvHeader& header,
+    const std::function<void(const CsvPlace&, const std::vector<std::string>&)>& take);
+
 /// A comma-separated table of numbers with a header.
 class CsvTable {
  public:
-  /// The headers that a table may have.
-  struct Header {
-    std::string allowed;  ///< completes "allowed is ..." for an empty file
-    /// Throws InputError, prefixed by `where`, for a header that is not allowed.
-    std::function<void(const std::vector<std::string>& columns, const std::string& where)> require;
-  };
-  /// Parses a table. Blank lines are skipped, spaces around fields and a byte-order mark ignored.
-  /// Throws InputError, also for fewer than two rows or more than a million.
+  using Header = CsvHeader;
+  /// Parses a table, as read_csv_rows() does. Throws InputError.
   CsvTable(std::string file, std::string_view text, const Header& header);
   CsvTable(const std::filesystem::path& file, const std::vector<std::string>& header)
       : CsvTable(file, std::vector<std::vector<std::string>>{header}) {}

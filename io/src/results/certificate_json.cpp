@@ -6,13 +6,13 @@
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
+#include "results/result_parts.hpp"
 #include "swivel/io/results/result.hpp"
 
 namespace swivel::io {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Parsed = nlohmann::json;  // ordered_json looks for each key among all before it
 
 constexpr const char* kFormat = "swivel certificate 1";

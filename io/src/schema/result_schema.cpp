@@ -498,6 +498,103 @@ Schema plan_result() {
   return section("result", join(join(answer_keys(), measure_keys()), part_keys()));
 }
 
+/// Returns the schema of what was found out about each run of a job.
+Schema runs_of_job() {
+  const std::vector<Schema::Key> first{
+      key("stroke", text(), "its name"),
+      key("reversed", boolean(), "whether it runs from the last waypoint to the first"),
+      key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}),
+          "whether it has a path by itself"),
+      key("least_cost", or_null(number()), "of the run by itself; `null` where it has no path"),
+      key("cost", or_null(number()),
+          "of the run in the job; like all that describes its rows, "
+          "`null` where there is no job"),
+      key("summary", summary(), "the run at a glance, as of [results](#summary)"),
+      key("lattice", lattice(), "its size, as of [results](#lattice)")};
+  const std::vector<Schema::Key> last{
+      key("diagnosis", or_null(diagnosis()),
+          "of a run that has no path by itself, as of [results](#diagnosis); else `null`")};
+  std::vector<Schema::Key> measures = measure_keys();
+  for (Schema::Key& one : measures) one.group = "result";
+  return list(section("run", join(join(first, measures), last)));
+}
+
+Schema parts_of_job() {
+  return list(section(
+      "part",
+      {key("stroke", or_null(text()), "its name; `null`: a transition"),
+       key("reversed", boolean(), "whether a stroke runs from the last waypoint to the first"),
+       key("cost", number(), "of its rows"),
+       key("rows",
+           list(section("", {key_of_some("s", number(), "along the run", "m"),
+                             key_of_some("phi", number(), "as in the CSV", "rad"),
+                             key_of_some("branch", integer(), "as in the CSV"),
+                             key("joints", numbers(kDof), "base to tip", "rad"),
+                             key_of_some("roll", number(), "as in the CSV", "rad"),
+                             key("process", boolean(), "whether it is on the stroke itself")})),
+           "of strokes `s`, `phi`, `branch`, `joints`, `roll` where the tool stands turned, "
+           "`process`; of transitions `joints` and `process`, which is false: the joints move "
+           "straight from row to row")}));
+}
+
+/// Returns the keys that say what the answer of a job is.
+std::vector<Schema::Key> job_answer_keys() {
+  return {
+      key("schema_version", integer(kResultVersions), "as of [results](#result-json)"),
+      key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}),
+          "as of results; a job that ran out of time may have a motion nevertheless"),
+      key("cost", or_null(number()),
+          "of strokes and transitions; like all that describes the motion, `null` where there is "
+          "none"),
+      key("bound", or_null(number()),
+          "no job in this order costs less, if its transitions are those that Swivel finds"),
+      key("bound_any", or_null(number()),
+          "no job in this order costs less, whatever its transitions"),
+      key("gap", or_null(number()), "`cost` over `bound`, less 1: 0 where the job is optimal"),
+      key("checked", or_null(boolean()), "whether the motion passed what `check` asks"),
+      key("planner", text(), "which of the planners"),
+      key("threads", integer(), "that worked"),
+      key("order",
+          list(section("", {key("stroke", text(), "its name"),
+                            key("reversed", boolean(), "whether it runs backwards")})),
+          "of the strokes, as they are run: `stroke`, `reversed`"),
+  };
+}
+
+Schema job_result() {
+  const Schema transitions = list(section(
+      "", {key("from", or_null(text()), "stroke; `null`: the home"),
+           key("to", or_null(text()), "stroke; `null`: the home"), key("cost", number(), "of it"),
+           key("via", integer(), "configurations between its ends; 0: the joints move straight")}));
+  const Schema missing = section(
+      "", {key("from", or_null(text()), "stroke; `null`: the home"),
+           key("to", or_null(text()), "stroke; `null`: the home"),
+           key("bodies", or_null(bodies()), "that bar the straight way, where they are known")});
+  const std::vector<Schema::Key> parts{
+      key("runs", runs_of_job(), "of the strokes, in this order, [below](#run-of-a-stroke)"),
+      key("transitions", transitions,
+          "moves between strokes, `from`, `to` (`null`: the home), `cost`, `via`: how many "
+          "configurations lie between their ends, 0 where the joints move straight"),
+      key("no_transition", or_null(missing),
+          "where every stroke has a path and there is no way between two: `from`, `to`, the two "
+          "`bodies` in the way or `null`"),
+      key("counters", counters(), "work done, as of [results](#counters)"),
+      key("transition_counters",
+          section("", {key("pairs", integer(), "asked for"), key("searches", integer(), "made"),
+                       key("rounds", integer(), "of the search")}),
+          "`pairs` of configurations asked whether the way is free, `searches` for a way around, "
+          "`rounds`: jobs tried"),
+      key("time_ms", time_ms(), "where time went, as of [results](#times)", "ms"),
+      key("parts", parts_of_job(), "the motion: strokes and transitions, [below](#part-of-a-job)")};
+  std::vector<Schema::Key> last = part_keys();
+  std::erase_if(last, [](const Schema::Key& one) {
+    return one.name != "robot_pairs" && one.name != "held" && one.name != "warnings" &&
+           one.name != "joint_names";
+  });
+  for (Schema::Key& one : last) one.group = "result";
+  return section("job_result", join(join(job_answer_keys(), parts), last));
+}
+
 Schema campaign_summary() {
   const auto spread = [] {
     return section("",
@@ -532,7 +629,11 @@ Schema error_result() {
 }  // namespace
 
 const Schema& result_schema() {
-  static const Schema schema = either(plan_result(), error_result());
+  static const Schema schema = [] {
+    Schema any = either(plan_result(), job_result());
+    any.others.push_back(error_result());
+    return any;
+  }();
   return schema;
 }
 const Schema& campaign_schema() {

@@ -220,7 +220,8 @@ std::string schema_tables() {
   std::string text;
   add_tables(problem_schema(), Absent::kMayBeNull, known, text);
   for (const Schema* const schema :
-       {&trajectory_schema(), &motion_schema(), &result_schema(), &campaign_schema()})
+       {&trajectory_schema(), &motion_schema(), &job_trajectory_schema(), &result_schema(),
+        &campaign_schema()})
     add_tables(*schema, Absent::kIsAbsent, known, text);
   return text;
 }

@@ -4,6 +4,7 @@
 #pragma once
 #include "swivel/io/files/files.hpp"
 #include "swivel/io/meshes/mesh.hpp"
+#include "swivel/io/motions/job_trajectory.hpp"
 #include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/job.hpp"
 #include "swivel/io/problems/problem.hpp"

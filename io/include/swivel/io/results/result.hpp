@@ -7,6 +7,7 @@
 
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
+#include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -22,6 +23,9 @@ namespace swivel::io {
 /// Loads CERTIFICATE.json. Throws InputError for a file that is none. verify_certificate() verifies
 /// what it says.
 [[nodiscard]] InfeasibilityCertificate load_certificate(const std::filesystem::path& json);
+/// Returns RESULT.json of a job as text, docs/formats.md "Result of a job". What describes the
+/// motion is null unless there is one.
+[[nodiscard]] std::string to_job_json(const JobResult& result, const Job& job);
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.

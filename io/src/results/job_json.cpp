@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motions/job_rows.hpp"
+#include "results/result_parts.hpp"
+#include "schema/schema.hpp"
+#include "swivel/io/results/result.hpp"
+#include "tables/run_settings.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+/// Writes the result of a job.
+class JobWriter {
+ public:
+  JobWriter(const JobResult& result, const Job& job)
+      : result_(result), job_(job), solved_(!result.parts.empty()), roll_(any_rolls(result)) {}
+
+  [[nodiscard]] Json write() const {
+    Json json;
+    json["schema_version"] = kResultVersion;
+    json["status"] = to_string(result_.status);
+    json["cost"] = if_solved(result_.cost);
+    json["bound"] = if_solved(result_.bound);
+    json["bound_any"] = if_solved(result_.bound_any);
+    json["gap"] = gap();
+    json["checked"] = solved_ ? Json(result_.checked) : Json(nullptr);
+    json["planner"] = result_.planner;
+    json["threads"] = result_.threads;
+    json["order"] = order();
+    json["runs"] = runs();
+    json["transitions"] = transitions();
+    json["no_transition"] = no_transition();
+    json["counters"] = counters_json(result_.counters);
+    json["transition_counters"] = {{"pairs", result_.transitions.pairs},
+                                   {"searches", result_.transitions.searches},
+                                   {"rounds", result_.transitions.rounds}};
+    json["time_ms"] = time_json(result_.time_ms);
+    json["parts"] = parts();
+    json["robot_pairs"] = robot_pairs_json(result_.dropped_pairs, result_.reduced_pairs);
+    json["held"] = held_json(result_.held);
+    json["warnings"] = result_.warnings;
+    json["joint_names"] = result_.joint_names;
+    return json;
+  }
+
+ private:
+  [[nodiscard]] Json if_solved(double value) const { return solved_ ? Json(value) : Json(nullptr); }
+
+  [[nodiscard]] Json gap() const {
+    if (!solved_ || (result_.bound <= 0 && result_.cost > 0)) return nullptr;
+    return result_.cost > 0 ? result_.cost / result_.bound - 1 : 0.0;
+  }
+
+  [[nodiscard]] const std::string& name(const StrokeRun& run) const {
+    return job_.strokes[run.stroke].name;
+  }
+  /// Returns the name of the run that a transition leads from or to; null for the home.
+  [[nodiscard]] Json name_or_home(std::size_t part) const {
+    return part < result_.parts.size() && result_.parts[part].run
+               ? Json(name(*result_.parts[part].run))
+               : Json(nullptr);
+  }
+
+  [[nodiscard]] Json order() const {
+    Json list = Json::array();
+    for (const RunResult& one : result_.runs)
+      list.push_back({{"stroke", name(one.run)}, {"reversed", one.run.reversed}});
+    return list;
+  }
+
+  /// Returns the part of the motion that is this run; null where there is none.
+  [[nodiscard]] const JobPart* part_of(const StrokeRun& run) const {
+    for (const JobPart& part : result_.parts)
+      if (part.run == run) return &part;
+    return nullptr;
+  }
+
+  [[nodiscard]] Json runs() const {
+    Json list = Json::array();
+    for (const RunResult& one : result_.runs) {
+      const JobPart* const part = part_of(one.run);
+      const bool has_path = one.status == PlanStatus::kSolved;
+      Json json = {
+          {"stroke", name(one.run)},
+          {"reversed", one.run.reversed},
+          {"status", to_string(one.status)},
+          {"least_cost", has_path ? Json(one.least_cost) : Json(nullptr)},
+          {"cost", part ? Json(part->cost) : Json(nullptr)},
+          {"summary", summary_json(one.measures, part ? part->rows : std::vector<TrajectoryRow>())},
+          {"lattice", lattice_json(one.lattice, has_path)}};
+      add_measures(json, one.measures, part != nullptr);
+      json["diagnosis"] = one.diagnosis ? diagnosis_json(*one.diagnosis) : Json(nullptr);
+      list.push_back(std::move(json));
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json transitions() const {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < result_.parts.size(); ++k) {
+      const JobPart& part = result_.parts[k];
+      if (part.run) continue;
+      list.push_back({{"from", k == 0 ? Json(nullptr) : name_or_home(k - 1)},
+                      {"to", name_or_home(k + 1)},
+                      {"cost", part.cost},
+                      {"via", part.rows.size() < 2 ? 0 : part.rows.size() - 2}});
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json no_transition() const {
+    const auto& to = result_.no_transition_to;
+    if (!to) return nullptr;
+    const auto run = [&](std::size_t k) {
+      return k < result_.runs.size() ? Json(name(result_.runs[k].run)) : Json(nullptr);
+    };
+    return {{"from", *to == 0 ? Json(nullptr) : run(*to - 1)},
+            {"to", run(*to)},
+            {"bodies", or_null(result_.barred_by)}};
+  }
+
+  [[nodiscard]] Json parts() const {
+    Json list = Json::array();
+    for (const JobPart& part : result_.parts) {
+      const std::vector<bool> process = process_of_rows(part, job_);
+      Json rows = Json::array();
+      for (std::size_t k = 0; k < part.rows.size(); ++k) {
+        const TrajectoryRow& row = part.rows[k];
+        rows.push_back(part.run ? row_json(row, roll_) : Json{{"joints", joints_json(row)}});
+        rows.back()["process"] = process[k];
+      }
+      list.push_back({{"stroke", part.run ? Json(name(*part.run)) : Json(nullptr)},
+                      {"reversed", part.run && part.run->reversed},
+                      {"cost", part.cost},
+                      {"rows", std::move(rows)}});
+    }
+    return list;
+  }
+
+  const JobResult& result_;
+  const Job& job_;
+  const bool solved_, roll_;
+};
+
+}  // namespace
+
+std::string to_job_json(const JobResult& result, const Job& job) {
+  return document_of(JobWriter(result, job).write());
+}
+
+}  // namespace swivel::io

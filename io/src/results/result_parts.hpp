@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parts of results as JSON, which plans and jobs have alike.
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swivel/core/answer/plan.hpp"
+
+namespace swivel::io {
+
+/// Its keys are in the order of the contract, for people who read the file.
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+[[nodiscard]] Json text_or_null(const std::string& text);
+
+[[nodiscard]] Json lattice_json(const LatticeInfo& lattice, bool solved);
+[[nodiscard]] Json counters_json(const Counters& counters);
+[[nodiscard]] Json time_json(const std::map<std::string, double>& time_ms);
+/// Returns a cause: keys that do not apply are null; the whole where there is no cause.
+[[nodiscard]] Json cause_json(const Cause& cause);
+[[nodiscard]] Json diagnosis_json(const Diagnosis& diagnosis);
+/// Returns the number of a waypoint; null for -1.
+[[nodiscard]] Json waypoint_json(int waypoint);
+
+[[nodiscard]] Json joints_json(const TrajectoryRow& row);
+/// Returns a row of a trajectory, with its roll if `roll` is true.
+[[nodiscard]] Json row_json(const TrajectoryRow& row, bool roll);
+[[nodiscard]] Json trajectory_json(const std::vector<TrajectoryRow>& trajectory);
+
+/// Returns what rows come near to, at a glance. What is null was not asked for, or does not apply,
+/// as where there are no rows.
+[[nodiscard]] Json summary_json(const Measures& measures, const std::vector<TrajectoryRow>& rows);
+/// Adds the keys that say how good rows are. `solved` says whether there are any.
+void add_measures(Json& json, const Measures& measures, bool solved);
+
+[[nodiscard]] Json robot_pairs_json(const std::vector<SpecialPair>& dropped,
+                                    const std::vector<SpecialPair>& reduced);
+
+/// Returns the text of a file. Names of files and joints need not be UTF-8: what is not is
+/// replaced.
+[[nodiscard]] std::string document_of(const Json& json);
+
+}  // namespace swivel::io

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is written of a job: its trajectory, which is read again, and its result.
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "io_support.hpp"
+#include "seed.hpp"
+#include "swivel/io/schema/schema_text.hpp"
+
+namespace swivel::io::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const JointNames kNames{"a", "b", "c", "d", "e", "f", "g"};
+
+/// A job of two strokes of 0.1 m, the first between lines of 0.02 m and 0.03 m.
+Job two_strokes() {
+  Job job;
+  for (const char* const name : {"left", "right"}) {
+    Stroke& stroke = job.strokes.emplace_back();
+    stroke.name = name;
+    stroke.waypoints.resize(3);
+    stroke.waypoints[1].position.x() = 0.05;
+    stroke.waypoints[2].position.x() = 0.1;
+  }
+  job.strokes[0].approach.z() = -0.02;
+  job.strokes[0].retract.z() = -0.03;
+  job.home = Config::Zero();
+  return job;
+}
+
+/// Returns rows at these places, with joints from `first` on.
+std::vector<TrajectoryRow> rows_at(const std::vector<double>& places, double first) {
+  std::vector<TrajectoryRow> rows;
+  for (const double s : places) rows.push_back({s, 0.1 + s, 5, Config::Constant(first += 0.125)});
+  return rows;
+}
+
+/// Returns the plan of two_strokes(): home, right backwards, left, home.
+JobResult plan_of_two() {
+  JobResult result;
+  result.status = PlanStatus::kSolved;
+  result.cost = 6;
+  result.bound = 5;
+  result.bound_any = 4;
+  result.planner = "parallel";
+  result.joint_names = kNames;
+  result.transitions = {7, 2, 3};
+  const StrokeRun first{1, true}, second{0, false};
+  const auto run = [&](const StrokeRun& of, double cost, std::vector<TrajectoryRow> rows) {
+    RunResult found{of};
+    found.least_cost = cost / 2;
+    found.measures.evidence = Evidence::all();
+    found.measures.min_clearance = 0.01;
+    found.lattice.layers = static_cast<int>(rows.size());
+    result.runs.push_back(found);
+    result.parts.push_back({of, cost, std::move(rows)});
+  };
+  const auto move = [&](std::vector<TrajectoryRow> rows) {
+    result.parts.push_back({std::nullopt, 1, std::move(rows)});
+  };
+  move(rows_at({0, 0}, 0));
+  run(first, 2, rows_at({0, 0.05, 0.1}, 0.125));
+  move(rows_at({0, 0, 0}, 0.375));
+  run(second, 1, rows_at({0, 0.01, 0.02, 0.07, 0.12, 0.15}, 0.625));
+  move(rows_at({0, 0}, 1.375));
+  return result;
+}
+
+TEST(JobTrajectory, HeaderAndRows) {
+  const std::string text = to_job_csv(plan_of_two(), two_strokes());
+  EXPECT_TRUE(
+      text.starts_with("s,phi,branch,a,b,c,d,e,f,g,stroke,process\n"
+                       ",,,0.125,0.125,0.125,0.125,0.125,0.125,0.125,,0\n"
+                       ",,,0.25,0.25,0.25,0.25,0.25,0.25,0.25,,0\n"
+                       "0,0.1"))
+      << text;
+  EXPECT_NE(text.find(",right,1\n"), std::string::npos);
+  EXPECT_NE(text.find(",left,0\n"), std::string::npos);
+}
+
+TEST(JobTrajectory, ProcessIsOnTheStrokeItself) {
+  const TempFolder folder;
+  const JobTrajectory read =
+      load_job_trajectory(folder.write("t.csv", to_job_csv(plan_of_two(), two_strokes())), kNames);
+  ASSERT_EQ(read.parts.size(), 5u);
+  EXPECT_EQ(read.parts[1].first_process, 0u);
+  EXPECT_EQ(read.parts[1].last_process, 2u);
+  EXPECT_EQ(read.parts[3].first_process, 2u);  // past the approach of 0.02 m
+  EXPECT_EQ(read.parts[3].last_process, 4u);   // before the retract
+}
+
+TEST(JobTrajectory, EveryBitIsReadAgain) {
+  const TempFolder folder;
+  swivel::test::Random random(swivel::test::seed("JobTrajectory"));
+  int rows = 0;
+  for (int round = 0; round < 200; ++round) {
+    JobResult plan = plan_of_two();
+    for (JobPart& part : plan.parts)
+      for (TrajectoryRow& row : part.rows) {
+        ++rows;
+        for (double& angle : row.q)
+          angle = random.uniform(-4, 4) * std::pow(10, random.below(20) - 15);
+        if (!part.run) continue;
+        row.phi = random.uniform(-4, 4);
+        row.branch = random.below(8);
+        if (round % 2 == 1) row.roll = random.uniform(-4, 4);
+      }
+    const JobTrajectory read =
+        load_job_trajectory(folder.write("t.csv", to_job_csv(plan, two_strokes())), kNames);
+    EXPECT_EQ(read.rolls, round % 2 == 1);
+    ASSERT_EQ(read.parts.size(), plan.parts.size());
+    std::size_t row = 0;
+    for (std::size_t k = 0; k < plan.parts.size(); ++k) {
+      const JobPart& part = plan.parts[k];
+      EXPECT_EQ(read.parts[k].stroke, part.run ? two_strokes().strokes[part.run->stroke].name : "");
+      EXPECT_EQ(read.parts[k].first_row, row);
+      row += part.rows.size();
+      ASSERT_EQ(read.parts[k].rows.size(), part.rows.size());
+      for (std::size_t i = 0; i < part.rows.size(); ++i) {
+        const TrajectoryRow &was = part.rows[i], &is = read.parts[k].rows[i];
+        EXPECT_EQ(is.q, was.q);
+        if (!part.run) continue;
+        EXPECT_EQ(is.s, was.s);
+        EXPECT_EQ(is.phi, was.phi);
+        EXPECT_EQ(is.branch, was.branch);
+        EXPECT_EQ(is.roll, was.roll);
+      }
+    }
+  }
+  EXPECT_EQ(rows, 200 * 16);
+}
+
+TEST(JobTrajectory, BadFiles) {
+  const TempFolder folder;
+  const std::string header = "s,phi,branch,a,b,c,d,e,f,g,stroke,process\n",
+                    home = ",,,0,0,0,0,0,0,0,,0\n", left = "0,0,0,0,0,0,0,0,0,0,left,1\n",
+                    right = "0,0,0,0,0,0,0,0,0,0,right,1\n", line = "0,0,0,0,0,0,0,0,0,0,left,0\n";
+  const struct {
+    const char* name;
+    std::string text;
+    std::vector<std::string> needles;
+  } cases[] = {
+      {"a trajectory",
+       "s,phi,branch,a,b,c,d,e,f,g\n0,0,0,0,0,0,0,0,0,0\n",
+       {"t.csv:1", "is not the header", "stroke,process"}},
+      {"other joints",
+       "s,phi,branch,a,b,c,d,e,f,x,stroke,process\n" + left + left,
+       {"t.csv:1", "is not the header", "a,b,c,d,e,f,g"}},
+      {"one row", header + left, {"1 data row"}},
+      {"a stroke of one row",
+       header + home + home + left + home + home,
+       {"t.csv:5: data row 4", "stroke 'left' before it has one row", "at least two"}},
+      {"a transition of one row",
+       header + home + left + left,
+       {"t.csv:3: data row 2", "the transition before it has one row"}},
+      {"one row at the end",
+       header + left + left + home,
+       {"t.csv: the transition before it has one row"}},
+      {"a stroke twice",
+       header + left + left + right + right + left + left,
+       {"t.csv:6: data row 5", "stroke: 'left' comes twice"}},
+      {"no process", header + line + line, {"fewer than two rows whose process is 1"}},
+      {"process again",
+       header + left + left + line + left,
+       {"t.csv:5: data row 4", "process: is 1 again"}},
+      {"process in a transition",
+       header + ",,,0,0,0,0,0,0,0,,1\n" + home,
+       {"t.csv:2: data row 1", "process: is 1 in a transition"}},
+      {"process of words",
+       header + left + "0,0,0,0,0,0,0,0,0,0,left,on\n",
+       {"t.csv:3: data row 2", "process: is 'on'", "0 or 1"}},
+      {"s in a transition",
+       header + left + left + "0,,,0,0,0,0,0,0,0,,0\n",
+       {"t.csv:4: data row 3", "s: is '0' in a transition"}},
+      {"no s on a stroke",
+       header + left + ",0,0,0,0,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "s: '' is not a number"}},
+      {"no joint",
+       header + left + "0,0,0,0,,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "b: '' is not a number"}},
+      {"infinite",
+       header + left + "0,0,0,0,inf,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "b: 'inf' is not a number"}},
+      {"branch 8",
+       header + left + "0,0,8,0,0,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "branch: is 8", "0 to 7"}},
+      {"columns", header + left + "0,0\n", {"t.csv:3: data row 2", "2 columns"}},
+      {"empty", "", {"is empty", "header of a job's trajectory"}},
+  };
+  for (const auto& [name, text, needles] : cases) {
+    SCOPED_TRACE(name);
+    const fs::path file = folder.write("t.csv", text);
+    expect_message(input_error([&] { (void)load_job_trajectory(file, kNames); }), needles);
+  }
+}
+
+TEST(JobResult, Solved) {
+  const Json json = Json::parse(to_job_json(plan_of_two(), two_strokes()));
+  EXPECT_EQ(json["status"], "solved");
+  EXPECT_EQ(json["cost"], 6.0);
+  EXPECT_EQ(json["bound"], 5.0);
+  EXPECT_EQ(json["bound_any"], 4.0);
+  EXPECT_NEAR(json["gap"].get<double>(), 0.2, 1e-12);
+  EXPECT_EQ(json["order"], Json::parse(R"([{"stroke": "right", "reversed": true},
+                                           {"stroke": "left", "reversed": false}])"));
+  ASSERT_EQ(json["runs"].size(), 2u);
+  EXPECT_EQ(json["runs"][0]["stroke"], "right");
+  EXPECT_EQ(json["runs"][0]["cost"], 2.0);
+  EXPECT_EQ(json["runs"][0]["least_cost"], 1.0);
+  EXPECT_EQ(json["runs"][0]["min_clearance"], 0.01);
+  EXPECT_TRUE(json["runs"][0]["diagnosis"].is_null());
+  EXPECT_EQ(json["transitions"],
+            Json::parse(R"([{"from": null, "to": "right", "cost": 1.0, "via": 0},
+                            {"from": "right", "to": "left", "cost": 1.0, "via": 1},
+                            {"from": "left", "to": null, "cost": 1.0, "via": 0}])"));
+  EXPECT_EQ(json["transition_counters"],
+            Json::parse(R"({"pairs": 7, "searches": 2, "rounds": 3})"));
+  ASSERT_EQ(json["parts"].size(), 5u);
+  EXPECT_TRUE(json["parts"][0]["stroke"].is_null());
+  EXPECT_EQ(json["parts"][0]["rows"][1]["joints"][0], 0.25);
+  EXPECT_FALSE(json["parts"][0]["rows"][1].contains("s"));
+  EXPECT_EQ(json["parts"][1]["reversed"], true);
+  EXPECT_EQ(json["parts"][3]["rows"][1]["process"], false);
+  EXPECT_EQ(json["parts"][3]["rows"][2]["process"], true);
+  EXPECT_EQ(json["parts"][3]["rows"][2]["branch"], 5);
+  JobResult optimal = plan_of_two();
+  optimal.bound = optimal.cost;
+  EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
+  optimal.cost = optimal.bound = 0;
+  EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
+  optimal.cost = 1;
+  EXPECT_TRUE(Json::parse(to_job_json(optimal, two_strokes()))["gap"].is_null());
+}
+
+/// Returns the result where a stroke has no path, or where no way leads to a run.
+JobResult without_a_job(bool stroke) {
+  JobResult result = plan_of_two();
+  result.status = PlanStatus::kInfeasible;
+  result.parts.clear();
+  if (stroke) {
+    result.runs[0].status = PlanStatus::kInfeasible;
+    result.runs[0].diagnosis.emplace();
+    return result;
+  }
+  result.no_transition_to = 2;
+  result.barred_by = {"link_5", "post"};
+  return result;
+}
+
+TEST(JobResult, Unsolved) {
+  const Json stroke = Json::parse(to_job_json(without_a_job(true), two_strokes()));
+  for (const char* const key : {"cost", "bound", "bound_any", "gap", "checked", "no_transition"})
+    EXPECT_TRUE(stroke[key].is_null()) << key;
+  EXPECT_EQ(stroke["runs"][0]["status"], "infeasible");
+  EXPECT_TRUE(stroke["runs"][0]["least_cost"].is_null());
+  EXPECT_TRUE(stroke["runs"][0]["cost"].is_null());
+  EXPECT_FALSE(stroke["runs"][0]["diagnosis"].is_null());
+  EXPECT_EQ(stroke["parts"], Json::array());
+  const Json way = Json::parse(to_job_json(without_a_job(false), two_strokes()));
+  EXPECT_EQ(way["no_transition"],
+            Json::parse(R"({"from": "left", "to": null, "bodies": ["link_5", "post"]})"));
+}
+
+/// Adds the names of all keys of a document; list items count as one.
+void add_keys(const Json& value, const std::string& at, std::set<std::string>& keys) {
+  if (value.is_array())
+    for (const Json& item : value) add_keys(item, at + "[]", keys);
+  if (!value.is_object()) return;
+  for (const auto& [key, item] : value.items()) {
+    keys.insert(at + "." + key);
+    if (key != "stages" && key != "removed") add_keys(item, at + "." + key, keys);
+  }
+}
+
+/// Adds the names of all keys that a schema allows.
+void add_keys_of_schema(const Json& schema, const std::string& at, std::set<std::string>& keys) {
+  if (schema.contains("anyOf")) {
+    for (const Json& option : schema["anyOf"]) add_keys_of_schema(option, at, keys);
+    return;
+  }
+  if (schema["type"] == "array") add_keys_of_schema(schema["items"], at + "[]", keys);
+  if (!schema.contains("properties")) return;
+  for (const auto& [key, item] : schema["properties"].items()) {
+    keys.insert(at + "." + key);
+    add_keys_of_schema(item, at + "." + key, keys);
+  }
+}
+
+TEST(JobResult, KeysAreThoseOfTheSchema) {
+  std::set<std::string> known, seen;
+  const Json schema = Json::parse(result_json_schema());
+  for (const Json& option : schema["anyOf"])
+    if (option["properties"].contains("parts")) add_keys_of_schema(option, "", known);
+  EXPECT_GE(known.size(), 100u);
+  JobResult turning = plan_of_two();
+  turning.parts[1].rows[0].roll = 0.1;
+  for (const JobResult& result : {turning, without_a_job(true), without_a_job(false)})
+    add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
+  for (const std::string& key : seen) EXPECT_TRUE(known.contains(key)) << key;
+  // The parts that plans have as well are tested with those (result_test.cpp, tests/docs).
+  for (const std::string& key : known) {
+    const bool of_plans = key.starts_with(".runs[].") && key.find('.', 8) != std::string::npos;
+    if (!of_plans && !key.starts_with(".held[]") && !key.starts_with(".robot_pairs."))
+      EXPECT_TRUE(seen.contains(key)) << key;
+  }
+}
+
+}  // namespace
+}  // namespace swivel::io::test
