@@ -89,6 +89,27 @@ vary:
   - {object: ball, xyz: [0.1, 0.1, 0.1], rpy: [0, 0, 3]}
 )";
 
+/// A job about the iiwa with all keys of jobs.
+const char* const kJob = R"(robot:
+  urdf: ../robots/iiwa14.urdf
+  base_link: base_link
+  tip_link: tool0
+home: {joints: [0, 0.5, 0, 1, 0, 0.5, 0]}
+approach: 0.05
+retract: {xyz: [0, 0, -0.04]}
+order: best
+process_speed: 0.05
+rapid: 0.5
+strokes:
+  - name: left
+    path:
+      waypoints: &w [{xyz: [0.5, 0, 0.4], rpy: [0, 3, 0]}, {xyz: [0.5, 0.1, 0.4], rpy: [0, 3, 0]}]
+    reversible: true
+  - {name: right, path: {waypoints: *w, smooth: {position: 0.001}}, approach: 0, process_speed: 0.1,
+     limits: {clearance: 0.001, tool_path_error: null}}
+limits: {clearance: 0.01}
+)";
+
 std::string data(const std::string& name) {
   return TempFolder::read(data_dir() / name);
 }
@@ -198,11 +219,12 @@ std::function<void(const std::string&)> at(const TempFolder& folder, const char*
 /// Returns the readers of problems, robots and tool paths.
 std::vector<Reader> problem_readers(const TempFolder& folder) {
   std::vector<Reader> all;
-  all.push_back(
-      {"problem",
-       {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
-       kYamlWords,
-       at(folder, "problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
+  all.push_back({"problem",
+                 {kProblem, data("problems/experiment_a_start.yaml"),
+                  data("problems/experiment_b.yaml"), kJob},
+                 kYamlWords,
+                 at(folder, "problems/p.yaml",
+                    [](const fs::path& file) { (void)io::load_problem_or_job(file); })});
   all.push_back(
       {"urdf",
        {io::test::arm_urdf(), data("robots/iiwa14.urdf")},

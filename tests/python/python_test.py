@@ -1158,6 +1158,8 @@ class Pickles(unittest.TestCase):
 
     def test_problems(self):
         for file in sorted(PROBLEMS.glob("*.yaml")):
+            if file.stem.endswith("_job"):
+                continue
             problem = swivel.load_problem(file)
             problem.limits.joint_jerk = [1.0, 2, 3, 4, 5, 6, 7]
             again = self.through(problem)
