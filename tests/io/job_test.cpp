@@ -78,6 +78,7 @@ TEST(JobFile, KeysOfTheJobAndOfStrokes) {
        {"retract", "{xyz: [0.01, 0, -0.02]}"},
        {"order", "best"},
        {"process_speed", "0.2"},
+       {"approach_speed", "0.3"},
        {"rapid", "0.5"},
        {"resolution", "{ds: 0.01}"},
        {"cost", "{metric: max, weights: [1, 1, 1, 1, 1, 1, 0.5]}"},
@@ -93,6 +94,8 @@ TEST(JobFile, KeysOfTheJobAndOfStrokes) {
   EXPECT_EQ((*job.home)[6], 0.1);
   EXPECT_EQ(job.order, StrokeOrder::kBest);
   EXPECT_EQ(job.process_speed, 0.2);
+  EXPECT_EQ(job.approach_speed, 0.3);
+  EXPECT_EQ(job.limits.clearance, 0.004);
   EXPECT_EQ(job.rapid, 0.5);
   EXPECT_EQ(job.scene.size(), 1u);
   EXPECT_EQ(job.vary.size(), 1u);

@@ -217,6 +217,8 @@ class JobSearch {
       costs(k).set_asked(end, begin, known ? Asked::kThoroughly : Asked::kInPassing);
       if (!known) continue;
       const double cost = answers[n].verdict == Verdict::kValid ? answers[n].cost : kUnreachable;
+      if (cost == kUnreachable)
+        without_way_.try_emplace(k, std::array{questions[n].from, questions[n].to});
       noted_.push_back({pairs[n], cost});
     }
     return answers;
@@ -244,7 +246,11 @@ class JobSearch {
     update_values();
     Candidate job = cheapest_job();
     if (job.paths.empty()) {
-      if (outcome_.cost == kUnreachable) outcome_.transition_without_way = first_barred();
+      if (outcome_.cost == kUnreachable) {
+        outcome_.transition_without_way = first_barred();
+        const auto pair = without_way_.find(static_cast<int>(*outcome_.transition_without_way));
+        if (pair != without_way_.end()) outcome_.pair_without_way = pair->second;
+      }
       outcome_.bound = outcome_.cost;
       return false;
     }
@@ -454,6 +460,7 @@ class JobSearch {
   JobOutcome& outcome_;
   std::vector<Run> runs_;
   std::vector<std::optional<TransitionCosts>> costs_;  // by transition
+  std::map<int, std::array<Config, 2>> without_way_;   // by transition: the first pair
   std::map<std::size_t, int> reach_;                   // of ask_around(), by transition
   struct Noted {
     Pair pair;

@@ -39,6 +39,7 @@ class JobReader : ProblemReader {
     read_motion_between();
     read_vary();
     static_cast<Robot&>(job_) = problem_;
+    job_.limits = shared_.limits;
     job_.source = problem_.source;
     job_.scene = std::move(problem_.scene);
     job_.vary = std::move(problem_.vary);
@@ -163,6 +164,7 @@ class JobReader : ProblemReader {
     stroke.approach = offset(place, "approach");
     stroke.retract = offset(place, "retract");
     if (const auto value = place.find("process_speed")) stroke.process_speed = speed(*value);
+    if (const auto value = place.find("approach_speed")) stroke.approach_speed = speed(*value);
     for (const double feed : stroke.feed) require_speed(feed, place.path);
   }
 
@@ -209,6 +211,7 @@ class JobReader : ProblemReader {
     if (const auto order = root_.find("order"))
       job_.order = word(*order, {StrokeOrder::kGiven, StrokeOrder::kBest});
     if (const auto value = root_.find("process_speed")) job_.process_speed = speed(*value);
+    if (const auto value = root_.find("approach_speed")) job_.approach_speed = speed(*value);
     if (const auto rapid = root_.find("rapid")) job_.rapid = rapid->number();
   }
 

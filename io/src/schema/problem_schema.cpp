@@ -318,6 +318,8 @@ Keys keys_of_strokes(const char* other) {
        "where it goes after a stroke, alike; in the tool frame of the last waypoint"},
       {"process_speed", number(kPositive), "m/s", in_words(other ? other : "`limits.tool_speed`"),
        "speed of the tool along strokes, see [speeds](#speeds)"},
+      {"approach_speed", number(kPositive), "m/s", in_words(other ? other : "that of the stroke"),
+       "speed of the tool along approach and retract"},
   };
 }
 

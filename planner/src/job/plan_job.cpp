@@ -58,10 +58,12 @@ struct PlannedRun {
 
 class JobPlan {
  public:
-  /// Prepares the plan of a job. With `one_branch`, no run of an S-R-S arm changes its branch.
+  /// Prepares the plan of a job in an order. With `one_branch`, no run of an S-R-S arm changes its
+  /// branch.
   JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-          const Budget& budget, bool one_branch = false)
+          const Budget& budget, std::vector<StrokeRun> order, bool one_branch)
       : robot_(robot),
+        order_(std::move(order)),
         chain_(robot.arm().chain),
         job_(job),
         options_(options),
@@ -114,17 +116,10 @@ class JobPlan {
     return worlds_.back().second;
   }
 
-  std::vector<StrokeRun> choose_order() {
-    if (job_.order == StrokeOrder::kBest)
-      return cheapest_order(estimate_order_costs(robot_, job_, work(), budget_), budget_);
-    std::vector<StrokeRun> order;
-    for (std::size_t k = 0; k < job_.strokes.size(); ++k) order.push_back({k, false});
-    return order;
-  }
   void lay_out() {
-    const std::vector<StrokeRun> order = choose_order();
+    require_home_within_limits();
     std::vector<std::pair<Problem, const World*>> of;
-    for (const StrokeRun& run : order) {
+    for (const StrokeRun& run : order_) {
       Problem problem = problem_of_run(job_, run);
       const World& world = world_of(problem.limits, problem);
       of.emplace_back(std::move(problem), &world);
@@ -132,10 +127,10 @@ class JobPlan {
     Problem between = of.front().first;
     between.limits = job_.limits;
     transition_world_ = &world_of(job_.limits, between);
-    runs_.resize(order.size());
-    executor_.for_each(static_cast<int>(order.size()), [&](int k, int) {
+    runs_.resize(order_.size());
+    executor_.for_each(static_cast<int>(order_.size()), [&](int k, int) {
       const auto i = static_cast<std::size_t>(k);
-      runs_[i] = std::make_unique<PlannedRun>(order[i], std::move(of[i].first), robot_,
+      runs_[i] = std::make_unique<PlannedRun>(order_[i], std::move(of[i].first), robot_,
                                               *of[i].second, budget_);
     });
     collect_warnings();
@@ -165,7 +160,7 @@ class JobPlan {
     for (;;) {
       JobTransitions transitions(robot_, *transition_world_, job_.limits, *runs_.front()->lattice,
                                  distance_proofs(), executor_, budget_);
-      if (job_.home) require_home_clear(transitions);
+      if (home_is_barred(transitions)) return;
       const JobOutcome outcome = search(transitions);
       note(outcome, transitions);
       if (outcome.paths.empty()) return;
@@ -187,7 +182,9 @@ class JobPlan {
   [[nodiscard]] DistanceProofs distance_proofs() const {
     return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
   }
-  void require_home_clear(JobTransitions& transitions) {
+  /// Throws InputError if home is outside of the joints' limits.
+  void require_home_within_limits() const {
+    if (!job_.home) return;
     for (std::size_t j = 0; j < kDof; ++j) {
       const double x = (*job_.home)[static_cast<Eigen::Index>(j)];
       const JointLimit& limit = chain_.limit[j];
@@ -199,10 +196,13 @@ class JobPlan {
                                           formatted("%.6g", x) + " rad: allowed is " +
                                           formatted("%.6g to %.6g", lower, upper));
     }
-    if (const auto pair = transitions.barred(*job_.home))
-      throw InputError(job_.source, "home: '" + (*pair)[0] + "' and '" + (*pair)[1] +
-                                        "' come too near: allowed is a configuration that keeps "
-                                        "the clearance of motions");
+  }
+  /// Returns true if the arm comes too near to something at home, and notes to what.
+  bool home_is_barred(JobTransitions& transitions) {
+    if (!job_.home) return false;
+    result_.barred_by = transitions.barred(*job_.home);
+    result_.home_barred = result_.barred_by.has_value();
+    return result_.home_barred;
   }
 
   JobOutcome search(JobTransitions& transitions) {
@@ -222,7 +222,7 @@ class JobPlan {
   }
 
   /// Notes what a search did and found.
-  void note(const JobOutcome& outcome, const JobTransitions& transitions) {
+  void note(const JobOutcome& outcome, JobTransitions& transitions) {
     result_.transitions.pairs += outcome.pairs;
     result_.transitions.searches += outcome.searches;
     result_.transitions.rounds += outcome.rounds;
@@ -247,6 +247,8 @@ class JobPlan {
       result_.runs.push_back(std::move(run));
     }
     result_.no_transition_to = outcome.transition_without_way;
+    if (const auto& pair = outcome.pair_without_way)
+      result_.barred_by = transitions.barred((*pair)[0], (*pair)[1]);
     if (!outcome.decided && outcome.paths.empty()) throw Stopped();
   }
   void add_counters(const PlannedRun& run) {
@@ -264,7 +266,7 @@ class JobPlan {
   }
 
   /// Returns the parts of the job that was found, with joints as the lattices have them.
-  std::vector<JobPart> parts_of(const JobOutcome& outcome, const JobTransitions& transitions) {
+  std::vector<JobPart> parts_of(const JobOutcome& outcome, JobTransitions& transitions) {
     std::vector<JobPart> parts;
     std::optional<Config> end = job_.home;
     std::size_t next_cost = 0;
@@ -276,6 +278,7 @@ class JobPlan {
         row.q = q;
         part.rows.push_back(row);
       }
+      if (part.rows.size() > 2) part.barred_by = transitions.barred(*end, to);
       parts.push_back(std::move(part));
     };
     for (std::size_t k = 0; k < runs_.size(); ++k) {
@@ -316,6 +319,7 @@ class JobPlan {
   }
 
   const PreparedRobot& robot_;
+  std::vector<StrokeRun> order_;
   const Chain& chain_;
   const Job& job_;
   const PlanOptions& options_;
@@ -335,6 +339,46 @@ void require_supported(const PlanOptions& options) {
     throw InvalidArgument("hooks: allowed for jobs are none");
 }
 
+/// Returns the orders in which to plan a job: the given one, or the cheapest by estimate and the
+/// given one too if it is estimated to cost hardly more.
+std::vector<std::vector<StrokeRun>> orders_of(const PreparedRobot& robot, const Job& job,
+                                              const PlanOptions& options, const Budget& budget) {
+  constexpr double kHardlyMore = 1.1;  // estimates are off by some per cent
+  std::vector<StrokeRun> given;
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) given.push_back({k, false});
+  if (job.order == StrokeOrder::kGiven) return {given};
+  Executor executor(options.planner == PlannerKind::kLazy ? 1 : options.threads);
+  const ParallelFor work{executor.threads(),
+                         [&](int parts, const auto& body) { executor.for_each(parts, body); }};
+  const OrderCosts costs = estimate_order_costs(robot, job, work, budget);
+  std::vector<StrokeRun> best = cheapest_order(costs, budget);
+  if (best == given) return {given};
+  if (cost_of_order(costs, given) > kHardlyMore * cost_of_order(costs, best)) return {best};
+  return {std::move(best), std::move(given)};
+}
+
+JobResult plan_in_order(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+                        const Budget& budget, bool one_branch = false) {
+  Stopwatch watch;
+  std::vector<std::vector<StrokeRun>> orders;
+  try {
+    orders = orders_of(robot, job, options, budget);
+  } catch (const Stopped&) {
+    orders.resize(1);
+    for (std::size_t k = 0; k < job.strokes.size(); ++k) orders.front().push_back({k, false});
+  }
+  const double order_ms = watch.lap();
+  std::optional<JobResult> best;
+  for (std::vector<StrokeRun>& order : orders) {
+    JobResult found = JobPlan(robot, job, options, budget, std::move(order), one_branch).plan();
+    const bool solved = found.status == PlanStatus::kSolved;
+    if (!best || (solved && (best->status != PlanStatus::kSolved || found.cost < best->cost)))
+      best = std::move(found);
+  }
+  if (job.order == StrokeOrder::kBest) best->time_ms["order"] = order_ms;
+  return std::move(*best);
+}
+
 /// Returns true if the rows of a run of the job are not all on one branch.
 bool any_changes_branch(const JobResult& job) {
   return std::any_of(job.parts.begin(), job.parts.end(),
@@ -345,10 +389,10 @@ bool any_changes_branch(const JobResult& job) {
 /// change branch if the cheapest does and there is one.
 JobResult plan_executable(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
                           const Budget& budget) {
-  JobResult found = JobPlan(robot, job, options, budget).plan();
+  JobResult found = plan_in_order(robot, job, options, budget);
   if (found.status != PlanStatus::kSolved || !robot.arm_class().srs || !any_changes_branch(found))
     return found;
-  JobResult other = JobPlan(robot, job, options, budget, true).plan();
+  JobResult other = plan_in_order(robot, job, options, budget, true);
   if (other.status != PlanStatus::kSolved) return found;
   other.warnings.push_back(
       formatted("the cheapest job, of cost %.6g, jumps to another branch, which no controller can "
@@ -363,7 +407,7 @@ JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions
   validate(job);
   require_supported(options);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
-  return JobPlan(robot, job, options, options.budget()).plan();
+  return plan_in_order(robot, job, options, options.budget());
 }
 
 JobResult plan_job(const Job& job, const PlanOptions& options) {

@@ -58,6 +58,10 @@ Runs exact_order(const OrderCosts& costs, const Budget& budget) {
     if (least[set * runs + run].cost + costs.last[run] < cost)
       cost = least[set * runs + run].cost + costs.last[run], last = run;
   Runs order;
+  if (cost == kNone) {  // no order has a cost: the given one
+    for (std::size_t k = 0; k < n; ++k) order.push_back(2 * k);
+    return order;
+  }
   while (set != 0) {
     order.insert(order.begin(), last);
     const std::size_t before = least[set * runs + last].before;

@@ -22,6 +22,8 @@ struct JobPart {
   /// configurations between which the joints move straight, at least two; s, phi and branch mean
   /// nothing.
   std::vector<TrajectoryRow> rows;
+  /// Of a transition with corners: two bodies that bar the straight move.
+  std::optional<std::array<std::string, 2>> barred_by = {};
 };
 
 /// What a job's plan found out about one run.
@@ -57,8 +59,9 @@ struct JobResult {
   /// Where there is no job though each run has a path: index in `runs` of the run that no
   /// transition leads to, runs.size() for the way home.
   std::optional<std::size_t> no_transition_to;
-  /// The two bodies that bar the straight transition there.
+  /// The two bodies that bar a straight transition there, or that come too near at home.
   std::optional<std::array<std::string, 2>> barred_by;
+  bool home_barred = false;  ///< home itself is too near to something
   std::string planner;
   int threads = 1;
   Counters counters;

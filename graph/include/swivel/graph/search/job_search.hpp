@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -62,6 +63,8 @@ struct JobOutcome {
   std::optional<std::size_t> run_without_path;
   /// Index of the transition for which no way was found from any end to any begin.
   std::optional<std::size_t> transition_without_way;
+  /// A pair of configurations of that transition between which no way was found.
+  std::optional<std::array<Config, 2>> pair_without_way;
   std::vector<SlotPath> paths;  ///< of each run; empty if no job was found
   double cost = kUnreachable;   ///< of the job found
   /// No job whose transitions are those that Transitions finds costs less.

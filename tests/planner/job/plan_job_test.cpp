@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Jobs on real robots: answers against a plain program and their own check, whatever the threads;
+// motions by differences from outside; mutated answers are refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "seed.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/study/campaign.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/io/problems/job.hpp"
+#include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+Job load(const char* name) {
+  return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+}
+
+/// A job of data/problems with its robot prepared, of which other placements are drawn.
+struct JobCase {
+  explicit JobCase(const char* name) : job(load(name)), robot(problem_of_run(job, {0, false})) {}
+  /// Returns the job with its scene as in an episode of a campaign.
+  [[nodiscard]] Job episode(std::uint64_t k) const {
+    Job moved = job;
+    moved.scene = episode_problem(problem_of_run(job, {0, false}), 1, k).scene;
+    return moved;
+  }
+  Job job;
+  PreparedRobot robot;
+};
+
+/// Draws a job of the door with other placements, lines of approach and retract, and order.
+Job random_job(const JobCase& of, Random& random) {
+  Job job = of.episode(static_cast<std::uint64_t>(random.below(1000)));
+  while (job.strokes.size() > 2 && random.coin(0.4)) job.strokes.pop_back();
+  if (random.coin(0.3)) job.home.reset();
+  for (Stroke& stroke : job.strokes) {
+    stroke.reversible = random.coin();
+    if (random.coin(0.4)) stroke.approach = Vector3d(0, 0, -0.02);
+    if (random.coin(0.4)) stroke.retract = Vector3d(0, 0, -0.03);
+    stroke.resolution.ds = 0.02;
+    stroke.resolution.dphi = 0.1;
+  }
+  job.order = random.coin(0.3) ? StrokeOrder::kBest : StrokeOrder::kGiven;
+  return job;
+}
+
+void expect_same(const JobResult& a, const JobResult& b, const std::string& what) {
+  ASSERT_EQ(a.status, b.status) << what;
+  ASSERT_EQ(a.cost, b.cost) << what;
+  ASSERT_EQ(a.bound, b.bound) << what;
+  ASSERT_EQ(a.parts.size(), b.parts.size()) << what;
+  ASSERT_EQ(a.counters.fcl_calls, b.counters.fcl_calls) << what;
+  ASSERT_EQ(a.transitions.pairs, b.transitions.pairs) << what;
+  for (std::size_t k = 0; k < a.parts.size(); ++k) {
+    ASSERT_EQ(a.parts[k].run, b.parts[k].run) << what;
+    ASSERT_EQ(a.parts[k].rows.size(), b.parts[k].rows.size()) << what;
+    for (std::size_t i = 0; i < a.parts[k].rows.size(); ++i)
+      ASSERT_EQ(a.parts[k].rows[i].q, b.parts[k].rows[i].q) << what;
+  }
+}
+
+TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
+  Random random(seed("PlanJob"));
+  const JobCase door("door_job.yaml");
+  int solved = 0, detours = 0, best = 0;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "trial " + std::to_string(trial);
+    const Job job = random_job(door, random);
+    PlanOptions options;
+    options.threads = 1;
+    const JobResult found = plan_job(door.robot, job, options);
+    for (const int threads : {2, 4}) {
+      if (trial % 4 != 0) continue;
+      options.threads = threads;
+      expect_same(found, plan_job(door.robot, job, options), what);
+      if (HasFatalFailure()) return;
+    }
+    if (found.status != PlanStatus::kSolved) continue;
+    ++solved;
+    best += job.order == StrokeOrder::kBest;
+    ASSERT_LE(found.bound, found.cost) << what;
+    ASSERT_LE(found.bound_any, found.bound) << what;
+    const JobCheckResult check = check_job(door.robot, job, found.parts);
+    ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
+    ASSERT_NEAR(check.cost, found.cost, 1e-6) << what;
+    for (const JobPart& part : found.parts) detours += !part.run && part.rows.size() > 2;
+  }
+  std::printf("%d jobs, %d solved, %d in the best order, %d transitions around obstacles\n", count,
+              solved, best, detours);
+  EXPECT_GE(solved, at_least(20));
+  EXPECT_GE(best, at_least(3));
+  EXPECT_GE(detours, at_least(3));
+}
+
+TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
+  const JobCase door("door_job.yaml");
+  int solved = 0;
+  double most = 0, sum = 0;
+  const int count = trials(12);
+  for (int k = 0; k < count; ++k) {
+    Job job = door.episode(static_cast<std::uint64_t>(k));
+    for (Stroke& stroke : job.strokes) {
+      stroke.reversible = true;
+      stroke.resolution.ds = 0.02;
+      stroke.resolution.dphi = 0.1;
+    }
+    std::swap(job.strokes[1], job.strokes[4]);
+    const JobResult given = plan_job(door.robot, job, {});
+    job.order = StrokeOrder::kBest;
+    const JobResult best = plan_job(door.robot, job, {});
+    if (given.status != PlanStatus::kSolved) continue;
+    ASSERT_EQ(best.status, PlanStatus::kSolved);
+    ++solved;
+    EXPECT_LE(best.cost, given.cost * (1 + 1e-12)) << "episode " << k;
+    most = std::max(most, best.cost / given.cost);
+    sum += best.cost / given.cost;
+  }
+  std::printf("%d jobs: best over given %.3f in the mean, %.3f at most\n", solved, sum / solved,
+              most);
+  EXPECT_GE(solved, at_least(6));
+}
+
+TEST(PlanJob, ADeadlineEndsItWithWhatIsKnown) {
+  const JobCase door("door_job.yaml");
+  for (const double timeout : {1e-4, 2e-3, 2e-2, 5e-2}) {
+    PlanOptions options;
+    options.timeout_s = timeout;
+    const JobResult found = plan_job(door.robot, door.job, options);
+    if (found.status != PlanStatus::kSolved) {
+      EXPECT_EQ(found.status, PlanStatus::kTimeout);
+      EXPECT_TRUE(found.parts.empty());
+      continue;
+    }
+    EXPECT_LE(found.bound, found.cost);
+    EXPECT_TRUE(check_job(door.robot, door.job, found.parts).passed);
+  }
+}
+
+TEST(PlanJob, TellsWhichStrokeHasNoPath) {
+  const JobCase door("door_job.yaml");
+  Job job = door.job;
+  for (Waypoint& waypoint : job.strokes[3].waypoints) waypoint.position.y() += 2;  // out of reach
+  const JobResult found = plan_job(door.robot, job, {});
+  ASSERT_EQ(found.status, PlanStatus::kInfeasible);
+  ASSERT_EQ(found.runs.size(), job.strokes.size());
+  for (std::size_t k = 0; k < found.runs.size(); ++k) {
+    EXPECT_EQ(found.runs[k].status, k == 3 ? PlanStatus::kInfeasible : PlanStatus::kSolved);
+    EXPECT_EQ(found.runs[k].diagnosis.has_value(), k == 3);
+  }
+}
+
+/// Returns the greatest differences of samples as parts of the joints' rates: speed, acceleration,
+/// jerk.
+std::array<double, 3> greatest_shares(const std::vector<TimedRow>& rows, const JointRates& rates,
+                                      double rate) {
+  std::array<double, 3> most{};
+  std::vector<Config> values(3, rows.front().row.q);
+  for (const TimedRow& row : rows) values.push_back(row.row.q);
+  values.insert(values.end(), 3, rows.back().row.q);
+  const Config* const limits[] = {&rates.speed, &rates.acceleration, &rates.jerk};
+  for (std::size_t order = 0; order < 3; ++order) {
+    for (std::size_t k = 0; k + 1 < values.size(); ++k)
+      values[k] = (values[k + 1] - values[k]) * rate;
+    values.pop_back();
+    for (const Config& value : values)
+      most[order] =
+          std::max(most[order], value.cwiseAbs().cwiseQuotient(*limits[order]).maxCoeff());
+  }
+  return most;
+}
+
+/// Expects a job's motion to keep rates, clearances and its strokes, judged from outside.
+void expect_executable(const JobCase& of, const Job& job, const JobMotionPlan& plan,
+                       const std::string& what) {
+  const JobMotion& motion = *plan.timing->motion;
+  const Chain& chain = of.robot.arm().chain;
+  const auto shares = greatest_shares(motion.rows, joint_rates(chain, job.limits, ""), motion.rate);
+  for (const double share : shares) ASSERT_LE(share, 1 + 1e-6) << what;
+  Problem problem = problem_of_run(with_motion_defaults(job), {0, false});
+  const World world(of.robot.world(), problem);
+  World::Query query(world);
+  for (std::size_t k = 1; k < motion.rows.size(); k += 97)
+    for (int i = 0; i < 10; ++i) {
+      const Config q =
+          motion.rows[k - 1].row.q + 0.1 * i * (motion.rows[k].row.q - motion.rows[k - 1].row.q);
+      const auto clearance = query.clearance(q);
+      ASSERT_TRUE(clearance && clearance->margin() >= -6e-5) << what << " row " << k;
+    }
+  ASSERT_EQ(motion.events.size(), 2 * job.strokes.size()) << what;
+  for (std::size_t k = 0; k < motion.events.size(); ++k) {
+    const ProcessEvent& event = motion.events[k];
+    ASSERT_EQ(event.on, k % 2 == 0) << what;
+    const StrokeRun run = plan.result.runs[k / 2].run;
+    ASSERT_EQ(event.stroke, run.stroke) << what;
+    // the tool is at the stroke's end within one sample
+    const auto row = static_cast<std::size_t>(std::llround(event.t * motion.rate));
+    const Problem path = problem_of_run(job, run);
+    const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
+    const Vector3d end = waypoints_in_base(path)[event.on ? process.first : process.last].position;
+    const Vector3d at = chain.tool(motion.rows[row].row.q).translation();
+    const Vector3d before = chain.tool(motion.rows[row > 0 ? row - 1 : 0].row.q).translation();
+    ASSERT_LE((at - end).norm(), (at - before).norm() + 2e-4) << what << " event " << k;
+  }
+}
+
+TEST(JobMotion, KeepsRatesClearancesAndEvents) {
+  const JobCase door("door_job.yaml"), bench("iiwa14_bench_job.yaml");
+  int timed = 0;
+  for (const JobCase* of : {&door, &bench})
+    for (int k = 0; k < trials(8); ++k) {
+      Job job = of->episode(static_cast<std::uint64_t>(k));
+      for (Stroke& stroke : job.strokes) stroke.retract = stroke.approach = Vector3d(0, 0, -0.02);
+      job.approach_speed = 0.1;
+      job.rapid = 0.5;
+      const std::string what = job.source + " episode " + std::to_string(k);
+      PlanOptions options;
+      const JobMotionPlan plan = plan_job_motion(of->robot, job, options, {});
+      if (plan.result.status != PlanStatus::kSolved) continue;
+      ASSERT_TRUE(plan.timing) << what;
+      if (!plan.timing->motion) continue;
+      ++timed;
+      expect_executable(*of, job, plan, what);
+      if (HasFatalFailure()) return;
+      std::vector<StrokeRun> order;
+      for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+      const JobCheckResult check = check_job_motion(of->robot, job, order, *plan.timing->motion);
+      ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
+    }
+  std::printf("%d motions\n", timed);
+  EXPECT_GE(timed, at_least(8));
+}
+
+/// Ways to spoil a job's answer, each by a random amount.
+using Spoil = std::function<void(std::vector<JobPart>&, Random&)>;
+std::vector<std::pair<const char*, Spoil>> ways_to_spoil() {
+  const auto run_of = [](std::vector<JobPart>& parts, Random& random) -> JobPart& {
+    for (;;)
+      if (JobPart& part =
+              parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
+          part.run)
+        return part;
+  };
+  const auto transition_of = [](std::vector<JobPart>& parts, Random& random) -> JobPart& {
+    for (;;)
+      if (JobPart& part =
+              parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
+          !part.run)
+        return part;
+  };
+  return {
+      {"the retract is missing",
+       [=](auto& parts, Random& random) {
+         JobPart& part = run_of(parts, random);
+         part.rows.resize(part.rows.size() - 1 - static_cast<std::size_t>(random.below(3)));
+       }},
+      {"the approach is missing",
+       [=](auto& parts, Random& random) {
+         JobPart& part = run_of(parts, random);
+         part.rows.erase(part.rows.begin(), part.rows.begin() + 1 + random.below(3));
+       }},
+      {"a transition ends elsewhere",
+       [=](auto& parts, Random& random) {
+         TrajectoryRow& row = transition_of(parts, random).rows.back();
+         row.q[random.below(6)] += random.coin() ? 1e-6 : 0.3;
+       }},
+      {"a transition begins elsewhere",
+       [=](auto& parts, Random& random) {
+         TrajectoryRow& row = transition_of(parts, random).rows.front();
+         row.q[random.below(6)] -= random.coin() ? 1e-6 : 0.3;
+       }},
+      {"a transition leads out of the joints' limits",
+       [=](auto& parts, Random& random) {
+         JobPart& part = transition_of(parts, random);
+         TrajectoryRow row = part.rows.front();
+         row.q[random.below(6)] += random.coin() ? 7 : -7;
+         part.rows.insert(part.rows.begin() + 1, row);
+       }},
+      {"a stroke jumps",
+       [=](auto& parts, Random& random) {
+         JobPart& part = run_of(parts, random);
+         const auto row =
+             static_cast<std::size_t>(random.below(static_cast<int>(part.rows.size())));
+         part.rows[row].q[random.below(6)] += 0.01;
+       }},
+      {"two strokes are swapped",
+       [](auto& parts, Random& random) {
+         const auto a = 1 + 2 * static_cast<std::size_t>(random.below(2));
+         std::swap(parts[a], parts[a + 2]);
+       }},
+      {"a stroke is left out",
+       [](auto& parts, Random& random) {
+         const auto a = 1 + 2 * static_cast<std::size_t>(random.below(2));
+         parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(a),
+                     parts.begin() + static_cast<std::ptrdiff_t>(a) + 2);
+       }},
+      {"a stroke is said to be another",
+       [=](auto& parts, Random& random) {
+         JobPart& part = run_of(parts, random);
+         part.run->stroke = (part.run->stroke + 1) % 3;
+       }},
+      {"a stroke runs backwards",
+       [=](auto& parts, Random& random) {
+         JobPart& part = run_of(parts, random);
+         part.run->reversed = true;
+         std::reverse(part.rows.begin(), part.rows.end());
+       }},
+      {"a transition is left out",
+       [](auto& parts, Random& random) {
+         parts.erase(parts.begin() + 2 * random.below(static_cast<int>(parts.size() / 2)));
+       }},
+  };
+}
+
+TEST(CheckJob, RefusesSpoiltAnswers) {
+  Random random(seed("CheckJob"));
+  const JobCase door("door_job.yaml");
+  Job job = door.job;
+  job.strokes.resize(3);
+  for (Stroke& stroke : job.strokes) {
+    stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
+    stroke.resolution.ds = 0.02;
+    stroke.resolution.dphi = 0.1;
+  }
+  const JobResult found = plan_job(door.robot, job, {});
+  ASSERT_EQ(found.status, PlanStatus::kSolved);
+  ASSERT_TRUE(check_job(door.robot, job, found.parts).passed);
+  int refused = 0;
+  const auto ways = ways_to_spoil();
+  const int count = trials(330);
+  for (int trial = 0; trial < count; ++trial) {
+    const auto& [name, spoil] = ways[static_cast<std::size_t>(trial) % ways.size()];
+    std::vector<JobPart> parts = found.parts;
+    spoil(parts, random);
+    const JobCheckResult check = check_job(door.robot, job, parts, {.margins = false});
+    EXPECT_FALSE(check.passed) << "trial " << trial << ": " << name;
+    refused += !check.passed;
+  }
+  std::printf("%d answers spoilt in %zu ways, %d refused\n", count, ways.size(), refused);
+}
+
+TEST(CheckJob, RefusesEventsThatLie) {
+  Random random(seed("CheckJob events"));
+  const JobCase door("door_job.yaml");
+  Job job = door.job;
+  job.strokes.resize(2);
+  for (Stroke& stroke : job.strokes) stroke.approach = Vector3d(0, 0, -0.02);
+  const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
+  ASSERT_TRUE(plan.timing && plan.timing->motion);
+  std::vector<StrokeRun> order;
+  for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+  const auto passes = [&](const JobMotion& motion) {
+    return check_job_motion(door.robot, job, order, motion, {.margins = false}).passed;
+  };
+  ASSERT_TRUE(passes(*plan.timing->motion));
+  for (int trial = 0; trial < trials(30); ++trial) {
+    JobMotion motion = *plan.timing->motion;
+    ProcessEvent& event =
+        motion
+            .events[static_cast<std::size_t>(random.below(static_cast<int>(motion.events.size())))];
+    switch (random.below(4)) {
+      case 0:
+        event.on = !event.on;
+        break;
+      case 1:
+        event.t += (random.coin() ? 1 : -1) / motion.rate;
+        break;
+      case 2:
+        event.stroke = 1 - event.stroke;
+        break;
+      default:
+        motion.events.pop_back();
+    }
+    EXPECT_FALSE(passes(motion)) << "trial " << trial;
+  }
+}
+
+}  // namespace
+}  // namespace swivel
