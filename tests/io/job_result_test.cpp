@@ -132,68 +132,79 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
   EXPECT_EQ(rows, 200 * 16);
 }
 
-TEST(JobTrajectory, BadFiles) {
+const std::string kHeader = "s,phi,branch,a,b,c,d,e,f,g,stroke,process\n",
+                  kHome = ",,,0,0,0,0,0,0,0,,0\n", kLeft = "0,0,0,0,0,0,0,0,0,0,left,1\n",
+                  kRight = "0,0,0,0,0,0,0,0,0,0,right,1\n", kLine = "0,0,0,0,0,0,0,0,0,0,left,0\n";
+
+struct BadFile {
+  const char* name;
+  std::string text;
+  std::vector<std::string> needles;
+};
+
+void expect_refused(const std::vector<BadFile>& files) {
   const TempFolder folder;
-  const std::string header = "s,phi,branch,a,b,c,d,e,f,g,stroke,process\n",
-                    home = ",,,0,0,0,0,0,0,0,,0\n", left = "0,0,0,0,0,0,0,0,0,0,left,1\n",
-                    right = "0,0,0,0,0,0,0,0,0,0,right,1\n", line = "0,0,0,0,0,0,0,0,0,0,left,0\n";
-  const struct {
-    const char* name;
-    std::string text;
-    std::vector<std::string> needles;
-  } cases[] = {
-      {"a trajectory",
-       "s,phi,branch,a,b,c,d,e,f,g\n0,0,0,0,0,0,0,0,0,0\n",
-       {"t.csv:1", "is not the header", "stroke,process"}},
-      {"other joints",
-       "s,phi,branch,a,b,c,d,e,f,x,stroke,process\n" + left + left,
-       {"t.csv:1", "is not the header", "a,b,c,d,e,f,g"}},
-      {"one row", header + left, {"1 data row"}},
-      {"a stroke of one row",
-       header + home + home + left + home + home,
-       {"t.csv:5: data row 4", "stroke 'left' before it has one row", "at least two"}},
-      {"a transition of one row",
-       header + home + left + left,
-       {"t.csv:3: data row 2", "the transition before it has one row"}},
-      {"one row at the end",
-       header + left + left + home,
-       {"t.csv: the transition before it has one row"}},
-      {"a stroke twice",
-       header + left + left + right + right + left + left,
-       {"t.csv:6: data row 5", "stroke: 'left' comes twice"}},
-      {"no process", header + line + line, {"fewer than two rows whose process is 1"}},
-      {"process again",
-       header + left + left + line + left,
-       {"t.csv:5: data row 4", "process: is 1 again"}},
-      {"process in a transition",
-       header + ",,,0,0,0,0,0,0,0,,1\n" + home,
-       {"t.csv:2: data row 1", "process: is 1 in a transition"}},
-      {"process of words",
-       header + left + "0,0,0,0,0,0,0,0,0,0,left,on\n",
-       {"t.csv:3: data row 2", "process: is 'on'", "0 or 1"}},
-      {"s in a transition",
-       header + left + left + "0,,,0,0,0,0,0,0,0,,0\n",
-       {"t.csv:4: data row 3", "s: is '0' in a transition"}},
-      {"no s on a stroke",
-       header + left + ",0,0,0,0,0,0,0,0,0,left,1\n",
-       {"t.csv:3: data row 2", "s: '' is not a number"}},
-      {"no joint",
-       header + left + "0,0,0,0,,0,0,0,0,0,left,1\n",
-       {"t.csv:3: data row 2", "b: '' is not a number"}},
-      {"infinite",
-       header + left + "0,0,0,0,inf,0,0,0,0,0,left,1\n",
-       {"t.csv:3: data row 2", "b: 'inf' is not a number"}},
-      {"branch 8",
-       header + left + "0,0,8,0,0,0,0,0,0,0,left,1\n",
-       {"t.csv:3: data row 2", "branch: is 8", "0 to 7"}},
-      {"columns", header + left + "0,0\n", {"t.csv:3: data row 2", "2 columns"}},
-      {"empty", "", {"is empty", "header of a job's trajectory"}},
-  };
-  for (const auto& [name, text, needles] : cases) {
+  for (const auto& [name, text, needles] : files) {
     SCOPED_TRACE(name);
     const fs::path file = folder.write("t.csv", text);
     expect_message(input_error([&] { (void)load_job_trajectory(file, kNames); }), needles);
   }
+}
+
+TEST(JobTrajectory, BadFields) {
+  expect_refused({
+      {"a trajectory",
+       "s,phi,branch,a,b,c,d,e,f,g\n0,0,0,0,0,0,0,0,0,0\n",
+       {"t.csv:1", "is not the header", "stroke,process"}},
+      {"other joints",
+       "s,phi,branch,a,b,c,d,e,f,x,stroke,process\n" + kLeft + kLeft,
+       {"t.csv:1", "is not the header", "a,b,c,d,e,f,g"}},
+      {"one row", kHeader + kLeft, {"1 data row"}},
+      {"process of words",
+       kHeader + kLeft + "0,0,0,0,0,0,0,0,0,0,left,on\n",
+       {"t.csv:3: data row 2", "process: is 'on'", "0 or 1"}},
+      {"s in a transition",
+       kHeader + kLeft + kLeft + "0,,,0,0,0,0,0,0,0,,0\n",
+       {"t.csv:4: data row 3", "s: is '0' in a transition"}},
+      {"no s on a stroke",
+       kHeader + kLeft + ",0,0,0,0,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "s: '' is not a number"}},
+      {"no joint",
+       kHeader + kLeft + "0,0,0,0,,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "b: '' is not a number"}},
+      {"infinite",
+       kHeader + kLeft + "0,0,0,0,inf,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "b: 'inf' is not a number"}},
+      {"branch 8",
+       kHeader + kLeft + "0,0,8,0,0,0,0,0,0,0,left,1\n",
+       {"t.csv:3: data row 2", "branch: is 8", "0 to 7"}},
+      {"columns", kHeader + kLeft + "0,0\n", {"t.csv:3: data row 2", "2 columns"}},
+      {"empty", "", {"is empty", "header of a job's trajectory"}},
+  });
+}
+
+TEST(JobTrajectory, BadParts) {
+  expect_refused({
+      {"a stroke of one row",
+       kHeader + kHome + kHome + kLeft + kHome + kHome,
+       {"t.csv:5: data row 4", "stroke 'left' before it has one row", "at least two"}},
+      {"a transition of one row",
+       kHeader + kHome + kLeft + kLeft,
+       {"t.csv:3: data row 2", "the transition before it has one row"}},
+      {"one row at the end",
+       kHeader + kLeft + kLeft + kHome,
+       {"t.csv: the transition before it has one row"}},
+      {"a stroke twice",
+       kHeader + kLeft + kLeft + kRight + kRight + kLeft + kLeft,
+       {"t.csv:6: data row 5", "stroke: 'left' comes twice"}},
+      {"no process", kHeader + kLine + kLine, {"fewer than two rows whose process is 1"}},
+      {"process again",
+       kHeader + kLeft + kLeft + kLine + kLeft,
+       {"t.csv:5: data row 4", "process: is 1 again"}},
+      {"process in a transition",
+       kHeader + ",,,0,0,0,0,0,0,0,,1\n" + kHome,
+       {"t.csv:2: data row 1", "process: is 1 in a transition"}},
+  });
 }
 
 TEST(JobResult, Solved) {
