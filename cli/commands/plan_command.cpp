@@ -11,8 +11,10 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "commands/plan_job_command.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "output/motion_output.hpp"
@@ -110,28 +112,21 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
-/// Writes the texts of the outputs beside their targets, calls `print`, and then puts the texts in
-/// place: if printing fails, nothing is written. `reason` says why earlier files are removed.
-void deliver(io::OutputFiles& outputs, const std::string& reason,
-             const std::function<void()>& print) {
-  outputs.stage();
-  print();
-  flush_standard_output();
-  report_removed(outputs.commit(), reason);
-}
+/// A problem file as it was read.
+struct LoadedFile {
+  std::variant<Problem, Job> what{};
+  std::vector<io::InputFiles::File> inputs{};  ///< the files that were read
+  double load_ms = 0;                          ///< time that loading took
+};
 
-/// Loads the problem file, notes which files were read, and places the objects as the chosen
-/// episode and placement say.
-void load_problem(PlanRequest& request) {
-  const PlanArguments& arguments = request.arguments;
-  {
-    const TraceSpan span("load");
-    const io::InputFiles noted;
-    const Problem loaded = io::load_problem(arguments.problem);
-    request.inputs = noted.files();
-    request.problem = arguments.episode.apply(loaded);
-  }
-  arguments.search.apply(request.problem);
+LoadedFile load_file(const PlanArguments& arguments) {
+  const TraceSpan span("load");
+  const auto start = std::chrono::steady_clock::now();
+  const io::InputFiles noted;
+  LoadedFile file{.what = io::load_problem_or_job(arguments.problem)};
+  file.inputs = noted.files();
+  file.load_ms = milliseconds_since(start);
+  return file;
 }
 
 /// Reads from the command line whether the path is timed, and completes the problem for what
@@ -150,18 +145,21 @@ void read_motion(PlanRequest& request) {
   }
 }
 
-/// Returns the request that problem file and command line make. Throws InputError.
-PlanRequest load_request(const PlanArguments& arguments) {
-  const auto start = std::chrono::steady_clock::now();
-  PlanRequest request{.arguments = arguments, .options = arguments.search.plan_options()};
-  load_problem(request);
+/// Returns the request that a problem of one path and the command line make. The objects stand as
+/// the chosen episode and placement say. Throws InputError.
+PlanRequest request_of(const PlanArguments& arguments, LoadedFile file) {
+  PlanRequest request{.arguments = arguments,
+                      .problem = arguments.episode.apply(std::get<Problem>(file.what)),
+                      .inputs = std::move(file.inputs),
+                      .options = arguments.search.plan_options(),
+                      .load_ms = file.load_ms};
+  arguments.search.apply(request.problem);
   read_motion(request);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
   request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
     request.options.evidence = Evidence::all();
-  request.load_ms = milliseconds_since(start);
   return request;
 }
 
@@ -326,12 +324,67 @@ ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
   return answer.plan.stopped ? kStopped : kNo;
 }
 
-/// Plans the problem of the command line and writes and prints the answer. Returns the exit code.
-/// Sets `outputs` as soon as it is known that they may be written. Throws InputError.
+/// Throws InputError for options that jobs do not have.
+void require_options_of_jobs(const PlanArguments& arguments) {
+  const MotionOptions& motion = arguments.motion;
+  const PlacementOptions& placement = arguments.episode.placement;
+  const bool placed = !placement.object.empty() || placement.path || placement.base ||
+                      std::any_of(placement.coordinates.begin(), placement.coordinates.end(),
+                                  [](const std::string& value) { return !value.empty(); });
+  const std::pair<bool, const char*> options[] = {
+      {arguments.refine, "--refine"},
+      {motion.speed.has_value(), "--speed"},
+      {motion.turn_speed.has_value(), "--turn-speed"},
+      {motion.rate.has_value(), "--rate"},
+      {motion.chord.has_value(), "--chord"},
+      {arguments.advise.has_value(), "--advise"},
+      {!arguments.report.empty(), "--report"},
+      {!arguments.certificate.empty(), "--certificate"},
+      {!arguments.trace.empty(), "--trace"},
+      {arguments.map, "--map"},
+      {!arguments.map_svg.empty(), "--map-svg"},
+      {arguments.full_map, "--full-map"},
+      {placed, "--object, --path, --base"},
+  };
+  for (const auto& [given, name] : options)
+    if (given)
+      throw InputError(std::string(name) + ": is not supported yet for jobs, as " +
+                       arguments.problem + " is one: allowed are problems with one path");
+  const PlannerKind planner = arguments.search.plan_options().planner;
+  if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
+    throw InputError("--planner: " + arguments.search.planner +
+                     " is not supported for jobs: allowed are lazy, parallel");
+}
+
+/// Plans a job and writes and prints the answer, as plan_problem() does for one path.
+int plan_job_of(const PlanArguments& arguments, LoadedFile file,
+                std::optional<io::OutputFiles>& outputs) {
+  require_options_of_jobs(arguments);
+  require_table_name("--out", arguments.out, "a job without times", "no --out");
+  JobRequest request{.job = std::get<Job>(std::move(file.what)),
+                     .options = arguments.search.plan_options(),
+                     .quiet = arguments.quiet,
+                     .load_ms = file.load_ms};
+  Job& job = request.job;
+  job.scene = arguments.episode.apply(problem_of_run(job, {})).scene;
+  for (Stroke& stroke : job.strokes) arguments.search.apply(stroke);
+  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
+  request.options.check = !arguments.no_check;
+  if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();
+  outputs.emplace(std::move(file.inputs));
+  add_outputs(arguments, *outputs);
+  return plan_job_file(std::move(request), *outputs);
+}
+
+/// Plans the problem or job of the command line and writes and prints the answer. Returns the exit
+/// code. Sets `outputs` as soon as it is known that they may be written. Throws InputError.
 int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>& outputs) {
   std::optional<Timeline> timeline;
   if (!arguments.trace.empty()) timeline.emplace();
-  PlanRequest request = load_request(arguments);
+  LoadedFile file = load_file(arguments);
+  if (std::holds_alternative<Job>(file.what))
+    return plan_job_of(arguments, std::move(file), outputs);
+  PlanRequest request = request_of(arguments, std::move(file));
 
   catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
@@ -379,6 +432,14 @@ int run(const PlanArguments& arguments) {
 
 }  // namespace
 
+void deliver(io::OutputFiles& outputs, const std::string& reason,
+             const std::function<void()>& print) {
+  outputs.stage();
+  print();
+  flush_standard_output();
+  report_removed(outputs.commit(), reason);
+}
+
 void warn_of_held(const std::vector<HeldJoint>& held) {
   for (const std::string& warning : held_warnings(held))
     complain("swivel: warning: %s\n", warning.c_str());
@@ -406,7 +467,7 @@ void add_plan(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("plan", "Plan a joint trajectory");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<PlanArguments>();
-  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("problem", arguments->problem, "problem file, or job")->required();
   arguments->search.add_to(*command);
   arguments->episode.add_to(*command);
   command->add_option("--timeout", arguments->timeout, "seconds");
@@ -417,7 +478,8 @@ void add_plan(CLI::App& app, int& exit_code) {
       "--advise", arguments->advise,
       "where there is no path: what would help, found by planning it for so many seconds");
   command->add_option("--out", arguments->out,
-                      "trajectory file (CSV); with --speed the motion: .csv, .json or .yaml "
+                      "trajectory file (CSV); with --speed, of problems with one path, the motion: "
+                      ".csv, .json or .yaml "
                       "(JointTrajectory), .mcap (JointState)");
   command->add_option(
       "--certificate", arguments->certificate,

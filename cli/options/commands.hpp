@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/held_joint.hpp"
 #include "swivel/core/problem/problem.hpp"
+#include "swivel/io/files/files.hpp"
 
 namespace swivel::cli {
 
@@ -49,6 +51,11 @@ void warn_of_held(const std::vector<HeldJoint>& held);
 
 /// Tells on standard error that earlier files were removed, and why.
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason);
+
+/// Writes the texts of the outputs beside their targets, calls `print`, and then puts the texts in
+/// place: if printing fails, nothing is written. `reason` says why earlier files are removed.
+void deliver(io::OutputFiles& outputs, const std::string& reason,
+             const std::function<void()>& print);
 
 /// Throws InputError if the name of a file that is to hold CSV has the extension of another format
 /// of Swivel's. `option` names the option, `what` the contents, and `instead` what else is allowed.

@@ -45,18 +45,18 @@ PlanOptions SearchOptions::plan_options() const {
   return options;
 }
 
-void LatticeOptions::apply(Problem& problem) const {
-  if (ds) problem.resolution.ds = positive(*ds, "--ds");
+void LatticeOptions::apply(Task& task) const {
+  if (ds) task.resolution.ds = positive(*ds, "--ds");
   if (dphi) {
-    problem.resolution.dphi = positive(*dphi, "--dphi");
-    if (problem.resolution.dphi > kTwoPi)
+    task.resolution.dphi = positive(*dphi, "--dphi");
+    if (task.resolution.dphi > kTwoPi)
       throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
   }
-  if (arcs) problem.resolution.arcs = *arcs;
+  if (arcs) task.resolution.arcs = *arcs;
   if (!edges.empty()) {
     if (edges != "continuous" && edges != "nodes")
       throw InputError("--edges: unknown mode '" + edges + "': allowed are continuous, nodes");
-    problem.limits.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
+    task.limits.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
   }
 }
 

@@ -17,7 +17,7 @@ struct LatticeOptions {
   std::optional<bool> arcs;
   void add_to(CLI::App& command);
   /// Replaces values of the problem file by those that the command line gives.
-  void apply(Problem& problem) const;
+  void apply(Task& task) const;
 };
 
 /// The options of `plan` and `campaign` that say how to search.

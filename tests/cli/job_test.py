@@ -54,6 +54,115 @@ class WithFolder(unittest.TestCase):
         return file
 
 
+class Jobs(WithFolder):
+    def plan(self, job, *options):
+        out, result = self.folder / "t.csv", self.folder / "r.json"
+        done = run("plan", self.file(job), "--out", out, "--json", result, *options)
+        return done, out, json.loads(result.read_text()) if result.exists() else None
+
+    def test_answer_rows_and_result(self):
+        done, out, result = self.plan(one_job())
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertRegex(lines[0], r"^solved: 2 strokes, cost [0-9.]+ \| bound [0-9.]+: ")
+        self.assertRegex(lines[1], r"^  stroke +layers +cost +least +clearance mm +tool off mm$")
+        self.assertRegex(lines[2], r"^  left +[0-9]+ +[0-9.]+ +[0-9.]+ +")
+        self.assertRegex(lines[3], r"^  right +[0-9]+ +[0-9.]+ +[0-9.]+ +")
+        self.assertEqual(len({len(line) for line in lines[1:4]}), 1)
+        self.assertRegex(lines[4], r"^  3 transitions, [0-3] of them straight, cost ")
+        self.assertEqual(result["status"], "solved")
+        self.assertEqual([one["stroke"] for one in result["order"]], ["left", "right"])
+        self.assertAlmostEqual(result["gap"], result["cost"] / result["bound"] - 1)
+        self.assertLessEqual(result["bound_any"], result["bound"] * (1 + 1e-12))
+        self.assertTrue(result["checked"])
+        self.assertAlmostEqual(sum(part["cost"] for part in result["parts"]), result["cost"])
+        self.assertEqual(
+            [(one["from"], one["to"]) for one in result["transitions"]],
+            [(None, "left"), ("left", "right"), ("right", None)]
+        )
+        with open(out) as file:
+            rows = list(csv.DictReader(file))
+        written = [
+            (part["stroke"] or "", row) for part in result["parts"] for row in part["rows"]
+        ]
+        self.assertEqual(len(rows), len(written))
+        for row, (stroke, told) in zip(rows, written):
+            self.assertEqual(row["stroke"], stroke)
+            self.assertEqual(row["process"], str(int(told["process"])))
+            self.assertEqual(
+                [float(row[joint]) for joint in result["joint_names"]], told["joints"]
+            )
+            self.assertEqual(row["s"] == "", stroke == "")
+        # From home and back, without a jump from part to part.
+        for end in (0, -1):
+            self.assertEqual(written[end][1]["joints"], one_job()["home"]["joints"])
+        for before, after in zip(result["parts"], result["parts"][1:]):
+            for a, b in zip(before["rows"][-1]["joints"], after["rows"][0]["joints"]):
+                self.assertAlmostEqual(a, b)
+        # The lines before and after the first stroke are none of it.
+        left = [row for row in rows if row["stroke"] == "left"]
+        on = [float(row["s"]) for row in left if row["process"] == "1"]
+        self.assertAlmostEqual(on[0], 0.05)
+        self.assertAlmostEqual(on[-1], 0.15)
+        self.assertAlmostEqual(float(left[-1]["s"]), 0.19)
+        self.assertEqual({row["process"] for row in rows if row["stroke"] == "right"}, {"1"})
+
+    def test_quiet_and_standard_output(self):
+        done = run("plan", self.file(one_job()), "--quiet")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        done = run("plan", self.file(one_job()), "--json", "-")
+        self.assertEqual(json.loads(done.stdout)["status"], "solved")
+
+    def test_a_stroke_without_a_path(self):
+        job = one_job()
+        for waypoint in job["strokes"][1]["path"]["waypoints"]:
+            waypoint["xyz"][0] = 3
+        (self.folder / "t.csv").write_text("earlier")
+        done, out, result = self.plan(job)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertTrue(
+            done.stdout.startswith("no job: 1 of 2 strokes has no path by itself\n"), done.stdout
+        )
+        self.assertIn("  stroke 'right': no path ", done.stdout)
+        self.assertFalse(out.exists())
+        self.assertIn("there is no job now", done.stderr)
+        self.assertEqual(result["status"], "infeasible")
+        self.assertEqual(
+            [run["diagnosis"] is not None for run in result["runs"]], [False, True]
+        )
+
+    def test_options_that_jobs_do_not_take(self):
+        file = self.file(one_job())
+        options = [
+            ("--refine",), ("--speed", 0.1), ("--turn-speed", 1), ("--rate", 100), ("--chord", 1),
+            ("--advise", 1), ("--report", "r.html"), ("--certificate", "c.json"),
+            ("--trace", "t.json"), ("--map",), ("--map-svg", "m.svg"), ("--full-map",),
+            ("--base", "--x", 0.1)
+        ]
+        for option in options:
+            with self.subTest(option[0]):
+                done = run("plan", file, *option)
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                self.assertRegex(
+                    done.stderr, rf"^swivel: .*{option[0]}.*: is not supported yet for jobs, as "
+                    r".*job.yaml is one: allowed are problems with one path\n$"
+                )
+        for planner in ("eager", "eager_dp"):
+            done = run("plan", file, "--planner", planner)
+            self.assertEqual(done.returncode, 2)
+            self.assertRegex(done.stderr, "^swivel: --planner: .* allowed are lazy, parallel\n$")
+        done = run("plan", file, "--out", "motion.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, "^swivel: --out: motion.json: a job without times")
+
+    def test_bad_jobs(self):
+        for key, value in (("order", "fastest"), ("lift", {"allowed": True}), ("rapid", 2)):
+            with self.subTest(key):
+                done = run("plan", self.file(one_job(**{key: value})))
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                self.assertRegex(done.stderr, rf"^swivel: .*job.yaml:1: {key}: .*allowed.*\n$")
+
+
 class Refused(WithFolder):
     def test_other_commands_refuse_jobs(self):
         rows = self.folder / "rows.csv"

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "swivel/core/problem/job.hpp"
+#include "swivel/io/files/files.hpp"
+#include "swivel/planner/plan/plan_options.hpp"
+
+namespace swivel::cli {
+
+/// What `swivel plan` is asked to do with a job.
+struct JobRequest {
+  Job job{};
+  PlanOptions options{};
+  bool quiet = false;
+  double load_ms = 0;  ///< time that loading took
+};
+
+/// Plans a job, writes its trajectory and its result, and prints the answer. `outputs` has --out
+/// and --json. Returns the exit code. Throws InputError.
+int plan_job_file(JobRequest request, io::OutputFiles& outputs);
+
+}  // namespace swivel::cli

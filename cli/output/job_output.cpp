@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output/job_output.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "swivel/core/answer/answer_text.hpp"
+#include "swivel/core/messages/formatted.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+std::string quoted_name(const Job& job, const StrokeRun& run) {
+  return "'" + job.strokes[run.stroke].name + "'" + (run.reversed ? " backwards" : "");
+}
+
+/// Returns the number of a text's characters, which is less than that of its bytes beyond ASCII.
+std::size_t columns_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));
+}
+
+/// Returns a table whose columns are as wide as they need: the first to the left, the others to the
+/// right.
+std::string aligned(const std::vector<std::vector<std::string>>& lines) {
+  std::vector<std::size_t> widths;
+  for (const std::vector<std::string>& line : lines)
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      if (widths.size() <= k) widths.push_back(0);
+      widths[k] = std::max(widths[k], columns_of(line[k]));
+    }
+  std::string text;
+  for (const std::vector<std::string>& line : lines) {
+    text += ' ';
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      const std::string space(widths[k] - columns_of(line[k]), ' ');
+      text += ' ';
+      text += k == 0 ? line[k] + space : ' ' + space + line[k];
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// Returns by how much a cost is above a bound at most, in words.
+std::string above(double cost, double bound) {
+  if (cost <= bound) return "none costs less";
+  if (bound <= 0) return "not bounded from below";
+  return formatted("at most %.3g %% above the cheapest", 100 * (cost / bound - 1));
+}
+
+/// Returns a line for each run: what it costs in the job and by itself, and what it comes near to.
+std::string table_of_runs(const JobResult& result, const Job& job) {
+  std::vector<std::vector<std::string>> lines{
+      {"stroke", "layers", "cost", "least", "clearance mm", "tool off mm"}};
+  for (const RunResult& one : result.runs) {
+    const auto part = std::find_if(result.parts.begin(), result.parts.end(),
+                                   [&](const JobPart& any) { return any.run == one.run; });
+    if (part == result.parts.end()) continue;
+    const Measures& measures = one.measures;
+    lines.push_back(
+        {job.strokes[one.run.stroke].name + (one.run.reversed ? " (backwards)" : ""),
+         std::to_string(one.lattice.layers), formatted("%.5g", part->cost),
+         formatted("%.5g", one.least_cost),
+         measures.min_clearance ? formatted("%.1f", 1e3 * *measures.min_clearance) : "-",
+         measures.evidence.tool_path_error ? formatted("%.3f", measures.tool_path_error_mm.max)
+                                           : "-"});
+  }
+  return aligned(lines);
+}
+
+std::string transitions_text(const JobResult& result) {
+  int all = 0, straight = 0;
+  double cost = 0;
+  for (const JobPart& part : result.parts) {
+    if (part.run) continue;
+    ++all;
+    if (part.rows.size() <= 2) ++straight;
+    cost += part.cost;
+  }
+  if (all == 0) return "";
+  const TransitionCounters& counters = result.transitions;
+  return formatted(
+      "  %d transition%s, %d of them straight, cost %.5g; %lld asked for, %lld searched, %lld "
+      "round%s\n",
+      all, all == 1 ? "" : "s", straight, cost, static_cast<long long>(counters.pairs),
+      static_cast<long long>(counters.searches), static_cast<long long>(counters.rounds),
+      counters.rounds == 1 ? "" : "s");
+}
+
+/// Returns the answer where there is a motion, which is the cheapest known if time was up.
+std::string motion_text(const JobResult& result, const Job& job) {
+  std::string text =
+      result.status == PlanStatus::kSolved
+          ? std::string("solved: ")
+          : std::string("stopped: ") + to_string(result.status) + ", the cheapest job known: ";
+  text += formatted("%zu stroke%s, cost %.6g", job.strokes.size(),
+                    job.strokes.size() == 1 ? "" : "s", result.cost);
+  text += formatted(" | bound %.6g: ", result.bound) + above(result.cost, result.bound);
+  text += formatted(" | bound %.6g whatever the transitions", result.bound_any);
+  if (!result.held.empty()) text += " | held: " + words(result.held);
+  text += '\n';
+  if (job.order == StrokeOrder::kBest) {
+    text += "  order:";
+    for (std::size_t k = 0; k < result.runs.size(); ++k)
+      text += (k == 0 ? " " : ", ") + job.strokes[result.runs[k].run.stroke].name +
+              (result.runs[k].run.reversed ? " (backwards)" : "");
+    text += '\n';
+  }
+  return text + table_of_runs(result, job) + transitions_text(result);
+}
+
+/// Returns why a run has no path by itself, with the lines of a problem's answer.
+std::string run_text(const JobResult& result, const RunResult& run, const Job& job) {
+  PlanResult alone;
+  alone.status = PlanStatus::kInfeasible;
+  alone.lattice = run.lattice;
+  alone.diagnosis = *run.diagnosis;
+  alone.held = result.held;
+  return "  stroke " + quoted_name(job, run.run) + ": " + answer_text(alone);
+}
+
+std::string infeasible_text(const JobResult& result, const Job& job) {
+  std::string text;
+  std::size_t without = 0;
+  for (const RunResult& run : result.runs)
+    if (run.status == PlanStatus::kInfeasible) {
+      ++without;
+      if (run.diagnosis) text += run_text(result, run, job);
+    }
+  if (without > 0)
+    return formatted("no job: %zu of %zu strokes ha%s no path by %s\n", without, job.strokes.size(),
+                     without == 1 ? "s" : "ve", without == 1 ? "itself" : "themselves") +
+           text;
+  if (!result.no_transition_to) return "no job found\n";
+  const std::size_t to = *result.no_transition_to;
+  const auto end = [&](std::size_t k) {
+    return k < result.runs.size() ? "stroke " + quoted_name(job, result.runs[k].run) : "home";
+  };
+  text = "no job found: no way leads from " + (to == 0 ? "home" : end(to - 1)) + " to " + end(to);
+  if (result.barred_by)
+    text +=
+        "; " + (*result.barred_by)[0] + " - " + (*result.barred_by)[1] + " bar the straight one";
+  return text + '\n';
+}
+
+}  // namespace
+
+std::string job_text(const JobResult& result, const Job& job) {
+  if (!result.parts.empty()) return motion_text(result, job);
+  if (result.status == PlanStatus::kInfeasible) return infeasible_text(result, job);
+  return std::string("stopped: ") + to_string(result.status) + '\n';
+}
+
+}  // namespace swivel::cli
