@@ -71,7 +71,7 @@ std::string table_of_runs(const JobResult& result, const Job& job) {
   return aligned(lines);
 }
 
-std::string transitions_text(const JobResult& result) {
+std::string transitions_text(const JobResult& result, const Job& job) {
   int all = 0, straight = 0;
   double cost = 0;
   for (const JobPart& part : result.parts) {
@@ -82,12 +82,21 @@ std::string transitions_text(const JobResult& result) {
   }
   if (all == 0) return "";
   const TransitionCounters& counters = result.transitions;
-  return formatted(
+  std::string text = formatted(
       "  %d transition%s, %d of them straight, cost %.5g; %lld asked for, %lld searched, %lld "
       "round%s\n",
       all, all == 1 ? "" : "s", straight, cost, static_cast<long long>(counters.pairs),
       static_cast<long long>(counters.searches), static_cast<long long>(counters.rounds),
       counters.rounds == 1 ? "" : "s");
+  for (std::size_t k = 0; k < result.parts.size(); ++k) {
+    const JobPart& part = result.parts[k];
+    if (!part.barred_by) continue;
+    const std::string to = k + 1 < result.parts.size() ? quoted_name(job, *result.parts[k + 1].run)
+                                                       : std::string("home");
+    text += "  to " + to + ": around " + (*part.barred_by)[0] + " - " + (*part.barred_by)[1] +
+            formatted(", by %zu corners\n", part.rows.size() - 2);
+  }
+  return text;
 }
 
 /// Returns the answer where there is a motion, which is the cheapest known if time was up.
@@ -109,7 +118,7 @@ std::string motion_text(const JobResult& result, const Job& job) {
               (result.runs[k].run.reversed ? " (backwards)" : "");
     text += '\n';
   }
-  return text + table_of_runs(result, job) + transitions_text(result);
+  return text + table_of_runs(result, job) + transitions_text(result, job);
 }
 
 /// Returns why a run has no path by itself, with the lines of a problem's answer.
@@ -134,6 +143,9 @@ std::string infeasible_text(const JobResult& result, const Job& job) {
     return formatted("no job: %zu of %zu strokes ha%s no path by %s\n", without, job.strokes.size(),
                      without == 1 ? "s" : "ve", without == 1 ? "itself" : "themselves") +
            text;
+  if (result.home_barred)
+    return "no job: at home " + (*result.barred_by)[0] + " - " + (*result.barred_by)[1] +
+           " come too near\n";
   if (!result.no_transition_to) return "no job found\n";
   const std::size_t to = *result.no_transition_to;
   const auto end = [&](std::size_t k) {

@@ -84,7 +84,7 @@ class JobPlan {
       result_.time_ms["lattice"] = watch.lap();
       find();
       result_.time_ms["find"] = watch.lap();
-      if (options_.check && result_.status == PlanStatus::kSolved) {
+      if (options_.check && !result_.parts.empty()) {
         require_passed(
             check_job(robot_, job_, result_.parts, {.margins = false, .budget = budget_}));
         result_.checked = true;
@@ -93,7 +93,7 @@ class JobPlan {
       explain();
       result_.time_ms["report"] = watch.lap();
     } catch (const Stopped&) {
-      if (result_.status != PlanStatus::kSolved) result_.status = stopped_status();
+      if (result_.parts.empty()) result_.status = stopped_status();
     }
     return std::move(result_);
   }
@@ -167,7 +167,7 @@ class JobPlan {
       std::vector<JobPart> parts = parts_of(outcome, transitions);
       const Lattice::Joints off = lift(parts, *runs_.front()->lattice, job_.home);
       if (off == Lattice::Joints{}) {
-        result_.status = PlanStatus::kSolved;
+        result_.status = outcome.decided ? PlanStatus::kSolved : stopped_status();
         result_.parts = std::move(parts);
         return;
       }
@@ -298,7 +298,7 @@ class JobPlan {
 
   /// Measures the runs of a job, or finds out why there is none.
   void explain() {
-    if (result_.status == PlanStatus::kSolved) {
+    if (!result_.parts.empty()) {
       std::size_t k = 0;
       for (const JobPart& part : result_.parts) {
         if (!part.run) continue;
@@ -371,8 +371,7 @@ JobResult plan_in_order(const PreparedRobot& robot, const Job& job, const PlanOp
   std::optional<JobResult> best;
   for (std::vector<StrokeRun>& order : orders) {
     JobResult found = JobPlan(robot, job, options, budget, std::move(order), one_branch).plan();
-    const bool solved = found.status == PlanStatus::kSolved;
-    if (!best || (solved && (best->status != PlanStatus::kSolved || found.cost < best->cost)))
+    if (!best || (!found.parts.empty() && (best->parts.empty() || found.cost < best->cost)))
       best = std::move(found);
   }
   if (job.order == StrokeOrder::kBest) best->time_ms["order"] = order_ms;
@@ -390,10 +389,9 @@ bool any_changes_branch(const JobResult& job) {
 JobResult plan_executable(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
                           const Budget& budget) {
   JobResult found = plan_in_order(robot, job, options, budget);
-  if (found.status != PlanStatus::kSolved || !robot.arm_class().srs || !any_changes_branch(found))
-    return found;
+  if (found.parts.empty() || !robot.arm_class().srs || !any_changes_branch(found)) return found;
   JobResult other = plan_in_order(robot, job, options, budget, true);
-  if (other.status != PlanStatus::kSolved) return found;
+  if (other.parts.empty()) return found;
   other.warnings.push_back(
       formatted("the cheapest job, of cost %.6g, jumps to another branch, which no controller can "
                 "follow: this is the cheapest that does not",
@@ -425,7 +423,7 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
   const Budget budget = options.budget();
   JobMotionPlan plan;
   plan.result = plan_executable(robot, completed, options, budget);
-  if (plan.result.status != PlanStatus::kSolved) return plan;
+  if (plan.result.parts.empty()) return plan;
   try {
     Stopwatch watch;
     plan.timing = time_job(robot, completed, plan.result.parts, timing, budget);

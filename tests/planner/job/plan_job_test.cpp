@@ -142,9 +142,8 @@ TEST(PlanJob, ADeadlineEndsItWithWhatIsKnown) {
     const JobResult found = plan_job(door.robot, door.job, options);
     if (found.status != PlanStatus::kSolved) {
       EXPECT_EQ(found.status, PlanStatus::kTimeout);
-      EXPECT_TRUE(found.parts.empty());
-      continue;
     }
+    if (found.parts.empty()) continue;
     EXPECT_LE(found.bound, found.cost);
     EXPECT_TRUE(check_job(door.robot, door.job, found.parts).passed);
   }

@@ -53,7 +53,8 @@ struct JobResult {
   double bound = 0;
   /// No job in this order costs less, whatever its transitions.
   double bound_any = 0;
-  /// Transitions and runs in the order in which they are executed; empty unless solved.
+  /// Transitions and runs in the order in which they are executed: of the answer, or of
+  /// the cheapest job known where time was up; empty if there is none.
   std::vector<JobPart> parts;
   std::vector<RunResult> runs;  ///< in the order in which they are executed
   /// Where there is no job though each run has a path: index in `runs` of the run that no

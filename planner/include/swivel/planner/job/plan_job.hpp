@@ -9,11 +9,11 @@ namespace swivel {
 class PreparedRobot;
 
 /// Plans a job: the cheapest path through every stroke, joined by transitions in joint space, from
-/// home and back. The result is the same at any thread count, unless it times out; then it is the
-/// cheapest job known, if any, and `bound` says how much cheaper another may be. Throws InputError
-/// for a job that makes no sense, InvalidArgument for what validate(Job) refuses or options that
-/// jobs do not have (an eager planner, hooks), std::logic_error if options.check finds an answer
-/// invalid.
+/// home and back. The result is the same at any thread count, unless it times out; then its parts
+/// are those of the cheapest job known, if any, and `bound` says how much cheaper another may be.
+/// Throws InputError for a job that makes no sense, InvalidArgument for what validate(Job) refuses
+/// or options that jobs do not have (an eager planner, hooks), std::logic_error if options.check
+/// finds an answer invalid.
 [[nodiscard]] JobResult plan_job(const Job& job, const PlanOptions& options = {});
 /// Plans a job with a robot that was prepared before. Throws InvalidArgument also if it was not
 /// prepared for this job (PreparedRobot::require_prepared_for).
