@@ -85,7 +85,12 @@ class JobTimer {
   std::optional<NoMotion> add_transition(std::size_t k) {
     std::vector<Config> corners;
     for (const TrajectoryRow& row : parts_[k].rows) corners.push_back(row.q);
-    append(k, time_joint_moves(corners, rates_, job_.rapid, options_.rate));
+    std::vector<TimedRow> rows = time_joint_moves(corners, rates_, job_.rapid, options_.rate);
+    if (rows.size() == 1) {  // nothing moves, and a part has a row of its own
+      rows.push_back(rows.front());
+      rows.back().t = 1 / options_.rate;
+    }
+    append(k, rows);
     return std::nullopt;
   }
 

@@ -134,6 +134,85 @@ TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
   EXPECT_GE(solved, at_least(6));
 }
 
+/// Returns a problem's path cut in two strokes at its middle waypoint, without a start.
+Job halves(const char* name) {
+  Problem whole = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+  whole.start.reset();
+  if (whole.waypoints.size() == 2) {
+    Waypoint middle = whole.waypoints[0];
+    middle.position = (middle.position + whole.waypoints[1].position) / 2;
+    middle.orientation = middle.orientation.slerp(0.5, whole.waypoints[1].orientation);
+    whole.waypoints.insert(whole.waypoints.begin() + 1, middle);
+  }
+  Job job;
+  static_cast<Robot&>(job) = whole;
+  job.source = name;
+  job.scene = whole.scene;
+  job.limits = whole.limits;
+  const auto middle =
+      whole.waypoints.begin() + static_cast<std::ptrdiff_t>(whole.waypoints.size() / 2);
+  for (const bool second : {false, true}) {
+    Stroke& stroke = job.strokes.emplace_back();
+    static_cast<Task&>(stroke) = whole;
+    stroke.name = second ? "second" : "first";
+    stroke.waypoints = second ? std::vector<Waypoint>(middle, whole.waypoints.end())
+                              : std::vector<Waypoint>(whole.waypoints.begin(), middle + 1);
+  }
+  job.process_speed = 0.05;
+  return job;
+}
+
+/// Draws a home within the joints' limits at which nothing is near.
+std::optional<Config> random_home(const PreparedRobot& robot, const Job& job, Random& random) {
+  const Chain& chain = robot.arm().chain;
+  const World world(robot.world(), problem_of_run(job, {0, false}));
+  World::Query query(world);
+  for (int tries = 0; tries < 100; ++tries) {
+    Config q = Config::Zero();
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const JointLimit& limit = chain.limit[j];
+      if (chain.roll && j + 1 == kDof) continue;
+      q[static_cast<Eigen::Index>(j)] =
+          limit.continuous ? random.uniform(-4, 4) : random.uniform(limit.lower, limit.upper);
+    }
+    const auto clearance = query.clearance(q);
+    if (!clearance || clearance->margin() > 0.02) return q;
+  }
+  return std::nullopt;
+}
+
+TEST(PlanJob, TakesEveryClassOfArm) {
+  Random random(seed("PlanJob arms"));
+  int solved = 0, timed = 0;
+  for (const char* name :
+       {"experiment_a.yaml", "iiwa14_bench.yaml", "kr6_weld_pipe.yaml", "panda_weld_seam.yaml",
+        "ur5e_deburr_edge.yaml", "gen3_glue_bead.yaml"}) {
+    Job job = halves(name);
+    const PreparedRobot robot(problem_of_run(job, {0, false}));
+    for (int trial = 0; trial < trials(3); ++trial) {
+      if (trial > 0) job.home = random_home(robot, job, random);
+      const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
+      if (plan.result.status != PlanStatus::kSolved) continue;
+      ++solved;
+      const Job completed = with_motion_defaults(job);
+      const JobCheckResult check =
+          check_job(robot, completed, plan.result.parts, {.margins = false});
+      ASSERT_TRUE(check.passed) << name << " trial " << trial << ": " << check.failures.front();
+      ASSERT_TRUE(plan.timing) << name;
+      if (!plan.timing->motion) continue;
+      ++timed;
+      std::vector<StrokeRun> order;
+      for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+      const JobCheckResult moved =
+          check_job_motion(robot, job, order, *plan.timing->motion, {.margins = false});
+      ASSERT_TRUE(moved.passed) << name << " trial " << trial << ": " << moved.failures.front();
+    }
+  }
+  std::printf("%d jobs solved, %d timed\n", solved, timed);
+  EXPECT_GE(solved, at_least(12));
+  EXPECT_GE(timed, at_least(8));
+}
+
 TEST(PlanJob, ADeadlineEndsItWithWhatIsKnown) {
   const JobCase door("door_job.yaml");
   for (const double timeout : {1e-4, 2e-3, 2e-2, 5e-2}) {
