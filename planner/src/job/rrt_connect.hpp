@@ -22,11 +22,11 @@ struct SearchBox {
 using MotionCheck = std::function<bool(const Config& from, const Config& to)>;
 
 /// Searches for a way around obstacles by RRT-Connect (Kuffner & LaValle 2000): two trees of free
-/// moves, from both ends, each in turn grown towards a random configuration of the box and then
-/// towards the other tree's new node. The way found is shortened by straight moves between random
-/// places of it and by leaving out corners. Returns the corners between `from` and `to`, none of
-/// the two included; nothing after `most_samples` random configurations. Deterministic for a seed.
-/// Throws Stopped.
+/// moves, one from each end, are grown alternately towards a random configuration of the box, and
+/// the other tree then towards the new node. The way found is shortened by straight moves between
+/// random places of it and by leaving out corners. Returns the corners between `from` and `to`,
+/// none of the two included; nothing after `most_samples` random configurations. Deterministic for
+/// a seed. Throws Stopped.
 [[nodiscard]] std::optional<std::vector<Config>> rrt_connect(
     const Config& from, const Config& to, const SearchBox& box, const MotionCheck& free,
     std::uint64_t seed, const Budget& budget, int most_samples = 2000);

@@ -322,85 +322,82 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
   EXPECT_GE(timed, at_least(8));
 }
 
-/// Ways to spoil a job's answer, each by a random amount.
+/// A way to spoil a job's answer, by a random amount.
 using Spoil = std::function<void(std::vector<JobPart>&, Random&)>;
-std::vector<std::pair<const char*, Spoil>> ways_to_spoil() {
-  const auto run_of = [](std::vector<JobPart>& parts, Random& random) -> JobPart& {
-    for (;;)
-      if (JobPart& part =
-              parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
-          part.run)
-        return part;
-  };
-  const auto transition_of = [](std::vector<JobPart>& parts, Random& random) -> JobPart& {
-    for (;;)
-      if (JobPart& part =
-              parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
-          !part.run)
-        return part;
-  };
-  return {
-      {"the retract is missing",
-       [=](auto& parts, Random& random) {
-         JobPart& part = run_of(parts, random);
-         part.rows.resize(part.rows.size() - 1 - static_cast<std::size_t>(random.below(3)));
-       }},
-      {"the approach is missing",
-       [=](auto& parts, Random& random) {
-         JobPart& part = run_of(parts, random);
-         part.rows.erase(part.rows.begin(), part.rows.begin() + 1 + random.below(3));
-       }},
-      {"a transition ends elsewhere",
-       [=](auto& parts, Random& random) {
-         TrajectoryRow& row = transition_of(parts, random).rows.back();
-         row.q[random.below(6)] += random.coin() ? 1e-6 : 0.3;
-       }},
-      {"a transition begins elsewhere",
-       [=](auto& parts, Random& random) {
-         TrajectoryRow& row = transition_of(parts, random).rows.front();
-         row.q[random.below(6)] -= random.coin() ? 1e-6 : 0.3;
-       }},
-      {"a transition leads out of the joints' limits",
-       [=](auto& parts, Random& random) {
-         JobPart& part = transition_of(parts, random);
-         TrajectoryRow row = part.rows.front();
-         row.q[random.below(6)] += random.coin() ? 7 : -7;
-         part.rows.insert(part.rows.begin() + 1, row);
-       }},
-      {"a stroke jumps",
-       [=](auto& parts, Random& random) {
-         JobPart& part = run_of(parts, random);
-         const auto row =
-             static_cast<std::size_t>(random.below(static_cast<int>(part.rows.size())));
-         part.rows[row].q[random.below(6)] += 0.01;
-       }},
-      {"two strokes are swapped",
-       [](auto& parts, Random& random) {
-         const auto a = 1 + 2 * static_cast<std::size_t>(random.below(2));
-         std::swap(parts[a], parts[a + 2]);
-       }},
-      {"a stroke is left out",
-       [](auto& parts, Random& random) {
-         const auto a = 1 + 2 * static_cast<std::size_t>(random.below(2));
-         parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(a),
-                     parts.begin() + static_cast<std::ptrdiff_t>(a) + 2);
-       }},
-      {"a stroke is said to be another",
-       [=](auto& parts, Random& random) {
-         JobPart& part = run_of(parts, random);
-         part.run->stroke = (part.run->stroke + 1) % 3;
-       }},
-      {"a stroke runs backwards",
-       [=](auto& parts, Random& random) {
-         JobPart& part = run_of(parts, random);
-         part.run->reversed = true;
-         std::reverse(part.rows.begin(), part.rows.end());
-       }},
-      {"a transition is left out",
-       [](auto& parts, Random& random) {
-         parts.erase(parts.begin() + 2 * random.below(static_cast<int>(parts.size() / 2)));
-       }},
-  };
+using Ways = std::vector<std::pair<const char*, Spoil>>;
+
+/// Returns a random part: a run or a transition.
+JobPart& random_part(std::vector<JobPart>& parts, bool run, Random& random) {
+  for (;;)
+    if (JobPart& part =
+            parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
+        part.run.has_value() == run)
+      return part;
+}
+
+/// Returns ways to spoil the rows of a part.
+Ways ways_to_spoil_rows() {
+  return {{"the retract is missing",
+           [](auto& parts, Random& random) {
+             JobPart& part = random_part(parts, true, random);
+             part.rows.resize(part.rows.size() - 1 - static_cast<std::size_t>(random.below(3)));
+           }},
+          {"the approach is missing",
+           [](auto& parts, Random& random) {
+             JobPart& part = random_part(parts, true, random);
+             part.rows.erase(part.rows.begin(), part.rows.begin() + 1 + random.below(3));
+           }},
+          {"a transition ends elsewhere",
+           [](auto& parts, Random& random) {
+             TrajectoryRow& row = random_part(parts, false, random).rows.back();
+             row.q[random.below(6)] += random.coin() ? 1e-6 : 0.3;
+           }},
+          {"a transition begins elsewhere",
+           [](auto& parts, Random& random) {
+             TrajectoryRow& row = random_part(parts, false, random).rows.front();
+             row.q[random.below(6)] -= random.coin() ? 1e-6 : 0.3;
+           }},
+          {"a transition leads out of the joints' limits",
+           [](auto& parts, Random& random) {
+             JobPart& part = random_part(parts, false, random);
+             TrajectoryRow row = part.rows.front();
+             row.q[random.below(6)] += random.coin() ? 7 : -7;
+             part.rows.insert(part.rows.begin() + 1, row);
+           }},
+          {"a stroke jumps", [](auto& parts, Random& random) {
+             JobPart& part = random_part(parts, true, random);
+             const auto row =
+                 static_cast<std::size_t>(random.below(static_cast<int>(part.rows.size())));
+             part.rows[row].q[random.below(6)] += 0.01;
+           }}};
+}
+
+/// Returns ways to spoil which parts there are.
+Ways ways_to_spoil_parts() {
+  return {{"two strokes are swapped",
+           [](auto& parts, Random& random) {
+             const auto a = 1 + 2 * static_cast<std::size_t>(random.below(2));
+             std::swap(parts[a], parts[a + 2]);
+           }},
+          {"a stroke is left out",
+           [](auto& parts, Random& random) {
+             const auto a = parts.begin() + 1 + 2 * random.below(2);
+             parts.erase(a, a + 2);
+           }},
+          {"a stroke is said to be another",
+           [](auto& parts, Random& random) {
+             JobPart& part = random_part(parts, true, random);
+             part.run->stroke = (part.run->stroke + 1) % 3;
+           }},
+          {"a stroke runs backwards",
+           [](auto& parts, Random& random) {
+             JobPart& part = random_part(parts, true, random);
+             part.run->reversed = true;
+             std::reverse(part.rows.begin(), part.rows.end());
+           }},
+          {"a transition is left out", [](auto& parts, Random& random) {
+             parts.erase(parts.begin() + 2 * random.below(static_cast<int>(parts.size() / 2)));
+           }}};
 }
 
 TEST(CheckJob, RefusesSpoiltAnswers) {
@@ -417,7 +414,8 @@ TEST(CheckJob, RefusesSpoiltAnswers) {
   ASSERT_EQ(found.status, PlanStatus::kSolved);
   ASSERT_TRUE(check_job(door.robot, job, found.parts).passed);
   int refused = 0;
-  const auto ways = ways_to_spoil();
+  Ways ways = ways_to_spoil_rows();
+  for (const auto& way : ways_to_spoil_parts()) ways.push_back(way);
   const int count = trials(330);
   for (int trial = 0; trial < count; ++trial) {
     const auto& [name, spoil] = ways[static_cast<std::size_t>(trial) % ways.size()];
