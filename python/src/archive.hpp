@@ -328,9 +328,14 @@ void serialize(A& archive, Refined& x) {
           edges_asked, from_second_seed);
 }
 template <class A>
+void serialize(A& archive, SpeedFrom& x) {
+  auto& [s, speed] = x;
+  archive(s, speed);
+}
+template <class A>
 void serialize(A& archive, TimingOptions& x) {
-  auto& [speed, turn_speed, rate, chord] = x;
-  archive(speed, turn_speed, rate, chord);
+  auto& [speed, speeds, turn_speed, rate, chord] = x;
+  archive(speed, speeds, turn_speed, rate, chord);
 }
 template <class A>
 void serialize(A& archive, TimedRow& x) {
