@@ -248,7 +248,7 @@ JobOutcome search(const RandomJob& job, const ParallelFor& work = {}) {
     runs.push_back({values.back().get(), job.validities[k].get()});
   }
   JobSearchOptions options;
-  options.most_searches = 100'000;
+  options.most_searches = options.most_failed_searches = 100'000;
   options.work = work;
   return search_job(runs, *job.transitions, job.home, options);
 }

@@ -213,7 +213,13 @@ class JobSearch {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       const auto& [k, end, begin] = pairs[n];
       const bool known = answers[n].verdict != Verdict::kUnknown;
-      if (thorough && !(answers[n].cost <= costs(k).at(end, begin))) ++outcome_.searches;
+      if (answers[n].verdict == Verdict::kRemoved) {
+        ++failed_searches_;
+        last_failed_ = k;
+      }
+      if (thorough && !(known && answers[n].verdict == Verdict::kValid &&
+                        answers[n].cost <= costs(k).at(end, begin)))
+        ++outcome_.searches;
       costs(k).set_asked(end, begin, known ? Asked::kThoroughly : Asked::kInPassing);
       if (!known) continue;
       const double cost = answers[n].verdict == Verdict::kValid ? answers[n].cost : kUnreachable;
@@ -246,11 +252,7 @@ class JobSearch {
     update_values();
     Candidate job = cheapest_job();
     if (job.paths.empty()) {
-      if (outcome_.cost == kUnreachable) {
-        outcome_.transition_without_way = first_barred();
-        const auto pair = without_way_.find(static_cast<int>(*outcome_.transition_without_way));
-        if (pair != without_way_.end()) outcome_.pair_without_way = pair->second;
-      }
+      if (outcome_.cost == kUnreachable) note_without_way(static_cast<int>(first_barred()));
       outcome_.bound = outcome_.cost;
       return false;
     }
@@ -355,7 +357,7 @@ class JobSearch {
       run_costs.push_back(runs_[k].cost_to_go->at(0, path.front()) -
                           runs_[k].cost_to_go->verdicts().exit_cost(path.back()));
     }
-    if (!open.empty() && outcome_.searches >= options_.most_searches) return true;
+    if (!open.empty() && is_spent()) return true;
     const std::vector<TransitionAnswer> answers = find_ways(open);
     std::vector<Pair> dearer;
     for (std::size_t n = 0; n < open.size(); ++n) {
@@ -369,6 +371,20 @@ class JobSearch {
     for (const Pair& pair : dearer) ask_around(pair);
     raise_noted();
     return false;
+  }
+
+  /// Returns true if enough was searched for ways. Where there is no job then, the transition at
+  /// which searches failed has no way that was found.
+  bool is_spent() {
+    const bool failed = failed_searches_ >= options_.most_failed_searches;
+    if (!failed && outcome_.searches < options_.most_searches) return false;
+    if (outcome_.cost == kUnreachable) note_without_way(last_failed_);
+    return true;
+  }
+  void note_without_way(int transition) {
+    outcome_.transition_without_way = static_cast<std::size_t>(transition);
+    const auto pair = without_way_.find(transition);
+    if (pair != without_way_.end()) outcome_.pair_without_way = pair->second;
   }
 
   /// Returns the answers about pairs of the cheapest job: in passing, then thoroughly where no way
@@ -466,11 +482,12 @@ class JobSearch {
     Pair pair;
     double cost;
   };
-  Candidate greedy_;                  // until it is taken
-  std::vector<double> greedy_costs_;  // of its runs
-  std::vector<Noted> noted_;          // answers that are not raised yet
-  bool raised_ = false;               // the cost of a transition
-  double value_ = kUnreachable;       // cost of the cheapest job by what is known
+  Candidate greedy_;                           // until it is taken
+  std::vector<double> greedy_costs_;           // of its runs
+  std::vector<Noted> noted_;                   // answers that are not raised yet
+  int failed_searches_ = 0, last_failed_ = 0;  // last_failed_: the transition
+  bool raised_ = false;                        // the cost of a transition
+  double value_ = kUnreachable;                // cost of the cheapest job by what is known
 };
 
 }  // namespace

@@ -53,6 +53,9 @@ struct JobSearchOptions {
   PathFirstOptions paths;  ///< how each run is validated
   /// Most thorough searches for transitions; after these the cheapest job found so far is returned.
   int most_searches = 200;
+  /// Most thorough searches that find no way, of all transitions: each takes long, and where some
+  /// fail the others mostly do. After these the cheapest job found so far is returned, if any.
+  int most_failed_searches = 8;
   ParallelFor work;  ///< shares runs among threads; the result is the same
 };
 
