@@ -6,8 +6,10 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "commands/check_job_command.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "swivel/core/answer/answer_text.hpp"
@@ -17,6 +19,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motions/motion.hpp"
+#include "swivel/io/problems/job.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -153,8 +156,22 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
   return kOk;
 }
 
+/// Verifies the trajectory of a job, with the options that jobs have.
+int run_on_job(Job job, const CheckArguments& arguments) {
+  if (!arguments.certificate.empty())
+    throw InputError("--certificate: is not supported for jobs, as " + arguments.problem +
+                     " is one: allowed are problems with one path");
+  if (arguments.trajectory.empty())
+    throw InputError("trajectory: is missing: allowed is a file that `plan` wrote of the job");
+  job.scene = arguments.episode.apply(problem_of_run(job, {})).scene;
+  for (Stroke& stroke : job.strokes) arguments.lattice.apply(stroke);
+  return check_job_file(job, arguments.trajectory);
+}
+
 int run(const CheckArguments& arguments) {
-  Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  std::variant<Problem, Job> loaded = io::load_problem_or_job(arguments.problem);
+  if (Job* job = std::get_if<Job>(&loaded)) return run_on_job(std::move(*job), arguments);
+  Problem problem = arguments.episode.apply(std::get<Problem>(loaded));
   arguments.lattice.apply(problem);
   if (arguments.trajectory.empty() == arguments.certificate.empty())
     throw InputError(
@@ -206,7 +223,7 @@ void add_check(CLI::App& app, int& exit_code) {
       "check", "Verify a trajectory, or that there is none, independently of the planners");
   // shared, so that it lives as long as the callback that reads it
   auto arguments = std::make_shared<CheckArguments>();
-  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("problem", arguments->problem, "problem file, or job")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile);
   command->add_option(
       "--certificate", arguments->certificate,

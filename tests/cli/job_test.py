@@ -163,12 +163,89 @@ class Jobs(WithFolder):
                 self.assertRegex(done.stderr, rf"^swivel: .*job.yaml:1: {key}: .*allowed.*\n$")
 
 
+class Checked(WithFolder):
+    def setUp(self):
+        super().setUp()
+        self.job = self.file(one_job())
+        self.out = self.folder / "t.csv"
+        done = run("plan", self.job, "--out", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with self.out.open() as file:
+            self.rows = list(csv.DictReader(file))
+
+    def check(self, rows):
+        with self.out.open("w", newline="") as file:
+            writer = csv.DictWriter(file, self.rows[0].keys(), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+        return run("check", self.job, self.out)
+
+    def test_passes(self):
+        done = self.check(self.rows)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(
+            done.stdout, r"^passed: \d+ rows in 2 strokes and 3 transitions; cost \d"
+        )
+
+    def test_refuses_what_was_changed(self):
+        def rows_of(name):
+            return [k for k, row in enumerate(self.rows) if row["stroke"] == name]
+
+        left, right, moves = rows_of("left"), rows_of("right"), rows_of("")
+        joint = next(key for key in self.rows[0] if key not in ("s", "phi", "branch"))
+
+        def change(row, **values):
+            def apply(rows):
+                rows[row].update(values)
+            return apply
+
+        def cut(first, last):
+            def apply(rows):
+                del rows[first:last]
+            return apply
+
+        def move(row, by):
+            def apply(rows):
+                rows[row][joint] = repr(float(rows[row][joint]) + by)
+            return apply
+
+        middle = left[len(left) // 2]
+        changes = {
+            "process off in a stroke": change(middle, process="0"),
+            "process on in an approach": change(left[0], process="1"),
+            "process on in a transition": change(moves[0], process="1"),
+            "a stroke of another name": lambda rows: [rows[k].update(stroke="up") for k in left],
+            "a jump in a stroke": move(middle, 0.01),
+            "a transition ends elsewhere": move(left[0] - 1, 0.01),
+            "a transition begins elsewhere": move(left[-1] + 1, 1e-6),
+            "no retract": cut(left[-1], left[-1] + 1),
+            "no approach": cut(left[0], left[0] + 1),
+            "no transition": cut(left[-1] + 1, right[0]),
+            "no second stroke": cut(right[0], right[-1] + 1),
+            "strokes swapped": lambda rows: rows.__setitem__(
+                slice(None),
+                [{**row, "stroke": {"left": "right", "right": "left"}.get(row["stroke"], "")}
+                 for row in rows]
+            ),
+            "not home": move(len(self.rows) - 1, 0.01),
+        }
+        for name, apply in changes.items():
+            with self.subTest(name):
+                rows = [dict(row) for row in self.rows]
+                apply(rows)
+                done = self.check(rows)
+                self.assertIn(done.returncode, (1, 2), done.stdout)
+                if done.returncode == 1:
+                    self.assertRegex(done.stdout, r"^failed: .* failure")
+                else:
+                    self.assertRegex(done.stderr, r"^swivel: .*\n$")
+
+
 class Refused(WithFolder):
     def test_other_commands_refuse_jobs(self):
         rows = self.folder / "rows.csv"
         rows.write_text("")
         commands = [
-            ("check", JOB, rows),
             ("time", JOB, rows, "--out", self.folder / "t.csv"),
             ("campaign", JOB, "--episodes", 1, "--out", self.folder / "c.csv"),
             ("place", JOB, "--base", "--x", "0:1:0.5", "--out", self.folder / "p.csv"),
@@ -180,7 +257,7 @@ class Refused(WithFolder):
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertRegex(
                     done.stderr, r"^swivel: .*door_job.yaml:15: strokes: makes this file a job, "
-                    r"which `swivel plan` and io::load_job\(\) take: allowed is a `path` here\n$"
+                    r"which `plan`, `check` and io::load_job\(\) take: allowed is a `path` here\n$"
                 )
                 self.assertEqual(done.stdout, "")
 

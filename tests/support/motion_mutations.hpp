@@ -69,7 +69,7 @@ inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int sma
     lazy.planner = PlannerKind::kLazy;
     Planner planner(as_motion ? with_motion_defaults(problem) : problem);
     std::optional<TimingOptions> timing;
-    if (as_motion) timing = TimingOptions{0.25, 1.0, rate, {}};
+    if (as_motion) timing = TimingOptions{.speed = 0.25, .turn_speed = 1.0, .rate = rate};
     const MotionPlan plan = plan_motion(planner, lazy, refined, timing);
     if (plan.result.status != PlanStatus::kSolved || (timed && !plan.motion->motion)) return;
     judged.robot = std::make_shared<const PreparedRobot>(problem);

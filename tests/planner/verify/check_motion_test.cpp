@@ -186,7 +186,8 @@ TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
   Planner planner(with_motion_defaults(problem));
   PlanOptions lazy;
   lazy.planner = PlannerKind::kLazy;
-  const MotionPlan plan = plan_motion(planner, lazy, true, TimingOptions{0.1, 0.5, 250, {}});
+  const MotionPlan plan =
+      plan_motion(planner, lazy, true, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
   ASSERT_TRUE(plan.motion && plan.motion->motion);
   const PreparedRobot robot(problem);
   const std::vector<TimedRow>& whole = plan.motion->motion->rows;
