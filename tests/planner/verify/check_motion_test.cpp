@@ -120,7 +120,8 @@ TEST(CheckOfPlans, RowsOfATimedPlanPass) {
       Problem problem = motion_problem(all_robots()[static_cast<std::size_t>(trial) % 5], random);
       problem.smooth.reset();
       Planner planner(with_motion_defaults(problem));
-      const MotionPlan plan = plan_motion(planner, lazy, refined, TimingOptions{0.1, {}, 250, {}});
+      const MotionPlan plan =
+          plan_motion(planner, lazy, refined, TimingOptions{.speed = 0.1, .rate = 250});
       if (plan.result.status != PlanStatus::kSolved) continue;
       for (const bool margins : {false, true}) {
         const CheckResult result = check_trajectory(PreparedRobot(problem), problem,
@@ -149,8 +150,8 @@ TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
         io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     for (const double rate : {2.0, 3.0, 5.0, 7.0, 10.0}) {
       Planner planner(with_motion_defaults(problem));
-      const MotionPlan plan =
-          plan_motion(planner, {}, false, TimingOptions{0.1, {}, rate, {}});  // proves its answer
+      const MotionPlan plan = plan_motion(
+          planner, {}, false, TimingOptions{.speed = 0.1, .rate = rate});  // proves its answer
       ASSERT_TRUE(plan.motion) << name;
       refused += plan.motion->failure.has_value();
       if (!plan.motion->motion) continue;
@@ -226,7 +227,7 @@ TEST(CheckOfPlans, SmallChangesOfTheRollDoNotAddUp) {
   problem.waypoints = {{{0.5, -0.1, 0.6}, down}, {{0.5, 0.1, 0.6}, down}};
   problem.roll = Roll{};
   Planner planner(with_motion_defaults(problem));
-  const MotionPlan plan = plan_motion(planner, {}, false, TimingOptions{0.1, {}, 50, {}});
+  const MotionPlan plan = plan_motion(planner, {}, false, TimingOptions{.speed = 0.1, .rate = 50});
   ASSERT_TRUE(plan.motion && plan.motion->motion);
   const PreparedRobot robot(problem);
   for (const bool far : {false, true}) {
