@@ -93,8 +93,9 @@ std::string transitions_text(const JobResult& result, const Job& job) {
     if (!part.barred_by) continue;
     const std::string to = k + 1 < result.parts.size() ? quoted_name(job, *result.parts[k + 1].run)
                                                        : std::string("home");
-    text += "  to " + to + ": around " + (*part.barred_by)[0] + " - " + (*part.barred_by)[1] +
-            formatted(", by %zu corners\n", part.rows.size() - 2);
+    text +=
+        "  to " + to + ": around " + (*part.barred_by)[0] + " - " + (*part.barred_by)[1] +
+        formatted(", by %zu corner%s\n", part.rows.size() - 2, part.rows.size() == 3 ? "" : "s");
   }
   return text;
 }
@@ -107,7 +108,8 @@ std::string motion_text(const JobResult& result, const Job& job) {
           : std::string("stopped: ") + to_string(result.status) + ", the cheapest job known: ";
   text += formatted("%zu stroke%s, cost %.6g", job.strokes.size(),
                     job.strokes.size() == 1 ? "" : "s", result.cost);
-  text += formatted(" | bound %.6g: ", result.bound) + above(result.cost, result.bound);
+  text += formatted(" | bound %.6g: ", result.bound) + above(result.cost, result.bound) +
+          (job.order == StrokeOrder::kBest ? " in this order" : "");
   text += formatted(" | bound %.6g whatever the transitions", result.bound_any);
   if (!result.held.empty()) text += " | held: " + words(result.held);
   text += '\n';

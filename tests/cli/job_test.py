@@ -163,7 +163,7 @@ class Jobs(WithFolder):
                 self.assertRegex(done.stderr, rf"^swivel: .*job.yaml:1: {key}: .*allowed.*\n$")
 
 
-class Checked(WithFolder):
+class CheckedJobs(WithFolder):
     def setUp(self):
         super().setUp()
         self.job = self.file(one_job())

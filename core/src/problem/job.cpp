@@ -71,6 +71,13 @@ Problem problem_of_run(const Job& job, const StrokeRun& run) {
   return problem;
 }
 
+Limits limits_of_transitions(const Job& job) {
+  Limits limits = job.limits;
+  for (const Stroke& stroke : job.strokes)
+    limits.joint_margin = std::min(limits.joint_margin, stroke.limits.joint_margin);
+  return limits;
+}
+
 void validate(const Job& job) {
   if (job.strokes.empty()) throw InvalidArgument("strokes: allowed is at least one");
   std::set<std::string> names;

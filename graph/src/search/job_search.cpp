@@ -117,6 +117,8 @@ class JobSearch {
         outcome_.run_without_path = k;
     }
     outcome_.decided = outcome_.run_without_path.has_value();
+    if (!outcome_.decided)
+      for (const double cost : outcome_.least_costs) outcome_.bound_any = outcome_.bound += cost;
     return !outcome_.run_without_path;
   }
 
@@ -284,6 +286,7 @@ class JobSearch {
                                   run.cost_to_go->lattice().layers() - 1)),
                               kUnreachable);
     for (std::size_t end = 0; end < next.ends().size(); ++end) {
+      if (end % 16 == 0) run.cost_to_go->budget().poll();
       TransitionCosts::Onward& onward = run.onward[end];
       // costs only rise, so the way on stays the cheapest as long as it costs what it did
       if (onward.cost == kUnreachable ||

@@ -33,9 +33,10 @@ class JobCheck {
         job_(job),
         parts_(parts),
         timed_(timed),
-        options_(options) {
+        options_(options),
+        margin_(limits_of_transitions(job).joint_margin) {
     Problem between = problem_of_run(job, {0, false});
-    between.limits = job.limits;
+    between.limits = limits_of_transitions(job);
     if (timed)
       between.limits.edge_tolerance = std::min(between.limits.edge_tolerance, kVerdictBand);
     world_.emplace(robot.world(), between, options.budget, kVerdictBand);
@@ -178,8 +179,7 @@ class JobCheck {
       const JointLimit& limit = chain_.limit[j];
       if (limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof)) continue;
       const double x = parts_[k].rows[row].q[static_cast<Eigen::Index>(j)];
-      const double lower = limit.lower + job_.limits.joint_margin,
-                   upper = limit.upper - job_.limits.joint_margin;
+      const double lower = limit.lower + margin_, upper = limit.upper - margin_;
       if (x >= lower - kSame && x <= upper + kSame) continue;
       fail(name(k) + ": " +
            formatted("row %zu: joint '%s' is at %.6g rad: allowed is %.6g to %.6g", row,
@@ -212,6 +212,7 @@ class JobCheck {
   const std::vector<JobPart>& parts_;
   const std::vector<std::vector<TimedRow>>* timed_;  // by part
   const CheckOptions& options_;
+  double margin_;  // rad, of transitions
   std::optional<World> world_;
   EdgeRule rule_;
   std::optional<World::Query> query_;

@@ -17,8 +17,14 @@ namespace swivel {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();  // cost of what is not there
-/// Nodes of an end of a run that are looked at, the cheapest ones.
-constexpr std::size_t kMostNodes = 512;
+/// Nodes of an end of a run that are looked at, the cheapest ones, and pairs of nodes of all runs.
+constexpr std::size_t kFewestNodes = 16, kMostNodes = 512, kMostPairs = 40'000'000;
+
+std::size_t most_nodes(std::size_t runs) {
+  std::size_t nodes = kMostNodes;
+  while (nodes > kFewestNodes && nodes * nodes * runs * runs > kMostPairs) nodes /= 2;
+  return nodes;
+}
 
 /// A node at which a run may begin or end, and what the run costs more than at its best if it does.
 struct Gate {
@@ -34,8 +40,8 @@ struct Gates {
 };
 
 /// Returns the nodes at which a path may begin, and sets `least` to the cost of its best path.
-std::vector<Gate> begins_of(const PreparedRobot& robot, const Problem& problem, double& least,
-                            const Budget& budget) {
+std::vector<Gate> begins_of(const PreparedRobot& robot, const Problem& problem, std::size_t most,
+                            double& least, const Budget& budget) {
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
   const auto lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
@@ -49,8 +55,8 @@ std::vector<Gate> begins_of(const PreparedRobot& robot, const Problem& problem, 
       gates.emplace_back(values->config(0, slot), values->at(0, slot) - least);
   std::stable_sort(gates.begin(), gates.end(),
                    [](const Gate& a, const Gate& b) { return a.regret < b.regret; });
-  if (gates.size() > kMostNodes)
-    gates.erase(gates.begin() + static_cast<std::ptrdiff_t>(kMostNodes), gates.end());
+  if (gates.size() > most)
+    gates.erase(gates.begin() + static_cast<std::ptrdiff_t>(most), gates.end());
   return gates;
 }
 
@@ -85,7 +91,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     Problem problem = problem_of_run(job, {run / 2, reversed});
     if (of_ends) std::reverse(problem.waypoints.begin(), problem.waypoints.end());
     double least = kNever;
-    auto found = begins_of(robot, problem, least, budget);
+    auto found = begins_of(robot, problem, most_nodes(runs), least, budget);
     (of_ends ? gates[run].ends : gates[run].begins) = std::move(found);
     if (!of_ends) gates[run].least = least;
   });
@@ -105,9 +111,11 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     costs.first[run] = here.least + (job.home ? least_between(home, here.begins, *metric) : 0.0);
     costs.last[run] = job.home ? least_between(here.ends, home, *metric) : 0.0;
     for (std::size_t next = 0; next < runs; ++next)
-      if (next / 2 != run / 2 && gates[next].least != kNever)
+      if (next / 2 != run / 2 && gates[next].least != kNever) {
+        budget.poll();
         costs.follow[run][next] =
             gates[next].least + least_between(here.ends, gates[next].begins, *metric);
+      }
   });
   return costs;
 }

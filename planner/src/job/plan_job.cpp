@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -66,6 +67,7 @@ class JobPlan {
         order_(std::move(order)),
         chain_(robot.arm().chain),
         job_(job),
+        transition_limits_(limits_of_transitions(job)),
         options_(options),
         budget_(budget),
         executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {
@@ -125,8 +127,8 @@ class JobPlan {
       of.emplace_back(std::move(problem), &world);
     }
     Problem between = of.front().first;
-    between.limits = job_.limits;
-    transition_world_ = &world_of(job_.limits, between);
+    between.limits = transition_limits_;
+    transition_world_ = &world_of(transition_limits_, between);
     runs_.resize(order_.size());
     executor_.for_each(static_cast<int>(order_.size()), [&](int k, int) {
       const auto i = static_cast<std::size_t>(k);
@@ -158,8 +160,8 @@ class JobPlan {
   /// where the job leaves its limits.
   void find() {
     for (;;) {
-      JobTransitions transitions(robot_, *transition_world_, job_.limits, *runs_.front()->lattice,
-                                 distance_proofs(), executor_, budget_);
+      JobTransitions transitions(robot_, *transition_world_, transition_limits_,
+                                 *runs_.front()->lattice, distance_proofs(), executor_, budget_);
       if (home_is_barred(transitions)) return;
       const JobOutcome outcome = search(transitions);
       note(outcome, transitions);
@@ -189,8 +191,8 @@ class JobPlan {
       const double x = (*job_.home)[static_cast<Eigen::Index>(j)];
       const JointLimit& limit = chain_.limit[j];
       const bool none = limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof);
-      const double lower = limit.lower + job_.limits.joint_margin,
-                   upper = limit.upper - job_.limits.joint_margin;
+      const double lower = limit.lower + transition_limits_.joint_margin,
+                   upper = limit.upper - transition_limits_.joint_margin;
       if (!none && !(x >= lower && x <= upper))
         throw InputError(job_.source, "home: joint '" + chain_.joint_names[j] + "' is at " +
                                           formatted("%.6g", x) + " rad: allowed is " +
@@ -322,6 +324,7 @@ class JobPlan {
   std::vector<StrokeRun> order_;
   const Chain& chain_;
   const Job& job_;
+  Limits transition_limits_;
   const PlanOptions& options_;
   Budget budget_;
   Hooks hooks_;
@@ -339,43 +342,95 @@ void require_supported(const PlanOptions& options) {
     throw InvalidArgument("hooks: allowed for jobs are none");
 }
 
-/// Returns the orders in which to plan a job: the given one, or the cheapest by estimate and the
-/// given one too if it is estimated to cost hardly more.
-std::vector<std::vector<StrokeRun>> orders_of(const PreparedRobot& robot, const Job& job,
-                                              const PlanOptions& options, const Budget& budget) {
-  constexpr double kHardlyMore = 1.1;  // estimates are off by some per cent
-  std::vector<StrokeRun> given;
-  for (std::size_t k = 0; k < job.strokes.size(); ++k) given.push_back({k, false});
-  if (job.order == StrokeOrder::kGiven) return {given};
-  Executor executor(options.planner == PlannerKind::kLazy ? 1 : options.threads);
-  const ParallelFor work{executor.threads(),
-                         [&](int parts, const auto& body) { executor.for_each(parts, body); }};
-  const OrderCosts costs = estimate_order_costs(robot, job, work, budget);
-  std::vector<StrokeRun> best = cheapest_order(costs, budget);
-  if (best == given) return {given};
-  if (cost_of_order(costs, given) > kHardlyMore * cost_of_order(costs, best)) return {best};
-  return {std::move(best), std::move(given)};
+std::vector<StrokeRun> given_order(const Job& job) {
+  std::vector<StrokeRun> order;
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) order.push_back({k, false});
+  return order;
 }
+
+/// Plans a job in the cheapest orders by estimate.
+class OrderSearch {
+ public:
+  OrderSearch(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+              const Budget& budget, bool one_branch)
+      : robot_(robot), job_(job), options_(options), budget_(budget), one_branch_(one_branch) {}
+
+  JobResult plan() {
+    const std::vector<StrokeRun> given = given_order(job_);
+    Stopwatch watch;
+    double order_ms = 0;
+    if (job_.order == StrokeOrder::kBest) {
+      try {
+        estimate();
+        std::vector<StrokeRun> order = cheapest_order(costs_, budget_);
+        order_ms = watch.lap();
+        plan_feasible(std::move(order));
+      } catch (const Stopped&) {  // the given order is left
+      }
+    }
+    if (!best_ || best_->parts.empty() || may_be_cheaper(given)) take(given);
+    if (job_.order == StrokeOrder::kBest) best_->time_ms["order"] = order_ms;
+    return std::move(*best_);
+  }
+
+ private:
+  void estimate() {
+    Executor executor(options_.planner == PlannerKind::kLazy ? 1 : options_.threads);
+    const ParallelFor work{executor.threads(),
+                           [&](int parts, const auto& body) { executor.for_each(parts, body); }};
+    costs_ = estimate_order_costs(robot_, job_, work, budget_);
+  }
+  /// Plans in an order and keeps the job if it is the cheapest so far. Returns the run that has no
+  /// path by itself, if any.
+  std::optional<StrokeRun> take(const std::vector<StrokeRun>& order) {
+    JobResult found = JobPlan(robot_, job_, options_, budget_, order, one_branch_).plan();
+    std::optional<StrokeRun> without_path;
+    for (const RunResult& run : found.runs)
+      if (run.status == PlanStatus::kInfeasible && !without_path) without_path = run.run;
+    if (!best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost)))
+      best_ = std::move(found);
+    planned_ = order;
+    return without_path;
+  }
+  /// Plans in an order; where a run that may be turned has no path, in the cheapest one without it,
+  /// and so on.
+  void plan_feasible(std::vector<StrokeRun> order) {
+    for (;;) {
+      const std::optional<StrokeRun> barred = take(order);
+      if (!barred || !job_.strokes[barred->stroke].reversible) return;
+      forbid(*barred);
+      const std::vector<StrokeRun> next = cheapest_order(costs_, budget_);
+      if (!std::isfinite(cost_of_order(costs_, next)) || next == order) return;
+      order = next;
+    }
+  }
+  void forbid(const StrokeRun& run) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    const std::size_t k = 2 * run.stroke + (run.reversed ? 1 : 0);
+    costs_.first[k] = costs_.last[k] = kNever;
+    costs_.follow[k].assign(costs_.follow[k].size(), kNever);
+    for (std::vector<double>& next : costs_.follow) next[k] = kNever;
+  }
+  /// Returns true if an order was not the last one planned and is estimated to cost hardly more.
+  [[nodiscard]] bool may_be_cheaper(const std::vector<StrokeRun>& order) const {
+    constexpr double kHardlyMore = 1.1;  // estimates are off by some per cent
+    return order != planned_ &&
+           cost_of_order(costs_, order) <= kHardlyMore * cost_of_order(costs_, planned_);
+  }
+
+  const PreparedRobot& robot_;
+  const Job& job_;
+  const PlanOptions& options_;
+  const Budget& budget_;
+  bool one_branch_;
+  OrderCosts costs_;
+  std::optional<JobResult> best_;
+  std::vector<StrokeRun> planned_;  // the last order
+};
 
 JobResult plan_in_order(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
                         const Budget& budget, bool one_branch = false) {
-  Stopwatch watch;
-  std::vector<std::vector<StrokeRun>> orders;
-  try {
-    orders = orders_of(robot, job, options, budget);
-  } catch (const Stopped&) {
-    orders.resize(1);
-    for (std::size_t k = 0; k < job.strokes.size(); ++k) orders.front().push_back({k, false});
-  }
-  const double order_ms = watch.lap();
-  std::optional<JobResult> best;
-  for (std::vector<StrokeRun>& order : orders) {
-    JobResult found = JobPlan(robot, job, options, budget, std::move(order), one_branch).plan();
-    if (!best || (!found.parts.empty() && (best->parts.empty() || found.cost < best->cost)))
-      best = std::move(found);
-  }
-  if (job.order == StrokeOrder::kBest) best->time_ms["order"] = order_ms;
-  return std::move(*best);
+  return OrderSearch(robot, job, options, budget, one_branch).plan();
 }
 
 /// Returns true if the rows of a run of the job are not all on one branch.

@@ -19,11 +19,13 @@ std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
   const std::vector<double> s = waypoint_distances(problem);
   const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
   const auto event = [&](std::size_t waypoint, bool on) {
-    const auto found = std::find_if(rows.begin(), rows.end(), [&](const TimedRow& row) {
+    auto found = std::find_if(rows.begin(), rows.end(), [&](const TimedRow& row) {
       return row.row.s >= s[waypoint] - kSame;
     });
-    const TimedRow& row = found == rows.end() ? rows.back() : *found;
-    return ProcessEvent{row.t, run.stroke, row.row.s, on};
+    if (found == rows.end()) --found;
+    // where the stroke ends with a turn on the spot, its end is that of the turn
+    while (!on && found + 1 != rows.end() && (found + 1)->row.s <= s[waypoint] + kSame) ++found;
+    return ProcessEvent{found->t, run.stroke, found->row.s, on};
   };
   return {event(process.first, true), event(process.last, false)};
 }

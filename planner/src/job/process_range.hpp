@@ -13,7 +13,8 @@ namespace swivel {
 [[nodiscard]] std::vector<double> waypoint_distances(const Problem& problem);
 
 /// Returns the moments at which the process is switched on and off in a timed run: at the first of
-/// its rows at or after the stroke's first waypoint, and at or after its last one.
+/// its rows at or after the stroke's first waypoint, and at or after its last one, turns there
+/// included.
 [[nodiscard]] std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
                                                         const Problem& problem,
                                                         std::span<const TimedRow> rows);

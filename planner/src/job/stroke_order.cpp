@@ -10,7 +10,8 @@ namespace swivel {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostExact = 12;  // strokes
+constexpr std::size_t kMostExact = 12;   // strokes
+constexpr std::size_t kMostLocal = 120;  // strokes whose order is improved by local search
 
 using Runs = std::vector<std::size_t>;  // 2 * stroke + reversed
 
@@ -139,11 +140,13 @@ bool improve(const OrderCosts& costs, Runs& order, double& cost) {
 Runs searched_order(const OrderCosts& costs, const Budget& budget) {
   Runs best;
   double least = kNone;
-  for (std::size_t first = 0; first < 2 * costs.strokes; ++first) {
-    Runs order = nearest_next(costs, first);
+  const std::size_t runs = 2 * costs.strokes;
+  const std::size_t starts = std::clamp<std::size_t>(kMostLocal / costs.strokes, 1, runs);
+  for (std::size_t k = 0; k < starts; ++k) {
+    Runs order = nearest_next(costs, k * runs / starts);
     double cost = cost_of(costs, order);
     do budget.poll();
-    while (improve(costs, order, cost));
+    while (costs.strokes <= kMostLocal && improve(costs, order, cost));
     if (best.empty() || cost < least) best = order, least = cost;
   }
   return best;

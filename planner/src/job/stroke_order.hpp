@@ -22,8 +22,8 @@ struct OrderCosts {
 
 /// Returns the cheapest order in which each stroke is run once: for up to twelve strokes the exact
 /// one, by the dynamic program over sets of strokes of Held and Karp (1962), beyond that the best
-/// of local searches from each first run, which move stretches of up to three strokes and turn
-/// stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
+/// of local searches from some first runs, fewer the more strokes there are, which move stretches
+/// of up to three strokes and turn stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget);
 
 }  // namespace swivel

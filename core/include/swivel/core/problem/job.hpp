@@ -74,6 +74,10 @@ struct ProcessWaypoints {
 };
 [[nodiscard]] ProcessWaypoints process_waypoints(const Stroke& stroke);
 
+/// Returns what transitions keep: the job's limits, with the least joint margin of the job and its
+/// strokes, since strokes begin and end there.
+[[nodiscard]] Limits limits_of_transitions(const Job& job);
+
 /// Throws InvalidArgument for a job that makes no sense whatever the robot: what validate(Problem)
 /// refuses of any of its runs, no strokes, names that are empty or taken, a start in a stroke, a
 /// home that is not finite, speeds that are not positive, feeds that are not one per waypoint.
