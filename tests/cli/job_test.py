@@ -256,7 +256,7 @@ class Refused(WithFolder):
                 done = run(*command)
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertRegex(
-                    done.stderr, r"^swivel: .*door_job.yaml:15: strokes: makes this file a job, "
+                    done.stderr, r"^swivel: .*door_job.yaml:16: strokes: makes this file a job, "
                     r"which `plan`, `check` and io::load_job\(\) take: allowed is a `path` here\n$"
                 )
                 self.assertEqual(done.stdout, "")
