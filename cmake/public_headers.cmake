@@ -10,12 +10,14 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/messages/invalid_argument.hpp
   swivel/core/problem/held_joint.hpp
   swivel/core/problem/hooks.hpp
+  swivel/core/problem/job.hpp
   swivel/core/problem/problem.hpp
   swivel/core/problem/robot_model.hpp
   swivel/core/problem/shape.hpp
   swivel/core/problem/tool_path.hpp
   swivel/core/problem/validate.hpp
   swivel/core/answer/advice.hpp
+  swivel/core/answer/job_result.hpp
   swivel/core/answer/answer_text.hpp
   swivel/core/answer/cause.hpp
   swivel/core/answer/infeasibility_certificate.hpp
@@ -29,6 +31,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/lattice/lattice_description.hpp
   swivel/core/lattice/problem_path.hpp
   swivel/core/motion/timed_path.hpp
+  swivel/core/motion/job_motion.hpp
   swivel/core/study/campaign.hpp
   swivel/core/study/placement.hpp
   swivel/collision/proofs/verdict.hpp
@@ -50,13 +53,18 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/study/campaign.hpp
   swivel/planner/study/place.hpp
   swivel/planner/verify/check.hpp
+  swivel/planner/job/check_job.hpp
+  swivel/planner/job/plan_job.hpp
+  swivel/planner/job/time_job.hpp
   swivel/planner/verify/complete_rows.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp
   swivel/io/meshes/mesh.hpp
   swivel/io/motions/motion.hpp
+  swivel/io/motions/job_trajectory.hpp
   swivel/io/motions/trajectory.hpp
   swivel/io/problems/problem.hpp
+  swivel/io/problems/job.hpp
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
