@@ -52,14 +52,41 @@ bool any_rolls(const JobResult& result) {
                      [](const JobPart& part) { return part.run && swivel::any_rolls(part.rows); });
 }
 
-namespace {
-
-/// Returns the fields of a transition's row, in the columns of a trajectory.
-std::string transition_fields(const TrajectoryRow& row, bool roll) {
+std::string placeless_fields(const TrajectoryRow& row, bool roll) {
   std::string text = roll ? ",,," : ",,";
   for (const double angle : row.q) text += ',' + format_double(angle);
   return text;
 }
+
+double number_field(const CsvPlace& place, const std::string& column, const std::string& field) {
+  const auto value = to_number<double>(field);
+  if (!value || !std::isfinite(*value))
+    bad_input(place.where() + ": " + column, "'" + field + "' is not a number", "a finite number");
+  return *value;
+}
+
+int branch_field(const CsvPlace& place, const std::string& field) {
+  const double branch = number_field(place, "branch", field);
+  if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
+    bad_input(place.where() + ": branch", "is " + format_double(branch),
+              "a whole number from 0 to 7");
+  return static_cast<int>(branch);
+}
+
+bool process_field(const CsvPlace& place, const std::string& field) {
+  if (field != "0" && field != "1")
+    bad_input(place.where() + ": process", "is '" + field + "'", "0 or 1");
+  return field == "1";
+}
+
+void bad_header(const std::string& where, const std::string& what,
+                const std::vector<std::string>& header) {
+  std::string allowed;
+  for (const std::string& name : header) allowed += (allowed.empty() ? "" : ",") + csv_field(name);
+  bad_input(where, "is not the header of " + what, allowed + ", with roll behind phi or without");
+}
+
+namespace {
 
 std::vector<std::string> job_header(const JointNames& joint_names, bool roll) {
   return csv_header(job_trajectory_schema(), joint_names, roll);
@@ -78,7 +105,7 @@ std::string to_job_csv(const JobResult& result, const Job& job) {
     const std::vector<bool> process = process_of_rows(part, job);
     for (std::size_t k = 0; k < part.rows.size(); ++k) {
       const TrajectoryRow& row = part.rows[k];
-      text += part.run ? trajectory_fields(row, roll) : transition_fields(row, roll);
+      text += part.run ? trajectory_fields(row, roll) : placeless_fields(row, roll);
       text += ',' + stroke + (process[k] ? ",1\n" : ",0\n");
     }
   }
@@ -99,16 +126,12 @@ class JobRows {
         read_.rolls = roll;
         return;
       }
-    std::string allowed;
-    for (const std::string& name : job_header(joint_names, false))
-      allowed += (allowed.empty() ? "" : ",") + csv_field(name);
-    bad_input(where, "is not the header of a job's trajectory",
-              allowed + ", with roll behind phi or without");
+    bad_header(where, "a job's trajectory", job_header(joint_names, false));
   }
 
   void add(const CsvPlace& place, const std::vector<std::string>& fields) {
     const std::string& stroke = fields[columns_.size() - 2];
-    const bool process = flag(place, fields.back());
+    const bool process = process_field(place, fields.back());
     if (read_.parts.empty() || read_.parts.back().stroke != stroke) begin_part(place, stroke);
     JobTrajectoryPart& part = read_.parts.back();
     if (process && stroke.empty())
@@ -152,19 +175,9 @@ class JobRows {
                 "two or more: those on the stroke itself");
   }
 
-  static bool flag(const CsvPlace& place, const std::string& field) {
-    if (field != "0" && field != "1")
-      bad_input(place.where() + ": process", "is '" + field + "'", "0 or 1");
-    return field == "1";
-  }
-
-  double number(const CsvPlace& place, const std::vector<std::string>& fields,
-                std::size_t column) const {
-    const auto value = to_number<double>(fields[column]);
-    if (!value || !std::isfinite(*value))
-      bad_input(place.where() + ": " + columns_[column], "'" + fields[column] + "' is not a number",
-                "a finite number");
-    return *value;
+  [[nodiscard]] double number(const CsvPlace& place, const std::vector<std::string>& fields,
+                              std::size_t column) const {
+    return number_field(place, columns_[column], fields[column]);
   }
 
   /// Returns the row. In transitions the columns before the joints must be empty.
@@ -185,11 +198,7 @@ class JobRows {
     row.s = number(place, fields, 0);
     row.phi = number(place, fields, 1);
     if (read_.rolls) row.roll = number(place, fields, 2);
-    const double branch = number(place, fields, joints - 1);
-    if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
-      bad_input(place.where() + ": branch", "is " + format_double(branch),
-                "a whole number from 0 to 7");
-    row.branch = static_cast<int>(branch);
+    row.branch = branch_field(place, fields[joints - 1]);
     return row;
   }
 
@@ -201,8 +210,8 @@ class JobRows {
 
 }  // namespace
 
-JobTrajectory load_job_trajectory(const std::filesystem::path& csv, const JointNames& joint_names) {
-  const std::string text = read_file(csv, "trajectory file", kMostTableBytes), file = csv.string();
+JobTrajectory read_job_trajectory(const std::string& file, std::string_view text,
+                                  const JointNames& joint_names) {
   JobRows rows;
   read_csv_rows(file, text,
                 {"the header of a job's trajectory",
@@ -213,6 +222,11 @@ JobTrajectory load_job_trajectory(const std::filesystem::path& csv, const JointN
                   rows.add(place, fields);
                 });
   return rows.finish(file);
+}
+
+JobTrajectory load_job_trajectory(const std::filesystem::path& csv, const JointNames& joint_names) {
+  return read_job_trajectory(csv.string(), read_file(csv, "trajectory file", kMostTableBytes),
+                             joint_names);
 }
 
 }  // namespace swivel::io

@@ -41,8 +41,9 @@ class Message {
     switch (here.level) {
       case Level::kRoot:
         need_key();
-        if (here.key == "header") {
-          if (!map) fail_kind(true);
+        if (here.key == "header" || here.key == "events") {
+          const bool as_it_should_be = map == (here.key == "header");
+          if (!as_it_should_be) fail_kind(!map);
           aside_ = 1;
           return;
         }
@@ -200,7 +201,7 @@ class Message {
       return std::find(keys.begin(), keys.end(), key) != keys.end();
     };
     const bool known =
-        here.level == Level::kRoot ? one_of({"header", "joint_names", "points"})
+        here.level == Level::kRoot ? one_of({"header", "joint_names", "points", "events"})
         : here.level == Level::kPoint
             ? one_of({"positions", "velocities", "accelerations", "effort", "time_from_start"})
             : one_of({"sec", "nanosec"});
@@ -230,7 +231,7 @@ class Message {
   std::string file_;
   int line_ = 0;
   std::vector<Here> levels_;
-  int aside_ = 0;  // levels inside the header, which says nothing of joints
+  int aside_ = 0;  // levels inside the header or the events, which say nothing of joints
   bool done_ = false;
   int which_ = -1;
   std::int64_t sec_ = 0, nanosec_ = 0;

@@ -4,8 +4,10 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "motions/mcap_records.hpp"
+#include "motions/messages.hpp"
 #include "motions/moved_joints.hpp"
 #include "motions/stamp.hpp"
 #include "swivel/io/motions/motion.hpp"
@@ -97,64 +99,108 @@ class Cdr {
   Bytes bytes_;
 };
 
-std::string joint_state(const TimedPath& motion, const TimedRow& row, const JointNames& joint_names,
-                        const std::string& frame_id) {
+std::string joint_state(const MotionMessages& motion, const TimedRow& row) {
   const Stamp stamp = stamp_of(row.t);
   Cdr cdr;
-  cdr.add(stamp.sec).add(stamp.nanosec).add(frame_id);
-  const auto names = moved_joints(motion, joint_names);
+  cdr.add(stamp.sec).add(stamp.nanosec).add(motion.frame_id);
+  const auto names = moved_joints(motion.roll, motion.joint_names);
   cdr.add(static_cast<std::uint32_t>(names.size()));
   for (const std::string& name : names) cdr.add(name);
-  cdr.add(moved_joints(motion, row.row.q)).add(moved_joints(motion, row.v)).add(std::uint32_t{0});
+  cdr.add(moved_joints(motion.roll, row.row.q))
+      .add(moved_joints(motion.roll, row.v))
+      .add(std::uint32_t{0});
   return cdr.message();
 }
+
+/// The definition of an event of a job.
+constexpr const char* kProcessEvent =
+    R"({"type": "object", "title": "swivel.ProcessEvent", )"
+    R"("description": "The tool's process is switched on at the begin of a stroke, off at its end.", )"
+    R"("properties": {)"
+    R"("t": {"type": "number", "description": "s since the motion began"}, )"
+    R"("stroke": {"type": "string", "description": "name of the stroke"}, )"
+    R"("s": {"type": "number", "description": "m along its path, the approach included"}, )"
+    R"("process": {"type": "string", "enum": ["on", "off"]}}, )"
+    R"("required": ["t", "stroke", "s", "process"]})";
 
 std::uint64_t nanoseconds(double t) {
   const Stamp stamp = stamp_of(t);
   return static_cast<std::uint64_t>(stamp.sec) * 1'000'000'000u + stamp.nanosec;
 }
 
-constexpr std::uint16_t kSchemaId = 1, kChannelId = 0;
+/// A topic of a log, whose messages have one schema.
+struct Topic {
+  std::uint16_t schema_id, channel_id;
+  const char *schema, *schema_encoding, *definition;
+  const char *name, *encoding;  ///< of its messages
+};
+constexpr Topic kJointStates{
+    1, 0, "sensor_msgs/msg/JointState", "ros2msg", kJointState, "/joint_states", "cdr"};
+constexpr Topic kProcess{2,          1,     "swivel.ProcessEvent", "jsonschema", kProcessEvent,
+                         "/process", "json"};
 
-std::string schema_record() {
+std::string schema_record(const Topic& topic) {
   return record(kSchema, Bytes()
-                             .add(kSchemaId)
-                             .counted("sensor_msgs/msg/JointState")
-                             .counted("ros2msg")
-                             .counted(kJointState));
+                             .add(topic.schema_id)
+                             .counted(topic.schema)
+                             .counted(topic.schema_encoding)
+                             .counted(topic.definition));
 }
 
-std::string channel_record() {
-  return record(
-      kChannel,
-      Bytes().add(kChannelId).add(kSchemaId).counted("/joint_states").counted("cdr").counted(""));
+std::string channel_record(const Topic& topic) {
+  return record(kChannel, Bytes()
+                              .add(topic.channel_id)
+                              .add(topic.schema_id)
+                              .counted(topic.name)
+                              .counted(topic.encoding)
+                              .counted(""));
 }
 
-/// The one chunk of a file: its records, where in it the messages begin, by time, and the times of
-/// the first and the last of them, ns.
-struct Chunk {
-  std::string records;
-  Bytes index;
-  std::uint64_t begin = 0, end = 0;
-  [[nodiscard]] std::uint64_t size() const { return records.size(); }
+/// The messages of a topic in the chunk: how many there are, and where they begin, by time.
+struct Indexed {
+  const Topic* topic;
+  Bytes index = {};
+  std::uint32_t count = 0;
 };
 
-Chunk chunk_of(const TimedPath& motion, const JointNames& joint_names,
-               const std::string& frame_id) {
+/// The one chunk of a file: its records, the messages of each topic, and the times of the first and
+/// the last of them, ns.
+struct Chunk {
+  std::string records;
+  std::vector<Indexed> topics;
+  std::uint64_t begin = 0, end = 0;
+  [[nodiscard]] std::uint64_t size() const { return records.size(); }
+  [[nodiscard]] std::uint64_t messages() const {
+    std::uint64_t sum = 0;
+    for (const Indexed& topic : topics) sum += topic.count;
+    return sum;
+  }
+
+  void add_message(Indexed& to, std::uint64_t time, const std::string& message) {
+    to.index.add(time).add(size());
+    records +=
+        record(kMessage,
+               Bytes().add(to.topic->channel_id).add(to.count++).add(time).add(time).raw(message));
+  }
+};
+
+Chunk chunk_of(const MotionMessages& motion) {
   Chunk chunk;
   chunk.begin = nanoseconds(motion.rows.front().t);
   chunk.end = nanoseconds(motion.rows.back().t);
-  chunk.records = schema_record() + channel_record();
-  std::uint32_t sequence = 0;
+  chunk.topics.push_back({&kJointStates});
+  if (motion.events) chunk.topics.push_back({&kProcess});
+  for (const Indexed& one : chunk.topics)
+    chunk.records += schema_record(*one.topic) + channel_record(*one.topic);
+  std::size_t event = 0;
   for (const TimedRow& row : motion.rows) {
     const std::uint64_t time = nanoseconds(row.t);
-    chunk.index.add(time).add(chunk.size());
-    chunk.records += record(kMessage, Bytes()
-                                          .add(kChannelId)
-                                          .add(sequence++)
-                                          .add(time)
-                                          .add(time)
-                                          .raw(joint_state(motion, row, joint_names, frame_id)));
+    chunk.add_message(chunk.topics[0], time, joint_state(motion, row));
+    for (; motion.events && event < motion.events->size(); ++event) {
+      const EventMessage& due = (*motion.events)[event];
+      if (nanoseconds(due.t) > time) break;
+      chunk.add_message(chunk.topics[1], time, due.json);
+    }
   }
   return chunk;
 }
@@ -170,29 +216,33 @@ std::string chunk_record(const Chunk& chunk) {
                             .raw(chunk.records));
 }
 
-std::string statistics_record(const Chunk& chunk, std::uint64_t messages) {
+std::string statistics_record(const Chunk& chunk) {
+  Bytes counts;
+  for (const Indexed& one : chunk.topics)
+    counts.add(one.topic->channel_id).add(std::uint64_t{one.count});
+  const std::size_t topics = chunk.topics.size();
   return record(kStatistics, Bytes()
-                                 .add(messages)
-                                 .add(std::uint16_t{1})  // schemas
-                                 .add(std::uint32_t{1})  // channels
-                                 .add(std::uint32_t{0})  // attachments
-                                 .add(std::uint32_t{0})  // metadata
-                                 .add(std::uint32_t{1})  // chunks
+                                 .add(chunk.messages())
+                                 .add(static_cast<std::uint16_t>(topics))  // schemas
+                                 .add(static_cast<std::uint32_t>(topics))  // channels
+                                 .add(std::uint32_t{0})                    // attachments
+                                 .add(std::uint32_t{0})                    // metadata
+                                 .add(std::uint32_t{1})                    // chunks
                                  .add(chunk.begin)
                                  .add(chunk.end)
-                                 .counted(Bytes().add(kChannelId).add(messages).text()));
+                                 .counted(counts.text()));
 }
 
-/// Returns the record that tells where in the file the chunk begins, and where the index of its
-/// messages begins and ends.
+/// Returns the record that tells where in the file the chunk begins, and where the indexes of its
+/// messages are: `offsets` holds the place of each by channel.
 std::string chunk_index_record(const Chunk& chunk, std::uint64_t chunk_at, std::uint64_t index_at,
-                               std::uint64_t index_end) {
+                               std::uint64_t index_end, const Bytes& offsets) {
   return record(kChunkIndex, Bytes()
                                  .add(chunk.begin)
                                  .add(chunk.end)
                                  .add(chunk_at)
                                  .add(index_at - chunk_at)
-                                 .counted(Bytes().add(kChannelId).add(index_at).text())
+                                 .counted(offsets.text())
                                  .add(index_end - index_at)
                                  .counted("")
                                  .add(chunk.size())
@@ -201,20 +251,29 @@ std::string chunk_index_record(const Chunk& chunk, std::uint64_t chunk_at, std::
 
 }  // namespace
 
-std::string to_mcap(const TimedPath& motion, const JointNames& joint_names,
-                    const std::string& frame_id) {
+std::string mcap_log(const MotionMessages& motion) {
   const std::string magic(kMcapMagic);
-  const Chunk chunk = chunk_of(motion, joint_names, frame_id);
-  std::string file = magic + record(kHeader, Bytes().counted("ros2").counted("swivel"));
+  const Chunk chunk = chunk_of(motion);
+  // The profile ros2 has messages in CDR alone.
+  std::string file =
+      magic + record(kHeader, Bytes().counted(motion.events ? "" : "ros2").counted("swivel"));
   const std::uint64_t chunk_at = file.size();
   file += chunk_record(chunk);
   const std::uint64_t index_at = file.size();
-  file += record(kMessageIndex, Bytes().add(kChannelId).counted(chunk.index.text()));
+  Bytes index_offsets;
+  for (const Indexed& one : chunk.topics) {
+    index_offsets.add(one.topic->channel_id).add(std::uint64_t{file.size()});
+    file += record(kMessageIndex, Bytes().add(one.topic->channel_id).counted(one.index.text()));
+  }
   const std::uint64_t index_end = file.size();
   file += record(kDataEnd, Bytes().add(std::uint32_t{0}));
 
   // The summary: groups of records, and where each group lies.
-  std::string offsets;
+  std::string offsets, schemas, channels;
+  for (const Indexed& one : chunk.topics) {
+    schemas += schema_record(*one.topic);
+    channels += channel_record(*one.topic);
+  }
   const std::uint64_t summary_at = file.size();
   const auto add_group = [&](Opcode opcode, const std::string& records) {
     const std::uint64_t from = file.size();
@@ -224,14 +283,19 @@ std::string to_mcap(const TimedPath& motion, const JointNames& joint_names,
                                           .add(from)
                                           .add(std::uint64_t{records.size()}));
   };
-  add_group(kSchema, schema_record());
-  add_group(kChannel, channel_record());
-  add_group(kStatistics, statistics_record(chunk, motion.rows.size()));
-  add_group(kChunkIndex, chunk_index_record(chunk, chunk_at, index_at, index_end));
+  add_group(kSchema, schemas);
+  add_group(kChannel, channels);
+  add_group(kStatistics, statistics_record(chunk));
+  add_group(kChunkIndex, chunk_index_record(chunk, chunk_at, index_at, index_end, index_offsets));
   const std::uint64_t offsets_at = file.size();
   file += offsets;
   file += record(kFooter, Bytes().add(summary_at).add(offsets_at).add(std::uint32_t{0}));
   return file + magic;
+}
+
+std::string to_mcap(const TimedPath& motion, const JointNames& joint_names,
+                    const std::string& frame_id) {
+  return mcap_log({motion.rows, motion.roll, joint_names, frame_id});
 }
 
 }  // namespace swivel::io

@@ -38,6 +38,10 @@ Columns columns_of(const std::vector<std::string>& header, const JointNames& nam
   for (const std::string& name : names) joints += ", " + csv_field(name);
   const std::string allowed =
       "t, s, phi, roll, branch" + joints + ", and joints with _v and _a, each once";
+  const auto end = header.size();
+  if (end > kDof + 2 && header[end - 2] == "stroke" && header[end - 1] == "process")
+    bad_input(where, "columns 'stroke' and 'process' are those of a job's rows",
+              "the rows of one path; those of a job are read with the job's problem file");
   for (std::size_t k = 0; k < header.size(); ++k) {
     bool there = false, placed = false;
     for (auto& [name, place] : known) {

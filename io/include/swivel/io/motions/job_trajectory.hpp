@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes and reads the trajectory of a job. docs/formats.md "Jobs".
+// Writes and reads the trajectory of a job and its motion in time. docs/formats.md "Jobs".
 #pragma once
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/motion/job_motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
@@ -37,5 +39,43 @@ struct JobTrajectory {
 /// other, for parts of one row, and for strokes whose `process` is nowhere 1 or at two places.
 [[nodiscard]] JobTrajectory load_job_trajectory(const std::filesystem::path& csv,
                                                 const JointNames& joint_names);
+
+/// Returns for every row of a part of a job whether it lies on its stroke, rather than on the lines
+/// of approach and retract or in a transition: the column `process` of to_job_csv().
+[[nodiscard]] std::vector<bool> process_of_rows(const JobPart& part, const Job& job);
+
+/// Returns the motion of a job as CSV: the columns of to_timed_csv(), then `stroke` and `process`.
+/// The row at which a stroke begins has its s, arm angle, branch and roll, though its `stroke` is
+/// empty where it ends a transition; other rows of transitions have none. `process` is 1 from the
+/// event that switches it on to the row before the one that switches it off. Throws InputError if
+/// both events of a stroke are at the same row.
+[[nodiscard]] std::string to_job_motion_csv(const JobMotion& motion, const Job& job,
+                                            const JointNames& joint_names);
+/// Returns the motion of a job in the format of the file name's ending: .csv as
+/// to_job_motion_csv(), .json or .yaml as to_trajectory_json() and to_trajectory_yaml(), with the
+/// events of the process as the key `events`, .mcap as to_mcap(), with the events as messages in
+/// JSON on the topic /process. Throws InputError for any other ending, and as to_job_motion_csv().
+[[nodiscard]] std::string job_motion_text(const JobMotion& motion, const Job& job,
+                                          const JointNames& joint_names,
+                                          const std::string& frame_id,
+                                          const std::filesystem::path& file);
+
+/// The motion of a job as read from a file.
+struct JobMotionFile {
+  JobMotion motion;                  ///< its rows, parts, rate, duration, events and roll
+  std::vector<std::size_t> strokes;  ///< of its runs, in their order: indices in Job::strokes
+};
+/// Loads what to_job_motion_csv() writes, for a job and the joints of its arm. Throws InputError,
+/// by row, for columns other than these in this order, for times that do not begin at 0 or do not
+/// ascend, for strokes that the job does not have or that come twice, for strokes without a
+/// transition between them or, if the job has a home, from it or to it, and for strokes whose
+/// `process` is nowhere 1 or at two places.
+[[nodiscard]] JobMotionFile load_job_motion(const std::filesystem::path& csv, const Job& job,
+                                            const JointNames& joint_names);
+
+/// Loads a job's motion by load_job_motion() if the file's first column is `t`, else its trajectory
+/// by load_job_trajectory(). It reads the file once, which may be a pipe. Throws InputError.
+[[nodiscard]] std::variant<JobTrajectory, JobMotionFile> load_job_rows(
+    const std::filesystem::path& csv, const Job& job, const JointNames& joint_names);
 
 }  // namespace swivel::io

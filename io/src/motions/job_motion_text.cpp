@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
+#include "files/files.hpp"
+#include "motions/messages.hpp"
+#include "swivel/io/motions/job_trajectory.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+/// Returns the events of a job's motion as JSON, which YAML reads too.
+std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job) {
+  std::vector<EventMessage> messages;
+  for (const ProcessEvent& event : motion.events)
+    messages.push_back(
+        {event.t, "{\"t\": " + format_double(event.t) +
+                      ", \"stroke\": " + nlohmann::json(job.strokes[event.stroke].name).dump() +
+                      ", \"s\": " + format_double(event.s) + ", \"process\": \"" +
+                      (event.on ? "on" : "off") + "\"}"});
+  return messages;
+}
+
+}  // namespace
+
+std::string job_motion_text(const JobMotion& motion, const Job& job, const JointNames& joint_names,
+                            const std::string& frame_id, const std::filesystem::path& file) {
+  require_motion_format(file);
+  const std::string format = file.extension().string();
+  if (format == ".csv") return to_job_motion_csv(motion, job, joint_names);
+  const std::vector<EventMessage> events = event_messages(motion, job);
+  const MotionMessages messages{motion.rows, motion.roll, joint_names, frame_id, &events};
+  if (format == ".json") return trajectory_json(messages);
+  if (format == ".yaml") return trajectory_yaml(messages);
+  return mcap_log(messages);
+}
+
+}  // namespace swivel::io
