@@ -473,6 +473,7 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
                               const PlanOptions& options, const JobTimingOptions& timing) {
   validate(job);
   require_supported(options);
+  require_speeds(job, timing);
   const Job completed = with_motion_defaults(job);
   robot.require_prepared_for(problem_of_run(completed, {0, false}));
   const Budget budget = options.budget();

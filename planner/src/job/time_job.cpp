@@ -20,11 +20,14 @@ namespace swivel {
 
 namespace {
 
-/// Returns the speed asked for along a stroke where the waypoints have no feed, m/s.
+/// Returns the speed asked for along a stroke where the waypoints have no feed, m/s. If nothing
+/// but feeds states one, returns the first of them, which the lines of approach and retract then
+/// have. Throws InputError if the stroke has no speed at all.
 double process_speed(const Job& job, const Stroke& stroke, const JobTimingOptions& options) {
   for (const std::optional<double>& speed :
        {options.speed, stroke.process_speed, job.process_speed, stroke.limits.tool_speed})
     if (speed) return *speed;
+  if (!stroke.feed.empty()) return stroke.feed.front();
   throw InputError(job.source, "stroke '" + stroke.name +
                                    "' has no speed: allowed are process_speed, a column feed of "
                                    "its path, limits.tool_speed, or --speed");
@@ -86,10 +89,8 @@ class JobTimer {
     std::vector<Config> corners;
     for (const TrajectoryRow& row : parts_[k].rows) corners.push_back(row.q);
     std::vector<TimedRow> rows = time_joint_moves(corners, rates_, job_.rapid, options_.rate);
-    if (rows.size() == 1) {  // nothing moves, and a part has a row of its own
-      rows.push_back(rows.front());
-      rows.back().t = 1 / options_.rate;
-    }
+    // Where nothing moves the arm rests for a sample, so that each part has a row of its own.
+    if (rows.size() == 1) rows.push_back(rows.front());
     append(k, rows);
     return std::nullopt;
   }
@@ -103,10 +104,12 @@ class JobTimer {
     const std::size_t first = motion_.rows.empty() ? 0 : motion_.rows.size() - 1;
     append(k, timed.motion->rows);
     add_events(run, problem, first);
-    for (const std::string& warning : timed.motion->warnings)
-      if (std::find(motion_.warnings.begin(), motion_.warnings.end(), warning) ==
+    for (const std::string& warning : timed.motion->warnings) {
+      const std::string named = "stroke '" + job_.strokes[run.stroke].name + "': " + warning;
+      if (std::find(motion_.warnings.begin(), motion_.warnings.end(), named) ==
           motion_.warnings.end())
-        motion_.warnings.push_back(warning);
+        motion_.warnings.push_back(named);
+    }
     timed.motion->rows.clear();
     motion_.runs.push_back(std::move(*timed.motion));
     return std::nullopt;
@@ -159,6 +162,10 @@ Job with_motion_defaults(Job job) {
   }
   keep_clearance_between_layers(job.limits);
   return job;
+}
+
+void require_speeds(const Job& job, const JobTimingOptions& options) {
+  for (const Stroke& stroke : job.strokes) static_cast<void>(process_speed(job, stroke, options));
 }
 
 JobTimingResult time_job(const PreparedRobot& robot, const Job& job,

@@ -10,6 +10,7 @@
 #include "seed.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
@@ -320,6 +321,48 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
     }
   std::printf("%d motions\n", timed);
   EXPECT_GE(timed, at_least(8));
+}
+
+/// A stroke that begins at the joints at which the one before ends needs no way between them; the
+/// motion has a row of the transition nevertheless.
+TEST(JobMotion, StrokesThatMeetAreTimed) {
+  const JobCase door("door_job.yaml");
+  Job job = door.job;
+  job.home.reset();
+  job.strokes.resize(1);
+  JobResult there = plan_job(door.robot, with_motion_defaults(job));
+  ASSERT_EQ(there.parts.size(), 1u);
+  job.strokes.push_back(job.strokes.front());
+  std::vector<Waypoint>& waypoints = job.strokes[1].waypoints;
+  std::reverse(waypoints.begin(), waypoints.end());
+  job.strokes[1].name = "back";
+  JobPart back = there.parts[0], rest;
+  back.run = StrokeRun{1, false};
+  std::reverse(back.rows.begin(), back.rows.end());
+  for (TrajectoryRow& row : back.rows) row.s = there.parts[0].rows.back().s - row.s;
+  rest.rows = {back.rows.front(), back.rows.front()};
+  const std::vector<JobPart> parts{there.parts[0], rest, back};
+  const JobTimingResult timed = time_job(door.robot, job, parts, {});
+  ASSERT_TRUE(timed.motion);
+  EXPECT_EQ(std::count(timed.motion->part.begin(), timed.motion->part.end(), 1), 1);
+  const JobCheckResult check =
+      check_job_motion(door.robot, job, {{0, false}, {1, false}}, *timed.motion);
+  EXPECT_TRUE(check.passed) << check.failures.front();
+}
+
+TEST(JobMotion, SpeedsAreStatedBeforePlanning) {
+  const JobCase door("door_job.yaml");
+  Job job = door.job;
+  job.strokes.resize(1);
+  job.process_speed.reset();
+  PlanOptions none;
+  none.timeout_s = 1e-9;
+  EXPECT_THROW(static_cast<void>(plan_job_motion(door.robot, job, none, {})), InputError);
+  job.strokes[0].feed.assign(job.strokes[0].waypoints.size(), 0.04);
+  EXPECT_EQ(plan_job_motion(door.robot, job, none, {}).result.status, PlanStatus::kTimeout);
+  const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
+  ASSERT_TRUE(plan.timing && plan.timing->motion);
+  EXPECT_NEAR(plan.timing->motion->runs.front().speed, 0.04, 1e-12);
 }
 
 /// A way to spoil a job's answer, by a random amount.

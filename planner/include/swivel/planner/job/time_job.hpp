@@ -26,6 +26,9 @@ struct JobTimingOptions {
 /// with_motion_defaults() does for each of its strokes.
 [[nodiscard]] Job with_motion_defaults(Job job);
 
+/// Throws InputError if a stroke has no speed at which time_job() could time it.
+void require_speeds(const Job& job, const JobTimingOptions& options);
+
 /// Times a planned job from rest to rest and proves its samples. Runs are timed by
 /// time_trajectory(): along a stroke at JobTimingOptions::speed, else the feed of the waypoint,
 /// else the stroke's process_speed, else the job's, else limits.tool_speed; along approach and
@@ -46,7 +49,8 @@ struct JobMotionPlan {
 };
 /// Plans a job completed by with_motion_defaults(), and times it. A job whose cheapest runs jump
 /// from branch to branch at a singularity is planned again without such steps, if that is possible.
-/// The time-out of `options` covers everything. Throws as plan_job() and time_job() do.
+/// The time-out of `options` covers everything. Throws as plan_job() and time_job() do, InputError
+/// of a stroke without a speed before planning.
 [[nodiscard]] JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
                                             const PlanOptions& options,
                                             const JobTimingOptions& timing);
