@@ -56,8 +56,8 @@ JobMotion random_motion(Random& random, const Job& job, bool lines, bool rolls) 
     }
     if (!of_run(part)) continue;
     const std::size_t end = motion.rows.size() - 1,
-                      begin = motion.rows.size() - static_cast<std::size_t>(count) -
-                              (part > 0 ? 1 : 0),
+                      begin =
+                          motion.rows.size() - static_cast<std::size_t>(count) - (part > 0 ? 1 : 0),
                       on = lines ? begin + 1 : begin, off = lines ? end - 1 : end;
     const std::size_t stroke = part == first_run ? 1 : 0;
     motion.events.push_back({motion.rows[on].t, stroke, motion.rows[on].row.s, true});
@@ -126,8 +126,7 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
       EXPECT_NE(text.find("\"stroke\": \"" + job.strokes[event.stroke].name + "\", \"s\": "),
                 std::string::npos);
   }
-  const auto json =
-      nlohmann::json::parse(job_motion_text(motion, job, kNames, "base", "m.json"));
+  const auto json = nlohmann::json::parse(job_motion_text(motion, job, kNames, "base", "m.json"));
   ASSERT_EQ(json["events"].size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(json["events"][k]["t"].get<double>(), motion.events[k].t);

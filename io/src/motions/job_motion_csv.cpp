@@ -8,8 +8,8 @@
 #include "files/bad_input.hpp"
 #include "files/csv.hpp"
 #include "files/files.hpp"
-#include "motions/joint_rows.hpp"
 #include "motions/job_rows.hpp"
+#include "motions/joint_rows.hpp"
 #include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
 
@@ -139,8 +139,7 @@ class JobMotionRows {
       bad_input(file_, "ends with stroke '" + last_stroke_ + "', though the job has a home",
                 "rows of the way home behind it");
     if (!job_.home && last_stroke_.empty())
-      bad_input(file_, "ends with a transition, though the job has no home",
-                "a stroke at the end");
+      bad_input(file_, "ends with a transition, though the job has no home", "a stroke at the end");
     require_places();
     JobMotionFile read;
     JobMotion& motion = read.motion;

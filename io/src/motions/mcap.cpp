@@ -115,7 +115,7 @@ std::string joint_state(const MotionMessages& motion, const TimedRow& row) {
 /// The definition of an event of a job.
 constexpr const char* kProcessEvent =
     R"({"type": "object", "title": "swivel.ProcessEvent", )"
-    R"("description": "The tool's process is switched on at the begin of a stroke, off at its end.", )"
+    R"("description": "The tool's process is on from a stroke's begin to its end.", )"
     R"("properties": {)"
     R"("t": {"type": "number", "description": "s since the motion began"}, )"
     R"("stroke": {"type": "string", "description": "name of the stroke"}, )"

@@ -19,7 +19,7 @@ struct MotionMessages {
   std::span<const TimedRow> rows;
   bool roll = false;  ///< the last joint of rows is the roll of the tool, which is not written
   const JointNames& joint_names;
-  const std::string& frame_id;                 ///< the arm's base link
+  const std::string& frame_id;                ///< the arm's base link
   const std::vector<EventMessage>* events{};  ///< of a job, by time; null: no job
 };
 

@@ -109,8 +109,9 @@ Problem ProblemReader::read() {
 void ProblemReader::require_one_path() const {
   if (root_.find_filled("strokes")) {
     const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
-    value.fail("makes this file a job, which `plan`, `check` and io::load_job() take",
-               "a `path` here");
+    value.fail(
+        "makes this file a job, which `swivel plan`, `check`, `time` and io::load_job() take",
+        "a `path` here");
   }
   for (const Schema::Key& key : problem_schema().keys)
     if (const auto value = root_.find_filled(key.name); value && !key.beside.empty())
