@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,7 +10,9 @@
 
 #include "commands/check_job_command.hpp"
 #include "options/commands.hpp"
+#include "options/job_options.hpp"
 #include "options/search_options.hpp"
+#include "output/check_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -19,7 +20,6 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/problems/job.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -36,44 +36,6 @@ struct CheckArguments {
   LatticeOptions lattice;
   EpisodeChoice episode;
 };
-
-/// Returns the text of a failure without its numbers, in which failures of one kind differ. Numbers
-/// within quoted names stay.
-std::string kind_of(const std::string& failure) {
-  std::string kind;
-  bool quoted = false, number = false;
-  for (const char c : failure) {
-    if (c == '\'') quoted = !quoted;
-    number = !quoted && (std::strchr("0123456789.+-", c) != nullptr || (number && c == 'e'));
-    if (!number) kind += c;
-  }
-  return kind;
-}
-
-/// Prints one line for each kind of failure, with the number of further failures of that kind.
-void print_failures(const CheckResult& result) {
-  std::vector<std::pair<std::string, std::size_t>> kinds;  // and how many there are
-  std::vector<const std::string*> first;
-  for (const std::string& failure : result.failures) {
-    const std::string kind = kind_of(failure);
-    const auto known = std::find_if(kinds.begin(), kinds.end(),
-                                    [&](const auto& one) { return one.first == kind; });
-    if (known != kinds.end()) {
-      ++known->second;
-      continue;
-    }
-    kinds.emplace_back(kind, 1);
-    first.push_back(&failure);
-  }
-  for (std::size_t k = 0; k < kinds.size(); ++k) {
-    say("  %s", first[k]->c_str());
-    if (kinds[k].second > 1) say(" (and %zu more like it)", kinds[k].second - 1);
-    say("\n");
-  }
-  const auto listed = static_cast<std::int64_t>(result.failures.size());
-  if (result.failure_count > listed)
-    say("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
-}
 
 /// Prints what was proved, and how near it is to failing.
 void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
@@ -156,22 +118,18 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
   return kOk;
 }
 
-/// Verifies the trajectory of a job, with the options that jobs have.
-int run_on_job(Job job, const CheckArguments& arguments) {
-  if (!arguments.certificate.empty())
-    throw InputError("--certificate: is not supported for jobs, as " + arguments.problem +
-                     " is one: allowed are problems with one path");
+int run_on_job(const CheckArguments& arguments, const Job& job) {
+  refuse_options_of_jobs(job.source, {{!arguments.certificate.empty(), "--certificate"}});
   if (arguments.trajectory.empty())
-    throw InputError("trajectory: is missing: allowed is a file that `plan` wrote of the job");
-  job.scene = arguments.episode.apply(problem_of_run(job, {})).scene;
-  for (Stroke& stroke : job.strokes) arguments.lattice.apply(stroke);
-  return check_job_file(job, arguments.trajectory);
+    throw InputError("trajectory: is missing: allowed is a file with the rows of the job");
+  return check_job_file(chosen_job(job, arguments.lattice, arguments.episode),
+                        arguments.trajectory);
 }
 
 int run(const CheckArguments& arguments) {
-  std::variant<Problem, Job> loaded = io::load_problem_or_job(arguments.problem);
-  if (Job* job = std::get_if<Job>(&loaded)) return run_on_job(std::move(*job), arguments);
-  Problem problem = arguments.episode.apply(std::get<Problem>(loaded));
+  const std::variant<Problem, Job> file = io::load_problem_or_job(arguments.problem);
+  if (const Job* job = std::get_if<Job>(&file)) return run_on_job(arguments, *job);
+  Problem problem = arguments.episode.apply(std::get<Problem>(file));
   arguments.lattice.apply(problem);
   if (arguments.trajectory.empty() == arguments.certificate.empty())
     throw InputError(
@@ -183,18 +141,18 @@ int run(const CheckArguments& arguments) {
   const Chain& chain = robot.arm().chain;
   const std::vector<HeldJoint>& held = robot.arm().held;
   warn_of_held(held);
-  const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
-  const auto& rows = file.rows;
+  const io::TrajectoryFile read = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
+  const auto& rows = read.rows;
   const auto complete = [&](const auto& work) {
     return in_the_name_of(arguments.trajectory, work);
   };
   const CheckResult result =
-      file.timed.empty()
+      read.timed.empty()
           ? check_trajectory(robot, problem, complete([&] {
-                               return complete_rows(robot, problem, rows, file.stated);
+                               return complete_rows(robot, problem, rows, read.stated);
                              }))
           : check_motion(robot, problem, complete([&] {
-                           return complete_motion(robot, problem, file.timed, file.stated);
+                           return complete_motion(robot, problem, read.timed, read.stated);
                          }));
   say("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
   if (!result.passed)
@@ -212,7 +170,7 @@ int run(const CheckArguments& arguments) {
   }
   if (look_like_degrees(chain, rows))
     say("  joints would be within their limits as degrees: allowed are radians\n");
-  print_failures(result);
+  print_failures(result.failures, result.failure_count);
   return result.passed ? kOk : kNo;
 }
 

@@ -2,99 +2,117 @@
 #include "commands/check_job_command.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
+#include <variant>
 #include <vector>
 
+#include "commands/job_rows.hpp"
 #include "options/commands.hpp"
+#include "output/check_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/messages/input_error.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/io/io.hpp"
 #include "swivel/planner/job/check_job.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/job/time_job.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 
 namespace {
 
-/// Returns the index of the stroke of a part. Throws InputError if the job has no such stroke.
-std::size_t stroke_of(const Job& job, const io::JobTrajectoryPart& part, const std::string& file) {
-  const auto found = std::find_if(job.strokes.begin(), job.strokes.end(),
-                                  [&](const Stroke& one) { return one.name == part.stroke; });
-  if (found == job.strokes.end())
-    throw InputError(file, "row " + std::to_string(part.first_row) + ": stroke '" + part.stroke +
-                               "': allowed are names of the job's strokes");
-  return static_cast<std::size_t>(found - job.strokes.begin());
+/// Adds a failure for each stroke whose `process` in the file is not 1 on the stroke itself alone.
+void examine_process(const Job& job, const io::JobTrajectory& read,
+                     const std::vector<JobPart>& parts, JobCheckResult& result) {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (!parts[k].run) continue;
+    const std::vector<bool> should = io::process_of_rows(parts[k], job);
+    for (std::size_t row = 0; row < should.size(); ++row) {
+      const bool is =
+          row >= read.parts[k].first_process && row <= read.parts[k].last_process;
+      if (is == should[row]) continue;
+      result.failures.push_back("stroke '" + read.parts[k].stroke +
+                                formatted("': row %zu: process is %d: allowed is %d", row, is,
+                                          static_cast<int>(should[row])));
+      ++result.failure_count;
+      result.passed = false;
+      break;
+    }
+  }
 }
 
-/// Says what is wrong with the column `process` of a run; "" if it is 1 just where the tool is on
-/// the stroke itself.
-std::string fault_of_process(const Job& job, const io::JobTrajectoryPart& part,
-                             const StrokeRun& run) {
-  const Problem problem = problem_of_run(job, run);
-  const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
-  double s = 0, first = 0, last = 0;
-  for (std::size_t k = 1; k < problem.waypoints.size(); ++k) {
-    s += (problem.waypoints[k].position - problem.waypoints[k - 1].position).norm();
-    if (k == process.first) first = s;
-    if (k == process.last) last = s;
+/// Returns what all runs of a job show together.
+CheckResult summary_of(const JobCheckResult& result) {
+  CheckResult all;
+  const auto lower = [](std::optional<double>& least, const std::optional<double>& value) {
+    if (value && (!least || *value < *least)) least = value;
+  };
+  for (const CheckResult& run : result.runs) {
+    all.worst_position = std::max(all.worst_position, run.worst_position);
+    all.worst_angle = std::max(all.worst_angle, run.worst_angle);
+    all.worst_path_error = std::max(all.worst_path_error, run.worst_path_error);
+    all.worst_path_angle = std::max(all.worst_path_angle, run.worst_path_angle);
+    lower(all.min_clearance, run.min_clearance);
+    lower(all.min_margin, run.min_margin);
+    if (!run.motion) continue;
+    if (!all.motion) all.motion.emplace();
+    all.motion->tool_speed = std::max(all.motion->tool_speed, run.motion->tool_speed);
+    all.motion->turn_speed = std::max(all.motion->turn_speed, run.motion->turn_speed);
   }
-  constexpr double kSame = 1e-6;  // m; waypoints on a straight line are merged
-  for (std::size_t k = 0; k < part.rows.size(); ++k) {
-    const double at = part.rows[k].s;
-    const bool on = k >= part.first_process && k <= part.last_process;
-    const bool inside = at > first + kSame && at < last - kSame;
-    const bool outside = at < first - kSame || at > last + kSame;
-    if ((inside && !on) || (outside && on))
-      return formatted(
-          "row %zu: process is %d at s = %.6g m: allowed is %d, the stroke is from "
-          "%.6g to %.6g m",
-          part.first_row + k, on ? 1 : 0, at, on ? 0 : 1, first, last);
+  return all;
+}
+
+/// Prints the verdict and what was proved of `rows` rows, whose last is at `duration`, s.
+void print_verdict(const JobCheckResult& result, const std::vector<HeldJoint>& held,
+                   std::size_t strokes, std::size_t rows, double duration) {
+  say("%s: %zu stroke%s, %zu rows", result.passed ? "passed" : "failed", strokes,
+      strokes == 1 ? "" : "s", rows);
+  if (!result.passed)
+    say(", %lld failure%s", static_cast<long long>(result.failure_count),
+        result.failure_count == 1 ? "" : "s");
+  if (!held.empty()) say(", held: %s", words(held).c_str());
+  if (result.runs.empty()) {
+    say("; no stroke could be measured\n");
+  } else {
+    const CheckResult all = summary_of(result);
+    say("; on strokes tool within %.2g m and %.2g rad of the path at rows, within %.3f mm and "
+        "%.3g rad between",
+        all.worst_position, all.worst_angle, 1e3 * all.worst_path_error, all.worst_path_angle);
+    if (all.min_clearance)
+      say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *all.min_clearance,
+          1e3 * *all.min_margin);
+    say(", cost %.9g\n", result.cost);
+    if (all.motion)
+      say("motion: %.3f s, tool on strokes at most %.6g mm/s and %.4g rad/s\n", duration,
+          1e3 * all.motion->tool_speed, all.motion->turn_speed);
   }
-  return "";
+  print_failures(result.failures, result.failure_count);
 }
 
 }  // namespace
 
 int check_job_file(const Job& job, const std::string& trajectory) {
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const Chain& chain = robot.arm().chain;
-  warn_of_held(robot.arm().held);
-  const io::JobTrajectory file = io::load_job_trajectory(trajectory, chain.joint_names);
-  std::vector<JobPart> parts;
-  std::vector<std::string> faults;  // of the column `process`
-  std::size_t rows = 0;
-  for (const io::JobTrajectoryPart& read : file.parts) {
-    JobPart& part = parts.emplace_back();
-    part.rows = read.rows;
-    rows += read.rows.size();
-    if (read.stroke.empty()) continue;
-    const std::size_t stroke = stroke_of(job, read, trajectory);
-    part.run = {stroke, begins_at_last_waypoint(robot, job, stroke, read.rows)};
-    if (const std::string fault = fault_of_process(job, read, *part.run); !fault.empty())
-      faults.push_back("stroke '" + read.stroke + "': " + fault);
+  const std::vector<HeldJoint>& held = robot.arm().held;
+  warn_of_held(held);
+  const auto file = io::load_job_rows(trajectory, job, robot.arm().chain.joint_names);
+  JobCheckResult result;
+  if (const auto* read = std::get_if<io::JobTrajectory>(&file)) {
+    const std::vector<JobPart> parts =
+        in_the_name_of(trajectory, [&] { return parts_of(robot, job, *read); });
+    result = check_job(robot, job, parts);
+    examine_process(job, *read, parts, result);
+    std::size_t strokes = 0, rows = 0;
+    for (const JobPart& part : parts) {
+      strokes += part.run.has_value();
+      rows += part.rows.size();
+    }
+    print_verdict(result, held, strokes, rows, 0);
+  } else {
+    const auto& timed = std::get<io::JobMotionFile>(file);
+    result = check_job_motion(robot, job, order_of(robot, job, timed), timed.motion);
+    print_verdict(result, held, timed.strokes.size(), timed.motion.rows.size(),
+                  timed.motion.duration);
   }
-  JobCheckResult result = check_job(robot, job, parts);
-  result.failures.insert(result.failures.end(), faults.begin(), faults.end());
-  result.failure_count += static_cast<std::int64_t>(faults.size());
-  result.passed = result.failure_count == 0;
-  say("%s: %zu rows in %zu strokes and %zu transitions", result.passed ? "passed" : "failed", rows,
-      static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(),
-                                             [](const JobPart& part) { return !!part.run; })),
-      static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(),
-                                             [](const JobPart& part) { return !part.run; })));
-  if (!result.passed)
-    say(", %lld failure%s", static_cast<long long>(result.failure_count),
-        result.failure_count == 1 ? "" : "s");
-  if (!robot.arm().held.empty()) say(", held: %s", words(robot.arm().held).c_str());
-  say("; cost %.9g\n", result.cost);
-  for (const std::string& failure : result.failures) say("  %s\n", failure.c_str());
-  const auto listed = static_cast<std::int64_t>(result.failures.size());
-  if (result.failure_count > listed)
-    say("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
   return result.passed ? kOk : kNo;
 }
 

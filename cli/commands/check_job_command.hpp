@@ -6,8 +6,8 @@
 
 namespace swivel::cli {
 
-/// Verifies the trajectory of a job as check_job() does and prints what it found. Returns the exit
-/// code. Throws InputError for a file that is no trajectory of this job.
+/// Verifies the trajectory or the motion of a job in a file, and prints the verdict. Returns the
+/// exit code. Throws InputError.
 int check_job_file(const Job& job, const std::string& trajectory);
 
 }  // namespace swivel::cli

@@ -16,6 +16,7 @@
 
 #include "commands/plan_job_command.hpp"
 #include "options/commands.hpp"
+#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "output/motion_output.hpp"
 #include "output/self_time_output.hpp"
@@ -326,30 +327,15 @@ ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
 
 /// Throws InputError for options that jobs do not have.
 void require_options_of_jobs(const PlanArguments& arguments) {
-  const MotionOptions& motion = arguments.motion;
-  const PlacementOptions& placement = arguments.episode.placement;
-  const bool placed = !placement.object.empty() || placement.path || placement.base ||
-                      std::any_of(placement.coordinates.begin(), placement.coordinates.end(),
-                                  [](const std::string& value) { return !value.empty(); });
-  const std::pair<bool, const char*> options[] = {
-      {arguments.refine, "--refine"},
-      {motion.speed.has_value(), "--speed"},
-      {motion.turn_speed.has_value(), "--turn-speed"},
-      {motion.rate.has_value(), "--rate"},
-      {motion.chord.has_value(), "--chord"},
-      {arguments.advise.has_value(), "--advise"},
-      {!arguments.report.empty(), "--report"},
-      {!arguments.certificate.empty(), "--certificate"},
-      {!arguments.trace.empty(), "--trace"},
-      {arguments.map, "--map"},
-      {!arguments.map_svg.empty(), "--map-svg"},
-      {arguments.full_map, "--full-map"},
-      {placed, "--object, --path, --base"},
-  };
-  for (const auto& [given, name] : options)
-    if (given)
-      throw InputError(std::string(name) + ": is not supported yet for jobs, as " +
-                       arguments.problem + " is one: allowed are problems with one path");
+  refuse_options_of_jobs(arguments.problem, {{arguments.refine, "--refine"},
+                                             {arguments.motion.chord.has_value(), "--chord"},
+                                             {arguments.advise.has_value(), "--advise"},
+                                             {!arguments.report.empty(), "--report"},
+                                             {!arguments.certificate.empty(), "--certificate"},
+                                             {!arguments.trace.empty(), "--trace"},
+                                             {arguments.map, "--map"},
+                                             {!arguments.map_svg.empty(), "--map-svg"},
+                                             {arguments.full_map, "--full-map"}});
   const PlannerKind planner = arguments.search.plan_options().planner;
   if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
     throw InputError("--planner: " + arguments.search.planner +
@@ -360,14 +346,20 @@ void require_options_of_jobs(const PlanArguments& arguments) {
 int plan_job_of(const PlanArguments& arguments, LoadedFile file,
                 std::optional<io::OutputFiles>& outputs) {
   require_options_of_jobs(arguments);
-  require_table_name("--out", arguments.out, "a job without times", "no --out");
-  JobRequest request{.job = std::get<Job>(std::move(file.what)),
-                     .options = arguments.search.plan_options(),
-                     .quiet = arguments.quiet,
-                     .load_ms = file.load_ms};
-  Job& job = request.job;
-  job.scene = arguments.episode.apply(problem_of_run(job, {})).scene;
-  for (Stroke& stroke : job.strokes) arguments.search.apply(stroke);
+  JobRequest request{
+      .job = chosen_job(std::get<Job>(std::move(file.what)), arguments.search, arguments.episode),
+      .options = arguments.search.plan_options(),
+      .out = arguments.out,
+      .quiet = arguments.quiet,
+      .load_ms = file.load_ms};
+  if (arguments.motion.ask_for_job_motion()) {
+    require_motion_format(arguments.out);
+    request.timing = arguments.motion.job_timing();
+    require_speeds(request.job, *request.timing);
+  } else {
+    require_table_name("--out", arguments.out, "a job without times",
+                       "--speed or --rate, with which motions are written in other formats");
+  }
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();
@@ -477,10 +469,10 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option(
       "--advise", arguments->advise,
       "where there is no path: what would help, found by planning it for so many seconds");
-  command->add_option("--out", arguments->out,
-                      "trajectory file (CSV); with --speed, of problems with one path, the motion: "
-                      ".csv, .json or .yaml "
-                      "(JointTrajectory), .mcap (JointState)");
+  command->add_option(
+      "--out", arguments->out,
+      "trajectory file (CSV); with --speed, of jobs also with --rate, the motion: .csv, "
+      ".json or .yaml (JointTrajectory), .mcap (JointState)");
   command->add_option(
       "--certificate", arguments->certificate,
       "where there is no path: a proof of it, which `check --certificate` verifies (JSON)");

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <optional>
+#include <string>
+
 #include "swivel/core/problem/job.hpp"
 #include "swivel/io/files/files.hpp"
+#include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel::cli {
@@ -10,12 +14,14 @@ namespace swivel::cli {
 struct JobRequest {
   Job job{};
   PlanOptions options{};
+  std::optional<JobTimingOptions> timing{};  ///< set: the job is timed
+  std::string out{};                         ///< name of --out, whose ending tells the format
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took
 };
 
-/// Plans a job, writes its trajectory and its result, and prints the answer. `outputs` has --out
-/// and --json. Returns the exit code. Throws InputError.
+/// Plans a job, writes its trajectory or motion and its result, and prints the answer. `outputs`
+/// has --out and --json. Returns the exit code. Throws InputError.
 int plan_job_file(JobRequest request, io::OutputFiles& outputs);
 
 }  // namespace swivel::cli

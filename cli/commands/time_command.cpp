@@ -2,8 +2,11 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <variant>
 
+#include "commands/time_job_command.hpp"
 #include "options/commands.hpp"
+#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "output/motion_output.hpp"
 #include "swivel/io/io.hpp"
@@ -39,10 +42,26 @@ std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& pr
   return result.rows;
 }
 
+int run_on_job(const TimeArguments& arguments, const Job& job,
+               std::optional<io::InputFiles>& noted) {
+  refuse_options_of_jobs(job.source, {{arguments.refine, "--refine"},
+                                      {arguments.motion.chord.has_value(), "--chord"}});
+  JobTimeRequest request{.job = chosen_job(job, arguments.lattice, arguments.episode),
+                         .timing = arguments.motion.job_timing(),
+                         .trajectory = arguments.trajectory,
+                         .out = arguments.out,
+                         .quiet = arguments.quiet,
+                         .check = !arguments.no_check};
+  require_speeds(request.job, request.timing);
+  return time_job_file(request, noted);
+}
+
 int run(const TimeArguments& arguments) {
   require_motion_format(arguments.out);
   std::optional<io::InputFiles> noted(std::in_place);
-  Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  const std::variant<Problem, Job> read = io::load_problem_or_job(arguments.problem);
+  if (const Job* job = std::get_if<Job>(&read)) return run_on_job(arguments, *job, noted);
+  Problem problem = arguments.episode.apply(std::get<Problem>(read));
   arguments.lattice.apply(problem);
   const TimingOptions options = arguments.motion.timing(problem);
   const PreparedRobot robot(problem);
@@ -103,7 +122,7 @@ void add_time(CLI::App& app, int& exit_code) {
       app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
   // shared, so that it lives as long as the callback that reads it
   auto arguments = std::make_shared<TimeArguments>();
-  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("problem", arguments->problem, "problem file, or job")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile)->required();
   arguments->motion.add_to(*command);
   command->add_flag(

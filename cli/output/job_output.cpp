@@ -44,11 +44,21 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
   return text;
 }
 
-/// Returns by how much a cost is above a bound at most, in words.
-std::string above(double cost, double bound) {
-  if (cost <= bound) return "none costs less";
+/// Returns by how much less than `cost` another job may cost, in words.
+std::string less_than(double cost, double bound) {
   if (bound <= 0) return "not bounded from below";
-  return formatted("at most %.3g %% above the cheapest", 100 * (cost / bound - 1));
+  return formatted("at most %.3g %% less", 100 * (1 - bound / cost));
+}
+
+/// Returns how near a job's cost is to the least.
+std::string bounds_text(const JobResult& result, const Job& job) {
+  const bool other_orders = job.order == StrokeOrder::kBest && job.strokes.size() > 1;
+  const std::string none = std::string("none costs less") + (other_orders ? " in this order" : "");
+  if (result.cost <= result.bound_any) return none + ", whatever the transitions";
+  const std::string any = "whatever the transitions, " + less_than(result.cost, result.bound_any);
+  if (result.cost <= result.bound) return none + " with the transitions found; " + any;
+  return "with the transitions found" + std::string(other_orders ? " in this order" : "") + ", " +
+         less_than(result.cost, result.bound) + "; " + any;
 }
 
 /// Returns a line for each run: what it costs in the job and by itself, and what it comes near to.
@@ -106,11 +116,9 @@ std::string motion_text(const JobResult& result, const Job& job) {
       result.status == PlanStatus::kSolved
           ? std::string("solved: ")
           : std::string("stopped: ") + to_string(result.status) + ", the cheapest job known: ";
-  text += formatted("%zu stroke%s, cost %.6g", job.strokes.size(),
-                    job.strokes.size() == 1 ? "" : "s", result.cost);
-  text += formatted(" | bound %.6g: ", result.bound) + above(result.cost, result.bound) +
-          (job.order == StrokeOrder::kBest ? " in this order" : "");
-  text += formatted(" | bound %.6g whatever the transitions", result.bound_any);
+  text += formatted("%zu stroke%s, cost %.6g: ", job.strokes.size(),
+                    job.strokes.size() == 1 ? "" : "s", result.cost) +
+          bounds_text(result, job);
   if (!result.held.empty()) text += " | held: " + words(result.held);
   text += '\n';
   if (job.order == StrokeOrder::kBest) {
@@ -166,6 +174,29 @@ std::string job_text(const JobResult& result, const Job& job) {
   if (!result.parts.empty()) return motion_text(result, job);
   if (result.status == PlanStatus::kInfeasible) return infeasible_text(result, job);
   return std::string("stopped: ") + to_string(result.status) + '\n';
+}
+
+std::string job_motion_text(const JobTimingResult& timing, const std::vector<JobPart>& parts,
+                            const Job& job) {
+  if (const auto& failure = timing.failure) {
+    const std::size_t k = timing.failed_part;
+    std::string part = "transition home";
+    if (parts.at(k).run)
+      part = "stroke " + quoted_name(job, *parts[k].run);
+    else if (k + 1 < parts.size())
+      part = "transition to " + quoted_name(job, *parts[k + 1].run);
+    return "not executable: " + part + formatted(": s = %.4f m: ", failure->s) + failure->reason +
+           '\n';
+  }
+  const JobMotion& motion = *timing.motion;
+  double on_strokes = 0;
+  for (std::size_t k = 1; k < motion.rows.size(); ++k)
+    if (parts.at(motion.part[k]).run) on_strokes += motion.rows[k].t - motion.rows[k - 1].t;
+  return formatted(
+      "motion: %.3f s, %.3f s of it on strokes and %.3f s in transitions, %zu samples at %g Hz, "
+      "%zu events\n",
+      motion.duration, on_strokes, motion.duration - on_strokes, motion.rows.size(), motion.rate,
+      motion.events.size());
 }
 
 }  // namespace swivel::cli

@@ -33,12 +33,26 @@ TimingOptions MotionOptions::timing(const Problem& problem) const {
   options.turn_speed = problem.limits.tool_turn_speed;
   if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
   if (chord) options.chord = positive(*chord, "--chord");
-  constexpr double kMostRate = 1e5;
-  if (rate) options.rate = *rate;
-  if (!(options.rate > 0 && options.rate <= kMostRate))
-    throw InputError("--rate: " + shortest(options.rate) +
-                     ": allowed are numbers > 0, at most 100000");
+  options.rate = checked_rate();
   return options;
+}
+
+JobTimingOptions MotionOptions::job_timing() const {
+  if (chord)
+    throw InputError("--chord: is not supported yet for jobs: allowed are problems with one path");
+  JobTimingOptions options;
+  if (speed) options.speed = positive(*speed, "--speed");
+  if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
+  options.rate = checked_rate();
+  return options;
+}
+
+double MotionOptions::checked_rate() const {
+  constexpr double kMostRate = 1e5;
+  const double asked = rate.value_or(TimingOptions{}.rate);
+  if (!(asked > 0 && asked <= kMostRate))
+    throw InputError("--rate: " + shortest(asked) + ": allowed are numbers > 0, at most 100000");
+  return asked;
 }
 
 void require_motion_format(const std::string& file) {

@@ -7,6 +7,7 @@
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/results/result.hpp"
+#include "swivel/planner/job/time_job.hpp"
 
 namespace swivel::cli {
 
@@ -21,6 +22,15 @@ struct MotionOptions {
   /// Returns the timing that the options ask for, with the problem's tool speeds where none are
   /// given. Throws InputError if there is no speed.
   [[nodiscard]] TimingOptions timing(const Problem& problem) const;
+  /// Returns the timing of jobs that the options ask for. Strokes whose speed is not given have
+  /// that of the problem file. Throws InputError for --chord, which is of problems with one path.
+  [[nodiscard]] JobTimingOptions job_timing() const;
+  /// Returns true if a motion of a job is asked for, by --speed, --turn-speed or --rate.
+  [[nodiscard]] bool ask_for_job_motion() const { return speed || turn_speed || rate; }
+
+ private:
+  /// Returns --rate, or its default. Throws InputError.
+  [[nodiscard]] double checked_rate() const;
 };
 
 /// Throws InputError if the name of a file has no extension that io::motion_text() knows. An empty

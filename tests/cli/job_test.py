@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Jobs from outside: what `plan` says and writes of them, and who refuses them."""
+"""Jobs from outside: what `plan`, `check` and `time` say and write of them, and who refuses
+them."""
 import csv
 import json
 import os
@@ -8,6 +9,8 @@ import pathlib
 import subprocess
 import tempfile
 import unittest
+
+from motion_test import Mcap
 
 SWIVEL = os.environ["SWIVEL"]
 DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
@@ -64,12 +67,16 @@ class Jobs(WithFolder):
         done, out, result = self.plan(one_job())
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         lines = done.stdout.splitlines()
-        self.assertRegex(lines[0], r"^solved: 2 strokes, cost [0-9.]+ \| bound [0-9.]+: ")
+        self.assertRegex(lines[0], r"^solved: 2 strokes, cost [0-9.]+: none costs less")
         self.assertRegex(lines[1], r"^  stroke +layers +cost +least +clearance mm +tool off mm$")
         self.assertRegex(lines[2], r"^  left +[0-9]+ +[0-9.]+ +[0-9.]+ +")
         self.assertRegex(lines[3], r"^  right +[0-9]+ +[0-9.]+ +[0-9.]+ +")
         self.assertEqual(len({len(line) for line in lines[1:4]}), 1)
         self.assertRegex(lines[4], r"^  3 transitions, [0-3] of them straight, cost ")
+        self.assertRegex(
+            lines[-1], r"^parallel, [0-9]+ threads?: load [0-9.]+ ms, lattice [0-9.]+ ms, "
+            r"find [0-9.]+ ms, report [0-9.]+ ms, check [0-9.]+ ms; [0-9]+ nodes "
+        )
         self.assertEqual(result["status"], "solved")
         self.assertEqual([one["stroke"] for one in result["order"]], ["left", "right"])
         self.assertAlmostEqual(result["gap"], result["cost"] / result["bound"] - 1)
@@ -134,8 +141,8 @@ class Jobs(WithFolder):
     def test_options_that_jobs_do_not_take(self):
         file = self.file(one_job())
         options = [
-            ("--refine",), ("--speed", 0.1), ("--turn-speed", 1), ("--rate", 100), ("--chord", 1),
-            ("--advise", 1), ("--report", "r.html"), ("--certificate", "c.json"),
+            ("--refine",), ("--chord", 1), ("--advise", 1), ("--report", "r.html"),
+            ("--certificate", "c.json"),
             ("--trace", "t.json"), ("--map",), ("--map-svg", "m.svg"), ("--full-map",),
             ("--base", "--x", 0.1)
         ]
@@ -153,7 +160,9 @@ class Jobs(WithFolder):
             self.assertRegex(done.stderr, "^swivel: --planner: .* allowed are lazy, parallel\n$")
         done = run("plan", file, "--out", "motion.json")
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, "^swivel: --out: motion.json: a job without times")
+        self.assertRegex(
+            done.stderr, "^swivel: --out: motion.json: a job without times .*--speed or --rate"
+        )
 
     def test_bad_jobs(self):
         for key, value in (("order", "fastest"), ("lift", {"allowed": True}), ("rapid", 2)):
@@ -163,82 +172,352 @@ class Jobs(WithFolder):
                 self.assertRegex(done.stderr, rf"^swivel: .*job.yaml:1: {key}: .*allowed.*\n$")
 
 
-class CheckedJobs(WithFolder):
-    def setUp(self):
-        super().setUp()
-        self.job = self.file(one_job())
-        self.out = self.folder / "t.csv"
-        done = run("plan", self.job, "--out", self.out)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        with self.out.open() as file:
-            self.rows = list(csv.DictReader(file))
+class Timed(WithFolder):
+    """Motions of jobs in time, of `plan` and `time`."""
 
-    def check(self, rows):
-        with self.out.open("w", newline="") as file:
-            writer = csv.DictWriter(file, self.rows[0].keys(), lineterminator="\n")
+    def timed(self, name, *options, job=None, code=0):
+        out = self.folder / name
+        done = run("plan", self.file(job or one_job(process_speed=0.05)), "--out", out, *options)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done, out
+
+    @staticmethod
+    def table(file):
+        with open(file) as lines:
+            return list(csv.DictReader(lines))
+
+    def events(self, rows):
+        """Returns the events that the rows of a motion tell: t, stroke, s, process."""
+        found = []
+        for k, (before, row) in enumerate(zip([{"process": "0"}, *rows], rows)):
+            if row["process"] == before["process"]:
+                continue
+            stroke = row["stroke"] or rows[k + 1]["stroke"]
+            found.append(
+                (float(row["t"]), stroke, float(row["s"]), "on" if row["process"] == "1" else "off")
+            )
+        return found
+
+    def test_every_format(self):
+        done, file = self.timed("m.csv", "--rate", 100)
+        lines = done.stdout.splitlines()
+        motion = [line for line in lines if line.startswith("motion: ")]
+        self.assertEqual(len(motion), 1, done.stdout)
+        rows = self.table(file)
+        self.assertRegex(
+            motion[0], r"^motion: [0-9.]+ s, [0-9.]+ s of it on strokes and [0-9.]+ s in "
+            rf"transitions, {len(rows)} samples at 100 Hz, 4 events$"
+        )
+        self.assertRegex(lines[-1], r", time [0-9.]+ ms, check motion [0-9.]+ ms; ")
+        self.assertEqual([float(row["t"]) for row in rows], [k / 100 for k in range(len(rows))])
+        events = self.events(rows)
+        self.assertEqual(
+            [(stroke, process) for _, stroke, _, process in events],
+            [("left", "on"), ("left", "off"), ("right", "on"), ("right", "off")]
+        )
+        # left has an approach of 0.05 m and is 0.1 m long, right has neither approach nor retract
+        for (_, _, s, _), place in zip(events, (0.05, 0.15, 0, 0.1)):
+            self.assertGreaterEqual(s, place - 1e-6)
+            self.assertLess(s, place + 0.05 / 100 + 1e-6)
+        # the tool is as fast on the stroke as the file says
+        on = [row for row in rows if row["process"] == "1" and row["stroke"] == "right"]
+        middle = len(on) // 2
+        step = float(on[middle + 1]["s"]) - float(on[middle]["s"])
+        self.assertAlmostEqual(step * 100, 0.05, delta=1e-4)
+        begins = [row for row in rows if row["stroke"] == "" and row["s"] != ""]
+        self.assertEqual([float(row["s"]) for row in begins], [0, 0])
+        done = run("check", self.folder / "job.yaml", file)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue(done.stdout.startswith(f"passed: 2 strokes, {len(rows)} rows; "))
+
+        message = json.loads(self.timed("m.json", "--rate", 100)[1].read_text())
+        self.assertEqual(
+            [(one["t"], one["stroke"], one["s"], one["process"]) for one in message["events"]],
+            events
+        )
+        self.assertEqual(len(message["points"]), len(rows))
+        yaml = self.timed("m.yaml", "--rate", 100)[1].read_text()
+        told = [json.loads(line[2:]) for line in yaml[yaml.index("events:") :].splitlines()[1:]]
+        self.assertEqual(told, message["events"])
+
+        log = Mcap(self.timed("m.mcap", "--rate", 100)[1].read_bytes())
+        self.assertEqual(log.profile, "")  # ros2 has CDR alone
+        topics = {topic: (number, *of) for number, (*of, topic, _) in log.channels.items()}
+        self.assertEqual(set(topics), {"/joint_states", "/process"})
+        number, schema = topics["/process"]
+        self.assertEqual(log.channels[number][2], "json")
+        self.assertEqual(log.schemas[schema][1], "jsonschema")
+        self.assertEqual(json.loads(log.schemas[schema][2])["type"], "object")
+        of_process = [one for one in log.messages if one[0] == number]
+        self.assertEqual([json.loads(one[4]) for one in of_process], message["events"])
+        self.assertEqual(len(log.messages), len(rows) + 4)
+        self.assertEqual(log.statistics[:3], (len(rows) + 4, 2, 2))
+        times = [one[2] for one in log.messages]
+        self.assertEqual(times, sorted(times))
+        for one, event in zip(of_process, events):
+            self.assertAlmostEqual(one[2] * 1e-9, event[0], delta=1e-9)
+        for channel in (0, 1):
+            self.assertEqual(
+                log.indexes[channel], [(one[2], one[5] - log.chunk[2]) for one in log.messages
+                                       if one[0] == channel]
+            )
+
+    def test_speeds(self):
+        fast = float(self.table(self.timed("m.csv", "--speed", 0.2)[1])[-1]["t"])
+        slow = float(self.table(self.timed("m.csv", "--turn-speed", 1)[1])[-1]["t"])
+        self.assertLess(fast + 2, slow)
+        (self.folder / "m.csv").write_text("earlier")
+        done, out = self.timed("m.csv", "--rate", 100, job=one_job(), code=2)
+        self.assertRegex(done.stderr, "^swivel: .*: stroke 'left' has no speed: allowed are .*\n$")
+        self.assertEqual(out.read_text(), "earlier")
+        done, out = self.timed("m.csv", "--speed", 0.1, "--timeout", 1e-9, code=3)
+        self.assertIn("the search was stopped", done.stderr)
+        self.assertFalse(out.exists())
+        for options, needle in (
+            (("--rate", 0), "--rate: 0: allowed are numbers > 0"),
+            (("--speed", -1), "--speed: -1: allowed are finite numbers above 0"),
+            (("--rate", 100, "--out", "m.bag"), "--out: m.bag: unknown format"),
+        ):
+            done = run("plan", self.folder / "job.yaml", *options)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertTrue(done.stderr.startswith("swivel: " + needle), done.stderr)
+
+    def test_time_of_a_trajectory(self):
+        done, out = self.timed("t.csv")
+        job, motion = self.folder / "job.yaml", self.folder / "m.csv"
+        done = run("time", job, out, "--rate", 100, "--out", motion)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"^motion: .* at 100 Hz, 4 events\n$")
+        self.assertEqual(run("check", job, motion).returncode, 0)
+        done = run("time", job, motion, "--out", self.folder / "n.csv")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, r"^swivel: .*m.csv: has times: allowed is .*\n$")
+        self.assertFalse((self.folder / "n.csv").exists())
+        rows = self.table(out)
+        joint = list(rows[0])[5]
+        rows[5][joint] = str(float(rows[5][joint]) + 0.01)
+        with open(self.folder / "bad.csv", "w", newline="") as file:
+            writer = csv.DictWriter(file, list(rows[0]))
             writer.writeheader()
             writer.writerows(rows)
-        return run("check", self.job, self.out)
-
-    def test_passes(self):
-        done = self.check(self.rows)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        done = run("time", job, self.folder / "bad.csv", "--out", motion)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertRegex(
-            done.stdout, r"^passed: \d+ rows in 2 strokes and 3 transitions; cost \d"
+            done.stderr, r"bad.csv: .*: allowed is a job that passes `swivel check`\n$"
         )
+        for option in (("--refine",), ("--chord", 1)):
+            done = run("time", job, out, *option)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(f"{option[0]}: is not supported yet for jobs", done.stderr)
 
-    def test_refuses_what_was_changed(self):
-        def rows_of(name):
-            return [k for k, row in enumerate(self.rows) if row["stroke"] == name]
 
-        left, right, moves = rows_of("left"), rows_of("right"), rows_of("")
-        joint = next(key for key in self.rows[0] if key not in ("s", "phi", "branch"))
+class SpoiltJobs(unittest.TestCase):
+    """`check` passes what was planned of the door and refuses what was spoilt."""
 
-        def change(row, **values):
-            def apply(rows):
-                rows[row].update(values)
-            return apply
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = pathlib.Path(holder.name)
+        cls.job = cls.folder / "job.yaml"
+        cls.job.write_text(
+            "approach: 0.02\nretract: 0.03\n" + JOB.read_text().replace("../", f"{DATA}/")
+        )
+        cls.files = {}
+        for name, options in (("plain", ()), ("timed", ("--rate", 25))):
+            out = cls.folder / f"{name}.csv"
+            done = run("plan", cls.job, "--out", out, *options)
+            assert done.returncode == 0, done.stdout + done.stderr
+            with open(out) as lines:
+                cls.files[name] = list(csv.DictReader(lines))
 
-        def cut(first, last):
-            def apply(rows):
-                del rows[first:last]
-            return apply
+    def checked(self, rows):
+        file = self.folder / "spoilt.csv"
+        with open(file, "w", newline="") as lines:
+            writer = csv.DictWriter(lines, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+        return run("check", self.job, file)
 
-        def move(row, by):
-            def apply(rows):
-                rows[row][joint] = repr(float(rows[row][joint]) + by)
-            return apply
-
-        middle = left[len(left) // 2]
-        changes = {
-            "process off in a stroke": change(middle, process="0"),
-            "process on in an approach": change(left[0], process="1"),
-            "process on in a transition": change(moves[0], process="1"),
-            "a stroke of another name": lambda rows: [rows[k].update(stroke="up") for k in left],
-            "a jump in a stroke": move(middle, 0.01),
-            "a transition ends elsewhere": move(left[0] - 1, 0.01),
-            "a transition begins elsewhere": move(left[-1] + 1, 1e-6),
-            "no retract": cut(left[-1], left[-1] + 1),
-            "no approach": cut(left[0], left[0] + 1),
-            "no transition": cut(left[-1] + 1, right[0]),
-            "no second stroke": cut(right[0], right[-1] + 1),
-            "strokes swapped": lambda rows: rows.__setitem__(
-                slice(None),
-                [{**row, "stroke": {"left": "right", "right": "left"}.get(row["stroke"], "")}
-                 for row in rows]
-            ),
-            "not home": move(len(self.rows) - 1, 0.01),
-        }
-        for name, apply in changes.items():
-            with self.subTest(name):
-                rows = [dict(row) for row in self.rows]
-                apply(rows)
-                done = self.check(rows)
-                self.assertIn(done.returncode, (1, 2), done.stdout)
-                if done.returncode == 1:
-                    self.assertRegex(done.stdout, r"^failed: .* failure")
+    def spoilt(self, name, ways):
+        done = self.checked(self.files[name])
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue(done.stdout.startswith("passed: 6 strokes, "))
+        for what, way, code, needle in ways:
+            with self.subTest(what):
+                rows = [dict(row) for row in self.files[name]]
+                rows = way(rows) or rows
+                done = self.checked(rows)
+                self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+                if code == 1:
+                    self.assertTrue(done.stdout.startswith("failed: "), done.stdout)
+                    self.assertIn(needle, done.stdout)
                 else:
-                    self.assertRegex(done.stderr, r"^swivel: .*\n$")
+                    self.assertEqual(done.stdout, "")
+                    self.assertRegex(done.stderr, r"^swivel: .*spoilt.csv.*: allowed .*\n$")
+                    self.assertIn(needle, done.stderr)
+
+    @staticmethod
+    def rows_of(rows, stroke):
+        return [k for k, row in enumerate(rows) if row["stroke"] == stroke]
+
+    def test_trajectory(self):
+        of, joint = self.rows_of, "arm_left_joint_3_e"
+
+        def put(stroke, at, column, text):
+            def way(rows):
+                rows[of(rows, stroke)[at]][column] = text
+
+            return way
+
+        def move(k, by):
+            def way(rows):
+                row = rows[k(rows)]
+                row[joint] = repr(float(row[joint]) + by)
+
+            return way
+
+        def rename(names):
+            def way(rows):
+                for row in rows:
+                    row["stroke"] = names.get(row["stroke"], row["stroke"])
+
+            return way
+
+        def without(which):
+            return lambda rows: [row for k, row in enumerate(rows) if not which(rows, k)]
+
+        def between(rows, k):  # row_0 and row_1
+            return of(rows, "row_0")[-1] < k < of(rows, "row_1")[0]
+
+        def swap_blocks(rows):
+            one, two = of(rows, "row_2"), of(rows, "row_3")
+            return (
+                rows[: one[0]] + rows[two[0] : two[-1] + 1] + rows[one[-1] + 1 : two[0]] +
+                rows[one[0] : one[-1] + 1] + rows[two[-1] + 1 :]
+            )
+
+        def backwards(rows):
+            one = of(rows, "row_4")
+            places = [rows[k]["s"] for k in one]
+            rows[one[0] : one[-1] + 1] = rows[one[0] : one[-1] + 1][::-1]
+            for k, s in zip(one, places):
+                rows[k]["s"] = s
+
+        self.spoilt("plain", [
+            ("process on the approach", put("row_1", -1, "process", "1"), 2, "1 again"),
+            ("process late", lambda rows: self.first_on(rows, "row_1", "0"), 1, "process is 0"),
+            ("process in a transition", put("", 0, "process", "1"), 2, "in a transition"),
+            ("unknown stroke", rename({"row_1": "row_9"}), 2, "'row_9' is no stroke"),
+            ("names swapped", rename({"row_1": "row_2", "row_2": "row_1"}), 1, "stroke 'row_"),
+            ("rows swapped", swap_blocks, 1, "the given order"),
+            ("no transition", without(between), 1, "parts: allowed are"),
+            ("half a transition", without(lambda rows, k: k == of(rows, "")[0]), 2, "one row"),
+            ("no stroke", without(lambda rows, k: rows[k]["stroke"] == "row_5"), 1, "'row_5'"),
+            ("a joint", move(lambda rows: of(rows, "row_3")[40], 0.01), 1, "'row_3': row 40"),
+            ("home", move(lambda rows: 0, 0.01), 1, "away from home"),
+            ("a way's end", move(lambda rows: of(rows, "row_3")[0] - 1, 1e-6), 1, "no jump"),
+            ("s", put("row_2", 30, "s", "0.2"), 1, "stroke 'row_2'"),
+            ("retract cut", without(lambda rows, k: k in of(rows, "row_5")[-2:]), 1, "'row_5'"),
+            ("backwards", backwards, 1, "'row_4' is run backwards"),
+        ])
+
+    def first_on(self, rows, stroke, process):
+        on = [k for k in self.rows_of(rows, stroke) if rows[k]["process"] == "1"]
+        rows[on[0]]["process"] = process
+
+    def test_motion(self):
+        of, joint = self.rows_of, "arm_left_joint_3_e"
+
+        def row_of(rows, stroke, at):
+            return rows[of(rows, stroke)[at]]
+
+        def last_on(rows):
+            on = [k for k in of(rows, "row_1") if rows[k]["process"] == "1"]
+            rows[on[-1]]["process"] = "0"
+
+        def early(rows):
+            on = [k for k in of(rows, "row_1") if rows[k]["process"] == "1"]
+            rows[on[0] - 1]["process"] = "1"
+
+        def again(rows):
+            row_of(rows, "row_1", -1)["process"] = "1"
+
+        def in_transition(rows):
+            rows[1]["process"] = "1"
+
+        def rename(names):
+            def way(rows):
+                for row in rows:
+                    row["stroke"] = names.get(row["stroke"], row["stroke"])
+
+            return way
+
+        def without(which):
+            def way(rows):
+                kept = [row for k, row in enumerate(rows) if not which(rows, k)]
+                for k, row in enumerate(kept):
+                    row["t"] = repr(k / 25)
+                return kept
+
+            return way
+
+        def between(rows, k):  # row_0 and row_1
+            return of(rows, "row_0")[-1] < k < of(rows, "row_1")[0]
+
+        def no_last_stroke(rows):
+            first = of(rows, "row_5")[0]
+            rows[first - 1].update(s="", phi="", branch="", process="0")
+            return rows[:first]
+
+        def add(k, column, by):
+            def way(rows):
+                row = rows[k(rows)]
+                row[column] = repr(float(row[column]) + by)
+
+            return way
+
+        def faster(rows):
+            for row in rows:
+                row["t"] = repr(0.8 * float(row["t"]))
+
+        def middle(rows):  # of the way between row_0 and row_1
+            return (of(rows, "row_0")[-1] + of(rows, "row_1")[0]) // 2
+
+        self.spoilt("timed", [
+            ("process ends early", last_on, 1, "process off of stroke 'row_1'"),
+            ("process late", lambda rows: self.first_on(rows, "row_1", "0"), 1, "process on"),
+            ("process early", early, 1, "process on of stroke 'row_1'"),
+            ("process again", again, 2, "1 again"),
+            ("process in a transition", in_transition, 2, "in a transition"),
+            ("unknown stroke", rename({"row_1": "row_9"}), 2, "'row_9' is no stroke"),
+            ("names swapped", rename({"row_1": "row_2", "row_2": "row_1"}), 1, "stroke 'row_"),
+            ("no transition", without(between), 2, "follows 'row_0' at once"),
+            ("a row of a transition", without(lambda rows, k: k == middle(rows)), 1, "'row_1'"),
+            ("no last stroke", no_last_stroke, 1, "'row_5' is run 0 times"),
+            ("not home", without(lambda rows, k: k > of(rows, "row_5")[-1]), 2, "has a home"),
+            ("a joint", add(lambda rows: of(rows, "row_3")[40], joint, 0.01), 1, "'row_3'"),
+            ("joint on a way", add(middle, joint, 0.01), 1, "transition to 'row_1'"),
+            ("home", add(lambda rows: 0, joint, 0.01), 1, "away from home"),
+            ("a speed", add(lambda rows: of(rows, "row_3")[40], joint + "_v", 0.5), 1, "'row_3'"),
+            ("s", add(lambda rows: of(rows, "row_2")[30], "s", 1e-4), 1, "stroke 'row_2'"),
+            ("faster", faster, 1, "failures"),
+            ("retract cut", without(lambda rows, k: k in of(rows, "row_5")[-4:]), 1, "'row_5'"),
+        ])
+
+    def test_words(self):
+        for arguments, needle in (
+            ((), "trajectory: is missing"),
+            (("--certificate", "c.json"), "--certificate: is not supported yet for jobs"),
+            ((self.folder / "plain.csv", "--base", "--x", 1), "is not supported yet for jobs"),
+            ((self.folder / "missing.csv",), "missing.csv"),
+            ((JOB,), "is not the header of a job's trajectory"),
+        ):
+            with self.subTest(needle):
+                done = run("check", self.job, *arguments)
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                self.assertIn(needle, done.stderr)
+                self.assertEqual(done.stderr.count("\n"), 1)
 
 
 class Refused(WithFolder):
@@ -246,7 +525,6 @@ class Refused(WithFolder):
         rows = self.folder / "rows.csv"
         rows.write_text("")
         commands = [
-            ("time", JOB, rows, "--out", self.folder / "t.csv"),
             ("campaign", JOB, "--episodes", 1, "--out", self.folder / "c.csv"),
             ("place", JOB, "--base", "--x", "0:1:0.5", "--out", self.folder / "p.csv"),
             ("info", JOB, "--pairs"),
@@ -256,8 +534,9 @@ class Refused(WithFolder):
                 done = run(*command)
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertRegex(
-                    done.stderr, r"^swivel: .*door_job.yaml:16: strokes: makes this file a job, "
-                    r"which `plan`, `check` and io::load_job\(\) take: allowed is a `path` here\n$"
+                    done.stderr, r"^swivel: .*door_job.yaml:[0-9]+: strokes: makes this file a "
+                    r"job, which `swivel plan`, `check`, `time` and io::load_job\(\) take: allowed "
+                    r"is a `path` here\n$"
                 )
                 self.assertEqual(done.stdout, "")
 

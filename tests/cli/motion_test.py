@@ -33,7 +33,7 @@ class Mcap:
         assert data[:8] == self.MAGIC and data[-8:] == self.MAGIC
         self.data = data
         self.schemas, self.channels, self.messages, self.profile = {}, {}, [], None
-        self.statistics, self.summary = None, []
+        self.statistics, self.summary, self.indexes = None, [], {}
         self.records(8, len(data) - 8)
         summary_start, offset_start, _ = struct.unpack_from("<QQI", data, len(data) - 8 - 20)
         at = summary_start
@@ -86,6 +86,7 @@ class Mcap:
         elif opcode == 0x07:
             channel, n = struct.unpack_from("<HI", data, at)
             self.index = [struct.unpack_from("<QQ", data, at + 6 + k) for k in range(0, n, 16)]
+            self.indexes[channel] = self.index
         elif opcode == 0x0B:
             self.statistics = struct.unpack_from("<QHIIIIQQ", data, at)
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <vector>
+
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/problem/job.hpp"
+#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel::cli {
+
+/// Returns the parts of a job that a file has. A stroke is run backwards if the tool begins at its
+/// last waypoint. Throws InputError for a stroke that the job does not have.
+[[nodiscard]] std::vector<JobPart> parts_of(const PreparedRobot& robot, const Job& job,
+                                            const io::JobTrajectory& read);
+
+/// Returns the runs of a job's motion that a file has, in their order. A stroke is run backwards
+/// if the tool begins at its last waypoint.
+[[nodiscard]] std::vector<StrokeRun> order_of(const PreparedRobot& robot, const Job& job,
+                                              const io::JobMotionFile& read);
+
+}  // namespace swivel::cli

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/time_job_command.hpp"
+
+#include <variant>
+#include <vector>
+
+#include "commands/job_rows.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
+#include "output/job_output.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
+#include "terminal/terminal.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+io::JobTrajectory untimed(const JobTimeRequest& request, const io::JointNames& joint_names) {
+  auto read = io::load_job_rows(request.trajectory, request.job, joint_names);
+  if (std::holds_alternative<io::JobMotionFile>(read))
+    throw InputError(request.trajectory,
+                     "has times: allowed is the trajectory of a job without them");
+  return std::get<io::JobTrajectory>(std::move(read));
+}
+
+/// Returns the parts of a job in a file, with rows at the layers of each run. Throws InputError
+/// unless they are proved to be the job's.
+std::vector<JobPart> proved_parts(const PreparedRobot& robot, const Job& job,
+                                  const io::JobTrajectory& read, const Budget& budget) {
+  std::vector<JobPart> parts = parts_of(robot, job, read);
+  const JobCheckResult check =
+      check_job(robot, job, parts, {.margins = false, .budget = budget});
+  if (!check.passed)
+    throw InputError(check.failures.front() + ": allowed is a job that passes `swivel check`");
+  for (JobPart& part : parts)
+    if (part.run)
+      part.rows = rows_at_layers(robot, problem_of_run(job, *part.run), part.rows, {}, budget);
+  return parts;
+}
+
+/// Returns the runs among parts of a job.
+std::vector<StrokeRun> runs_among(const std::vector<JobPart>& parts) {
+  std::vector<StrokeRun> runs;
+  for (const JobPart& part : parts)
+    if (part.run) runs.push_back(*part.run);
+  return runs;
+}
+
+/// A motion, or why there is none.
+struct Timed {
+  std::vector<JobPart> parts;
+  JobTimingResult timing;
+  std::string fault = {};  ///< what the check of the motion found; empty: it is proved
+};
+
+Timed timed(const PreparedRobot& robot, const JobTimeRequest& request,
+            const io::JobTrajectory& read) {
+  const Budget budget(std::nullopt, &interrupted);
+  const Job& job = request.job;
+  Timed made{proved_parts(robot, job, read, budget), {}};
+  made.timing = time_job(robot, job, made.parts, request.timing, budget);
+  if (!made.timing.motion || !request.check) return made;
+  // Motions keep more clearance between rows than trajectories do: transitions may lack it.
+  const JobCheckResult check =
+      check_job_motion(robot, job, runs_among(made.parts), *made.timing.motion,
+                       {.margins = false, .budget = budget});
+  if (!check.passed) made.fault = check.failures.front();
+  return made;
+}
+
+}  // namespace
+
+int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& noted) {
+  const PreparedRobot robot(problem_of_run(request.job, {0, false}));
+  if (!request.quiet) warn_of_held(robot.arm().held);
+  const io::JointNames& names = robot.arm().chain.joint_names;
+  const io::JobTrajectory read = untimed(request, names);
+  io::OutputFiles outputs(noted->files());
+  noted.reset();
+  outputs.add("--out", request.out);
+  catch_interrupts();
+  std::optional<Timed> made;
+  try {
+    made = in_the_name_of(request.trajectory, [&] { return timed(robot, request, read); });
+  } catch (const Stopped&) {
+    outputs.remove("--out");
+  }
+  const bool executable = made && made->timing.motion && made->fault.empty();
+  if (!executable)
+    outputs.remove("--out");
+  else if (outputs.wants("--out"))
+    outputs.write("--out", io::job_motion_text(*made->timing.motion, request.job, names,
+                                               request.job.base_link, request.out));
+  deliver(outputs, made ? "there is no motion now" : "the work was stopped", [&] {
+    if (!made) return say("stopped\n");
+    if (!made->fault.empty()) return say("not executable: %s\n", made->fault.c_str());
+    if (executable && (request.quiet || outputs.takes_standard_output())) return;
+    say_text(job_motion_text(made->timing, made->parts, request.job));
+    if (!executable) return;
+    for (const std::string& warning : made->timing.motion->warnings)
+      complain("swivel: warning: %s\n", warning.c_str());
+  });
+  return !made ? kStopped : executable ? kOk : kNo;
+}
+
+}  // namespace swivel::cli

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
+#include "swivel/core/problem/job.hpp"
+
+namespace swivel::cli {
+
+/// Throws InputError for the first of these options, by name, that is given (true): jobs do not
+/// take them. `job_file` is the job's problem file.
+void refuse_options_of_jobs(const std::string& job_file,
+                            const std::vector<std::pair<bool, const char*>>& options);
+
+/// Returns the job with the lattice and the episode that the command line chooses. Throws
+/// InputError, also for a placement, which jobs do not take.
+[[nodiscard]] Job chosen_job(Job job, const LatticeOptions& lattice, const EpisodeChoice& episode);
+
+}  // namespace swivel::cli

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace swivel::cli {
+
+/// Prints one line for each kind of failure, with the number of further failures of that kind, and
+/// how many of the `count` failures are not listed.
+void print_failures(const std::vector<std::string>& failures, std::int64_t count);
+
+}  // namespace swivel::cli
