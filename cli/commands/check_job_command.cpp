@@ -27,8 +27,7 @@ void examine_process(const Job& job, const io::JobTrajectory& read,
     if (!parts[k].run) continue;
     const std::vector<bool> should = io::process_of_rows(parts[k], job);
     for (std::size_t row = 0; row < should.size(); ++row) {
-      const bool is =
-          row >= read.parts[k].first_process && row <= read.parts[k].last_process;
+      const bool is = row >= read.parts[k].first_process && row <= read.parts[k].last_process;
       if (is == should[row]) continue;
       result.failures.push_back("stroke '" + read.parts[k].stroke +
                                 formatted("': row %zu: process is %d: allowed is %d", row, is,

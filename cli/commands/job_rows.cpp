@@ -16,13 +16,11 @@ std::vector<JobPart> parts_of(const PreparedRobot& robot, const Job& job,
     JobPart& made = parts.emplace_back();
     made.rows = part.rows;
     if (part.stroke.empty()) continue;
-    const auto stroke =
-        std::find_if(job.strokes.begin(), job.strokes.end(),
-                     [&](const Stroke& one) { return one.name == part.stroke; });
+    const auto stroke = std::find_if(job.strokes.begin(), job.strokes.end(),
+                                     [&](const Stroke& one) { return one.name == part.stroke; });
     if (stroke == job.strokes.end())
-      throw InputError(formatted("data row %zu: stroke: ", part.first_row + 1) + "'" +
-                       part.stroke + "' is no stroke of the job: allowed are the names of its " +
-                       "strokes");
+      throw InputError(formatted("data row %zu: stroke: ", part.first_row + 1) + "'" + part.stroke +
+                       "' is no stroke of the job: allowed are the names of its " + "strokes");
     const auto index = static_cast<std::size_t>(stroke - job.strokes.begin());
     made.run = StrokeRun{index, begins_at_last_waypoint(robot, job, index, part.rows)};
   }
@@ -38,8 +36,8 @@ std::vector<StrokeRun> order_of(const PreparedRobot& robot, const Job& job,
     // A run begins with the last row of the transition before it.
     const auto row = static_cast<std::size_t>(own - read.motion.part.begin());
     const TrajectoryRow& first = read.motion.rows[row > 0 ? row - 1 : 0].row;
-    order.push_back({read.strokes[k],
-                     begins_at_last_waypoint(robot, job, read.strokes[k], {first})});
+    order.push_back(
+        {read.strokes[k], begins_at_last_waypoint(robot, job, read.strokes[k], {first})});
   }
   return order;
 }

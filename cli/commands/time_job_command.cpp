@@ -31,8 +31,7 @@ io::JobTrajectory untimed(const JobTimeRequest& request, const io::JointNames& j
 std::vector<JobPart> proved_parts(const PreparedRobot& robot, const Job& job,
                                   const io::JobTrajectory& read, const Budget& budget) {
   std::vector<JobPart> parts = parts_of(robot, job, read);
-  const JobCheckResult check =
-      check_job(robot, job, parts, {.margins = false, .budget = budget});
+  const JobCheckResult check = check_job(robot, job, parts, {.margins = false, .budget = budget});
   if (!check.passed)
     throw InputError(check.failures.front() + ": allowed is a job that passes `swivel check`");
   for (JobPart& part : parts)

@@ -310,6 +310,25 @@ class Timed(WithFolder):
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(f"{option[0]}: is not supported yet for jobs", done.stderr)
 
+    def test_what_cannot_be_executed(self):
+        # The cheapest job of this episode jumps from branch to branch at a singularity.
+        episode, out = ("--seed", 1, "--episode", 3), self.folder / "t.csv"
+        self.assertEqual(run("plan", JOB, *episode, "--out", out).returncode, 0)
+        motion = self.folder / "m.csv"
+        motion.write_text("from before")
+        done = run("time", JOB, out, *episode, "--out", motion)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(
+            done.stdout, r"^not executable: stroke 'row_5': s = [0-9.]+ m: the solution changes "
+            r"from branch [0-7] to [0-7]\n$"
+        )
+        self.assertIn("there is no motion now", done.stderr)
+        self.assertFalse(motion.exists())
+        done = run("plan", JOB, *episode, "--rate", 50, "--out", motion)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertIn("jumps to another branch", done.stderr)
+        self.assertTrue(motion.exists())
+
 
 class SpoiltJobs(unittest.TestCase):
     """`check` passes what was planned of the door and refuses what was spoilt."""

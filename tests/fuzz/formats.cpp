@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "robots.hpp"
+#include "swivel/io/motions/job_trajectory.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
@@ -307,6 +308,40 @@ std::vector<Reader> motion_readers(const TempFolder& folder) {
   return all;
 }
 
+/// Returns the reader of the rows of a job of two strokes, with times and without.
+Reader job_reader(const TempFolder& folder) {
+  const io::JointNames joints{"a", "b", "c", "d", "e", "f", "g"};
+  Job job;
+  JobMotion motion;
+  PlanResult rows = short_plan(joints);
+  JobResult result;
+  result.joint_names = joints;
+  for (std::size_t part = 0; part < 3; ++part) {
+    JobPart& made = result.parts.emplace_back();
+    made.rows = rows.trajectory;
+    if (part % 2 == 0) {
+      Stroke& stroke = job.strokes.emplace_back();
+      stroke.name = part == 0 ? "left" : "right";
+      stroke.waypoints.resize(2);
+      stroke.waypoints[1].position.x() = 0.4;
+      made.run = StrokeRun{part / 2, false};
+    }
+    for (const TrajectoryRow& row : rows.trajectory) {
+      motion.rows.push_back({0.1 * static_cast<double>(motion.rows.size()), row});
+      motion.part.push_back(part);
+    }
+    const std::vector<TimedRow>& timed = motion.rows;
+    if (part % 2 == 1) continue;
+    motion.events.push_back({timed[timed.size() - 4].t, part / 2, 0.1, true});
+    motion.events.push_back({timed[timed.size() - 2].t, part / 2, 0.3, false});
+  }
+  return {"job_rows",
+          {io::to_job_csv(result, job), io::to_job_motion_csv(motion, job, joints)},
+          {",", "\"", "\n", "1e9,", ",left,1\n", ",right,0\n", ",,0\n"},
+          at(folder, "job.csv",
+             [joints, job](const fs::path& path) { (void)io::load_job_rows(path, job, joints); })};
+}
+
 /// Returns the reader of a campaign that was broken off, of 100 episodes with these settings.
 Reader campaign_reader(const TempFolder& folder, const io::RunSettings& settings) {
   {
@@ -409,6 +444,7 @@ std::vector<Reader> mesh_readers(const TempFolder& folder) {
 std::vector<Reader> readers(const TempFolder& folder) {
   std::vector<Reader> all = problem_readers(folder);
   std::ranges::move(motion_readers(folder), std::back_inserter(all));
+  all.push_back(job_reader(folder));
   const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}},
                                  {{"arm.urdf", 0x0123456789abcdef}}};
   all.push_back(campaign_reader(folder, settings));
