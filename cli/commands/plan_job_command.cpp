@@ -76,7 +76,9 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   progress.clear();
 
   write_rows(request, plan, outputs);
-  if (outputs.wants("--json")) outputs.write("--json", io::to_job_json(result, request.job) + "\n");
+  const io::JobExtras extras{plan.timing ? &*plan.timing : nullptr, plan.stopped};
+  if (outputs.wants("--json"))
+    outputs.write("--json", io::to_job_json(result, request.job, extras) + "\n");
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   const bool no_motion = plan.timing && !plan.timing->motion;
   deliver(outputs,

@@ -199,7 +199,8 @@ class Timed(WithFolder):
         return found
 
     def test_every_format(self):
-        done, file = self.timed("m.csv", "--rate", 100)
+        result = self.folder / "r.json"
+        done, file = self.timed("m.csv", "--rate", 100, "--json", result)
         lines = done.stdout.splitlines()
         motion = [line for line in lines if line.startswith("motion: ")]
         self.assertEqual(len(motion), 1, done.stdout)
@@ -236,6 +237,12 @@ class Timed(WithFolder):
             events
         )
         self.assertEqual(len(message["points"]), len(rows))
+        told = json.loads(result.read_text())["motion"]
+        self.assertEqual(
+            (told["executable"], told["samples"], told["duration"]),
+            (True, len(rows), float(rows[-1]["t"]))
+        )
+        self.assertEqual(told["events"], message["events"])
         yaml = self.timed("m.yaml", "--rate", 100)[1].read_text()
         told = [json.loads(line[2:]) for line in yaml[yaml.index("events:") :].splitlines()[1:]]
         self.assertEqual(told, message["events"])

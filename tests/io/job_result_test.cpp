@@ -274,6 +274,41 @@ TEST(JobResult, Unsolved) {
             Json::parse(R"({"from": "left", "to": null, "bodies": ["link_5", "post"]})"));
 }
 
+/// Returns a motion in time of two_strokes(), or why its fourth part has none.
+JobTimingResult timed_plan(bool executable) {
+  JobTimingResult timed;
+  if (!executable) {
+    timed.failure = NoMotion{0.05, "the solution changes from branch 4 to 5"};
+    timed.failed_part = 3;
+    return timed;
+  }
+  JobMotion& motion = timed.motion.emplace();
+  motion.rows.resize(3);
+  motion.rate = 250;
+  motion.duration = 0.008;
+  motion.events = {{0.004, 1, 0, true}, {0.008, 1, 0.1, false}};
+  motion.warnings = {"a warning"};
+  return timed;
+}
+
+TEST(JobResult, Motions) {
+  const Job job = two_strokes();
+  EXPECT_TRUE(Json::parse(to_job_json(plan_of_two(), job))["motion"].is_null());
+  const JobTimingResult good = timed_plan(true), bad = timed_plan(false);
+  EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {&good}))["motion"],
+            Json::parse(R"({"executable": true, "reason": null, "part": null, "at_s": null,
+                            "rate": 250.0, "samples": 3, "duration": 0.008, "events": [
+                            {"t": 0.004, "stroke": "right", "s": 0.0, "process": "on"},
+                            {"t": 0.008, "stroke": "right", "s": 0.1, "process": "off"}],
+                            "warnings": ["a warning"]})"));
+  EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {&bad}))["motion"],
+            Json::parse(R"({"executable": false,
+                            "reason": "the solution changes from branch 4 to 5",
+                            "part": 3, "at_s": 0.05})"));
+  EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {nullptr, true}))["motion"]["reason"],
+            "stopped");
+}
+
 /// Adds the names of all keys of a document; list items count as one.
 void add_keys(const Json& value, const std::string& at, std::set<std::string>& keys) {
   if (value.is_array())
@@ -309,6 +344,8 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
   turning.parts[1].rows[0].roll = 0.1;
   for (const JobResult& result : {turning, without_a_job(true), without_a_job(false)})
     add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
+  const JobTimingResult timed = timed_plan(true);
+  add_keys(Json::parse(to_job_json(plan_of_two(), two_strokes(), {&timed})), "", seen);
   for (const std::string& key : seen) EXPECT_TRUE(known.contains(key)) << key;
   // The parts that plans have as well are tested with those (result_test.cpp, tests/docs).
   for (const std::string& key : known) {

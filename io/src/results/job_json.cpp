@@ -12,8 +12,12 @@ namespace {
 /// Writes the result of a job.
 class JobWriter {
  public:
-  JobWriter(const JobResult& result, const Job& job)
-      : result_(result), job_(job), solved_(!result.parts.empty()), roll_(any_rolls(result)) {}
+  JobWriter(const JobResult& result, const Job& job, const JobExtras& extras)
+      : result_(result),
+        job_(job),
+        extras_(extras),
+        solved_(!result.parts.empty()),
+        roll_(any_rolls(result)) {}
 
   [[nodiscard]] Json write() const {
     Json json;
@@ -35,6 +39,7 @@ class JobWriter {
                                    {"searches", result_.transitions.searches},
                                    {"rounds", result_.transitions.rounds}};
     json["time_ms"] = time_json(result_.time_ms);
+    json["motion"] = motion();
     json["parts"] = parts();
     json["robot_pairs"] = robot_pairs_json(result_.dropped_pairs, result_.reduced_pairs);
     json["held"] = held_json(result_.held);
@@ -119,6 +124,33 @@ class JobWriter {
             {"bodies", or_null(result_.barred_by)}};
   }
 
+  [[nodiscard]] Json motion() const {
+    const JobTimingResult* timed = extras_.motion;
+    if (timed == nullptr && !extras_.stopped) return nullptr;
+    Json json = {{"executable", timed != nullptr && timed->motion.has_value()},
+                 {"reason", timed == nullptr ? Json("stopped") : Json(nullptr)},
+                 {"part", nullptr},
+                 {"at_s", nullptr}};
+    if (timed != nullptr && timed->failure) {
+      json["reason"] = timed->failure->reason;
+      json["part"] = timed->failed_part;
+      json["at_s"] = timed->failure->s;
+    }
+    if (timed == nullptr || !timed->motion) return json;
+    const JobMotion& motion = *timed->motion;
+    json["rate"] = motion.rate;
+    json["samples"] = motion.rows.size();
+    json["duration"] = motion.duration;
+    json["events"] = Json::array();
+    for (const ProcessEvent& event : motion.events)
+      json["events"].push_back({{"t", event.t},
+                                {"stroke", job_.strokes[event.stroke].name},
+                                {"s", event.s},
+                                {"process", event.on ? "on" : "off"}});
+    json["warnings"] = motion.warnings;
+    return json;
+  }
+
   [[nodiscard]] Json parts() const {
     Json list = Json::array();
     for (const JobPart& part : result_.parts) {
@@ -139,13 +171,14 @@ class JobWriter {
 
   const JobResult& result_;
   const Job& job_;
+  const JobExtras& extras_;
   const bool solved_, roll_;
 };
 
 }  // namespace
 
-std::string to_job_json(const JobResult& result, const Job& job) {
-  return document_of(JobWriter(result, job).write());
+std::string to_job_json(const JobResult& result, const Job& job, const JobExtras& extras) {
+  return document_of(JobWriter(result, job, extras).write());
 }
 
 }  // namespace swivel::io

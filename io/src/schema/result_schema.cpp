@@ -537,6 +537,27 @@ Schema parts_of_job() {
            "straight from row to row")}));
 }
 
+Schema motion_of_job() {
+  const Schema event =
+      section("", {key("t", number(), "of a sample", "s"), key("stroke", text(), "its name"),
+                   key("s", number(), "along the stroke, its approach included", "m"),
+                   key("process", one_of({"on", "off"}), "what it is from then on")});
+  return section(
+      "job_motion",
+      {key("executable", boolean(),
+           "whether there is one; else the keys from `rate` on are missing"),
+       key("reason", or_null(text()),
+           "why there is none (`stopped` where the time was up, which is exit code 3, else 1)"),
+       key("part", or_null(integer()), "which of `parts`, from 0, has none"),
+       key("at_s", or_null(number()), "where", "m"),
+       key_of_some("rate", number(), "samples a second", "1/s"),
+       key_of_some("samples", integer(), "rows"),
+       key_of_some("duration", number(), "from rest to rest", "s"),
+       key_of_some("events", list(event),
+                   "when the process is switched: `t`, `stroke`, `s`, `process` (`on`, `off`)"),
+       key_of_some("warnings", list(text()), "as of [motions](#motion-in-the-result)")});
+}
+
 /// Returns the keys that say what the answer of a job is.
 std::vector<Schema::Key> job_answer_keys() {
   return {
@@ -585,7 +606,9 @@ Schema job_result() {
           "`pairs` of configurations asked whether the way is free, `searches` for a way around, "
           "`rounds`: jobs tried"),
       key("time_ms", time_ms(), "where time went, as of [results](#times)", "ms"),
-      key("parts", parts_of_job(), "the motion: strokes and transitions, [below](#part-of-a-job)")};
+      key("motion", or_null(motion_of_job()),
+          "`null` unless it is timed; [below](#motion-in-the-result-of-a-job)"),
+      key("parts", parts_of_job(), "the rows: strokes and transitions, [below](#part-of-a-job)")};
   std::vector<Schema::Key> last = part_keys();
   std::erase_if(last, [](const Schema::Key& one) {
     return one.name != "robot_pairs" && one.name != "held" && one.name != "warnings" &&

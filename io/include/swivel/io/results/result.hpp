@@ -11,6 +11,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
 
 namespace swivel::io {
@@ -23,9 +24,15 @@ namespace swivel::io {
 /// Loads CERTIFICATE.json. Throws InputError for a file that is none. verify_certificate() verifies
 /// what it says.
 [[nodiscard]] InfeasibilityCertificate load_certificate(const std::filesystem::path& json);
+/// What followed the plan of a job.
+struct JobExtras {
+  const JobTimingResult* motion = nullptr;  ///< null if it was not asked for or does not exist
+  bool stopped = false;                     ///< time ran out before the motion that was asked for
+};
 /// Returns RESULT.json of a job as text, docs/formats.md "Result of a job". What describes the
-/// motion is null unless there is one.
-[[nodiscard]] std::string to_job_json(const JobResult& result, const Job& job);
+/// rows is null unless there are some, `motion` unless one was asked for.
+[[nodiscard]] std::string to_job_json(const JobResult& result, const Job& job,
+                                      const JobExtras& extras = {});
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.
