@@ -4,7 +4,7 @@
 
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/problem/job.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel::cli {

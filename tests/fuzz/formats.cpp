@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "robots.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motions/job_rows.hpp"
+#include "jobs/job_rows.hpp"
 #include "results/result_parts.hpp"
 #include "schema/schema.hpp"
 #include "swivel/io/results/result.hpp"

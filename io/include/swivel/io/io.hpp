@@ -3,8 +3,8 @@
 // wrong and what is allowed.
 #pragma once
 #include "swivel/io/files/files.hpp"
+#include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/io/meshes/mesh.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
 #include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/job.hpp"
 #include "swivel/io/problems/problem.hpp"

@@ -9,10 +9,10 @@
 #include "files/csv.hpp"
 #include "files/files.hpp"
 #include "files/text_number.hpp"
-#include "motions/job_rows.hpp"
+#include "jobs/job_rows.hpp"
 #include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/io/jobs/job_trajectory.hpp"
 
 namespace swivel::io {
 

@@ -7,7 +7,7 @@
 
 #include "files/csv.hpp"
 #include "swivel/core/answer/job_result.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/io/jobs/job_trajectory.hpp"
 
 namespace swivel::io {
 

@@ -3,7 +3,7 @@
 
 #include "files/files.hpp"
 #include "motions/messages.hpp"
-#include "swivel/io/motions/job_trajectory.hpp"
+#include "swivel/io/jobs/job_trajectory.hpp"
 
 namespace swivel::io {
 

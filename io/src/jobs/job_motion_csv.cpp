@@ -8,7 +8,7 @@
 #include "files/bad_input.hpp"
 #include "files/csv.hpp"
 #include "files/files.hpp"
-#include "motions/job_rows.hpp"
+#include "jobs/job_rows.hpp"
 #include "motions/joint_rows.hpp"
 #include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
