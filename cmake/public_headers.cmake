@@ -42,6 +42,9 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/graph/verdicts/verdicts.hpp
   swivel/planner/certificate/infeasibility_certificate.hpp
   swivel/planner/measure/measure.hpp
+  swivel/planner/job/check_job.hpp
+  swivel/planner/job/plan_job.hpp
+  swivel/planner/job/time_job.hpp
   swivel/planner/plan/plan_options.hpp
   swivel/planner/plan/plan_view.hpp
   swivel/planner/plan/planner.hpp
@@ -53,18 +56,15 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/study/campaign.hpp
   swivel/planner/study/place.hpp
   swivel/planner/verify/check.hpp
-  swivel/planner/job/check_job.hpp
-  swivel/planner/job/plan_job.hpp
-  swivel/planner/job/time_job.hpp
   swivel/planner/verify/complete_rows.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp
+  swivel/io/jobs/job_trajectory.hpp
   swivel/io/meshes/mesh.hpp
   swivel/io/motions/motion.hpp
-  swivel/io/motions/job_trajectory.hpp
   swivel/io/motions/trajectory.hpp
-  swivel/io/problems/problem.hpp
   swivel/io/problems/job.hpp
+  swivel/io/problems/problem.hpp
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
