@@ -9,6 +9,20 @@ import { join } from 'node:path';
 
 const browserFile = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
+/** The share of the variants to try: SWIVEL_TEST_SCALE, 1 where it is not given. */
+export const scale = Number(process.env.SWIVEL_TEST_SCALE || 1);
+
+/**
+ * Those of the variants that are tried: at least one, as many as the scale asks for, from a place
+ * in the list that follows SWIVEL_TEST_SEED.
+ */
+export function some(variants) {
+  const seed = BigInt(process.env.SWIVEL_TEST_SEED || 20260701),
+    count = Math.min(variants.length, Math.max(1, Math.ceil(scale * variants.length - 1e-9))),
+    first = Number(seed % BigInt(variants.length));
+  return Array.from({ length: count }, (_, k) => variants[(first + k) % variants.length]);
+}
+
 /** Ends with code 77 (skipped), but where CI is set with 1. */
 export function skip(why) {
   console.log(why);
@@ -17,6 +31,21 @@ export function skip(why) {
 
 export function needBrowser() {
   if (!existsSync(browserFile)) skip(`no browser at ${browserFile}`);
+}
+
+/** An empty window, and what goes wrong in it from now on. */
+async function newWindow(browser, before, javaScriptEnabled) {
+  const page = await browser.newPage({ javaScriptEnabled }),
+    troubles = [];
+  if (before) await page.addInitScript(before);
+  page.on('pageerror', (error) => troubles.push(String(error)));
+  page.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
+  page.on(
+    'request',
+    (request) =>
+      /^(file|data|blob|about):/.test(request.url()) || troubles.push(`network: ${request.url()}`),
+  );
+  return { page, troubles };
 }
 
 /**
@@ -41,27 +70,32 @@ export async function withBrowser({ packages, shots }, test) {
       '--disable-sync',
     ],
   });
+  // A window costs two seconds of the processor before it shows anything: pages are opened in the
+  // same one where nothing but its size and colours is another. By `before` and javaScriptEnabled.
+  const windows = new Map();
   /**
-   * Opens a page that must stay without errors and without network: `close` asserts it. `before`: a
-   * script that runs first in the page.
+   * Opens a page that must stay without errors and without network: `close` asserts it, and leaves
+   * the window to the next page. `before`: a script that runs first in the page.
    */
-  const open = async (html, { before, hash = '', ...options }) => {
-    const page = await browser.newPage(options),
-      troubles = [];
-    if (before) await page.addInitScript(before);
-    page.on('pageerror', (error) => troubles.push(String(error)));
-    page.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
-    page.on(
-      'request',
-      (request) =>
-        /^(file|data|blob):/.test(request.url()) || troubles.push(`network: ${request.url()}`),
-    );
+  const open = async (
+    html,
+    { before, hash = '', javaScriptEnabled = true, viewport, colorScheme = 'light' },
+  ) => {
+    const key = JSON.stringify([before, javaScriptEnabled]);
+    if (!windows.has(key)) windows.set(key, await newWindow(browser, before, javaScriptEnabled));
+    const { page, troubles } = windows.get(key);
+    windows.delete(key); // until it is closed
+    troubles.length = 0;
+    await page.setViewportSize(viewport);
+    await page.emulateMedia({ colorScheme });
     await page.goto(`file://${html}${hash}`);
     return {
       page,
-      close: async () => {
-        assert.deepEqual(troubles, []);
-        await page.close();
+      close: async ({ withErrors = false } = {}) => {
+        if (!withErrors) assert.deepEqual(troubles, []);
+        await page.goto('about:blank');
+        if (windows.has(key)) await page.close();
+        else windows.set(key, { page, troubles });
       },
     };
   };
