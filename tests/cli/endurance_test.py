@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A long campaign of experiment C in one process: its memory does not grow, and its answers pass
 `swivel check`.
-SWIVEL_TEST_TRIALS is the number of episodes (1600 unless given); of them up to 200 are checked,
-spread over all."""
+SWIVEL_TEST_TRIALS is the number of episodes (1600 unless given, whatever the scale: fewer show no
+growth); of them up to 200 are checked, spread over all, SWIVEL_TEST_SCALE of them where it is
+given."""
 import csv
 import os
 import pathlib
@@ -13,11 +14,12 @@ import time
 import unittest
 
 from cli_test import PROBLEMS, SWIVEL, WithFolder, run
+from trials import trials
 
 PROBLEM = PROBLEMS / "experiment_c.yaml"
 EPISODES = int(os.environ.get("SWIVEL_TEST_TRIALS", 1600))
-SEED = os.environ.get("SWIVEL_TEST_SEED", "20260701")
-SAMPLE = 200
+SEED = os.environ.get("SWIVEL_TEST_SEED") or "20260701"
+SAMPLE = min(200, trials(200))
 WARM_UP = 0.25  # of the episodes
 # What is kept on purpose are the rows of --out, some 200 bytes each; a trajectory that stayed would
 # be 8,000. The heap of a short campaign has not yet its size, and comes in pages of 2 MB.

@@ -10,6 +10,7 @@ import subprocess
 import unittest
 
 from cli_test import DATA, PROBLEMS, SWIVEL, WithFolder, run
+from trials import seed
 
 PROBLEM = PROBLEMS / "experiment_c.yaml"
 QUICK = ("--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
@@ -59,9 +60,7 @@ class Merge(WithFolder):
 
     def test_campaigns(self):
         page = ("--report",) if self.pages() else ()
-        seed = int(os.environ.get("SWIVEL_TEST_SEED", 20260702))
-        print("SWIVEL_TEST_SEED=%d" % seed)
-        draw = random.Random(seed)
+        draw = random.Random(seed(20260702))
         joined = 0
         for episodes, count in ((13, draw.randint(2, 6)), (2, 3), (5, 1)):
             command = (
@@ -98,9 +97,7 @@ class Merge(WithFolder):
 
     def test_placements(self):
         page = ("--report",) if self.pages() else ()
-        seed = int(os.environ.get("SWIVEL_TEST_SEED", 20260703))
-        print("SWIVEL_TEST_SEED=%d" % seed)
-        draw = random.Random(seed)
+        draw = random.Random(seed(20260703))
         grid = ("--x", "-0.1:0.1:0.05", "--y", "0:0.1:0.05", "--yaw", "0.1")
         for thing in (
             ("--object", "door", *grid, "--best", "clearance,cost"),

@@ -16,6 +16,7 @@ import unittest
 import xml.etree.ElementTree as tree
 
 from cli_test import DATA, PROBLEMS, SHARED, SWIVEL, WithFolder, run
+from trials import seed
 
 PROBLEM = PROBLEMS / "experiment_c.yaml"
 QUICK = ("--planner", "lazy", "--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
@@ -46,9 +47,7 @@ class Place(WithFolder):
         return json.loads(result.read_text())
 
     def test_cells_are_what_plan_says(self):
-        seed = 20260701
-        draw = random.Random(seed)
-        print("SWIVEL_TEST_SEED=%d" % seed)
+        draw = random.Random(seed(20260701))
         met = {"solved": 0, "infeasible": 0}
         for thing in (DOOR, ("--object", "post"), ("--path",), ("--base",)):
             rows = self.rows(
