@@ -8,6 +8,7 @@
 
 #include "exact/pair_test.hpp"
 #include "reference.hpp"
+#include "seed.hpp"
 #include "support.hpp"
 
 namespace swivel {
@@ -29,7 +30,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
   const int kinds = static_cast<int>(kKinds.size());
   for (int ka = 0; ka < kinds; ++ka)
     for (int kb = 0; kb < kinds; ++kb)
-      for (int k = 0; k < 8; ++k) {
+      for (int k = 0; k < test::trials(8); ++k) {
         const Shape a = random_shape(ka, random), b = random_shape(kb, random);
         const Pose X_a = random.pose(0.05), X_b = random.pose(0.4);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
@@ -57,7 +58,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
                   kSlack)
             << what;
       }
-  EXPECT_GT(touching, 5);
+  EXPECT_GE(touching, test::at_least(6));
   int apart = 0, answered = 0;
   for (const auto& [pair, t] : tally) {
     std::printf("%s / %s: %d of %d have points\n", kKinds[pair.first].c_str(),
@@ -65,7 +66,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
     apart += t.asked;
     answered += t.answered;
   }
-  EXPECT_GT(apart, 300);
+  EXPECT_GE(apart, test::at_least(301));
   EXPECT_GT(answered, apart * 95 / 100);
 }
 
@@ -77,7 +78,7 @@ TEST(CommonPoint, LiesInBothBodies) {
   const int kinds = static_cast<int>(kKinds.size());
   for (int ka = 0; ka < kinds; ++ka)
     for (int kb = 0; kb < kinds; ++kb)
-      for (int k = 0; k < 4; ++k) {
+      for (int k = 0; k < test::trials(4); ++k) {
         const Shape a = random_shape(ka, random), b = random_shape(kb, random);
         const Pose X_a = random.pose(0.05), X_b = random.pose(0.1);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
@@ -100,11 +101,11 @@ TEST(CommonPoint, LiesInBothBodies) {
         EXPECT_LE(reference_clearance(dot, at, a, X_a), kSlack) << what;
         EXPECT_LE(reference_clearance(dot, at, b, X_b), kSlack) << what;
       }
-  EXPECT_GT(apart, 10);
+  EXPECT_GE(apart, test::at_least(11));
   int touching = 0, answered = 0;
   for (const auto& [pair, t] : tally) touching += t.asked, answered += t.answered;
   std::printf("%d of %d have a point\n", answered, touching);
-  EXPECT_GT(touching, 100);
+  EXPECT_GE(touching, test::at_least(101));
   EXPECT_GT(answered, touching * 95 / 100);
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "reference.hpp"
+#include "seed.hpp"
 #include "support.hpp"
 
 namespace swivel {
@@ -67,7 +68,7 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
   World::Query query(world);
   Random random(31);
   int free = 0, touching = 0;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < test::trials(12); ++k) {
     const Config q = random.config(2.0);
     std::vector<double> truth;
     for (const BodyPair& p : world.pairs())
@@ -93,8 +94,8 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
     }
     ++(least > 0 ? free : touching);
   }
-  EXPECT_GT(free, 1);
-  EXPECT_GT(touching, 1);
+  EXPECT_GE(free, test::at_least(2));
+  EXPECT_GE(touching, test::at_least(2));
   EXPECT_EQ(query.counters().fcl_failures, 0);
 }
 
@@ -107,7 +108,7 @@ TEST(World, TheLikelyPairIsAskedFirst) {
   World::Query query(world, DistanceProofs::kOn);
   Random random(34);
   int named = 0, others = 0, none = 0;
-  for (int k = 0; k < 3000; ++k) {
+  for (int k = 0; k < test::trials(3000); ++k) {
     const Config q = random.config(2.5);
     const BodyPair suspected = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
     const bool guilty = query.pair_violates(q, suspected, 0.005);
@@ -124,9 +125,9 @@ TEST(World, TheLikelyPairIsAskedFirst) {
       ++others;
     }
   }
-  EXPECT_GT(named, 30);
-  EXPECT_GT(others, 300);
-  EXPECT_GT(none, 300);
+  EXPECT_GE(named, test::at_least(31));
+  EXPECT_GE(others, test::at_least(301));
+  EXPECT_GE(none, test::at_least(301));
 }
 
 TEST(World, NothingToTouch) {
@@ -174,7 +175,7 @@ TEST(World, AnEpisodeIsTheSameAsAFreshWorld) {
   ASSERT_EQ(episode.pairs().size(), fresh.pairs().size());
   World::Query a(episode), b(fresh);
   Random random(32);
-  for (int k = 0; k < 300; ++k) {
+  for (int k = 0; k < test::trials(300); ++k) {
     const Config q = random.config(2.5);
     const auto x = a.find_violating_pair(q, 0.005), y = b.find_violating_pair(q, 0.005);
     ASSERT_EQ(x.has_value(), y.has_value());

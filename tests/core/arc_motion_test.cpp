@@ -72,6 +72,16 @@ std::optional<Drifting> drifting(const Chain& chain, Random& random) {
   return d;
 }
 
+/// Returns whether all joints are within their limits.
+bool within_limits(const Chain& chain, const Config& q) {
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    const double at = q[static_cast<Eigen::Index>(j)];
+    if (!limit.continuous && (at < limit.lower || at > limit.upper)) return false;
+  }
+  return true;
+}
+
 TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
   const std::uint64_t base = seed("ArcMotion");
   const std::vector<Chain> all = chains();
@@ -86,7 +96,9 @@ TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     for (int i = 0; i < d->path->size(); ++i) {
       const auto q = motion->joints(d->path->layer(i).travel);
       ASSERT_TRUE(q) << trial;
-      off_rows = std::max(off_rows, (*q - d->rows[static_cast<std::size_t>(i)].q).norm());
+      const Config& row = d->rows[static_cast<std::size_t>(i)].q;
+      if (!within_limits(d->chain, row)) continue;  // is moved inside
+      off_rows = std::max(off_rows, (*q - row).norm());
     }
     for (int k = 0; k < 100; ++k) {
       const double x = random.uniform(0, motion->length());
@@ -162,7 +174,7 @@ TEST(ArcMotion, MovesRowsOffLimits) {
   std::printf("%d of %d motions leave a limit that no row leaves, %d of them no more\n", left,
               tried, kept);
   EXPECT_GE(left, at_least(3));
-  EXPECT_GE(kept, at_least(left / 2));
+  EXPECT_GE(kept, at_least_among(left / 2));
 }
 
 TEST(ArcLengths, AreThoseOfAWalkInSmallSteps) {

@@ -253,7 +253,7 @@ TEST(Lattice, LimitsRoundedUpGiveNoMoreWindings) {
 TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
   Random random(seed("Lattice.Sliver"));
   int tried = 0, connected = 0, near_limit = 0;
-  for (int trial = 0; trial < 40; ++trial) {
+  for (int trial = 0; trial < trials(40); ++trial) {
     const double limit =
         trial % 2 ? kPi + random.uniform(1e-6, 0.49e-3) : kTwoPi + random.uniform(1e-6, 0.49e-3);
     const TestRobot robot = wide_iiwa(limit);
@@ -305,7 +305,7 @@ TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
   std::printf("%d starts, %d connected, %d nodes in the slivers of those of one turn\n", tried,
               connected, near_limit);
   EXPECT_EQ(connected, tried);
-  EXPECT_GT(near_limit, 10);
+  EXPECT_GE(near_limit, at_least(11));
 }
 
 TEST(Lattice, RangesOverSixtyFourTurnsAreContinuous) {
@@ -405,7 +405,7 @@ TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
   Random random(seed("Lattice.Start"));
   const Chain chain = arm_of(robot).chain;
   int tried = 0;
-  for (int trial = 0; trial < 50; ++trial) {
+  for (int trial = 0; trial < trials(50); ++trial) {
     const Config q0 = random_config(chain, random);
     Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
     small.problem.start = q0;
@@ -438,7 +438,7 @@ TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
     small.problem.start = off;
     EXPECT_THROW(small.rebuild(), InputError);
   }
-  EXPECT_EQ(tried, 50);
+  EXPECT_EQ(tried, trials(50));
 }
 
 TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
@@ -450,7 +450,7 @@ TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
     Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
     small.problem.cost.metric = metric;
     small.rebuild();
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < trials(1000); ++trial) {
       Config delta;
       for (int j = 0; j < kDof; ++j) delta[j] = random.uniform(-0.5, 0.5);
       const double cost = small.lattice->edge_cost(delta);
@@ -471,7 +471,7 @@ TEST(Lattice, CostsGrowWithTheWeightsToTheLastBit) {
   Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
   EXPECT_EQ(small.lattice->cost_unit(), 1);
   for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax})
-    for (int trial = 0; trial < 100; ++trial) {
+    for (int trial = 0; trial < trials(100); ++trial) {
       small.problem.cost.metric = metric;
       for (double& weight : small.problem.cost.weights)
         weight = random.coin(0.3) ? 0 : random.uniform(0, 1);
@@ -498,7 +498,7 @@ TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   Random random(seed("Lattice.StepError"));
   const Chain chain = arm_of(robot).chain;
   int compared = 0;
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < trials(400); ++trial) {
     const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.05, random);
     const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.1, .dalpha = 0.1});
     const SrsLattice& lattice = *small.lattice;
@@ -533,7 +533,7 @@ TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
     ++compared;
   }
   std::printf("%d steps compared\n", compared);
-  EXPECT_GT(compared, 50);
+  EXPECT_GE(compared, at_least(51));
 }
 
 /// Straight from its definition: the tool at a quarter, a half and three quarters of the move.

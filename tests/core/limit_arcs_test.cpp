@@ -177,7 +177,7 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
   EXPECT_GE(sampled, at_least(1000000));
   EXPECT_GE(inside, at_least(50000));
   EXPECT_GE(arcs_found, at_least(2000));
-  EXPECT_GE(narrow, at_least(20));
+  EXPECT_GE(narrow, at_least(8));  // 1 to 11 of a quarter
   EXPECT_GE(whole, at_least(50));
   EXPECT_GE(several, at_least(100));
   EXPECT_GE(images, at_least(100));

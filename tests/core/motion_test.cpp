@@ -124,8 +124,8 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
     }
   }
   std::printf("%d corners rounded, %d sharp\n", rounded, sharp);
-  EXPECT_GT(rounded, 100);
-  EXPECT_GT(sharp, 5);
+  EXPECT_GE(rounded, at_least(101));
+  EXPECT_GE(sharp, at_least(6));
 }
 
 /// A winding curve, read off as densely as programs that make tool paths do.
@@ -275,8 +275,8 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
     }
   }
   std::printf("%d coordinates inside their boxes, %d at bounds\n", inside, at_bounds);
-  EXPECT_GT(inside, 50);
-  EXPECT_GT(at_bounds, 20);
+  EXPECT_GE(inside, at_least(51));
+  EXPECT_GE(at_bounds, at_least(21));
 }
 
 /// The plane: travel along one joint, the coordinate along another.
@@ -436,9 +436,9 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
               timed, stops, slow, samples, worst[0], worst[1], worst[2]);
   for (const double ratio : worst) EXPECT_LE(ratio, 1 + 1e-9);
   EXPECT_GT(worst[2], 0.8);
-  EXPECT_GE(timed, 20);
-  EXPECT_GT(stops, 5);
-  EXPECT_GT(samples, 5000);
+  EXPECT_GE(timed, at_least(20));
+  EXPECT_GE(stops, at_least(6));
+  EXPECT_GE(samples, at_least(5001));
 }
 
 TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {

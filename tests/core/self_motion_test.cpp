@@ -160,7 +160,7 @@ TEST(SelfMotion, MissesNoArcThatRandomSeedsFind) {
     }
     print(table.name, coverage);
     EXPECT_EQ(coverage.poses, trials(4));
-    EXPECT_GE(coverage.seeds, at_least(10 * coverage.poses));
+    EXPECT_GE(coverage.seeds, at_least_among(10 * coverage.poses));
     EXPECT_LE(coverage.residual, 1e-9);
     EXPECT_EQ(coverage.missed, 0) << table.name;
   }
@@ -230,7 +230,7 @@ TEST(SelfMotion, MissesNoArcNearAlignment) {
     }
     print(table.name + " near alignment", coverage);
     EXPECT_EQ(coverage.poses, trials(4));
-    EXPECT_GE(coverage.seeds, at_least(10 * coverage.poses));
+    EXPECT_GE(coverage.seeds, at_least_among(10 * coverage.poses));
     EXPECT_LE(coverage.singular, coverage.seeds / 20) << table.name;
     // Arms with three parallel axes: a closed curve along which the lock moves by less than
     // 1e-4 may be hidden between lock values: one of 60 such poses.
@@ -257,7 +257,7 @@ TEST(SelfMotion, FindsMostArcsWithoutAClosedForm) {
     }
     print(table.name + " sampled", coverage);
     EXPECT_EQ(coverage.poses, trials(6));
-    EXPECT_GE(coverage.seeds, at_least(10 * coverage.poses));
+    EXPECT_GE(coverage.seeds, at_least_among(10 * coverage.poses));
     EXPECT_LE(coverage.residual, 1e-9);
     EXPECT_LE(coverage.missed, coverage.seeds / 20) << table.name;
   }

@@ -170,11 +170,11 @@ TEST(BestPath, IsThatOfAPlainDescent) {
       "changed the optimum, %d paths went on "
       "as an earlier one\n",
       found, none, ties, chosen, changed, followed);
-  EXPECT_GE(chosen, at_least(count / 4 + 1));
+  EXPECT_GE(chosen, at_least_among(count / 4 + 1));
   EXPECT_GE(found, 2 * count);
-  EXPECT_GE(ties, at_least(count + 1));
-  EXPECT_GE(changed, at_least(count / 4 + 1));
-  EXPECT_GE(followed, at_least(count / 4 + 1));
+  EXPECT_GE(ties, at_least_among(count + 1));
+  EXPECT_GE(changed, at_least_among(count / 4 + 1));
+  EXPECT_GE(followed, at_least_among(count / 4 + 1));
 }
 
 TEST(BestPath, FollowsNoEarlierOneWhereSumsAreRounded) {

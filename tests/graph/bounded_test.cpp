@@ -287,16 +287,16 @@ void expect_enough(const BoundedCounts& counts) {
       counts.bounds, counts.tightest, share(counts.bounded_ik, counts.whole_ik), deepest_share,
       static_cast<long long>(counts.compared), counts.met, counts.apart, counts.longest,
       counts.followed);
-  EXPECT_GE(counts.followed, at_least(counts.rounds / 20));
+  EXPECT_GE(counts.followed, at_least_among(counts.rounds / 60));
   EXPECT_GE(counts.met, at_least(20));
   EXPECT_GE(counts.apart, at_least(200));
   EXPECT_GT(counts.longest, 64);
-  if (at_least(1) > 0) {
+  if (at_least(8) > 0) {
     EXPECT_LT(deepest_share, 65);  // about 80 where the costs of the reach are lost
   }
-  EXPECT_GE(counts.compared, at_least(counts.problems + 1));
-  EXPECT_GE(counts.rounds, at_least(3 * counts.problems + 1));
-  EXPECT_GE(counts.changed, at_least(counts.problems + 1));
+  EXPECT_GE(counts.compared, at_least_among(counts.problems + 1));
+  EXPECT_GE(counts.rounds, at_least_among(3 * counts.problems + 1));
+  EXPECT_GE(counts.changed, at_least_among(counts.problems + 1));
   EXPECT_GE(counts.ended, at_least(4));
   EXPECT_GE(counts.to_deepest, at_least(10));
   EXPECT_GE(counts.bounds, at_least(1001));
@@ -481,9 +481,9 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
   const auto& [runs, reached, barred] = counts;
   std::printf("%zu units, %d runs, %d nodes reached, %d not\n", units.size(), runs, reached,
               barred);
-  EXPECT_GT(reached, runs);
-  EXPECT_GT(barred, runs / 10);
-  EXPECT_GT(idle_runs, runs / 60);
+  EXPECT_GE(reached, at_least_among(runs + 1));
+  EXPECT_GE(barred, at_least_among(runs / 10 + 1));
+  EXPECT_GE(idle_runs, at_least_among(runs / 60 + 1));
 }
 
 template <class T>
@@ -521,7 +521,7 @@ TEST(Kernels, RangesAreOfTheNodesWithAValue) {
   expect_plain_ranges<double>(random, units, &RelaxKernels::range, ranges, empty);
   expect_plain_ranges<float>(random, units, &RelaxKernels::coarse_range, ranges, empty);
   std::printf("%zu units, %d ranges, %d of no node\n", units.size(), ranges, empty);
-  EXPECT_GT(empty, ranges / 100);
+  EXPECT_GE(empty, at_least_among(ranges / 100 + 1));
 }
 
 /// A random task about nodes that each meet all partners: nodes in runs along which joints change
@@ -598,9 +598,9 @@ TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
   }
   std::printf("%zu units, %d runs, %d nodes reached, %d not, %d joints a turn further\n",
               units.size(), runs, reached, barred, turned);
-  EXPECT_GT(reached, runs / 4);
-  EXPECT_GT(barred, runs / 4);
-  EXPECT_GT(turned, runs / 4);
+  EXPECT_GE(reached, at_least_among(runs / 4 + 1));
+  EXPECT_GE(barred, at_least_among(runs / 4 + 1));
+  EXPECT_GE(turned, at_least_among(runs / 4 + 1));
 }
 
 }  // namespace

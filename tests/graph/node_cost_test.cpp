@@ -328,7 +328,7 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
       "on as an earlier one, %d ended "
       "without one\n",
       rounds, listed_rounds, raised, dearer, moved, followed, ended);
-  EXPECT_GT(followed, at_least(rounds / 8));
+  EXPECT_GT(followed, at_least_among(rounds / 8));
   EXPECT_GT(rounds, at_least(300));
   EXPECT_GE(listed_rounds, at_least(60));
   EXPECT_GT(raised, 4 * rounds);

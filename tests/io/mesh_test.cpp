@@ -419,7 +419,7 @@ TEST(Mesh, PolygonsAreCutIntoTrianglesInsideThem) {
   swivel::test::Random random(swivel::test::seed("PolygonsAreCutIntoTrianglesInsideThem"));
   const TempFolder folder;
   int concave = 0;
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < swivel::test::trials(200); ++trial) {
     const int n = 4 + random.below(20);
     const Matrix3d turn = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
                                       random.uniform(-1, 1), random.uniform(-1, 1))
@@ -457,7 +457,7 @@ TEST(Mesh, PolygonsAreCutIntoTrianglesInsideThem) {
     }
     EXPECT_NEAR(sum, area, 1e-4);
   }
-  EXPECT_GT(concave, 100);
+  EXPECT_GE(concave, swivel::test::at_least(101));
 }
 
 TEST(Mesh, FarVerticesAreBadInput) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -17,18 +18,33 @@ inline std::uint64_t seed(const char* test) {
   return value;
 }
 
-/// How many trials: SWIVEL_TEST_TRIALS, or SWIVEL_TEST_SCALE (0.1: a tenth) times the usual number,
-/// at least one.
-inline int trials(int usual) {
-  if (const char* given = std::getenv("SWIVEL_TEST_TRIALS")) return std::atoi(given);
-  const char* scale = std::getenv("SWIVEL_TEST_SCALE");
-  return scale ? std::max(1, static_cast<int>(usual * std::atof(scale))) : usual;
+/// Returns the share of the usual trials that SWIVEL_TEST_SCALE asks for (0.1: a tenth), 1 where it
+/// is not given.
+inline double scale() {
+  const char* given = std::getenv("SWIVEL_TEST_SCALE");
+  return given ? std::atof(given) : 1;
 }
 
-/// How many of the trials must have met something, for a test to have tried it: nothing is asked of
-/// fewer trials than usual.
+/// Returns how many trials to run: SWIVEL_TEST_TRIALS, or scale() times the usual number, rounded
+/// up, at least one.
+inline int trials(int usual) {
+  if (const char* given = std::getenv("SWIVEL_TEST_TRIALS")) return std::atoi(given);
+  return std::max(1, static_cast<int>(std::ceil(usual * scale() - 1e-9)));
+}
+
+/// Returns how many of the trials that run must have met something, for a test to have tried it,
+/// where `expected` of them are asked for at the full scale: half of that at a scale of a quarter
+/// or more, since chance has more to say among few, and none below or where SWIVEL_TEST_TRIALS is
+/// given.
+inline int at_least_among(int expected) {
+  if (std::getenv("SWIVEL_TEST_TRIALS") || scale() < 0.25) return 0;
+  return scale() < 1 ? expected / 2 : expected;
+}
+
+/// Returns at_least_among() of a number that holds for all usual trials: `usual` of them at the
+/// full scale, half of scale() times as many at a quarter or more.
 inline int at_least(int usual) {
-  return std::getenv("SWIVEL_TEST_TRIALS") || std::getenv("SWIVEL_TEST_SCALE") ? 0 : usual;
+  return at_least_among(static_cast<int>(usual * std::min(1.0, scale())));
 }
 
 /// std::mt19937_64 with uniform doubles that do not depend on the standard library's distributions.

@@ -193,9 +193,9 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
       counts.solved, counts.starts, counts.refined, counts.cheaper, counts.mean / counts.mean_of,
       counts.executable, counts.samples, slower[slower.size() / 2],
       slower[slower.size() * 95 / 100]);
-  EXPECT_GE(counts.refined, at_least(counts.solved * 3 / 5));
-  EXPECT_GE(counts.cheaper, at_least(counts.solved / 2));
-  EXPECT_GE(counts.executable, at_least(counts.solved * 9 / 10));
+  EXPECT_GE(counts.refined, at_least_among(counts.solved * 3 / 5));
+  EXPECT_GE(counts.cheaper, at_least_among(counts.solved / 2));
+  EXPECT_GE(counts.executable, at_least_among(counts.solved * 9 / 10));
   EXPECT_GE(counts.starts, at_least(3));
   std::printf("%d refined within windows of roll\n", counts.within_windows);
   EXPECT_GE(counts.within_windows, at_least(1));

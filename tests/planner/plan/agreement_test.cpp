@@ -61,7 +61,7 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
 struct AgreementCounts {
   int reduced = 0, near_motions = 0;
   int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0,
-      detours = 0, chosen = 0;
+      detours = 0, chosen = 0, mostly_proved = 0;
   std::int64_t proved = 0, lazy_fcl_calls = 0;
 };
 
@@ -117,6 +117,7 @@ void check_agreement(const Problem& problem, bool near_by_design, const std::str
   const auto& lazy = results[2].counters;
   counts.proved += lazy.proved_free + lazy.proved_colliding;
   counts.lazy_fcl_calls += lazy.fcl_calls;
+  counts.mostly_proved += lazy.proved_free + lazy.proved_colliding >= 10 * lazy.fcl_calls;
   ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
   for (std::size_t k = 1; k < results.size(); ++k) {
     expect_same(results[0], results[k], what + " planner " + results[k].planner);
@@ -145,23 +146,24 @@ void expect_counts(const AgreementCounts& counts, int count) {
   std::printf(
       "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, "
       "%d with a start, %d with "
-      "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
+      "obstacles; lazy: %lld questions certified, %lld FCL calls, ten times fewer in %d\n",
       count, counts.solved, counts.detours, counts.label_changes, counts.infeasible,
       counts.continuous, counts.started, counts.obstacles, static_cast<long long>(counts.proved),
-      static_cast<long long>(counts.lazy_fcl_calls));
+      static_cast<long long>(counts.lazy_fcl_calls), counts.mostly_proved);
   std::printf(
       "%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among "
       "equal costs\n",
       counts.reduced, counts.near_motions, counts.chosen);
-  EXPECT_GE(counts.chosen, at_least(count / 32));
-  EXPECT_GE(counts.reduced, at_least(count / 24));
+  EXPECT_GE(counts.chosen, at_least_among(count / 32));
+  EXPECT_GE(counts.reduced, at_least_among(count / 24));
   EXPECT_GE(counts.near_motions, at_least(3));
-  EXPECT_GE(counts.solved, at_least(count / 4));
-  EXPECT_GT(counts.proved, 10 * counts.lazy_fcl_calls);
-  EXPECT_GE(counts.infeasible, at_least(count / 20));
-  EXPECT_GE(counts.continuous, at_least(count / 5));
-  EXPECT_GE(counts.started, at_least(count / 10));
-  EXPECT_GE(counts.detours, at_least(count / 20));
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  // Not the sums of the questions, of which one problem may have more than all others.
+  EXPECT_GE(counts.mostly_proved, at_least_among(count * 2 / 3));
+  EXPECT_GE(counts.infeasible, at_least_among(count / 20));
+  EXPECT_GE(counts.continuous, at_least_among(count / 5));
+  EXPECT_GE(counts.started, at_least_among(count / 10));
+  EXPECT_GE(counts.detours, at_least_among(count / 20));
 }
 
 TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
@@ -193,7 +195,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
 TEST(Agreement, FclAloneGivesTheSameAnswers) {
   const std::uint64_t base = seed("Agreement.FclAlone");
   const auto robots = all_robots();
-  int solved = 0, infeasible = 0, asked = 0, moves = 0;
+  int solved = 0, infeasible = 0, asked = 0, moves = 0, mostly_proved = 0;
   std::int64_t alone_calls = 0, calls = 0, proved = 0;
   const int count = trials(100);
   for (int trial = 0; trial < count; ++trial) {
@@ -219,6 +221,7 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
         calls += with_proofs.counters.fcl_calls;
         alone_calls += by_fcl.counters.fcl_calls;
         asked += by_fcl.counters.fcl_calls > 0;
+        mostly_proved += by_fcl.counters.fcl_calls >= 10 * with_proofs.counters.fcl_calls;
       };
       compare("");
       if (HasFatalFailure()) return;
@@ -235,14 +238,15 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
   }
   std::printf(
       "%d plans solved, %d infeasible, %d after a move; FCL alone: %lld calls, in %d plans; else "
-      "%lld, %lld certified\n",
+      "%lld, %lld certified, ten times fewer in %d plans\n",
       solved, infeasible, moves, static_cast<long long>(alone_calls), asked,
-      static_cast<long long>(calls), static_cast<long long>(proved));
-  EXPECT_GE(solved, at_least(count));
-  EXPECT_GE(infeasible, at_least(count / 5));
-  EXPECT_GE(moves, at_least(count));
-  EXPECT_GE(asked, at_least(count));
-  if (at_least(1) > 0) EXPECT_GT(alone_calls, 10 * calls);
+      static_cast<long long>(calls), static_cast<long long>(proved), mostly_proved);
+  EXPECT_GE(solved, at_least_among(count));
+  EXPECT_GE(infeasible, at_least_among(count / 5));
+  EXPECT_GE(moves, at_least_among(count));
+  EXPECT_GE(asked, at_least_among(count));
+  // Not the sums of the calls, of which one plan may have more than all others.
+  EXPECT_GE(mostly_proved, at_least_among((solved + infeasible) * 2 / 3));
 }
 
 /// Arms along arcs, a roll that is chosen as well, and a part in the hand.
@@ -344,8 +348,8 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
   for (std::size_t kind = 0; kind < kKinds; ++kind) {
     std::printf("weights of kind %zu: %d solved, %d infeasible\n", kind, solved[kind],
                 infeasible[kind]);
-    EXPECT_GE(solved[kind], at_least(count / 50));
-    EXPECT_GE(infeasible[kind], at_least(count / 50));
+    EXPECT_GE(solved[kind], at_least_among(count / 50));
+    EXPECT_GE(infeasible[kind], at_least_among(count / 50));
   }
 }
 
@@ -433,8 +437,8 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
   }
   std::printf("%d problems: %d solved, %d infeasible; %d joints began in a sliver\n", count, solved,
               infeasible, in_sliver);
-  EXPECT_GE(solved, at_least(count / 4));
-  EXPECT_GE(in_sliver, at_least(count / 2));
+  EXPECT_GE(solved, at_least_among(count / 4));
+  EXPECT_GE(in_sliver, at_least_among(count / 2));
 }
 
 TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {

@@ -167,12 +167,12 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
       "continuous, %d with obstacles\n",
       count, counts.solved, counts.wound, counts.chosen, counts.infeasible, counts.started,
       counts.continuous, counts.obstacles);
-  EXPECT_GE(counts.solved, at_least(count / 4));
-  EXPECT_GE(counts.infeasible, at_least(count / 20));
-  EXPECT_GE(counts.started, at_least(count / 10));
-  EXPECT_GE(counts.continuous, at_least(count / 5));
-  EXPECT_GE(counts.sampled, at_least(count / 8));
-  EXPECT_GE(counts.chosen, at_least(count / 40));
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  EXPECT_GE(counts.infeasible, at_least_among(count / 20));
+  EXPECT_GE(counts.started, at_least_among(count / 10));
+  EXPECT_GE(counts.continuous, at_least_among(count / 5));
+  EXPECT_GE(counts.sampled, at_least_among(count / 8));
+  EXPECT_GE(counts.chosen, at_least_among(count / 40));
 }
 
 /// A path that turns the last joint on from near its limit: the first answer on circles leaves the
@@ -452,11 +452,11 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
       "of dearer moves\n",
       count, counts.solved, counts.hooked, counts.windows, counts.infeasible, counts.straighter,
       counts.dearer);
-  EXPECT_GE(counts.windows, at_least(count / 18));
-  EXPECT_GE(counts.solved, at_least(count / 3));
-  EXPECT_GE(counts.hooked, at_least(count / 12));
-  EXPECT_GE(counts.straighter, at_least(count / 6));
-  EXPECT_GE(counts.dearer, at_least(count / 12));
+  EXPECT_GE(counts.windows, at_least_among(count / 18));
+  EXPECT_GE(counts.solved, at_least_among(count / 3));
+  EXPECT_GE(counts.hooked, at_least_among(count / 12));
+  EXPECT_GE(counts.straighter, at_least_among(count / 6));
+  EXPECT_GE(counts.dearer, at_least_among(count / 12));
 }
 
 TEST(Arms, AStartThatDoesNotFitIsBadInput) {

@@ -285,17 +285,17 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
       count, counts.solved, counts.turned, counts.between, counts.infeasible, counts.started,
       counts.continuous, counts.obstacles, counts.circles, counts.inexact, counts.at_rest,
       counts.moved_after_all, counts.windows, counts.costly);
-  EXPECT_GE(counts.windows, at_least(count / 20));
-  EXPECT_GE(counts.costly, at_least(count / 12));
-  EXPECT_GE(counts.solved, at_least(count / 4));
-  EXPECT_GE(counts.infeasible, at_least(count / 20));
-  EXPECT_GE(counts.started, at_least(count / 10));
-  EXPECT_GE(counts.continuous, at_least(count / 5));
-  EXPECT_GE(counts.turned, at_least(count / 20));
-  EXPECT_GE(counts.between, at_least(count / 5));
-  EXPECT_GE(counts.circles, at_least(count / 5));
-  EXPECT_GE(counts.inexact, at_least(count / 20));
-  EXPECT_GE(counts.at_rest, at_least(count / 40));
+  EXPECT_GE(counts.windows, at_least_among(count / 20));
+  EXPECT_GE(counts.costly, at_least_among(count / 12));
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  EXPECT_GE(counts.infeasible, at_least_among(count / 20));
+  EXPECT_GE(counts.started, at_least_among(count / 10));
+  EXPECT_GE(counts.continuous, at_least_among(count / 5));
+  EXPECT_GE(counts.turned, at_least_among(count / 20));
+  EXPECT_GE(counts.between, at_least_among(count / 5));
+  EXPECT_GE(counts.circles, at_least_among(count / 5));
+  EXPECT_GE(counts.inexact, at_least_among(count / 20));
+  EXPECT_GE(counts.at_rest, at_least_among(count / 40));
 }
 
 /// Makes a random path without obstacles or a start, along which all rolls are free.
@@ -382,10 +382,10 @@ TEST(RollLattice, JointSevenRests) {
       "%d problems: %d solved both ways, %d cheaper at rest, %d not at all; %d refined; %d on arms "
       "that are not exact\n",
       count, counts.both, counts.cheaper, counts.neither, counts.refined, counts.inexact);
-  EXPECT_GE(counts.both, at_least(count / 4));
-  EXPECT_GE(counts.cheaper, at_least(count / 20));
-  EXPECT_GE(counts.refined, at_least(count / 8));
-  EXPECT_GE(counts.inexact, at_least(count / 10));
+  EXPECT_GE(counts.both, at_least_among(count / 4));
+  EXPECT_GE(counts.cheaper, at_least_among(count / 20));
+  EXPECT_GE(counts.refined, at_least_among(count / 8));
+  EXPECT_GE(counts.inexact, at_least_among(count / 10));
 }
 
 /// Where joint 7 rests determines what the tool meets: joint 7 moves if there is no path otherwise.
@@ -594,8 +594,8 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
   EXPECT_GE(counts.windows, at_least(2));
   EXPECT_GE(counts.timed_windows, at_least(1));
   EXPECT_GE(counts.costly, at_least(3));
-  EXPECT_GE(counts.refined, at_least(count / 2));
-  EXPECT_GE(counts.timed, at_least(count / 2));
+  EXPECT_GE(counts.refined, at_least_among(count / 2));
+  EXPECT_GE(counts.timed, at_least_among(count / 2));
   EXPECT_GE(counts.turning, at_least(2));
   EXPECT_GE(counts.moved, at_least(100));  // rolls of rows
 }

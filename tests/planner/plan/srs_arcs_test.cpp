@@ -142,9 +142,9 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
       if (HasFatalFailure()) return;
     }
     print_counts(base, robot.name, count, counts);
-    EXPECT_GE(counts.both, at_least(count / 2)) << robot.name;
+    EXPECT_GE(counts.both, at_least_among(count / 2)) << robot.name;
     EXPECT_LE(counts.finer, 1 + counts.both / 20) << robot.name;
-    EXPECT_GE(counts.cheaper, at_least(count / 3)) << robot.name;
+    EXPECT_GE(counts.cheaper, at_least_among(count / 3)) << robot.name;
   }
 }
 

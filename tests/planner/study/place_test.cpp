@@ -159,7 +159,7 @@ TEST(Place, CellsAreSinglePlans) {
 
 /// Counts the cells by how they end, and the nodes that planners asked about.
 struct NeighbourCounts {
-  int solved = 0, infeasible = 0, changed = 0;
+  int solved = 0, infeasible = 0, changed = 0, spared = 0, cells = 0;
   std::int64_t asked = 0, asked_alone = 0;
 };
 
@@ -226,6 +226,8 @@ void check_neighbours(const Problem& problem, const std::shared_ptr<const Prepar
     const PlanResult again = planner.plan(options);
     counts.asked += again.counters.nodes_checked;
     counts.asked_alone += alone.counters.nodes_checked;
+    counts.spared += 2 * again.counters.nodes_checked <= alone.counters.nodes_checked;
+    ++counts.cells;
     ASSERT_EQ(rows[k].status, alone.status) << here;
     ASSERT_EQ(again.status, alone.status) << here;
     counts.changed += before && *before != alone.status;
@@ -265,12 +267,14 @@ TEST(Place, NeighboursAreWhatTheyAreAlone) {
     if (HasFatalFailure()) return;
   }
   std::printf(
-      "%d solved, %d infeasible, the verdict changed %d times; %lld nodes asked about of %lld\n",
+      "%d solved, %d infeasible, the verdict changed %d times; %lld nodes asked about of %lld, "
+      "half or fewer in %d of %d cells\n",
       counts.solved, counts.infeasible, counts.changed, static_cast<long long>(counts.asked),
-      static_cast<long long>(counts.asked_alone));
+      static_cast<long long>(counts.asked_alone), counts.spared, counts.cells);
   EXPECT_GE(counts.solved, at_least(100));
   EXPECT_GE(counts.infeasible, at_least(20));
-  EXPECT_LT(2 * counts.asked, counts.asked_alone);
+  // Not the sums of the questions, of which one cell may have more than all others.
+  EXPECT_GT(counts.spared, counts.cells / 2);
 }
 
 /// Turns and shifts poses by an offset, about an origin that is given.

@@ -750,7 +750,7 @@ TEST(Check, LegalResamplingsPass) {
   EXPECT_GE(counts.count, trials(300));
   EXPECT_GE(counts.dropped, counts.count);
   EXPECT_GE(counts.inserted, counts.count);
-  EXPECT_GE(counts.inexact, at_least(counts.count / 10));
+  EXPECT_GE(counts.inexact, at_least_among(counts.count / 10));
   EXPECT_GE(counts.turned, at_least(10));
 }
 

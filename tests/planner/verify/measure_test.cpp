@@ -105,9 +105,9 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
   }
   std::printf("%d trajectories, %d near something, %d with limits\n", counts.solved, counts.near,
               counts.bounded);
-  EXPECT_GE(counts.solved, at_least(count / 4));
-  EXPECT_GE(counts.near, at_least(count / 8));
-  EXPECT_GE(counts.bounded, at_least(count / 8));
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  EXPECT_GE(counts.near, at_least_among(count / 8));
+  EXPECT_GE(counts.bounded, at_least_among(count / 8));
 }
 
 }  // namespace
