@@ -31,12 +31,15 @@ add_custom_target(program ALL DEPENDS cli/swivel)
 add_dependencies(program pages)
 add_custom_target(all_of_it DEPENDS program)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/report/web)
+enable_testing()
+add_test(NAME told COMMAND sh -c "echo scale=$SWIVEL_TEST_SCALE")
 """
 PRESETS = {
     "version": 6,
     "configurePresets": [
         {"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/${presetName}"}
     ],
+    "testPresets": [{"name": "release", "configurePreset": "release"}],
 }
 
 
@@ -58,7 +61,9 @@ class Project(unittest.TestCase):
         (self.root / "page").write_text("echo page\n")
         executable(self.root / "program", '#!/bin/sh\necho "$PWD:$*"\nexit 3\n')
         self.environment = {
-            name: value for name, value in os.environ.items() if name not in ("CI", "SWIVEL_PRESET")
+            name: value
+            for name, value in os.environ.items()
+            if name not in ("CI", "SWIVEL_PRESET", "SWIVEL_TEST_SCALE")
         }
 
     def build_until_told(self, then=""):
@@ -216,6 +221,15 @@ class Wrapper(Project):
         self.assertEqual(
             (shown + "".join(text for text, _ in ends)).count("waiting for another call"), 2
         )
+
+
+    def test_tests_make_a_quarter_of_their_trials_unless_told_otherwise(self):
+        self.call()
+        for scale, given in (("0.25", {}), ("1", {"SWIVEL_TEST_SCALE": "1"})):
+            done = self.call("test", "-V", **given)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"scale={scale}\n", done.stdout)
+            self.assertIn(f"swivel: testing with {scale} of the random trials", done.stderr)
 
 
 class Pages(unittest.TestCase):
