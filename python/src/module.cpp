@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
 #include "interruptible.hpp"
+#include "job.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 
@@ -17,6 +18,9 @@ PYBIND11_MODULE(_swivel, m) {
   swivel::python::bind_results(m);
   swivel::python::bind_planner(m);
   swivel::python::bind_runs(m);
+  swivel::python::bind_job(m);
+  swivel::python::bind_job_results(m);
+  swivel::python::bind_job_functions(m);
   py::module_::import("atexit").attr("register")(
       py::cpp_function(&swivel::python::UnderWay::end_all));
 }

@@ -8,6 +8,8 @@
 
 #include "bindings.hpp"
 #include "interruptible.hpp"
+#include "job.hpp"
+#include "plan_keywords.hpp"
 #include "results.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -113,6 +115,12 @@ class ArrayCost : public StateCost {
   std::string name_;
 };
 
+/// Throws TypeError for what is neither None nor can be called.
+void require_function(const py::object& function, const char* name) {
+  if (!function.is_none() && PyCallable_Check(function.ptr()) == 0)
+    throw py::type_error(std::string(name) + ": not callable: allowed is a function, or None");
+}
+
 /// The options of a plan as Python keywords.
 struct PlanKeywords {
   py::object planner;
@@ -121,40 +129,16 @@ struct PlanKeywords {
   bool evidence = false;
   py::object check, check_motions, cost, progress;
   [[nodiscard]] PlanOptions options() const {
-    PlanOptions options;
-    options.planner = to_enum<PlannerKind>(planner);
-    constexpr int kMostThreads = 1024;
-    if (threads < 0 || threads > kMostThreads)
-      throw py::value_error("threads: " + std::to_string(threads) +
-                            ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
-    options.threads = threads;
-    if (timeout && !(*timeout > 0))
-      throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
-    options.timeout_s = timeout;
+    PlanOptions options = to_plan_options(planner, threads, timeout);
     if (evidence) options.evidence = Evidence::all();
-    for (const auto& [function, name] :
-         {std::pair(&check, "check"), std::pair(&check_motions, "check_motions"),
-          std::pair(&cost, "cost"), std::pair(&progress, "progress")})
-      if (!function->is_none() && PyCallable_Check(function->ptr()) == 0)
-        throw py::type_error(std::string(name) + ": not callable: allowed is a function, or None");
+    require_function(check, "check");
+    require_function(check_motions, "check_motions");
+    require_function(cost, "cost");
     if (!check.is_none() || !check_motions.is_none())
       options.hooks.check = std::make_shared<ArrayCheck>(check, check_motions);
     if (!cost.is_none()) options.hooks.cost = std::make_shared<ArrayCost>(cost);
-    if (!progress.is_none()) options.progress = told(progress);
+    options.progress = to_progress(progress);
     return options;
-  }
-
- private:
-  /// Returns a function that passes progress on to Python every 20 ms at most: often enough to look
-  /// smooth, and seldom enough to cost nothing.
-  static ProgressFunction told(const py::object& progress) {
-    using Clock = std::chrono::steady_clock;
-    return [tell = progress.ptr(), last = Clock::time_point()](const Progress& now) mutable {
-      if (Clock::now() - last < std::chrono::milliseconds(20)) return;
-      last = Clock::now();
-      const py::gil_scoped_acquire gil;
-      py::reinterpret_borrow<py::object>(tell)(to_string(now.stage), now.done, now.of);
-    };
   }
 };
 
@@ -335,6 +319,32 @@ class SharedPlanner {
 
 }  // namespace
 
+PlanOptions to_plan_options(const py::object& planner, int threads, std::optional<double> timeout) {
+  PlanOptions options;
+  options.planner = to_enum<PlannerKind>(planner);
+  constexpr int kMostThreads = 1024;
+  if (threads < 0 || threads > kMostThreads)
+    throw py::value_error("threads: " + std::to_string(threads) +
+                          ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
+  options.threads = threads;
+  if (timeout && !(*timeout > 0))
+    throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
+  options.timeout_s = timeout;
+  return options;
+}
+
+ProgressFunction to_progress(const py::object& progress) {
+  require_function(progress, "progress");
+  if (progress.is_none()) return {};
+  using Clock = std::chrono::steady_clock;
+  return [tell = progress.ptr(), last = Clock::time_point()](const Progress& now) mutable {
+    if (Clock::now() - last < std::chrono::milliseconds(20)) return;
+    last = Clock::now();
+    const py::gil_scoped_acquire gil;
+    py::reinterpret_borrow<py::object>(tell)(to_string(now.stage), now.done, now.of);
+  };
+}
+
 void bind_planner(py::module_& m) {
   bind_enum<PlannerKind>(
       m, "PlannerKind",
@@ -352,6 +362,11 @@ void bind_planner(py::module_& m) {
              return std::make_unique<SharedPlanner>(Planner(problem));
            }),
            py::arg("problem"), "Raises InvalidArgument and InputError.")
+      .def(py::init([](const Job&) -> std::unique_ptr<SharedPlanner> {
+             // Without this, a Job would be taken for the Robot that it is as well.
+             throw py::type_error("Planner: a Job: allowed is a Problem; plan_job() plans jobs");
+           }),
+           py::arg("problem"), "Raises TypeError: plan_job() plans jobs.")
       .def(
           py::init(
               [](const Robot& robot, const std::optional<Task>& task, const py::iterable& scene) {

@@ -157,20 +157,6 @@ std::string plan_words(const Plan& plan) {
   return text + (after.empty() ? "" : "\n      " + after);
 }
 
-py::dict counters_of(const Counters& c) {
-  py::dict all;
-  all["ik_nodes"] = c.ik_nodes;
-  all["edges"] = c.edges;
-  all["nodes_checked"] = c.nodes_checked;
-  all["edges_checked"] = c.edges_checked;
-  all["fcl_calls"] = c.fcl_calls;
-  all["certified_free"] = c.proved_free;
-  all["certified_colliding"] = c.proved_colliding;
-  all["expansions"] = c.expansions;
-  all["iterations"] = c.iterations;
-  return all;
-}
-
 template <class E>
 std::vector<std::pair<std::string, E>> names_from(E first, E last) {
   std::vector<std::pair<std::string, E>> names;
@@ -814,6 +800,20 @@ void bind_plan(py::module_& m) {
 }
 
 }  // namespace
+
+py::dict counters_of(const Counters& c) {
+  py::dict all;
+  all["ik_nodes"] = c.ik_nodes;
+  all["edges"] = c.edges;
+  all["nodes_checked"] = c.nodes_checked;
+  all["edges_checked"] = c.edges_checked;
+  all["fcl_calls"] = c.fcl_calls;
+  all["certified_free"] = c.proved_free;
+  all["certified_colliding"] = c.proved_colliding;
+  all["expansions"] = c.expansions;
+  all["iterations"] = c.iterations;
+  return all;
+}
 
 std::shared_ptr<const std::vector<TimedRow>> Motion::rows() const {
   if (timing->motion) return {timing, &timing->motion->rows};

@@ -45,4 +45,7 @@ struct Check {
   io::JointNames joint_names;
 };
 
+/// Returns work done by name, as JSON names it.
+[[nodiscard]] py::dict counters_of(const Counters& c);
+
 }  // namespace swivel::python

@@ -10,6 +10,7 @@
 
 #include "archive.hpp"
 #include "interruptible.hpp"
+#include "plan_keywords.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
@@ -355,20 +356,6 @@ class Cells {
   std::uint64_t seed_;
 };
 
-PlanOptions plan_options(const py::object& planner, int threads, std::optional<double> timeout) {
-  PlanOptions options;
-  options.planner = to_enum<PlannerKind>(planner);
-  constexpr int kMostThreads = 1024;
-  if (threads < 0 || threads > kMostThreads)
-    throw py::value_error("threads: " + std::to_string(threads) +
-                          ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
-  options.threads = threads;
-  if (timeout && !(*timeout > 0))
-    throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
-  options.timeout_s = timeout;
-  return options;
-}
-
 /// Plans placements of one thing with a planner that remembers earlier plans.
 class Placer {
  public:
@@ -376,7 +363,7 @@ class Placer {
          std::optional<double> timeout)
       : problem_(std::move(problem)),
         thing_(std::move(thing)),
-        options_(plan_options(planner, threads, timeout)) {
+        options_(to_plan_options(planner, threads, timeout)) {
     static_cast<void>(placed_problem(problem_, thing_, {}));
   }
   Placements plan(const std::vector<std::uint64_t>& cells,
@@ -429,7 +416,7 @@ class Campaigner {
                             std::to_string(kMost));
     options_.episodes = episodes;
     options_.seed = seed;
-    options_.plan = plan_options(planner, threads, {});
+    options_.plan = to_plan_options(planner, threads, {});
   }
   Episodes plan(const Shard& shard, const py::object& each) {
     return to_table(interruptible([&](const std::stop_token& stop) {

@@ -11,6 +11,8 @@ tip. Arrays in results are read-only views, which keep alive what they show.
         print(plan.joints)
     else:
         print(plan.diagnosis.cause)
+
+A job of many strokes is loaded by load_job() and planned by plan_job().
 """
 import os as _os
 

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions that plan, prove and time jobs.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "interruptible.hpp"
+#include "job_results.hpp"
+#include "plan_keywords.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
+
+namespace swivel::python {
+
+namespace {
+
+using Parts = std::vector<JobPart>;
+
+PreparedRobot prepared(const swivel::Job& job, const std::stop_token& stop) {
+  return PreparedRobot(problem_of_run(job, {0, false}), Budget({}, nullptr, stop));
+}
+
+JobTimingOptions timing_of(std::optional<double> speed, std::optional<double> turn_speed,
+                           double rate) {
+  for (const auto& [value, name, unit] :
+       {std::tuple(speed, "speed", "m/s"), std::tuple(turn_speed, "turn_speed", "rad/s")})
+    if (value && !(*value > 0))
+      throw py::value_error(std::string(name) +
+                            ": not a positive number: allowed are values above 0, " + unit);
+  if (!(rate > 0 && rate <= 1e5))
+    throw py::value_error("rate: allowed are numbers > 0, at most 100000");
+  JobTimingOptions options;
+  options.speed = speed, options.turn_speed = turn_speed, options.rate = rate;
+  return options;
+}
+
+/// Returns the number of a stroke in a job; none for an unknown name.
+std::optional<std::size_t> find_stroke(const swivel::Job& job, const std::string& name) {
+  for (std::size_t k = 0; k < job.strokes.size(); ++k)
+    if (job.strokes[k].name == name) return k;
+  return {};
+}
+/// Returns that number. Throws InvalidArgument for an unknown name.
+std::size_t stroke_of(const swivel::Job& job, const std::string& name) {
+  if (const auto found = find_stroke(job, name)) return *found;
+  std::vector<std::string> known;
+  for (const swivel::Stroke& stroke : job.strokes) known.push_back(stroke.name);
+  throw InvalidArgument("'" + name + "' is no stroke of the job, nearest is '" +
+                        nearest_name(name, known) + "'");
+}
+
+/// Returns parts for the planner. Throws InvalidArgument for a stroke that the job does not have.
+std::vector<swivel::JobPart> to_core(const swivel::Job& job, const Parts& parts) {
+  std::vector<swivel::JobPart> all;
+  for (const JobPart& part : parts) {
+    swivel::JobPart& made = all.emplace_back();
+    if (part.stroke) made.run = StrokeRun{stroke_of(job, *part.stroke), part.reversed};
+    made.cost = part.cost.value_or(0);
+    made.rows = *part.rows;
+    made.barred_by = part.barred_by;
+  }
+  return all;
+}
+
+/// Returns the parts of a file. A stroke is run backwards if the tool begins at its last waypoint.
+/// Throws InputError for a stroke that the job does not have.
+Parts from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobTrajectory read,
+                const std::filesystem::path& file) {
+  Parts parts;
+  for (io::JobTrajectoryPart& one : read.parts) {
+    JobPart& part = parts.emplace_back();
+    part.joint_names = robot.arm().chain.joint_names;
+    part.process.resize(one.rows.size());
+    if (!one.stroke.empty()) {
+      const auto stroke = find_stroke(job, one.stroke);
+      if (!stroke)
+        throw InputError(file.string(),
+                         formatted("data row %zu: stroke: ", one.first_row + 1) + "'" + one.stroke +
+                             "' is no stroke of the job: allowed are the names of its strokes");
+      part.stroke = one.stroke;
+      part.reversed = begins_at_last_waypoint(robot, job, *stroke, one.rows);
+      for (std::size_t k = one.first_process; k <= one.last_process; ++k) part.process[k] = true;
+    }
+    part.rows = std::make_shared<const std::vector<TrajectoryRow>>(std::move(one.rows));
+  }
+  return parts;
+}
+
+/// Returns the motion of a file. A stroke is run backwards if the tool begins at its last waypoint.
+JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobMotionFile read) {
+  JobMotion motion;
+  motion.joint_names = robot.arm().chain.joint_names;
+  motion.job = without_surroundings(job);
+  for (std::size_t k = 0; k < read.strokes.size(); ++k) {
+    const std::size_t part = job.home ? 2 * k + 1 : 2 * k;
+    const auto own = std::find(read.motion.part.begin(), read.motion.part.end(), part);
+    // A run begins with the last row of the transition before it.
+    const auto row = static_cast<std::size_t>(own - read.motion.part.begin());
+    const TrajectoryRow& first = read.motion.rows[row > 0 ? row - 1 : 0].row;
+    motion.order.push_back(
+        {read.strokes[k], begins_at_last_waypoint(robot, job, read.strokes[k], {first})});
+  }
+  auto timing = std::make_shared<JobTimingResult>();
+  timing->motion = std::move(read.motion);
+  motion.timing = std::move(timing);
+  return motion;
+}
+
+std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swivel::Job& job,
+                                         const std::filesystem::path& file) {
+  auto read = io::load_job_rows(file, job, robot.arm().chain.joint_names);
+  if (auto* motion = std::get_if<io::JobMotionFile>(&read))
+    return from_file(robot, job, std::move(*motion));
+  return from_file(robot, job, std::get<io::JobTrajectory>(std::move(read)), file);
+}
+
+/// Adds a failure for each stroke whose `process` is given and not true on the stroke itself alone.
+void examine_process(const swivel::Job& job, const Parts& parts,
+                     const std::vector<swivel::JobPart>& all, JobCheckResult& result) {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (!parts[k].stroke || parts[k].process.empty()) continue;
+    const std::vector<bool> should = io::process_of_rows(all[k], job);
+    const auto [is, other] = std::mismatch(parts[k].process.begin(), parts[k].process.end(),
+                                           should.begin(), should.end());
+    if (is == parts[k].process.end() && other == should.end()) continue;
+    result.failures.push_back("stroke '" + *parts[k].stroke +
+                              formatted("': row %zu: process is not as the stroke has it",
+                                        static_cast<std::size_t>(other - should.begin())));
+    ++result.failure_count;
+    result.passed = false;
+  }
+}
+
+JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Job& job, const Parts& parts,
+                           const CheckOptions& options) {
+  const std::vector<swivel::JobPart> all = to_core(job, parts);
+  JobCheckResult result = swivel::check_job(robot, job, all, options);
+  examine_process(job, parts, all, result);
+  return result;
+}
+
+/// Checks a motion whose strokes are numbered as in the job that it was made for.
+JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Job& job,
+                           const JobMotion& motion, const CheckOptions& options) {
+  const auto number = [&](std::size_t k) { return stroke_of(job, motion.job->strokes[k].name); };
+  std::vector<StrokeRun> order = motion.order;
+  swivel::JobMotion timed = *motion.motion();
+  for (StrokeRun& run : order) run.stroke = number(run.stroke);
+  for (ProcessEvent& event : timed.events) event.stroke = number(event.stroke);
+  return check_job_motion(robot, job, order, timed, options);
+}
+
+using Checked = std::variant<JobPlan, JobMotion, Parts, std::filesystem::path>;
+JobCheck check(const JobOrFile& of, const Checked& rows) {
+  const swivel::Job job = to_core(of);
+  return interruptible([&](const std::stop_token& stop) -> JobCheck {
+    const PreparedRobot robot = prepared(job, stop);
+    CheckOptions options;
+    options.budget = Budget({}, nullptr, stop);
+    std::variant<Parts, JobMotion> given;
+    if (const auto* file = std::get_if<std::filesystem::path>(&rows))
+      given = load_rows(robot, job, *file);
+    else if (const auto* plan = std::get_if<JobPlan>(&rows))
+      given = parts_of(*plan);
+    else if (const auto* motion = std::get_if<JobMotion>(&rows))
+      given = *motion;
+    else
+      given = std::get<Parts>(rows);
+    const auto* const parts = std::get_if<Parts>(&given);
+    return {parts != nullptr ? check_parts(robot, job, *parts, options)
+                             : check_timed(robot, job, std::get<JobMotion>(given), options),
+            robot.arm().chain.joint_names};
+  });
+}
+
+JobPlan plan(const JobOrFile& of, PlanOptions options,
+             const std::optional<JobTimingOptions>& timing) {
+  const swivel::Job job = to_core(of);
+  JobPlan plan;
+  plan.job = without_surroundings(job);
+  plan.plan = std::make_shared<const JobMotionPlan>(interruptible([&](const std::stop_token& stop) {
+    options.stop = stop;
+    if (!timing) return JobMotionPlan{swivel::plan_job(job, options), {}};
+    return plan_job_motion(prepared(job, stop), job, options, *timing);
+  }));
+  return plan;
+}
+
+using Timeable = std::variant<JobPlan, Parts, std::filesystem::path>;
+
+/// Returns the parts of a file, or made by hand, with rows at the layers of each run. Throws
+/// InputError unless they are proved to be the job's.
+std::vector<swivel::JobPart> proved_parts(const PreparedRobot& robot, const swivel::Job& job,
+                                          const Timeable& rows, const Budget& budget) {
+  Parts given;
+  std::string source;
+  if (const auto* file = std::get_if<std::filesystem::path>(&rows)) {
+    source = file->string();
+    auto read = load_rows(robot, job, *file);
+    if (std::holds_alternative<JobMotion>(read))
+      throw InputError(source, "has times: allowed is the trajectory of a job without them");
+    given = std::get<Parts>(std::move(read));
+  } else {
+    given = std::get<Parts>(rows);
+  }
+  CheckOptions options;
+  options.margins = false, options.budget = budget;
+  const JobCheckResult check = check_parts(robot, job, given, options);
+  if (!check.passed)
+    throw InputError(source, check.failures.front() + ": allowed is a job that passes check_job()");
+  std::vector<swivel::JobPart> parts = to_core(job, given);
+  for (swivel::JobPart& part : parts)
+    if (part.run)
+      part.rows = rows_at_layers(robot, problem_of_run(job, *part.run), part.rows, {}, budget);
+  return parts;
+}
+
+JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions& timing,
+               std::optional<double> timeout) {
+  if (timeout && !(*timeout > 0))
+    throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
+  const swivel::Job job = to_core(of);
+  return interruptible([&](const std::stop_token& stop) {
+    const Budget budget(timeout, nullptr, stop);
+    const PreparedRobot robot = prepared(job, stop);
+    const auto* const plan = std::get_if<JobPlan>(&rows);
+    const std::vector<swivel::JobPart> parts =
+        plan != nullptr ? to_core(job, parts_of(*plan)) : proved_parts(robot, job, rows, budget);
+    JobMotion motion;
+    motion.job = without_surroundings(job);
+    motion.joint_names = robot.arm().chain.joint_names;
+    for (const swivel::JobPart& part : parts)
+      if (part.run) motion.order.push_back(*part.run);
+    auto result =
+        std::make_shared<JobTimingResult>(swivel::time_job(robot, job, parts, timing, budget));
+    motion.timing = result;
+    if (!result->motion) return motion;
+    // Motions keep more clearance between rows than trajectories do: transitions may lack it.
+    CheckOptions options;
+    options.margins = false, options.budget = budget;
+    const JobCheckResult check = check_timed(robot, job, motion, options);
+    if (check.passed) return motion;
+    motion.fault = check.failures.front();
+    result->motion.reset();
+    return motion;
+  });
+}
+
+const char* const kSpeeds =
+    "speed: m/s along all strokes, instead of the speeds and feeds of the job. turn_speed: rad/s, "
+    "of the tool. rate: samples a second.";
+
+void bind_plan_job(py::module_& m) {
+  m.def(
+      "plan_job",
+      [](const JobOrFile& job, const py::object& planner, int threads,
+         std::optional<double> timeout, bool evidence, const py::object& progress,
+         std::optional<double> speed, std::optional<double> turn_speed,
+         std::optional<double> rate) {
+        PlanOptions options = to_plan_options(planner, threads, timeout);
+        if (evidence) options.evidence = Evidence::all();
+        options.progress = to_progress(progress);
+        std::optional<JobTimingOptions> timing;
+        if (speed || turn_speed || rate)
+          timing = timing_of(speed, turn_speed, rate.value_or(JobTimingOptions().rate));
+        return plan(job, options, timing);
+      },
+      py::arg("job").none(false), py::kw_only(), py::arg("planner") = "parallel",
+      py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("evidence") = false,
+      py::arg("progress") = py::none(), py::arg("speed") = py::none(),
+      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(),
+      (std::string("Plans a job: all strokes and the transitions between them. No job is a "
+                   "JobPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops "
+                   "it.\n\n"
+                   "job: a Job, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
+                   "for all cores. timeout: s, for everything. evidence: find all measures. "
+                   "progress(stage, done, of): now and then.\n"
+                   "speed, turn_speed, rate: with any of these the plan has a motion in time. ") +
+       kSpeeds + " Raises InputError, InvalidArgument, and what progress raised.")
+          .c_str());
+}
+
+}  // namespace
+
+void bind_job_functions(py::module_& m) {
+  bind_plan_job(m);
+  m.def("check_job", &check, py::arg("job").none(false), py::arg("rows").none(false),
+        "Proves the rows of a job from the job alone, or says what is wrong with them: JobCheck.\n"
+        "\n"
+        "job: a Job, or the name of its file. rows: a JobPlan (its parts), a JobMotion, a list of "
+        "JobParts, or the name of a CSV file of a trajectory or a motion. Raises InputError and "
+        "InvalidArgument.");
+  m.def(
+      "time_job",
+      [](const JobOrFile& job, const Timeable& rows, std::optional<double> speed,
+         std::optional<double> turn_speed, double rate, std::optional<double> timeout) {
+        return time(job, rows, timing_of(speed, turn_speed, rate), timeout);
+      },
+      py::arg("job").none(false), py::arg("rows").none(false), py::kw_only(),
+      py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
+      py::arg("rate") = JobTimingOptions().rate, py::arg("timeout") = py::none(),
+      (std::string("Makes the rows of a job a motion in time, and proves it: JobMotion. plan_job() "
+                   "with a speed or a rate plans rows that are sure to keep what motions keep.\n\n"
+                   "job: a Job, or the name of its file. rows: a JobPlan, a list of JobParts, or "
+                   "the name of a CSV file of a trajectory. ") +
+       kSpeeds + " Raises InputError, InvalidArgument and TimeoutError.")
+          .c_str());
+  m.def(
+      "load_job_trajectory",
+      [](const std::filesystem::path& file, const JobOrFile& of) {
+        const swivel::Job job = to_core(of);
+        return interruptible(
+            [&](const std::stop_token& stop) { return load_rows(prepared(job, stop), job, file); });
+      },
+      py::arg("file"), py::arg("job").none(false),
+      "The trajectory of a job as a list of JobParts, or a JobMotion where the file has times: CSV "
+      "as JobPlan.save() and JobMotion.save() write it. Raises InputError.");
+}
+
+}  // namespace swivel::python

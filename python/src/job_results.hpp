@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Answers about jobs as Python holds them, which outlive the job that was planned.
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "job.hpp"
+#include "results.hpp"
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/motion/job_motion.hpp"
+#include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/time_job.hpp"
+
+namespace swivel::python {
+
+/// A part of a job: a run of a stroke, or a transition.
+struct JobPart {
+  std::shared_ptr<const std::vector<TrajectoryRow>> rows;  // shared with arrays and other answers
+  io::JointNames joint_names;
+  std::optional<std::string> stroke;  ///< none of a transition
+  bool reversed = false;
+  std::optional<double> cost;  ///< none of a part that was not planned
+  std::optional<std::array<std::string, 2>> barred_by;
+  std::vector<bool> process;  ///< by rows; empty: not stated
+};
+
+/// What a plan found out about a run.
+struct JobRun {
+  std::shared_ptr<const RunResult> result;
+  std::string stroke;
+  std::optional<double> cost;  ///< in the job; none if there is no job
+};
+
+struct JobPlan {
+  std::shared_ptr<const JobMotionPlan> plan;
+  /// The job's strokes, home and order, by which the answer is written; without robot and scene.
+  std::shared_ptr<const swivel::Job> job;
+  [[nodiscard]] const JobResult& result() const { return plan->result; }
+};
+
+struct JobMotion {
+  std::shared_ptr<const JobTimingResult> timing;
+  std::shared_ptr<const swivel::Job> job;  ///< as JobPlan has it
+  std::vector<StrokeRun> order;            ///< of the runs
+  io::JointNames joint_names;
+  /// What the check of the motion found, for which it is none; empty: nothing.
+  std::string fault;
+  /// Throws ValueError if it is not executable.
+  [[nodiscard]] std::shared_ptr<const swivel::JobMotion> motion() const;
+};
+
+struct JobCheck {
+  JobCheckResult result;
+  io::JointNames joint_names;
+};
+
+/// Returns what JobPlan::job holds of a job.
+[[nodiscard]] std::shared_ptr<const swivel::Job> without_surroundings(const swivel::Job& job);
+[[nodiscard]] std::vector<JobPart> parts_of(const JobPlan& plan);
+/// Returns the motion of a plan. Throws ValueError if it has none.
+[[nodiscard]] JobMotion motion_of(const JobPlan& plan);
+
+}  // namespace swivel::python

@@ -1,0 +1,441 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Jobs in the Python package, as a user has it. Usage: job_test.py CASE; SWIVEL is the program,
+# SWIVEL_DATA the data folder.
+import copy
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import python_test
+import swivel
+
+PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
+DOOR = DATA / "problems" / "door_job.yaml"
+HOME = [-0.6241, -1.2398, 0.7037, -0.7659, 0.8316, 1.8921, -0.3086]
+COARSE = swivel.Resolution(ds=0.02, dphi=0.2)
+
+
+def program(*arguments):
+    return subprocess.run(
+        [PROGRAM, *arguments, "--quiet"], check=True, capture_output=True, text=True
+    ).stdout
+
+
+def small(**members):
+    """Two strokes on the door, from a home and back, with lines of approach and retract."""
+    job = swivel.load_job(DOOR)
+    job.strokes = job.strokes[:2]
+    job.resolution = COARSE
+    job.approach, job.retract = 0.02, [0, 0, -0.03]
+    for name, value in members.items():
+        setattr(job, name, value)
+    return job
+
+
+def barred(**members):
+    """A job whose second stroke is out of reach."""
+    job = small(**members)
+    job.strokes[1].waypoints = job.strokes[1].waypoints + [0, 2, 0, 0, 0, 0, 0]
+    return job
+
+
+def spoilt(part, row, by=0.01):
+    """The part with one joint moved in one row."""
+    rows = part.trajectory
+    joints = rows.joints.copy()
+    joints[row, 2] += by
+    return swivel.JobPart(
+        swivel.Trajectory(joints, rows.s, rows.phi, rows.branch, rows.joint_names), part.stroke,
+        reversed=part.reversed
+    )
+
+
+class Jobs(unittest.TestCase):
+    def test_the_program_gives_the_same_bits(self):
+        with tempfile.TemporaryDirectory() as folder:
+            rows, motion, out = (Path(folder) / f"{name}.csv" for name in ("rows", "motion", "out"))
+            told = json.loads(program("plan", DOOR, "--out", rows, "--json", "-"))
+            program("plan", DOOR, "--rate", "50", "--out", motion)
+            plan = swivel.plan_job(DOOR, evidence=True)
+            self.assertEqual(plan.to_csv(), rows.read_text())
+            plan.save(out)
+            self.assertEqual(out.read_bytes(), rows.read_bytes())
+            timed = swivel.plan_job(swivel.load_job(DOOR), rate=50, planner="lazy")
+            timed.motion.save(out)
+            self.assertEqual(out.read_bytes(), motion.read_bytes())
+        for name in ("cost", "bound", "bound_any", "gap", "transition_counters", "joint_names"):
+            self.assertEqual(getattr(plan, name), told[name], name)
+        self.assertEqual(str(plan.status), told["status"])
+        self.assertEqual(
+            [(run.stroke, run.reversed, run.cost, run.least_cost) for run in plan.runs],
+            [(run["stroke"], run["reversed"], run["cost"], run["least_cost"])
+             for run in told["runs"]],
+        )
+        self.assertEqual(len(plan.parts), len(told["parts"]))
+        for part, other in zip(plan.parts, told["parts"]):
+            self.assertEqual((part.stroke, part.cost), (other["stroke"], other["cost"]))
+            self.assertEqual(part.joints.tolist(), [row["joints"] for row in other["rows"]])
+            self.assertEqual(part.process.tolist(), [row["process"] for row in other["rows"]])
+        mine = json.loads(plan.to_json())
+        self.assertEqual(set(mine), set(told))
+        for name in set(told) - {"time_ms", "threads", "checked"}:
+            self.assertEqual(mine[name], told[name], name)
+
+    def test_made_in_python(self):
+        read = swivel.load_job(DOOR)
+        robot = swivel.Robot(
+            DATA / "robots" / "sda5f.urdf", DATA / "robots" / "sda5f.srdf", base="base_link",
+            tip="arm_left_link_tool0", tool=swivel.pose([0, 0, 0.10]), hold={"torso_joint_b1": 0.0}
+        )
+        robot.attach(
+            swivel.AttachedBody(
+                "polisher", swivel.Capsule(0.025, 0.04), "arm_left_link_tool0", [0, 0, 0.048]
+            )
+        )
+        files = [DATA / "paths" / f"door_stroke_{k}.csv" for k in range(6)]
+        strokes = [
+            swivel.Stroke(
+                f"row_{k}", np.loadtxt(file, delimiter=",", skiprows=1), frame="door",
+                smooth=read.strokes[k].smooth
+            )
+            for k, file in enumerate(files)
+        ]
+        job = swivel.Job(
+            robot, strokes, read.scene, home=HOME, process_speed=0.05, rapid=0.5,
+            limits=swivel.Limits(clearance=0.005, tool_path_error=0.001)
+        )
+        for name in ("limits", "resolution", "cost", "refinement", "strokes", "order", "rapid",
+                     "process_speed", "approach_speed"):
+            self.assertEqual(getattr(job, name), getattr(read, name), name)
+        np.testing.assert_array_equal(job.home, read.home)
+        one, other = swivel.plan_job(job), swivel.plan_job(read)
+        self.assertTrue(one.solved)
+        self.assertEqual((one.cost, one.to_csv()), (other.cost, other.to_csv()))
+
+    def test_what_is_none_is_as_the_job_says(self):
+        job = small()
+        own, plain = job.strokes
+        own.limits = swivel.Limits(clearance=0.009)
+        own.approach, own.retract, own.resolution = 0, 0, swivel.Resolution(ds=0.05, dphi=0.2)
+        plan = swivel.plan_job(job, evidence=True)
+        self.assertTrue(plan.solved, plan)
+        first, second = (run.measures.min_margin.required for run in plan.runs)
+        self.assertEqual((first, second), (0.009, 0.005))
+        self.assertEqual([part.stroke for part in plan.parts], [None, "row_0", None, "row_1", None])
+        self.assertTrue(plan.parts[1].process.all())
+        process = plan.parts[3].process
+        self.assertFalse(process[0] or process[-1])
+        self.assertEqual(process.sum(), np.ptp(np.flatnonzero(process)) + 1)
+        heights = plan.parts[3].trajectory.s[[np.argmax(process), -1]]
+        self.assertAlmostEqual(heights[0], 0.02)
+        along = np.linalg.norm(np.diff(plain.waypoints[:, :3], axis=0), axis=1).sum()
+        self.assertAlmostEqual(heights[1], 0.02 + along + 0.03)
+        self.assertTrue(swivel.check_job(job, plan))
+
+    def test_jobs_change_in_place(self):
+        job = small()
+        job.strokes[0].reversible = True
+        job.strokes[0].feed = np.full(len(job.strokes[0].waypoints), 0.04)
+        job.limits.clearance = 0.006
+        job.order = "best"
+        for other in (copy.copy(job), copy.deepcopy(job), pickle.loads(pickle.dumps(job))):
+            self.assertEqual(other.strokes, job.strokes)
+            other.strokes[0].name = "other"
+            other.strokes.pop()
+            other.limits.clearance = 9
+            other.scene.remove("door")
+        self.assertEqual([stroke.name for stroke in job.strokes], ["row_0", "row_1"])
+        self.assertEqual((job.limits.clearance, job.order), (0.006, swivel.StrokeOrder.BEST))
+        self.assertTrue(job.strokes[0].reversible)
+        np.testing.assert_array_equal(job.approach, [0, 0, -0.02])
+        job.strokes[0].approach = [0.01, 0, -0.01]
+        np.testing.assert_array_equal(job.strokes[0].approach, [0.01, 0, -0.01])
+        job.strokes.append(copy.copy(job.strokes[0]))
+        with self.assertRaisesRegex(swivel.InvalidArgument, "name 'row_0' is taken"):
+            job.validate()
+
+    def test_a_problem_with_a_path_is_a_job_of_one_stroke(self):
+        job = swivel.load_job(DATA / "problems" / "experiment_c.yaml")
+        self.assertEqual([stroke.name for stroke in job.strokes], ["path"])
+        np.testing.assert_array_equal(
+            swivel.plan_job(job).parts[0].joints,
+            swivel.plan(DATA / "problems" / "experiment_c.yaml").joints,
+        )
+
+
+class JobMotions(unittest.TestCase):
+    def setUp(self):
+        self.job = small()
+
+    def test_motion(self):
+        plan = swivel.plan_job(self.job, speed=0.1, rate=125)
+        motion = plan.motion
+        self.assertTrue(motion.executable, motion)
+        self.assertEqual(motion.joints.shape, (len(motion), 7))
+        self.assertEqual(motion.joints.shape, motion.velocities.shape)
+        self.assertEqual(motion.accelerations.shape, motion.velocities.shape)
+        self.assertAlmostEqual(motion.t[1] - motion.t[0], 1 / 125)
+        self.assertEqual(
+            [(event.stroke, event.on) for event in motion.events],
+            [("row_0", True), ("row_0", False), ("row_1", True), ("row_1", False)],
+        )
+        self.assertEqual(set(motion.part), set(range(len(plan.parts))))
+        for on, off in zip(motion.events[::2], motion.events[1::2]):
+            self.assertLess(on.t, off.t)
+            self.assertTrue(0.02 - 1e-9 <= on.s < 0.02 + 0.1 / 125)
+            self.assertTrue(motion.process[(motion.t >= on.t) & (motion.t < off.t)].all())
+        count = sum(
+            ((motion.t >= on.t) & (motion.t < off.t)).sum()
+            for on, off in zip(motion.events[::2], motion.events[1::2])
+        )
+        self.assertEqual(motion.process.sum(), count)
+        self.assertTrue(swivel.check_job(self.job, motion))
+        self.assertTrue(swivel.check_job(self.job, plan))  # whose rows follow rounded corners
+        np.testing.assert_array_equal(motion.joints[0], np.array(HOME))
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("csv", "json", "yaml", "mcap"):
+                motion.save(Path(folder) / f"m.{ending}")
+                self.assertGreater((Path(folder) / f"m.{ending}").stat().st_size, 1000)
+            read = swivel.load_job_trajectory(Path(folder) / "m.csv", self.job)
+            for member in ("t", "joints", "velocities", "accelerations", "part", "process"):
+                np.testing.assert_array_equal(getattr(read, member), getattr(motion, member))
+            self.assertEqual(
+                [(e.t, e.stroke, e.on) for e in read.events],
+                [(e.t, e.stroke, e.on) for e in motion.events],
+            )
+            self.assertTrue(swivel.check_job(self.job, Path(folder) / "m.csv"))
+            with self.assertRaisesRegex(swivel.InputError, "m.csv: has times"):
+                swivel.time_job(self.job, Path(folder) / "m.csv", speed=0.1)
+            with self.assertRaisesRegex(swivel.InputError, "unknown format"):
+                motion.save(Path(folder) / "m.txt")
+        # A job with its strokes in another list is another order.
+        turned = small(strokes=self.job.strokes[::-1])
+        self.assertIn("given order", swivel.check_job(turned, motion).failures[0])
+        turned.order = "best"
+        self.assertTrue(swivel.check_job(turned, motion))
+
+    def test_time_job(self):
+        plan = swivel.plan_job(self.job)
+        self.assertIsNone(plan.motion)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "rows.csv"
+            plan.save(file)
+            motions = [
+                swivel.time_job(self.job, rows, rate=50)
+                for rows in (plan, plan.parts, file)
+            ]
+        for motion in motions:
+            if motion.executable:
+                self.assertTrue(swivel.check_job(self.job, motion))
+            else:  # since motions keep more clearance than rows do
+                self.assertIn("come", motion.reason)
+            self.assertEqual(repr(motion), repr(motions[0]))
+        print(motions[0])
+        with self.assertRaises(TimeoutError):
+            swivel.time_job(self.job, plan, speed=0.1, timeout=1e-6)
+
+    def test_not_executable(self):
+        # The cheapest job of this episode jumps from branch to branch at a singularity.
+        job = swivel.load_job(DOOR)
+        job.scene = swivel.load_problem(DATA / "problems" / "experiment_c.yaml").episode(1, 3).scene
+        motion = swivel.time_job(job, swivel.plan_job(job), rate=50)
+        self.assertFalse(motion.executable)
+        self.assertRegex(motion.reason, "stroke 'row_5': the solution changes from branch")
+        self.assertEqual((motion.at_part, len(motion)), (11, 0))
+        self.assertGreater(motion.at_s, 0)
+        with self.assertRaisesRegex(ValueError, "not executable: stroke 'row_5': s = "):
+            print(motion.joints)
+
+
+class JobChecks(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.job = small()
+        cls.plan = swivel.plan_job(cls.job)
+
+    def test_spoilt_rows(self):
+        parts = self.plan.parts
+        check = swivel.check_job(self.job, parts)
+        self.assertTrue(check.passed, check)
+        self.assertEqual(len(check.runs), 2)
+        self.assertAlmostEqual(check.cost, self.plan.cost, places=9)
+        self.assertLess(check.runs[0].worst_position, 1e-6)
+        check = swivel.check_job(self.job, [spoilt(parts[0], 0), *parts[1:]])
+        self.assertIn("transition to 'row_0': begins", check.failures[0])
+        check = swivel.check_job(self.job, [parts[0], spoilt(parts[1], 3), *parts[2:]])
+        self.assertFalse(check)
+        self.assertIn("stroke 'row_0': row 3", check.failures[0])
+        self.assertIn("failed", repr(check))
+        self.assertIn("parts: allowed are", swivel.check_job(self.job, parts[1:]).failures[0])
+        self.assertFalse(swivel.check_job(self.job, []))
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "rows.csv"
+            self.plan.save(file)
+            self.assertTrue(swivel.check_job(self.job, file))
+            read = swivel.load_job_trajectory(file, self.job)
+            for part, other in zip(read, self.plan.parts):
+                self.assertEqual((part.stroke, part.reversed), (other.stroke, other.reversed))
+                np.testing.assert_array_equal(part.joints, other.joints)
+                np.testing.assert_array_equal(part.process, other.process)
+            lines = file.read_text().splitlines()
+            row = next(k for k, line in enumerate(lines) if line.endswith(",row_0,1"))
+            lines[row] = lines[row][:-1] + "0"
+            file.write_text("\n".join(lines) + "\n")
+            check = swivel.check_job(self.job, file)
+            self.assertRegex(check.failures[0], "stroke 'row_0': row .*process")
+            self.job.strokes[0].name, before = "other", self.job.strokes[0].name
+            with self.assertRaisesRegex(swivel.InputError, "rows.csv: .*'row_0' is no stroke"):
+                swivel.check_job(self.job, file)
+            self.job.strokes[0].name = before
+
+    def test_parts_by_hand(self):
+        made = [
+            swivel.JobPart(part.joints if part.stroke is None else part.trajectory, part.stroke)
+            for part in self.plan.parts
+        ]
+        self.assertIsNone(made[0].process)
+        self.assertTrue(swivel.check_job(self.job, made))
+        with self.assertRaisesRegex(swivel.InvalidArgument, "'row_7' is no stroke.*nearest is"):
+            swivel.check_job(self.job, [swivel.JobPart(made[1].trajectory, "row_7")])
+        with self.assertRaisesRegex(ValueError, "of a stroke allowed is a Trajectory"):
+            swivel.JobPart(made[1].joints, "row_0")
+
+
+class JobAnswers(unittest.TestCase):
+    def test_no_job(self):
+        plan = swivel.plan_job(barred())
+        self.assertEqual(plan.status, "infeasible")
+        self.assertEqual((plan.cost, plan.gap, plan.parts), (None, None, []))
+        self.assertEqual(plan.runs[1].diagnosis.cause.kind, "reach")
+        self.assertIsNone(plan.runs[0].diagnosis)
+        self.assertRegex(repr(plan), "stroke 'row_1' has no path by itself: ")
+        with self.assertRaisesRegex(ValueError, "the plan has no job: infeasible"):
+            plan.to_csv()
+        self.assertEqual(json.loads(plan.to_json())["status"], "infeasible")
+        job = small()
+        job.scene.add("wall", swivel.Sphere(0.2), job.tool_pose(job.home))
+        plan = swivel.plan_job(job)
+        self.assertTrue(plan.home_barred, plan)
+        self.assertIn("wall", plan.barred_by)
+        self.assertRegex(repr(plan), "at home .*wall.* too near")
+        stopped = swivel.plan_job(DOOR, timeout=1e-3)
+        self.assertEqual(stopped.status, "timeout")
+
+    def test_words(self):
+        job = small()
+        plan = swivel.plan_job(job, speed=0.1)
+        for thing, words in (
+            (job, "2 strokes"),
+            (job.strokes[0], "Stroke 'row_0': .* waypoints in 'door'"),
+            (plan, "solved: 2 strokes, cost .*; .* samples"),
+            (plan.parts[0], "transition: 2 rows, cost"),
+            (plan.parts[1], "stroke 'row_0': .* rows, cost"),
+            (plan.runs[0], "stroke 'row_0': solved, at least"),
+            (plan.motion, "2 strokes, .* Hz"),
+            (plan.motion.events[0], "on at t = .*'row_0'"),
+            (swivel.check_job(job, plan), "passed: 2 strokes"),
+        ):
+            self.assertRegex(repr(thing), words)
+            self.assertNotIn("\n", repr(thing))
+
+    def test_ctrl_c_stops_a_plan(self):
+        job, calls = swivel.load_job(DOOR), []
+        job.resolution = swivel.Resolution(ds=0.001, dphi=0.002)
+
+        def progress(*_):
+            calls.append(None)
+            if len(calls) == 3:
+                os.kill(os.getpid(), signal.SIGINT)
+
+        with self.assertRaises(KeyboardInterrupt):
+            swivel.plan_job(job, progress=progress)
+
+    def test_pickles(self):
+        compare = python_test.Pickles("test_parts")
+        compare.setUp()
+        job = small()
+        plan = swivel.plan_job(job, speed=0.1, evidence=True)
+        for thing in (job, job.strokes[0], plan, plan.motion, swivel.check_job(job, plan),
+                      swivel.plan_job(barred()), swivel.StrokeOrder.BEST):
+            compare.through(thing)
+        again = pickle.loads(pickle.dumps(plan))
+        self.assertEqual(again.to_csv(), plan.to_csv())
+        self.assertEqual(again.to_json(), plan.to_json())
+        self.assertTrue(swivel.check_job(pickle.loads(pickle.dumps(job)), again.motion))
+        print(compare.count, "values compared")
+        self.assertGreater(compare.count, 500)
+        # An answer holds neither robot nor scene.
+        self.assertLess(len(pickle.dumps(plan.parts)), len(pickle.dumps(job)))
+
+
+class JobErrors(unittest.TestCase):
+    def raises(self, error, message, function, *arguments, **keywords):
+        with self.assertRaisesRegex(error, message) as caught:
+            function(*arguments, **keywords)
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_problems_are_no_jobs(self):
+        self.raises(swivel.InputError, r"door_job.yaml:\d+: .*job.*load_job\(\)",
+                    swivel.load_problem, DOOR)
+        self.raises(swivel.InputError, "a job", swivel.plan, DOOR)
+        self.raises(TypeError, r"a Job: .*plan_job\(\)", swivel.plan, swivel.load_job(DOOR))
+        with self.assertRaises(TypeError):
+            swivel.plan_job(None)
+
+    def test_values(self):
+        job = small()
+        stroke = job.strokes[0]
+        for message, function, arguments, keywords in (
+            ("order|StrokeOrder: 'any': allowed are given, best", setattr, (job, "order", "any"),
+             {}),
+            ("approach: allowed is a number from 0 on", setattr, (job, "approach", -0.1), {}),
+            ("retract: allowed is a number from 0 on", setattr, (stroke, "retract", [1, 2]), {}),
+            ("approach: allowed", setattr, (stroke, "approach", "up"), {}),
+            (r"home: allowed is \(7,\)", setattr, (job, "home", [1, 2]), {}),
+            ("feed: allowed is one number", setattr, (stroke, "feed", [[1, 2]]), {}),
+            ("speed: not a positive number", swivel.plan_job, (job,), {"speed": 0}),
+            ("turn_speed: not a positive", swivel.plan_job, (job,), {"turn_speed": -1}),
+            ("rate: allowed", swivel.plan_job, (job,), {"rate": 0}),
+            ("timeout: not a positive", swivel.plan_job, (job,), {"timeout": 0}),
+            ("threads: -1", swivel.plan_job, (job,), {"threads": -1}),
+            ("allowed for jobs are lazy and parallel", swivel.plan_job, (job,),
+             {"planner": "eager"}),
+        ):
+            self.raises(ValueError, message, function, *arguments, **keywords)
+        self.raises(TypeError, "progress: not callable", swivel.plan_job, job, progress=3)
+        self.raises(TypeError, r"strokes\[0\]: str: allowed are Strokes", swivel.Job, job.robot,
+                    ["a"])
+        self.raises(swivel.InputError, "nowhere", swivel.plan_job, "nowhere.yaml")
+
+    def test_what_no_job_may_have(self):
+        for members, words in (
+            ({"feed": [0.1]}, "stroke 'row_0': feed: allowed is one for each waypoint"),
+            ({"process_speed": -1.0}, "stroke 'row_0': process_speed"),
+            ({"name": ""}, "name: allowed are non-empty names"),
+            ({"frame": "doar"}, "doar"),
+        ):
+            job = small()
+            for name, value in members.items():
+                setattr(job.strokes[0], name, value)
+            self.raises(ValueError, words, swivel.plan_job, job)
+        for members, words in (
+            ({"rapid": 2.0}, "rapid: allowed"),
+            ({"strokes": []}, "strokes: allowed is at least one"),
+            ({"home": [float("nan")] * 7}, "home: allowed are finite numbers"),
+        ):
+            self.raises(swivel.InvalidArgument, words, small(**members).validate)
+        job = small(process_speed=None)
+        self.raises(swivel.InputError, "stroke 'row_0' has no speed", swivel.plan_job, job, rate=50)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["job_test"] + sys.argv[1:], verbosity=1)
