@@ -126,12 +126,13 @@ void examine_process(const swivel::Job& job, const Parts& parts,
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (!parts[k].stroke || parts[k].process.empty()) continue;
     const std::vector<bool> should = io::process_of_rows(all[k], job);
-    const auto [is, other] = std::mismatch(parts[k].process.begin(), parts[k].process.end(),
-                                           should.begin(), should.end());
-    if (is == parts[k].process.end() && other == should.end()) continue;
+    const std::vector<bool>& is = parts[k].process;
+    const auto first = std::mismatch(is.begin(), is.end(), should.begin(), should.end()).first;
+    if (first == is.end()) continue;
+    const auto row = static_cast<std::size_t>(first - is.begin());
     result.failures.push_back("stroke '" + *parts[k].stroke +
-                              formatted("': row %zu: process is not as the stroke has it",
-                                        static_cast<std::size_t>(other - should.begin())));
+                              formatted("': row %zu: process is %d: allowed is %d", row,
+                                        static_cast<int>(is[row]), static_cast<int>(!is[row])));
     ++result.failure_count;
     result.passed = false;
   }

@@ -39,6 +39,12 @@ def small(**members):
     return job
 
 
+def with_strokes(job, strokes):
+    job = copy.copy(job)
+    job.strokes = strokes
+    return job
+
+
 def barred(**members):
     """A job whose second stroke is out of reach."""
     job = small(**members)
@@ -139,6 +145,55 @@ class Jobs(unittest.TestCase):
         self.assertAlmostEqual(heights[1], 0.02 + along + 0.03)
         self.assertTrue(swivel.check_job(job, plan))
 
+    def test_files_are_read_whole(self):
+        text = DOOR.read_text().replace("../", f"{DATA}/")
+        text = text.replace("rapid:", "approach: 0.02\nrapid:")
+        text = text.replace("}}\n  - {name: row_2", "}, limits: {clearance: 0.008}, approach: 0.01,"
+                            " reversible: true}\n  - {name: row_2")
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "job.yaml"
+            file.write_text(text)
+            job = swivel.load_job(file)
+            self.assertEqual(job.source, str(file))
+            plan = swivel.plan_job(job)
+            self.assertEqual(plan.to_csv(), swivel.plan_job(file).to_csv())
+        self.assertTrue(plan.solved)
+        own, plain = job.strokes[1], job.strokes[2]
+        self.assertEqual((own.limits.clearance, plain.limits), (0.008, None))
+        self.assertEqual((own.reversible, plain.reversible), (True, False))
+        self.assertEqual((own.approach[2], plain.approach[2]), (-0.01, -0.02))
+        self.assertEqual((own.resolution, own.retract), (None, None))
+
+    def test_either_way(self):
+        job = swivel.load_job(DATA / "problems" / "iiwa14_bench_job.yaml")
+        np.testing.assert_array_equal(job.approach, [0, 0, -0.05])
+        self.assertEqual(job.strokes[0].approach, None)
+        job.order, job.resolution = "best", COARSE
+        plan = swivel.plan_job(job, rate=50)
+        self.assertTrue(plan.solved)
+        order = [(run.stroke, run.reversed) for run in plan.runs]
+        self.assertEqual({name for name, _ in order}, {stroke.name for stroke in job.strokes})
+        backwards = swivel.Job(
+            job.robot, [copy.copy(job.strokes[0])], job.scene, limits=job.limits, resolution=COARSE,
+            approach=0.05, retract=0.05, process_speed=0.05
+        )
+        backwards.strokes[0].waypoints = backwards.strokes[0].waypoints[::-1]
+        rows = swivel.plan_job(backwards).parts[0].trajectory
+        for reversed, words in ((True, ""), (False, "row 0")):
+            check = swivel.check_job(
+                with_strokes(job, job.strokes[:1]),
+                [swivel.JobPart(rows, job.strokes[0].name, reversed=reversed)],
+            )
+            self.assertEqual(bool(check), reversed, check)
+            self.assertIn(words, "".join(check.failures))
+        with tempfile.TemporaryDirectory() as folder:
+            for name, what in (("rows", plan), ("motion", plan.motion)):
+                what.save(Path(folder) / f"{name}.csv")
+                self.assertTrue(swivel.check_job(job, Path(folder) / f"{name}.csv"), name)
+            read = swivel.load_job_trajectory(Path(folder) / "rows.csv", job)
+        self.assertEqual([(p.stroke, p.reversed) for p in read if p.stroke], order)
+        print(order)
+
     def test_jobs_change_in_place(self):
         job = small()
         job.strokes[0].reversible = True
@@ -162,12 +217,14 @@ class Jobs(unittest.TestCase):
             job.validate()
 
     def test_a_problem_with_a_path_is_a_job_of_one_stroke(self):
-        job = swivel.load_job(DATA / "problems" / "experiment_c.yaml")
-        self.assertEqual([stroke.name for stroke in job.strokes], ["path"])
-        np.testing.assert_array_equal(
-            swivel.plan_job(job).parts[0].joints,
-            swivel.plan(DATA / "problems" / "experiment_c.yaml").joints,
-        )
+        for name in ("experiment_c", "ur5e_deburr_edge", "kr6_weld_pipe"):
+            file = DATA / "problems" / f"{name}.yaml"
+            job = swivel.load_job(file)
+            self.assertEqual([stroke.name for stroke in job.strokes], ["path"])
+            (part,) = swivel.plan_job(job).parts
+            np.testing.assert_array_equal(part.joints, swivel.plan_job(file).parts[0].joints)
+            if name == "experiment_c":
+                np.testing.assert_array_equal(part.joints, swivel.plan(file).joints)
 
 
 class JobMotions(unittest.TestCase):
@@ -238,8 +295,15 @@ class JobMotions(unittest.TestCase):
                 self.assertIn("come", motion.reason)
             self.assertEqual(repr(motion), repr(motions[0]))
         print(motions[0])
+        timed = swivel.plan_job(self.job, speed=0.1)
+        slower = swivel.time_job(self.job, timed, speed=0.05)
+        self.assertTrue(swivel.check_job(self.job, slower))
+        self.assertGreater(slower.duration, timed.motion.duration)
         with self.assertRaises(TimeoutError):
             swivel.time_job(self.job, plan, speed=0.1, timeout=1e-6)
+        bad = [plan.parts[0], spoilt(plan.parts[1], 3), *plan.parts[2:]]
+        with self.assertRaisesRegex(swivel.InputError, r"row 3.*a job that passes check_job\(\)$"):
+            swivel.time_job(self.job, bad, speed=0.1)
 
     def test_not_executable(self):
         # The cheapest job of this episode jumps from branch to branch at a singularity.
@@ -291,7 +355,7 @@ class JobChecks(unittest.TestCase):
             lines[row] = lines[row][:-1] + "0"
             file.write_text("\n".join(lines) + "\n")
             check = swivel.check_job(self.job, file)
-            self.assertRegex(check.failures[0], "stroke 'row_0': row .*process")
+            self.assertIn(": process is 0: allowed is 1", check.failures[0])
             self.job.strokes[0].name, before = "other", self.job.strokes[0].name
             with self.assertRaisesRegex(swivel.InputError, "rows.csv: .*'row_0' is no stroke"):
                 swivel.check_job(self.job, file)

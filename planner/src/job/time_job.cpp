@@ -30,7 +30,7 @@ double process_speed(const Job& job, const Stroke& stroke, const JobTimingOption
   if (!stroke.feed.empty()) return stroke.feed.front();
   throw InputError(job.source, "stroke '" + stroke.name +
                                    "' has no speed: allowed are process_speed, a column feed of "
-                                   "its path, limits.tool_speed, or --speed");
+                                   "its path, limits.tool_speed, or one speed for all (--speed)");
 }
 
 /// Joins timed parts to one motion.
