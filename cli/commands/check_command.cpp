@@ -91,8 +91,7 @@ bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& row
          std::all_of(rows.begin(), rows.end(), as_degrees);
 }
 
-int run_on_certificate(const Problem& problem, const std::string& file) {
-  const InfeasibilityCertificate certificate = io::load_certificate(file);
+int run_on_certificate(const Problem& problem, const InfeasibilityCertificate& certificate) {
   catch_interrupts();
   CertificateCheck result;
   std::vector<HeldJoint> held;
@@ -118,12 +117,30 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
   return kOk;
 }
 
-int run_on_job(const CheckArguments& arguments, const Job& job) {
-  refuse_options_of_jobs(job.source, {{!arguments.certificate.empty(), "--certificate"}});
-  if (arguments.trajectory.empty())
-    throw InputError("trajectory: is missing: allowed is a file with the rows of the job");
-  return check_job_file(chosen_job(job, arguments.lattice, arguments.episode),
-                        arguments.trajectory);
+/// Throws InputError unless there is either a trajectory or a certificate.
+void require_one_file(const CheckArguments& arguments) {
+  if (arguments.trajectory.empty() == arguments.certificate.empty())
+    throw InputError(
+        arguments.certificate.empty()
+            ? "trajectory: is missing: allowed is a file, or --certificate FILE"
+            : "--certificate: there is a trajectory as well: allowed is one of the two");
+}
+
+int run_on_job(const CheckArguments& arguments, const Job& file) {
+  require_one_file(arguments);
+  const Job job = chosen_job(file, arguments.lattice, arguments.episode);
+  if (arguments.certificate.empty()) return check_job_file(job, arguments.trajectory);
+  const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
+  const auto stroke = std::find_if(job.strokes.begin(), job.strokes.end(), [&](const Stroke& one) {
+    return one.name == certificate.stroke;
+  });
+  if (stroke == job.strokes.end())
+    throw InputError(arguments.certificate, "stroke: '" + certificate.stroke +
+                                                "' is none of the job: allowed are the names of "
+                                                "its strokes");
+  const auto index = static_cast<std::size_t>(stroke - job.strokes.begin());
+  say("stroke '%s'%s: ", stroke->name.c_str(), certificate.reversed ? " backwards" : "");
+  return run_on_certificate(problem_of_run(job, {index, certificate.reversed}), certificate);
 }
 
 int run(const CheckArguments& arguments) {
@@ -131,12 +148,15 @@ int run(const CheckArguments& arguments) {
   if (const Job* job = std::get_if<Job>(&file)) return run_on_job(arguments, *job);
   Problem problem = arguments.episode.apply(std::get<Problem>(file));
   arguments.lattice.apply(problem);
-  if (arguments.trajectory.empty() == arguments.certificate.empty())
-    throw InputError(
-        arguments.certificate.empty()
-            ? "trajectory: is missing: allowed is a file, or --certificate FILE"
-            : "--certificate: there is a trajectory as well: allowed is one of the two");
-  if (!arguments.certificate.empty()) return run_on_certificate(problem, arguments.certificate);
+  require_one_file(arguments);
+  if (!arguments.certificate.empty()) {
+    const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
+    if (!certificate.stroke.empty())
+      throw InputError(arguments.certificate, "stroke: is of stroke '" + certificate.stroke +
+                                                  "' of a job: allowed is a problem file with "
+                                                  "strokes");
+    return run_on_certificate(problem, certificate);
+  }
   const PreparedRobot robot(problem);
   const Chain& chain = robot.arm().chain;
   const std::vector<HeldJoint>& held = robot.arm().held;

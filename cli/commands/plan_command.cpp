@@ -329,9 +329,7 @@ ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
 void require_options_of_jobs(const PlanArguments& arguments) {
   refuse_options_of_jobs(arguments.problem, {{arguments.refine, "--refine"},
                                              {arguments.motion.chord.has_value(), "--chord"},
-                                             {arguments.advise.has_value(), "--advise"},
                                              {!arguments.report.empty(), "--report"},
-                                             {!arguments.certificate.empty(), "--certificate"},
                                              {!arguments.trace.empty(), "--trace"},
                                              {arguments.map, "--map"},
                                              {!arguments.map_svg.empty(), "--map-svg"},
@@ -360,7 +358,12 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
     require_table_name("--out", arguments.out, "a job without times",
                        "--speed or --rate, with which motions are written in other formats");
   }
+  if (!arguments.certificate.empty() && request.timing)
+    throw InputError(
+        "--certificate: is of the job as its file has it: allowed without --speed and --rate, "
+        "which ask for more");
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
+  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
   request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();
   outputs.emplace(std::move(file.inputs));

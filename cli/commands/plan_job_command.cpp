@@ -3,12 +3,19 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "output/job_output.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
+#include "swivel/planner/job/advise_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
@@ -44,10 +51,58 @@ void print_job(const JobMotionPlan& plan, const Job& job) {
     complain("swivel: warning: %s\n", warning.c_str());
 }
 
-JobMotionPlan planned(const JobRequest& request) {
-  if (!request.timing) return {.result = plan_job(request.job, request.options), .timing = {}};
-  const PreparedRobot robot(problem_of_run(with_motion_defaults(request.job), {0, false}));
-  return plan_job_motion(robot, request.job, request.options, *request.timing);
+/// What was found out about a job.
+struct JobAnswer {
+  JobMotionPlan plan;
+  std::optional<AdviceOnJob> advice{};              ///< with --advise, where there is no job
+  std::optional<InfeasibilityCertificate> proof{};  ///< with --certificate, of a stroke
+  std::string certificate{};                        ///< `proof` as JSON
+};
+
+/// Proves that a stroke of the job has no path, if one has none. Adds a warning to the result if
+/// all have one, or if the budget ends first.
+void find_certificate(const Job& job, const PlanOptions& options, const Budget& budget,
+                      JobAnswer& answer) {
+  JobResult& result = answer.plan.result;
+  const auto run = std::find_if(result.runs.begin(), result.runs.end(), [](const RunResult& one) {
+    return one.status == PlanStatus::kInfeasible;
+  });
+  if (run == result.runs.end()) {
+    result.warnings.push_back("each stroke has a path by itself: there is no certificate");
+    return;
+  }
+  try {
+    Planner planner(problem_of_run(job, run->run));
+    PlanOptions alone = options;
+    alone.evidence = {};
+    if (planner.plan(alone).status != PlanStatus::kInfeasible) throw Stopped();
+    answer.proof = prove_infeasible(planner.view(), budget);
+    answer.proof->stroke = job.strokes[run->run.stroke].name;
+    answer.proof->reversed = run->run.reversed;
+    answer.certificate = io::to_json(*answer.proof);
+  } catch (const Stopped&) {
+    result.warnings.push_back("stopped before the certificate was found: there is none");
+  }
+}
+
+/// Plans, and where there is no job, seeks advice and a certificate as far as they are asked for.
+JobAnswer answer_of(const JobRequest& request, bool certificate) {
+  const Job job = request.timing ? with_motion_defaults(request.job) : request.job;
+  const PreparedRobot robot(problem_of_run(job, {0, false}));
+  const Budget budget = request.options.budget();  // of the certificate; plans have their own
+  JobAnswer answer;
+  if (request.timing)
+    answer.plan = plan_job_motion(robot, request.job, request.options, *request.timing);
+  else
+    answer.plan.result = plan_job(robot, job, request.options);
+  if (answer.plan.result.status != PlanStatus::kInfeasible) return answer;
+  if (certificate) find_certificate(job, request.options, budget, answer);
+  if (request.advise_s) {
+    PlanOptions trials = request.options;
+    trials.timeout_s = request.advise_s;
+    answer.advice = advise_job(robot, job, answer.plan.result, trials);
+  }
+  return answer;
 }
 
 /// Gives --out its text: the motion where one is asked for, else the trajectory. Marks an earlier
@@ -70,13 +125,20 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  JobMotionPlan plan = planned(request);
+  JobAnswer answer = answer_of(request, outputs.wants("--certificate"));
+  JobMotionPlan& plan = answer.plan;
   JobResult& result = plan.result;
   result.time_ms["load"] = request.load_ms;
   progress.clear();
 
   write_rows(request, plan, outputs);
-  const io::JobExtras extras{plan.timing ? &*plan.timing : nullptr, plan.stopped};
+  const std::size_t certificate_bytes = answer.certificate.size();
+  if (answer.proof)
+    outputs.write("--certificate", std::move(answer.certificate));
+  else
+    outputs.remove("--certificate");
+  const io::JobExtras extras{plan.timing ? &*plan.timing : nullptr, plan.stopped,
+                             answer.advice ? &*answer.advice : nullptr};
   if (outputs.wants("--json"))
     outputs.write("--json", io::to_job_json(result, request.job, extras) + "\n");
   const bool infeasible = result.status == PlanStatus::kInfeasible;
@@ -86,7 +148,13 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
           : no_motion ? "there is no motion now"
                       : "the search was stopped",
           [&] {
-            if (!request.quiet && !outputs.takes_standard_output()) print_job(plan, request.job);
+            if (request.quiet || outputs.takes_standard_output()) return;
+            print_job(plan, request.job);
+            if (answer.proof)
+              say_text("  stroke '" + answer.proof->stroke +
+                       (answer.proof->reversed ? "' backwards: " : "': ") +
+                       certificate_text(*answer.proof, certificate_bytes));
+            if (answer.advice) say_text(advice_text(*answer.advice));
           });
   if (infeasible || no_motion) return kNo;
   return result.status == PlanStatus::kSolved && !plan.stopped ? kOk : kStopped;

@@ -153,19 +153,10 @@ std::string infeasible_text(const JobResult& result, const Job& job) {
     return formatted("no job: %zu of %zu strokes ha%s no path by %s\n", without, job.strokes.size(),
                      without == 1 ? "s" : "ve", without == 1 ? "itself" : "themselves") +
            text;
-  if (result.home_barred)
-    return "no job: at home " + (*result.barred_by)[0] + " - " + (*result.barred_by)[1] +
-           " come too near\n";
-  if (!result.no_transition_to) return "no job found\n";
-  const std::size_t to = *result.no_transition_to;
-  const auto end = [&](std::size_t k) {
-    return k < result.runs.size() ? "stroke " + quoted_name(job, result.runs[k].run) : "home";
-  };
-  text = "no job found: no way leads from " + (to == 0 ? "home" : end(to - 1)) + " to " + end(to);
-  if (result.barred_by)
-    text +=
-        "; " + (*result.barred_by)[0] + " - " + (*result.barred_by)[1] + " bar the straight one";
-  return text + '\n';
+  if (!result.no_transition) return "no job found\n";
+  std::vector<std::string> runs;
+  for (const RunResult& run : result.runs) runs.push_back("stroke " + quoted_name(job, run.run));
+  return "no job found: " + words(*result.no_transition, runs) + '\n';
 }
 
 }  // namespace

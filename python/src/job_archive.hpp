@@ -59,12 +59,15 @@ void serialize(A& archive, TransitionCounters& x) {
   archive(pairs, searches, rounds);
 }
 template <class A>
+void serialize(A& archive, NoTransition& x) {
+  auto& [to, where, bodies] = x;
+  archive(to, where, bodies);
+}
+template <class A>
 void serialize(A& archive, JobResult& x) {
-  auto& [status, cost, bound, bound_any, parts, runs, no_transition_to, barred_by, home_barred,
-         planner, threads, counters, transitions, time_ms, checked, joint_names, held,
+  auto& [status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters, transitions, time_ms, checked, joint_names, held,
          dropped_pairs, reduced_pairs, warnings] = x;
-  archive(status, cost, bound, bound_any, parts, runs, no_transition_to, barred_by, home_barred,
-          planner, threads, counters, transitions, time_ms, checked, joint_names, held,
+  archive(status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters, transitions, time_ms, checked, joint_names, held,
           dropped_pairs, reduced_pairs, warnings);
 }
 template <class A>

@@ -39,8 +39,8 @@ std::optional<double> gap_of(const JobResult& result) {
 /// Returns the runs between which no transition was found: their names, None for home.
 py::object no_transition_of(const JobPlan& plan) {
   const JobResult& result = plan.result();
-  if (!result.no_transition_to) return py::none();
-  const std::size_t to = *result.no_transition_to;
+  if (!result.no_transition) return py::none();
+  const std::size_t to = result.no_transition->to;
   const auto name = [&](std::size_t k) {
     return or_none(k < result.runs.size(),
                    k < result.runs.size() ? name_of(*plan.job, result.runs[k].run) : "");
@@ -93,18 +93,11 @@ std::string infeasible_words(const JobPlan& plan) {
       return run_words(name_of(*plan.job, one.run), one.run.reversed) + " has no path by itself" +
              (one.diagnosis ? ": " + py::str(py::cast(one.diagnosis->cause)).cast<std::string>()
                             : "");
-  const std::string bodies =
-      result.barred_by ? (*result.barred_by)[0] + " - " + (*result.barred_by)[1] : "";
-  if (result.home_barred) return "at home " + bodies + " come too near";
-  if (!result.no_transition_to) return "none found";
-  const std::size_t to = *result.no_transition_to;
-  const auto end = [&](std::size_t k) {
-    return k < result.runs.size()
-               ? run_words(name_of(*plan.job, result.runs[k].run), result.runs[k].run.reversed)
-               : std::string("home");
-  };
-  return "no way leads from " + (to == 0 ? "home" : end(to - 1)) + " to " + end(to) +
-         (bodies.empty() ? "" : "; " + bodies + " bar the straight one");
+  if (!result.no_transition) return "none found";
+  std::vector<std::string> runs;
+  for (const RunResult& one : result.runs)
+    runs.push_back(run_words(name_of(*plan.job, one.run), one.run.reversed));
+  return words(*result.no_transition, runs);
 }
 
 std::string plan_words(const JobPlan& plan) {
@@ -262,11 +255,21 @@ void bind_plan(py::module_& m) {
                              "(from, to) where each run has a path, but no transition joins these "
                              "two: names of strokes, None for home. Else None.")
       .def_property_readonly(
-          "barred_by", [](const JobPlan& p) { return bodies_or_none(p.result().barred_by); },
-          "The two bodies in the way there or at home, or None.")
+          "barred_by",
+          [](const JobPlan& p) {
+            const auto& none = p.result().no_transition;
+            return bodies_or_none(none ? none->bodies : std::nullopt);
+          },
+          "The two bodies in the way there, or None.")
       .def_property_readonly(
-          "home_barred", [](const JobPlan& p) { return p.result().home_barred; },
-          "Whether something comes too near at home.")
+          "barred_where",
+          [](const JobPlan& p) -> std::optional<std::string> {
+            const auto& none = p.result().no_transition;
+            if (!none) return {};
+            return to_string(none->where);
+          },
+          "Where they are: 'between' the two, at 'home', wherever the run before may 'end', or "
+          "wherever the next one may 'begin'. None where there is a job.")
       .def_property_readonly(
           "motion",
           [](const JobPlan& p) -> std::optional<JobMotion> {

@@ -492,6 +492,35 @@ TEST(Lattice, CostsGrowWithTheWeightsToTheLastBit) {
     }
 }
 
+TEST(Lattice, LeastDeltasBoundTheDeltasToABox) {
+  Random random(seed("Lattice.LeastDelta"));
+  int compared = 0, zero = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const Chain chain = arm_of(robot).chain;
+    const Config q0 = random_config(chain, random);
+    const Small small(robot, q0, q0 + 0.1 * Config::Ones(),
+                      {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
+    for (int trial = 0; trial < trials(400); ++trial) {
+      const Config q = random_config(chain, random), lower = random_config(chain, random);
+      Config upper = lower, found = Config::Constant(1e9);
+      for (int j = 0; j < kDof; ++j) upper[j] += random.coin(0.2) ? 0 : random.uniform(0, 7);
+      const Config least = small.lattice->least_delta(q, lower, upper);
+      for (int k = 0; k < 200; ++k)
+        found = found.cwiseMin(
+            small.lattice->delta(q, lower + (upper - lower) * (k / 199.0)).cwiseAbs());
+      for (int j = 0; j < kDof; ++j) {
+        ASSERT_LE(least[j], found[j]);
+        ASSERT_GE(least[j], found[j] - (upper[j] - lower[j]) / 199 - 1e-9);
+        ++compared;
+        zero += least[j] == 0;
+      }
+    }
+  }
+  std::printf("%d bounds, %d of them 0\n", compared, zero);
+  EXPECT_GE(zero, at_least(500));
+  EXPECT_GE(compared - zero, at_least(500));
+}
+
 TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   // Held against differences ten times as wide and a least-squares projection.
   const TestRobot robot = data_robot("iiwa14");

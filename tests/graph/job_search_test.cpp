@@ -73,16 +73,36 @@ class FakeValidity : public Validity {
 };
 
 /// Transitions of which chance decides: most straight moves are free, some lead around something,
-/// some have no way. In passing, some ways around are known.
+/// some have no way, and at some nodes none can begin or end. In passing, some ways around are
+/// known.
 class FakeTransitions : public Transitions {
  public:
-  FakeTransitions(const Lattice& lattice, std::uint64_t seed, double barred, double without_way)
-      : lattice_(&lattice), seed_(seed), barred_(barred), without_way_(without_way) {}
+  FakeTransitions(const Lattice& lattice, std::uint64_t seed, double barred, double without_way,
+                  double nodes_barred)
+      : lattice_(&lattice),
+        seed_(seed),
+        barred_(barred),
+        without_way_(without_way),
+        nodes_barred_(nodes_barred) {}
   [[nodiscard]] double distance(const Config& from, const Config& to) const override {
     return lattice_->edge_cost(lattice_->delta(from, to));
   }
+  [[nodiscard]] double least_distance(const Config& from, const Config& lower,
+                                      const Config& upper) const override {
+    return lattice_->edge_cost(lattice_->least_delta(from, lower, upper));
+  }
+  /// Returns whether no transition can begin or end at a configuration.
+  [[nodiscard]] bool node_barred(const Config& q) const {
+    return draw(-1, q, q, 3) < nodes_barred_;
+  }
+  void find_barred(std::span<const Config> configurations,
+                   std::span<std::uint8_t> barred) override {
+    for (std::size_t k = 0; k < configurations.size(); ++k)
+      barred[k] = node_barred(configurations[k]);
+  }
   /// Returns what the transition costs: the definition.
   [[nodiscard]] double cost(int transition, const Config& from, const Config& to) const {
+    if (node_barred(from) || node_barred(to)) return kUnreachable;
     const double x = draw(transition, from, to, 0);
     if (x < without_way_) return kUnreachable;
     if (x >= barred_) return distance(from, to);
@@ -117,7 +137,7 @@ class FakeTransitions : public Transitions {
   }
   const Lattice* lattice_;
   std::uint64_t seed_;
-  double barred_, without_way_;
+  double barred_, without_way_, nodes_barred_;
 };
 
 /// A random job: its lattices with what chance says of them.
@@ -176,8 +196,10 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
         cost));
   }
   const double barred = random.coin(0.3) ? 0 : random.uniform(0, 0.9);
+  const double without_way = random.coin(0.2) ? barred : barred * 0.2,
+               nodes_barred = random.coin(0.3) ? random.uniform(0, 0.3) : 0;
   job.transitions = std::make_unique<FakeTransitions>(*job.lattices.front(), base + 7, barred,
-                                                      random.coin(0.2) ? barred : barred * 0.2);
+                                                      without_way, nodes_barred);
   if (random.coin(0.7)) {
     job.home = q0;
     for (int j = 0; j < kDof; ++j) (*job.home)[j] += random.uniform(-0.5, 0.5);
@@ -266,7 +288,7 @@ ParallelFor threads(int count) {
 
 /// Counts what the jobs met.
 struct Met {
-  int jobs = 0, solved = 0, without_run = 0, without_way = 0, dearer = 0, rounds = 0;
+  int jobs = 0, solved = 0, without_run = 0, without_way = 0, barred = 0, dearer = 0, rounds = 0;
 };
 
 /// Expects a job's paths to be valid, joined, and to cost what it says.
@@ -304,7 +326,11 @@ void expect_valid(const RandomJob& job, const JobOutcome& found, const std::stri
 void expect_plain_program(const RandomJob& job, const std::string& what, Met& met) {
   std::vector<double> alone;
   const double straight = plain_cost(
-      job, [&](int, const Config& a, const Config& b) { return job.transitions->distance(a, b); },
+      job,
+      [&](int, const Config& a, const Config& b) {
+        const bool barred = job.transitions->node_barred(a) || job.transitions->node_barred(b);
+        return barred ? kUnreachable : job.transitions->distance(a, b);
+      },
       alone);
   const double best = plain_cost(
       job, [&](int k, const Config& a, const Config& b) { return job.transitions->cost(k, a, b); },
@@ -324,6 +350,12 @@ void expect_plain_program(const RandomJob& job, const std::string& what, Met& me
   }
   ASSERT_EQ(found.transition_without_way.has_value(), best == kUnreachable) << what;
   met.without_way += best == kUnreachable;
+  for (const auto& q : {found.barred_end, found.barred_begin}) {
+    if (!q) continue;
+    ASSERT_EQ(best, kUnreachable) << what;
+    ASSERT_TRUE(job.transitions->node_barred(*q)) << what;
+    ++met.barred;
+  }
   if (best == kUnreachable) return;
   ++met.solved;
   met.dearer += best > straight;
@@ -355,11 +387,12 @@ void expect_plain_programs(bool grids, int usual) {
   }
   std::printf(
       "%d jobs, %d solved (%d dearer than straight transitions), %d with a run without "
-      "path, %d without a way, %d rounds\n",
-      met.jobs, met.solved, met.dearer, met.without_run, met.without_way, met.rounds);
+      "path, %d without a way (%d since all ends or begins of a run are barred), %d rounds\n",
+      met.jobs, met.solved, met.dearer, met.without_run, met.without_way, met.barred, met.rounds);
   EXPECT_GE(met.solved, at_least(100));
   EXPECT_GE(met.dearer, at_least(60));
   EXPECT_GE(met.without_run, at_least(5));
+  if (!grids) EXPECT_GE(met.barred, at_least(5));
 }
 
 TEST(JobSearch, CostsAreThoseOfAPlainProgramOverListsOfNodes) {

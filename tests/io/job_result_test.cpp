@@ -255,8 +255,8 @@ JobResult without_a_job(bool stroke) {
     result.runs[0].diagnosis.emplace();
     return result;
   }
-  result.no_transition_to = 2;
-  result.barred_by = {"link_5", "post"};
+  result.no_transition = {
+      .to = 2, .where = NoTransition::Where::kEndBefore, .bodies = {{"link_5", "post"}}};
   return result;
 }
 
@@ -271,7 +271,8 @@ TEST(JobResult, Unsolved) {
   EXPECT_EQ(stroke["parts"], Json::array());
   const Json way = Json::parse(to_job_json(without_a_job(false), two_strokes()));
   EXPECT_EQ(way["no_transition"],
-            Json::parse(R"({"from": "left", "to": null, "bodies": ["link_5", "post"]})"));
+            Json::parse(R"({"from": "left", "to": null, "where": "end",
+                            "bodies": ["link_5", "post"]})"));
 }
 
 /// Returns a motion in time of two_strokes(), or why its fourth part has none.

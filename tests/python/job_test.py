@@ -388,7 +388,7 @@ class JobAnswers(unittest.TestCase):
         job = small()
         job.scene.add("wall", swivel.Sphere(0.2), job.tool_pose(job.home))
         plan = swivel.plan_job(job)
-        self.assertTrue(plan.home_barred, plan)
+        self.assertEqual(plan.barred_where, "home", plan)
         self.assertIn("wall", plan.barred_by)
         self.assertRegex(repr(plan), "at home .*wall.* too near")
         stopped = swivel.plan_job(DOOR, timeout=1e-3)

@@ -160,6 +160,23 @@ Config Lattice::delta(const Config& q0, const Config& q1) const {
   return d;
 }
 
+Config Lattice::least_delta(const Config& q, const Config& lower, const Config& upper) const {
+  constexpr double kSlack = 1e-12;  // rad; turns are added to circles' angles and rounded
+  Config least;
+  for (int k = 0; k < kDof; ++k) {
+    if (!continuous_[static_cast<std::size_t>(k)]) {
+      least[k] = std::max({lower[k] - q[k], q[k] - upper[k], 0.0});
+      continue;
+    }
+    const double first = wrap_angle(lower[k] - q[k]), last = first + (upper[k] - lower[k]);
+    const double before = first > 0 ? first : first + kTwoPi,  // to the interval, turning up
+        after = last < 0 ? -last : kTwoPi - last;              // and turning down
+    const bool inside = first <= 0 && last >= 0;
+    least[k] = inside ? 0 : std::max(std::min(before, after) - kSlack, 0.0);
+  }
+  return least;
+}
+
 bool Lattice::step_allowed(int layer, const Config& delta) const {
   return within(delta, step_bound(layer));
 }

@@ -32,9 +32,7 @@ struct Run {
   PathValidator validator;
   PathCache earlier;
   SearchCounters counters;
-  std::vector<double> rest;                     // cost from each begin node to the end of the job
-  std::vector<std::size_t> order;               // begin nodes by ascending rest
-  std::vector<TransitionCosts::Onward> onward;  // from each end node
+  std::vector<TransitionCosts::Onward> onward;  // from each end node of the transition behind it
   bool swept_with_exits = false;
   SlotPath path;       // of the candidate job
   bool valid = false;  // the last answer about `path`
@@ -142,31 +140,63 @@ class JobSearch {
   /// Finds the job that takes each run at the least cost after the one before, with straight
   /// transitions, before values say what the rest of the job costs. It is the first job found if
   /// its transitions are free; else ways around are sought only once the cheapest job needs them
-  /// too.
+  /// too. Where a transition cannot leave a run at all, or reach it, the job is found anew.
   void find_greedy_job() {
     const TraceSpan span("greedy job");
+    for (;;) {
+      greedy_ = {};
+      greedy_costs_.clear();
+      if (!lay_greedy_job()) {
+        greedy_ = {};
+        return;
+      }
+      const std::vector<TransitionAnswer> answers = ask(greedy_.pairs, false);
+      if (!bar_ends(greedy_.pairs, answers)) {
+        for (const TransitionAnswer& answer : answers)
+          if (answer.verdict != Verdict::kValid) return;
+        return take_greedy_job();
+      }
+      forbid_barred_ends();
+    }
+  }
+  /// Chooses the paths and pairs of the greedy job. Returns false if a run cannot be reached or
+  /// left.
+  bool lay_greedy_job() {
     std::size_t end = 0;
     for (int k = 0; k < last(); ++k) {
       Run& run = at(k);
-      std::size_t begin = 0;
+      TransitionCosts::Onward onward;
       do {
         int slot = run.cost_to_go->first_slot();
         if (exists(k)) {
           take_rest(k);
-          begin = costs(k).onward(end, run.rest, run.order).begin;
-          slot = costs(k).begins()[begin].slot;
+          onward = costs(k).onward(end);
+          if (onward.cost == kUnreachable) return false;
+          slot = costs(k).begins()[onward.begin].slot;
         }
+        if (slot < 0) return false;
         run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
       } while (!validate(run));
-      if (exists(k)) greedy_.pairs.push_back({k, end, begin});
+      if (exists(k)) greedy_.pairs.push_back({k, end, onward.begin});
       greedy_.paths.push_back(run.path);
       greedy_costs_.push_back(run.cost_to_go->at(0, run.path.front()));
       if (exists(k + 1)) end = index_of(costs(k + 1).ends(), run.path.back());
     }
     if (exists(last())) greedy_.pairs.push_back({last(), end, 0});
-    for (const TransitionAnswer& answer : ask(greedy_.pairs, false))
-      if (answer.verdict != Verdict::kValid) return;
-    take_greedy_job();
+    return true;
+  }
+  /// Makes paths of runs end where transitions can begin.
+  void forbid_barred_ends() {
+    for (int k = 0; k < last(); ++k) {
+      if (!exists(k + 1)) continue;
+      Run& run = at(k);
+      const TransitionCosts& next = costs(k + 1);
+      std::vector<double> exits(last_slots(run));
+      for (std::size_t end = 0; end < next.ends().size(); ++end)
+        if (next.is_barred_end(end))
+          exits[static_cast<std::size_t>(next.ends()[end].slot)] = kUnreachable;
+      raise_exit_costs(run, exits);
+    }
   }
   void take_greedy_job() {
     take_job(greedy_, greedy_costs_);
@@ -177,9 +207,14 @@ class JobSearch {
   void complete_greedy_job() {
     if (greedy_.paths.empty()) return;
     std::vector<Pair> open;
-    for (const Pair& pair : greedy_.pairs)
+    for (const Pair& pair : greedy_.pairs) {
+      if (is_barred(pair)) {
+        greedy_ = {};
+        return;
+      }
       if (costs(pair.transition).asked(pair.end, pair.begin) != Asked::kThoroughly)
         open.push_back(pair);
+    }
     ask(open, true);
     take_greedy_job();
   }
@@ -231,6 +266,42 @@ class JobSearch {
     }
     return answers;
   }
+  [[nodiscard]] bool is_barred(const Pair& pair) {
+    const TransitionCosts& known = costs(pair.transition);
+    return known.is_barred_end(pair.end) || known.is_barred_begin(pair.begin);
+  }
+  /// Finds out whether pairs without a known way are so since no transition can leave their end
+  /// nodes or reach their begin nodes. Where one cannot, bars all such nodes beside it, so that
+  /// they are not asked about pair by pair. Returns true if nodes were barred.
+  bool bar_ends(const std::vector<Pair>& pairs, const std::vector<TransitionAnswer>& answers) {
+    bool any = false;
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      if (answers[n].verdict == Verdict::kValid) continue;
+      const auto& [k, end, begin] = pairs[n];
+      TransitionCosts& known = costs(k);
+      any = bar(k, true, known.ends(), end, [&](std::size_t x) { known.bar_end(x); }) || any;
+      any = bar(k, false, known.begins(), begin, [&](std::size_t x) { known.bar_begin(x); }) || any;
+    }
+    return any;
+  }
+  template <class Bar>
+  bool bar(int transition, bool of_ends, const std::vector<EndNode>& nodes, std::size_t suspect,
+           const Bar& bar) {
+    const std::pair<int, bool> side(transition, of_ends);
+    if (barred_at_.contains(side)) return false;  // all of them are known
+    std::vector<Config> asked{nodes[suspect].q};
+    std::vector<std::uint8_t> barred(1);
+    transitions_.find_barred(asked, barred);
+    if (!barred.front()) return false;
+    barred_at_.emplace(side, asked.front());
+    asked.clear();
+    for (const EndNode& node : nodes) asked.push_back(node.q);
+    barred.assign(asked.size(), 0);
+    transitions_.find_barred(asked, barred);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      if (barred[k]) bar(k);
+    return true;
+  }
   /// Raises the costs that were noted. Returns true if one of them rose.
   bool raise_noted() {
     bool any = false;
@@ -275,25 +346,28 @@ class JobSearch {
   }
   void raise_exits(int k) {
     Run& run = at(k);
-    const TransitionCosts& next = costs(k + 1);
-    static const std::vector<double> kDone{0};
-    static const std::vector<std::size_t> kFirst{0};
-    const bool home = k + 1 == last();
-    const std::vector<double>& rest = home ? kDone : at(k + 1).rest;
-    const std::vector<std::size_t>& order = home ? kFirst : at(k + 1).order;
-    run.onward.resize(next.ends().size());
-    std::vector<double> exits(static_cast<std::size_t>(run.cost_to_go->lattice().slots(
-                                  run.cost_to_go->lattice().layers() - 1)),
-                              kUnreachable);
-    for (std::size_t end = 0; end < next.ends().size(); ++end) {
-      if (end % 16 == 0) run.cost_to_go->budget().poll();
-      TransitionCosts::Onward& onward = run.onward[end];
-      // costs only rise, so the way on stays the cheapest as long as it costs what it did
-      if (onward.cost == kUnreachable ||
-          next.at(end, onward.begin) + rest[onward.begin] != onward.cost)
-        onward = next.onward(end, rest, order);
-      exits[static_cast<std::size_t>(next.ends()[end].slot)] = onward.cost;
-    }
+    TransitionCosts& next = costs(k + 1);
+    const std::size_t count = next.ends().size();
+    run.onward.resize(count);
+    std::vector<double> exits(last_slots(run), kUnreachable);
+    constexpr std::size_t kEach = 64;  // ends that one thread takes at a time
+    options_.work.for_each(static_cast<int>((count + kEach - 1) / kEach), [&](int part, int) {
+      run.cost_to_go->budget().poll();
+      const std::size_t first = kEach * static_cast<std::size_t>(part);
+      for (std::size_t end = first; end < std::min(count, first + kEach); ++end) {
+        TransitionCosts::Onward& onward = run.onward[end];
+        // costs only rise, so the way on stays the cheapest as long as it costs what it did
+        if (onward.cost == kUnreachable ||
+            next.at(end, onward.begin) + next.rest(onward.begin) != onward.cost)
+          onward = next.onward(end);
+        exits[static_cast<std::size_t>(next.ends()[end].slot)] = onward.cost;
+      }
+    });
+    raise_exit_costs(run, exits);
+  }
+  /// Sets what must be paid for going on from each slot of a run's last layer, and makes its values
+  /// exact.
+  static void raise_exit_costs(Run& run, const std::vector<double>& exits) {
     Verdicts& verdicts = run.cost_to_go->verdicts();
     verdicts.raise_exit_costs(exits);
     if (!std::exchange(run.swept_with_exits, true))
@@ -301,13 +375,15 @@ class JobSearch {
     else if (!verdicts.pending.empty())
       run.cost_to_go->repair();
   }
+  static std::size_t last_slots(const Run& run) {
+    const Lattice& lattice = run.cost_to_go->lattice();
+    return static_cast<std::size_t>(lattice.slots(lattice.layers() - 1));
+  }
   void take_rest(int k) {
-    Run& run = at(k);
-    const std::vector<EndNode>& begins = costs(k).begins();
-    run.rest.resize(begins.size());
-    for (std::size_t n = 0; n < begins.size(); ++n)
-      run.rest[n] = run.cost_to_go->at(0, begins[n].slot);
-    run.order = TransitionCosts::by_rest(run.rest);
+    std::vector<double> rest;
+    for (const EndNode& begin : costs(k).begins())
+      rest.push_back(at(k).cost_to_go->at(0, begin.slot));
+    costs(k).set_rest(std::move(rest));
   }
 
   /// Returns the cheapest job by what is known, and sets value_ to its cost; an empty one if none
@@ -317,7 +393,7 @@ class JobSearch {
     value_ = kUnreachable;
     int slot = -1;
     if (home_) {
-      const auto onward = costs(0).onward(0, at(0).rest, at(0).order);
+      const auto onward = costs(0).onward(0);
       if (onward.cost == kUnreachable) return job;
       value_ = onward.cost;
       job.pairs.push_back({0, 0, onward.begin});
@@ -361,7 +437,9 @@ class JobSearch {
                           runs_[k].cost_to_go->verdicts().exit_cost(path.back()));
     }
     if (!open.empty() && is_spent()) return true;
-    const std::vector<TransitionAnswer> answers = find_ways(open);
+    std::vector<TransitionAnswer> answers = ask(open, false);
+    if (bar_ends(open, answers)) return false;
+    find_ways(open, answers);
     std::vector<Pair> dearer;
     for (std::size_t n = 0; n < open.size(); ++n) {
       const double straight = costs(open[n].transition).at(open[n].end, open[n].begin);
@@ -388,21 +466,29 @@ class JobSearch {
     outcome_.transition_without_way = static_cast<std::size_t>(transition);
     const auto pair = without_way_.find(transition);
     if (pair != without_way_.end()) outcome_.pair_without_way = pair->second;
+    note_barred(transition, true, costs(transition).ends().size(), outcome_.barred_end);
+    note_barred(transition, false, costs(transition).begins().size(), outcome_.barred_begin);
+  }
+  void note_barred(int transition, bool of_ends, std::size_t count, std::optional<Config>& noted) {
+    const auto found = barred_at_.find({transition, of_ends});
+    if (found == barred_at_.end()) return;
+    for (std::size_t k = 0; k < count; ++k)
+      if (of_ends ? !costs(transition).is_barred_end(k) : !costs(transition).is_barred_begin(k))
+        return;
+    noted = found->second;
   }
 
-  /// Returns the answers about pairs of the cheapest job: in passing, then thoroughly where no way
-  /// is known. Before the first thorough search the greedy job is completed.
-  std::vector<TransitionAnswer> find_ways(const std::vector<Pair>& pairs) {
-    std::vector<TransitionAnswer> answers = ask(pairs, false);
+  /// Completes the answers about pairs of the cheapest job that were asked in passing: thoroughly
+  /// where no way is known. Before the first thorough search the greedy job is completed.
+  void find_ways(const std::vector<Pair>& pairs, std::vector<TransitionAnswer>& answers) {
     std::vector<Pair> barred;
     for (std::size_t n = 0; n < pairs.size(); ++n)
       if (answers[n].verdict == Verdict::kUnknown) barred.push_back(pairs[n]);
-    if (barred.empty()) return answers;
+    if (barred.empty()) return;
     complete_greedy_job();
     const std::vector<TransitionAnswer> found = ask(barred, true);
     for (std::size_t n = 0, next = 0; n < pairs.size(); ++n)
       if (answers[n].verdict == Verdict::kUnknown) answers[n] = found[next++];
-    return answers;
   }
 
   /// Asks in passing about pairs near one whose straight move is barred, as far as they are cheaper
@@ -414,9 +500,7 @@ class JobSearch {
     const TransitionCosts& known = costs(k);
     int& reach = reach_[static_cast<std::size_t>(k)];
     reach = std::min(kMostReach, std::max(kLeastReach, 2 * reach));
-    const std::vector<double> done{0};
-    const std::vector<double>& rest = k == last() ? done : at(k).rest;
-    const double most = known.at(barred.end, barred.begin) + rest[barred.begin];
+    const double most = known.at(barred.end, barred.begin) + known.rest(barred.begin);
     struct Near {
       double cost;
       Pair pair;
@@ -430,7 +514,7 @@ class JobSearch {
     const auto [first_begin, last_begin] = range(barred.begin, known.begins().size());
     for (std::size_t end = first_end; end < last_end; ++end)
       for (std::size_t begin = first_begin; begin < last_begin; ++begin) {
-        const double cost = known.at(end, begin) + rest[begin];
+        const double cost = known.at(end, begin) + known.rest(begin);
         if (cost < most && known.asked(end, begin) == Asked::kNothing)
           near.push_back({cost, {k, end, begin}});
       }
@@ -481,6 +565,9 @@ class JobSearch {
   std::vector<std::optional<TransitionCosts>> costs_;  // by transition
   std::map<int, std::array<Config, 2>> without_way_;   // by transition: the first pair
   std::map<std::size_t, int> reach_;                   // of ask_around(), by transition
+  /// One of the nodes that no transition can leave (true) or reach (false), by transition: then all
+  /// such nodes are barred.
+  std::map<std::pair<int, bool>, Config> barred_at_;
   struct Noted {
     Pair pair;
     double cost;

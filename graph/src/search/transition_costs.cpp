@@ -1,36 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/transition_costs.hpp"
 
-#include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace swivel {
+
+namespace {
+
+std::vector<Config> joints_of(const std::vector<EndNode>& nodes) {
+  std::vector<Config> joints;
+  joints.reserve(nodes.size());
+  for (const EndNode& node : nodes) joints.push_back(node.q);
+  return joints;
+}
+
+}  // namespace
 
 TransitionCosts::TransitionCosts(const Transitions& transitions, std::vector<EndNode> ends,
                                  std::vector<EndNode> begins)
     : transitions_(&transitions),
       ends_(std::move(ends)),
       begins_(std::move(begins)),
-      raised_ends_(ends_.size()) {}
-
-TransitionCosts::Onward TransitionCosts::onward(std::size_t end, const std::vector<double>& rest,
-                                                const std::vector<std::size_t>& order) const {
-  Onward best;
-  for (const std::size_t begin : order) {
-    if (rest[begin] >= best.cost) break;
-    const double cost = at(end, begin) + rest[begin];
-    if (cost < best.cost) best = {begin, cost};
-  }
-  return best;
+      tree_(joints_of(begins_)),
+      raised_ends_(ends_.size()),
+      barred_ends_(ends_.size()),
+      barred_begins_(begins_.size()) {
+  set_rest(std::vector<double>(begins_.size()));
 }
 
-std::vector<std::size_t> TransitionCosts::by_rest(const std::vector<double>& rest) {
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < rest.size(); ++k)
-    if (rest[k] != kUnreachable) order.push_back(k);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return rest[a] < rest[b]; });
-  return order;
+void TransitionCosts::set_rest(std::vector<double> rest) {
+  rest_ = std::move(rest);
+  tree_.set_rest(rest_);
+}
+
+TransitionCosts::Onward TransitionCosts::onward(std::size_t end) const {
+  Onward best;
+  if (barred_ends_[end]) return best;
+  const Config& from = ends_[end].q;
+  const auto rank = [&](const Onward& x) { return std::tuple(x.cost, rest_[x.begin], x.begin); };
+  tree_.search(
+      [&](const Config& lower, const Config& upper) {
+        return transitions_->least_distance(from, lower, upper);
+      },
+      [&](std::size_t begin) {
+        if (rest_[begin] == kUnreachable || rest_[begin] > best.cost) return best.cost;
+        const Onward way{begin, at(end, begin) + rest_[begin]};
+        if (way.cost != kUnreachable && (best.cost == kUnreachable || rank(way) < rank(best)))
+          best = way;
+        return best.cost;
+      });
+  return best;
 }
 
 }  // namespace swivel

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <unordered_map>
 #include <vector>
 
+#include "search/begin_tree.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "swivel/graph/search/job_search.hpp"
 
@@ -29,6 +29,7 @@ class TransitionCosts {
   [[nodiscard]] const std::vector<EndNode>& begins() const { return begins_; }
   /// Returns the cost from an end node to a begin node; kUnreachable where there is no way.
   [[nodiscard]] double at(std::size_t end, std::size_t begin) const {
+    if (barred_ends_[end] || barred_begins_[begin]) return kUnreachable;
     if (raised_ends_[end]) {
       const auto found = raised_.find(key(end, begin));
       if (found != raised_.end()) return found->second;
@@ -39,6 +40,11 @@ class TransitionCosts {
     raised_ends_[end] = true;
     raised_[key(end, begin)] = cost;
   }
+  /// Makes all transitions from an end node, or to a begin node, unreachable.
+  void bar_end(std::size_t end) { barred_ends_[end] = true; }
+  void bar_begin(std::size_t begin) { barred_begins_[begin] = true; }
+  [[nodiscard]] bool is_barred_end(std::size_t end) const { return barred_ends_[end]; }
+  [[nodiscard]] bool is_barred_begin(std::size_t begin) const { return barred_begins_[begin]; }
 
   /// What has been asked about a pair of nodes.
   enum class Asked : std::uint8_t { kNothing, kInPassing, kThoroughly };
@@ -50,18 +56,17 @@ class TransitionCosts {
     asked_[key(end, begin)] = asked;
   }
 
+  /// Sets what the rest of the job costs from each begin node.
+  void set_rest(std::vector<double> rest);
+  [[nodiscard]] double rest(std::size_t begin) const { return rest_[begin]; }
   /// The cheapest way on from an end node.
   struct Onward {
     std::size_t begin = 0;
     double cost = kUnreachable;  ///< of the transition and of the rest of the job
   };
-  /// Returns the cheapest way on from an end node, where going on from each begin node costs
-  /// `rest`: the least rest among equals, then the smallest index. `order` lists the begin nodes by
-  /// ascending rest (by_rest()).
-  [[nodiscard]] Onward onward(std::size_t end, const std::vector<double>& rest,
-                              const std::vector<std::size_t>& order) const;
-  /// Returns the indices of begin nodes that have a rest, by ascending rest, then by index.
-  [[nodiscard]] static std::vector<std::size_t> by_rest(const std::vector<double>& rest);
+  /// Returns the cheapest way on from an end node: of ways that cost the same the one with the
+  /// least rest, then the one to the first begin node. May be called by several threads.
+  [[nodiscard]] Onward onward(std::size_t end) const;
 
  private:
   [[nodiscard]] std::uint64_t key(std::size_t end, std::size_t begin) const {
@@ -70,7 +75,10 @@ class TransitionCosts {
 
   const Transitions* transitions_;
   std::vector<EndNode> ends_, begins_;
-  std::vector<bool> raised_ends_;  // ends of which a pair is raised
+  std::vector<double> rest_;  // by begin node
+  BeginTree tree_;
+  std::vector<std::uint8_t> raised_ends_;  // ends of which a pair is raised
+  std::vector<std::uint8_t> barred_ends_, barred_begins_;
   std::unordered_map<std::uint64_t, double> raised_;
   std::unordered_map<std::uint64_t, Asked> asked_;
 };

@@ -163,17 +163,20 @@ std::string to_json(const InfeasibilityCertificate& certificate) {
   }
   for (const Cause& cause : certificate.witnesses) witnesses.push_back(witness_json(cause));
   const Resolution& resolution = certificate.resolution;
-  const Json head = {{"format", kFormat},
-                     {"resolution",
-                      {{"ds", resolution.ds},
-                       {"dphi", resolution.dphi},
-                       {"dalpha", resolution.dalpha},
-                       {"arc", resolution.arc},
-                       {"arcs", resolution.arcs}}},
-                     {"edges", certificate.edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
-                     {"windings", std::move(windings)},
-                     {"path_layers", certificate.layers},
-                     {"witnesses", std::move(witnesses)}};
+  Json head = {{"format", kFormat}};
+  if (!certificate.stroke.empty()) {
+    head["stroke"] = certificate.stroke;
+    head["reversed"] = certificate.reversed;
+  }
+  head["resolution"] = {{"ds", resolution.ds},
+                        {"dphi", resolution.dphi},
+                        {"dalpha", resolution.dalpha},
+                        {"arc", resolution.arc},
+                        {"arcs", resolution.arcs}};
+  head["edges"] = certificate.edges == EdgeMode::kContinuous ? "continuous" : "nodes";
+  head["windings"] = std::move(windings);
+  head["path_layers"] = certificate.layers;
+  head["witnesses"] = std::move(witnesses);
   const auto line = [](const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
   };
@@ -202,6 +205,10 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
     read.fail("format", "is another", std::string("'") + kFormat + "'");
   InfeasibilityCertificate certificate;
+  if (json.contains("stroke")) {
+    certificate.stroke = read.text(json["stroke"], "stroke");
+    certificate.reversed = read.truth(read.at(json, "reversed", ""), "reversed");
+  }
   const Parsed& resolution = read.at(json, "resolution", "");
   certificate.resolution.ds = read.real(read.at(resolution, "ds", "resolution."), "resolution.ds");
   certificate.resolution.dphi =

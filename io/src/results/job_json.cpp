@@ -34,6 +34,7 @@ class JobWriter {
     json["runs"] = runs();
     json["transitions"] = transitions();
     json["no_transition"] = no_transition();
+    json["advice"] = extras_.advice ? advice(*extras_.advice) : Json(nullptr);
     json["counters"] = counters_json(result_.counters);
     json["transition_counters"] = {{"pairs", result_.transitions.pairs},
                                    {"searches", result_.transitions.searches},
@@ -114,14 +115,30 @@ class JobWriter {
   }
 
   [[nodiscard]] Json no_transition() const {
-    const auto& to = result_.no_transition_to;
-    if (!to) return nullptr;
+    const std::optional<NoTransition>& none = result_.no_transition;
+    if (!none) return nullptr;
     const auto run = [&](std::size_t k) {
       return k < result_.runs.size() ? Json(name(result_.runs[k].run)) : Json(nullptr);
     };
-    return {{"from", *to == 0 ? Json(nullptr) : run(*to - 1)},
-            {"to", run(*to)},
-            {"bodies", or_null(result_.barred_by)}};
+    return {{"from", none->to == 0 ? Json(nullptr) : run(none->to - 1)},
+            {"to", run(none->to)},
+            {"where", to_string(none->where)},
+            {"bodies", or_null(none->bodies)}};
+  }
+
+  [[nodiscard]] static Json advice(const AdviceOnJob& all) {
+    Json job = Json::array(), strokes = Json::array();
+    for (const JobAdvice& one : all.job)
+      job.push_back({{"change", to_string(one.change)},
+                     {"words", words(one)},
+                     {"strokes", one.strokes},
+                     {"length", or_null(one.length)},
+                     {"home", one.home ? Json(*one.home) : Json(nullptr)},
+                     {"outcome", to_string(one.outcome)},
+                     {"cost", or_null(one.cost)}});
+    for (const StrokeAdvice& one : all.strokes)
+      strokes.push_back({{"stroke", one.stroke}, {"advice", advice_json(one.advice)}});
+    return {{"job", job}, {"strokes", strokes}};
   }
 
   [[nodiscard]] Json motion() const {

@@ -16,23 +16,6 @@ Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
 }
 
-Json advice_json(const std::vector<Advice>& advice) {
-  Json list = Json::array();
-  for (const Advice& one : advice)
-    list.push_back({{"change", to_string(one.change)},
-                    {"words", words(one)},
-                    {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
-                    {"from", or_null(one.from)},
-                    {"to", or_null(one.to)},
-                    {"offset", one.change == Advice::Change::kMoveObject
-                                   ? Json({one.offset.x(), one.offset.y(), one.offset.z()})
-                                   : Json(nullptr)},
-                    {"outcome", to_string(one.outcome)},
-                    {"cost", or_null(one.cost)},
-                    {"reached_s", or_null(one.reached_s)}});
-  return list;
-}
-
 /// What the certificate holds; the whole is a file of its own.
 Json certificate_json(const InfeasibilityCertificate& certificate, std::size_t bytes) {
   const CertificateCounts counts = count(certificate);

@@ -210,4 +210,21 @@ std::string document_of(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+Json advice_json(const std::vector<Advice>& advice) {
+  Json list = Json::array();
+  for (const Advice& one : advice)
+    list.push_back({{"change", to_string(one.change)},
+                    {"words", words(one)},
+                    {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
+                    {"from", or_null(one.from)},
+                    {"to", or_null(one.to)},
+                    {"offset", one.change == Advice::Change::kMoveObject
+                                   ? Json({one.offset.x(), one.offset.y(), one.offset.z()})
+                                   : Json(nullptr)},
+                    {"outcome", to_string(one.outcome)},
+                    {"cost", or_null(one.cost)},
+                    {"reached_s", or_null(one.reached_s)}});
+  return list;
+}
+
 }  // namespace swivel::io

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/plan.hpp"
 
 namespace swivel::io {
@@ -46,5 +47,7 @@ void add_measures(Json& json, const Measures& measures, bool solved);
 /// Returns the text of a file. Names of files and joints need not be UTF-8: what is not is
 /// replaced.
 [[nodiscard]] std::string document_of(const Json& json);
+
+[[nodiscard]] Json advice_json(const std::vector<Advice>& advice);
 
 }  // namespace swivel::io

@@ -582,6 +582,28 @@ std::vector<Schema::Key> job_answer_keys() {
   };
 }
 
+Schema advice_on_job() {
+  const Schema of_job = list(section(
+      "advice_on_job",
+      {key("change",
+           one_of({"without_strokes", "reversed", "best_order", "home", "approach", "retract",
+                   "lines"}),
+           "what was tried"),
+       key("words", text(), "the change in a phrase"),
+       key("strokes", list(text()), "that are left out, run backwards, or have a longer line"),
+       key("length", or_null(number()),
+           "of `approach`, `retract` and `lines` (both, at all strokes)", "m"),
+       key("home", or_null(numbers(kDof)), "of `home`: joints", "rad"),
+       key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
+           "`unknown`: no time left"),
+       key("cost", or_null(number()), "of `solved`")}));
+  const Schema of_strokes = list(section(
+      "", {key("stroke", text(), "that has no path by itself"),
+           key("advice", advice(), "what would help it by itself, as of [results](#advice)")}));
+  return section("", {key("job", of_job, "changes of the job"),
+                      key("strokes", of_strokes, "changes for strokes by themselves")});
+}
+
 Schema job_result() {
   const Schema transitions = list(section(
       "", {key("from", or_null(text()), "stroke; `null`: the home"),
@@ -590,7 +612,8 @@ Schema job_result() {
   const Schema missing = section(
       "", {key("from", or_null(text()), "stroke; `null`: the home"),
            key("to", or_null(text()), "stroke; `null`: the home"),
-           key("bodies", or_null(bodies()), "that bar the straight way, where they are known")});
+           key("where", text(), "`between`, `home`, `end` or `begin`"),
+           key("bodies", or_null(bodies()), "that are in the way, where they are known")});
   const std::vector<Schema::Key> parts{
       key("runs", runs_of_job(), "of the strokes, in this order, [below](#run-of-a-stroke)"),
       key("transitions", transitions,
@@ -598,7 +621,11 @@ Schema job_result() {
           "configurations lie between their ends, 0 where the joints move straight"),
       key("no_transition", or_null(missing),
           "where every stroke has a path and there is no way between two: `from`, `to`, the two "
-          "`bodies` in the way or `null`"),
+          "`bodies` that come nearer to each other than transitions may or `null`, and `where` "
+          "they do: `between` the two, at `home`, wherever the stroke before may `end`, wherever the "
+          "next one may `begin`"),
+      key("advice", or_null(advice_on_job()),
+          "with `--advise`, of jobs that cannot be planned; [below](#advice-on-a-job)"),
       key("counters", counters(), "work done, as of [results](#counters)"),
       key("transition_counters",
           section("", {key("pairs", integer(), "asked for"), key("searches", integer(), "made"),

@@ -111,22 +111,40 @@ std::optional<JobTransitions::Chain> JobTransitions::search(
   return chain;
 }
 
+double JobTransitions::least_distance(const Config& from, const Config& lower,
+                                      const Config& upper) const {
+  Config delta = metric_->least_delta(from, lower, upper);
+  if (metric_->chain().roll) delta[kDof - 1] = 0;
+  return metric_->edge_cost(delta);
+}
+
+template <class Body>
+void JobTransitions::for_each(std::size_t count, const Body& body) {
+  executor_->for_each(kParts, [&](int part, int) {
+    const std::size_t p = static_cast<std::size_t>(part);
+    for (std::size_t k = count * p / kParts; k < count * (p + 1) / kParts; ++k)
+      body(k, queries_[p]);
+  });
+}
+
+void JobTransitions::find_barred(std::span<const Config> configurations,
+                                 std::span<std::uint8_t> barred) {
+  for_each(configurations.size(), [&](std::size_t k, World::Query& query) {
+    barred[k] = !free(query, configurations[k], configurations[k]);
+  });
+}
+
 void JobTransitions::find(std::span<const TransitionQuestion> questions,
                           std::span<TransitionAnswer> answers) {
   std::vector<std::optional<Way>> ways(questions.size());
   std::vector<std::optional<Chain>> found(questions.size());
-  const auto each = [&](const auto& body) {
-    executor_->for_each(kParts, [&](int part, int) {
-      const std::size_t n = questions.size(), p = static_cast<std::size_t>(part);
-      for (std::size_t k = n * p / kParts; k < n * (p + 1) / kParts; ++k) body(k, queries_[p]);
-    });
-  };
-  each([&](std::size_t k, World::Query& query) { ways[k] = known_way(query, questions[k]); });
+  for_each(questions.size(),
+           [&](std::size_t k, World::Query& query) { ways[k] = known_way(query, questions[k]); });
   const auto searched = [&](std::size_t k) { return !ways[k] && questions[k].thorough; };
   bool any = false;
   for (std::size_t k = 0; k < questions.size(); ++k) any = any || searched(k);
   if (any)
-    each([&](std::size_t k, World::Query& query) {
+    for_each(questions.size(), [&](std::size_t k, World::Query& query) {
       if (searched(k)) found[k] = search(query, questions[k]);
     });
   for (std::size_t k = 0; k < questions.size(); ++k) {

@@ -35,6 +35,10 @@ class JobTransitions final : public Transitions {
   [[nodiscard]] double distance(const Config& from, const Config& to) const override {
     return transition_distance(*metric_, from, to);
   }
+  [[nodiscard]] double least_distance(const Config& from, const Config& lower,
+                                      const Config& upper) const override;
+  void find_barred(std::span<const Config> configurations,
+                   std::span<std::uint8_t> barred) override;
   void find(std::span<const TransitionQuestion> questions,
             std::span<TransitionAnswer> answers) override;
 
@@ -62,6 +66,9 @@ class JobTransitions final : public Transitions {
   };
   using Key = std::pair<int, std::array<double, 2 * kDof>>;
   static Key key(int transition, const Config& from, const Config& to);
+  /// Calls body(k, query) for k from 0 to count - 1, shared among threads.
+  template <class Body>
+  void for_each(std::size_t count, const Body& body);
   [[nodiscard]] bool free(World::Query& query, const Config& from, const Config& to) const;
   /// Returns the straight move, or else the cheapest known chain, if one is free.
   [[nodiscard]] std::optional<Way> known_way(World::Query& query,

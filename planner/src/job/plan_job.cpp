@@ -202,9 +202,9 @@ class JobPlan {
   /// Returns true if the arm comes too near to something at home, and notes to what.
   bool home_is_barred(JobTransitions& transitions) {
     if (!job_.home) return false;
-    result_.barred_by = transitions.barred(*job_.home);
-    result_.home_barred = result_.barred_by.has_value();
-    return result_.home_barred;
+    if (const auto bodies = transitions.barred(*job_.home))
+      result_.no_transition = {.to = 0, .where = NoTransition::Where::kHome, .bodies = bodies};
+    return result_.no_transition.has_value();
   }
 
   JobOutcome search(JobTransitions& transitions) {
@@ -248,10 +248,23 @@ class JobPlan {
       }
       result_.runs.push_back(std::move(run));
     }
-    result_.no_transition_to = outcome.transition_without_way;
-    if (const auto& pair = outcome.pair_without_way)
-      result_.barred_by = transitions.barred((*pair)[0], (*pair)[1]);
+    note_no_transition(outcome, transitions);
     if (!outcome.decided && outcome.paths.empty()) throw Stopped();
+  }
+  void note_no_transition(const JobOutcome& outcome, JobTransitions& transitions) {
+    result_.no_transition.reset();
+    if (!outcome.transition_without_way) return;
+    NoTransition& none = result_.no_transition.emplace();
+    none.to = *outcome.transition_without_way;
+    if (outcome.barred_end) {
+      none.where = NoTransition::Where::kEndBefore;
+      none.bodies = transitions.barred(*outcome.barred_end);
+    } else if (outcome.barred_begin) {
+      none.where = NoTransition::Where::kBegin;
+      none.bodies = transitions.barred(*outcome.barred_begin);
+    } else if (const auto& pair = outcome.pair_without_way) {
+      none.bodies = transitions.barred((*pair)[0], (*pair)[1]);
+    }
   }
   void add_counters(const PlannedRun& run) {
     Counters& sum = result_.counters;
@@ -380,20 +393,28 @@ class OrderSearch {
                            [&](int parts, const auto& body) { executor.for_each(parts, body); }};
     costs_ = estimate_order_costs(robot_, job_, work, budget_);
   }
-  /// Plans in an order and keeps the job if it is the cheapest so far. Returns the run that has no
-  /// path by itself, if any.
+  /// Plans in an order and keeps the job if it is the cheapest so far. Returns the run that no job
+  /// can have in this direction, if any: it has no path by itself, or no transition can begin at
+  /// its end or end at its begin.
   std::optional<StrokeRun> take(const std::vector<StrokeRun>& order) {
     JobResult found = JobPlan(robot_, job_, options_, budget_, order, one_branch_).plan();
-    std::optional<StrokeRun> without_path;
-    for (const RunResult& run : found.runs)
-      if (run.status == PlanStatus::kInfeasible && !without_path) without_path = run.run;
+    const std::optional<StrokeRun> impossible = impossible_run(found);
     if (!best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost)))
       best_ = std::move(found);
     planned_ = order;
-    return without_path;
+    return impossible;
   }
-  /// Plans in an order; where a run that may be turned has no path, in the cheapest one without it,
-  /// and so on.
+  static std::optional<StrokeRun> impossible_run(const JobResult& found) {
+    for (const RunResult& run : found.runs)
+      if (run.status == PlanStatus::kInfeasible) return run.run;
+    const auto& none = found.no_transition;
+    if (none && none->where == NoTransition::Where::kEndBefore)
+      return found.runs[none->to - 1].run;
+    if (none && none->where == NoTransition::Where::kBegin) return found.runs[none->to].run;
+    return std::nullopt;
+  }
+  /// Plans in an order; where a run that may be turned is impossible, in the cheapest one without
+  /// it, and so on.
   void plan_feasible(std::vector<StrokeRun> order) {
     for (;;) {
       const std::optional<StrokeRun> barred = take(order);

@@ -19,8 +19,8 @@ namespace {
 
 using namespace test;
 
-/// Returns the path, the base, or a random object, by turns as trials go on; the base where there is
-/// no object.
+/// Returns the path, the base, or a random object, by turns as trials go on; the base where there
+/// is no object.
 Movable a_thing(int trial, Random& random, const Problem& problem) {
   const int kind = trial % 3;
   if (kind == 0 && !problem.scene.empty())

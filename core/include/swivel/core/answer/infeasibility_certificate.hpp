@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "swivel/core/answer/cause.hpp"
@@ -47,6 +48,8 @@ struct InfeasibilityCertificate {
     bool operator==(const Layer&) const = default;
   };
 
+  std::string stroke;     ///< of a stroke of a job: its name, else empty
+  bool reversed = false;  ///< of a stroke: it is run from its last waypoint to its first
   Resolution resolution;
   EdgeMode edges = EdgeMode::kContinuous;
   /// For lattices where bounded joints of more than a turn count as circles:

@@ -43,6 +43,25 @@ struct TransitionCounters {
   std::int64_t rounds = 0;    ///< candidate jobs tried
 };
 
+/// Why there is no job though each run has a path by itself: the transition for which no way was
+/// found.
+struct NoTransition {
+  /// Index in JobResult::runs of the run to which the transition leads; runs.size(): home.
+  std::size_t to = 0;
+  /// Where two bodies come nearer to each other than transitions may: on the straight move, or
+  /// already at home, wherever the run before may end, or wherever the run to which it leads may
+  /// begin.
+  enum class Where { kBetween, kHome, kEndBefore, kBegin };
+  Where where = Where::kBetween;
+  std::optional<std::array<std::string, 2>> bodies = {};
+};
+
+/// Returns the name of a place in files: "between", "home", "end", "begin".
+[[nodiscard]] const char* to_string(NoTransition::Where where);
+/// Returns why there is no transition, in words. `runs` has words for each run of the job, as in
+/// "stroke 'ring' backwards".
+[[nodiscard]] std::string words(const NoTransition& none, const std::vector<std::string>& runs);
+
 /// The result of planning a job.
 struct JobResult {
   PlanStatus status = PlanStatus::kInfeasible;
@@ -57,12 +76,7 @@ struct JobResult {
   /// the cheapest job known where time was up; empty if there is none.
   std::vector<JobPart> parts;
   std::vector<RunResult> runs;  ///< in the order in which they are executed
-  /// Where there is no job though each run has a path: index in `runs` of the run that no
-  /// transition leads to, runs.size() for the way home.
-  std::optional<std::size_t> no_transition_to;
-  /// The two bodies that bar a straight transition there, or that come too near at home.
-  std::optional<std::array<std::string, 2>> barred_by;
-  bool home_barred = false;  ///< home itself is too near to something
+  std::optional<NoTransition> no_transition;  ///< where there is no job for want of a transition
   std::string planner;
   int threads = 1;
   Counters counters;

@@ -36,6 +36,13 @@ class Transitions {
   /// Returns the cost of a straight move in joint space: a lower bound of what any transition
   /// costs, a multiple of 2^-40 Lattice::cost_unit().
   [[nodiscard]] virtual double distance(const Config& from, const Config& to) const = 0;
+  /// Returns a lower bound of distance(from, to) for all `to` with lower <= to <= upper.
+  [[nodiscard]] virtual double least_distance(const Config& from, const Config& lower,
+                                              const Config& upper) const = 0;
+  /// Sets barred[k] to 1 where no transition can begin or end at configurations[k], else to 0. Both
+  /// spans have equal size. Throws Stopped.
+  virtual void find_barred(std::span<const Config> configurations,
+                           std::span<std::uint8_t> barred) = 0;
   /// Sets answers[k] to the answer to questions[k]. Both spans have equal size. The answers depend
   /// on the questions asked so far in their order alone. Throws Stopped.
   virtual void find(std::span<const TransitionQuestion> questions,
@@ -68,6 +75,9 @@ struct JobOutcome {
   std::optional<std::size_t> transition_without_way;
   /// A pair of configurations of that transition between which no way was found.
   std::optional<std::array<Config, 2>> pair_without_way;
+  /// Where that is so since the transition cannot leave the run before it, or reach the run behind
+  /// it, at any of the nodes at which that run may end or begin: one of them.
+  std::optional<Config> barred_end, barred_begin;
   std::vector<SlotPath> paths;  ///< of each run; empty if no job was found
   double cost = kUnreachable;   ///< of the job found
   /// No job whose transitions are those that Transitions finds costs less.

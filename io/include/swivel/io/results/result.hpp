@@ -7,6 +7,7 @@
 
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
+#include "swivel/core/answer/job_advice.hpp"
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
@@ -28,6 +29,7 @@ namespace swivel::io {
 struct JobExtras {
   const JobTimingResult* motion = nullptr;  ///< null if it was not asked for or does not exist
   bool stopped = false;                     ///< time ran out before the motion that was asked for
+  const AdviceOnJob* advice = nullptr;      ///< for a job that cannot be planned
 };
 /// Returns RESULT.json of a job as text, docs/formats.md "Result of a job". What describes the
 /// rows is null unless there are some, `motion` unless one was asked for.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/answer/job_result.hpp"
+
+namespace swivel {
+
+const char* to_string(NoTransition::Where where) {
+  switch (where) {
+    case NoTransition::Where::kBetween:
+      return "between";
+    case NoTransition::Where::kHome:
+      return "home";
+    case NoTransition::Where::kEndBefore:
+      return "end";
+    case NoTransition::Where::kBegin:
+      break;
+  }
+  return "begin";
+}
+
+std::string words(const NoTransition& none, const std::vector<std::string>& runs) {
+  const std::string bodies =
+      none.bodies ? (*none.bodies)[0] + " - " + (*none.bodies)[1] : std::string("bodies");
+  const std::string too_near = bodies + " come nearer to each other than transitions may";
+  switch (none.where) {
+    case NoTransition::Where::kHome:
+      return "at home " + too_near;
+    case NoTransition::Where::kEndBefore:
+      return "wherever " + runs[none.to - 1] + " may end, " + too_near +
+             ": a longer retract would lead away";
+    case NoTransition::Where::kBegin:
+      return "wherever " + runs[none.to] + " may begin, " + too_near +
+             ": a longer approach would begin further away";
+    case NoTransition::Where::kBetween:
+      break;
+  }
+  std::string text = "no way leads from " + (none.to == 0 ? "home" : runs[none.to - 1]) + " to " +
+                     (none.to < runs.size() ? runs[none.to] : "home");
+  if (none.bodies) text += "; " + bodies + " bar the straight one";
+  return text;
+}
+
+}  // namespace swivel

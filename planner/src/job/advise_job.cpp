@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/job/advise_job.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/study/advise.hpp"
+
+namespace swivel {
+
+namespace {
+
+using Change = JobAdvice::Change;
+using Outcome = Advice::Outcome;
+
+constexpr double kLengths[] = {0.02, 0.05, 0.1};  // of lines that are tried, m
+
+/// Plans changed jobs within one time-out.
+class JobTrials {
+ public:
+  JobTrials(const PreparedRobot& robot, const Job& job, const JobResult& result,
+            const PlanOptions& options)
+      : robot_(robot),
+        job_(job),
+        result_(result),
+        options_(options),
+        until_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>(
+                                      std::min(options.timeout_s.value_or(1.0), 1e6)))) {
+    options_.check = false;
+    options_.evidence = {};
+  }
+
+  AdviceOnJob advise() {
+    std::vector<std::size_t> without;
+    for (const RunResult& run : result_.runs)
+      if (run.status == PlanStatus::kInfeasible) without.push_back(run.run.stroke);
+    if (!without.empty())
+      advise_on_strokes(without);
+    else if (result_.no_transition)
+      advise_on_transition(*result_.no_transition);
+    std::stable_sort(advice_.job.begin(), advice_.job.end(),
+                     [](const JobAdvice& a, const JobAdvice& b) { return a.outcome < b.outcome; });
+    return std::move(advice_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] double seconds_left() const {
+    return std::chrono::duration<double>(until_ - Clock::now()).count();
+  }
+  [[nodiscard]] const std::string& name(std::size_t stroke) const {
+    return job_.strokes[stroke].name;
+  }
+
+  void advise_on_strokes(const std::vector<std::size_t>& without) {
+    leave_out(without);
+    for (const std::size_t stroke : without) reverse(stroke);
+    for (std::size_t k = 0; k < without.size(); ++k) {
+      StrokeAdvice& one = advice_.strokes.emplace_back(StrokeAdvice{name(without[k]), {}});
+      PlanOptions options = options_;
+      options.timeout_s = seconds_left() / static_cast<double>(without.size() - k);
+      if (!(*options.timeout_s > 0)) continue;
+      Planner planner(problem_of_run(job_, run_of(without[k])));
+      const PlanResult alone = planner.plan(options);
+      options.timeout_s = std::min(*options.timeout_s, seconds_left());
+      if (*options.timeout_s > 0) one.advice = swivel::advise(planner, alone, options);
+    }
+  }
+  [[nodiscard]] StrokeRun run_of(std::size_t stroke) const {
+    for (const RunResult& run : result_.runs)
+      if (run.run.stroke == stroke) return run.run;
+    return {stroke, false};
+  }
+
+  void advise_on_transition(const NoTransition& none) {
+    using Where = NoTransition::Where;
+    const std::size_t runs = result_.runs.size();
+    const bool from_home = none.to == 0, to_home = none.to == runs;
+    bool lengthened = none.where == Where::kHome;
+    if (none.where == Where::kEndBefore || (none.where == Where::kBetween && !from_home))
+      lengthened = lengthen(Change::kRetract, {result_.runs[none.to - 1].run.stroke});
+    if (none.where == Where::kBegin || (none.where == Where::kBetween && !to_home))
+      lengthened = lengthen(Change::kApproach, {result_.runs[none.to].run.stroke}) || lengthened;
+    if (!lengthened) lengthen(Change::kLines, all_strokes());
+    if (none.where == Where::kHome || from_home || to_home) move_home();
+    if (none.where == Where::kHome) return;
+    if (job_.order == StrokeOrder::kGiven && runs > 1) {
+      Job changed = job_;
+      changed.order = StrokeOrder::kBest;
+      add({.change = Change::kBestOrder, .strokes = {}}, changed);
+    }
+    std::vector<std::size_t> beside;
+    if (!from_home) beside.push_back(result_.runs[none.to - 1].run.stroke);
+    if (!to_home) beside.push_back(result_.runs[none.to].run.stroke);
+    for (const std::size_t stroke : beside) reverse(stroke);
+    for (const std::size_t stroke : beside) leave_out({stroke});
+  }
+
+  /// Notes what planning a changed job gives.
+  Outcome add(JobAdvice advice, const Job& changed) {
+    const double seconds = seconds_left();
+    if (seconds > 0) {
+      PlanOptions options = options_;
+      options.timeout_s = seconds;
+      const JobResult found = plan_job(robot_, changed, options);
+      if (!found.parts.empty()) {
+        advice.outcome = Outcome::kSolved;
+        advice.cost = found.cost;
+      } else if (found.status == PlanStatus::kInfeasible) {
+        advice.outcome = Outcome::kNoHelp;
+      }
+    }
+    advice_.job.push_back(std::move(advice));
+    return advice_.job.back().outcome;
+  }
+
+  void leave_out(std::vector<std::size_t> strokes) {
+    std::sort(strokes.begin(), strokes.end());
+    if (strokes.size() == job_.strokes.size()) return;
+    JobAdvice advice{.change = Change::kWithoutStrokes, .strokes = {}};
+    for (const std::size_t stroke : strokes) advice.strokes.push_back(name(stroke));
+    Job changed = job_;
+    for (std::size_t k = strokes.size(); k-- > 0;)
+      changed.strokes.erase(changed.strokes.begin() + static_cast<std::ptrdiff_t>(strokes[k]));
+    add(std::move(advice), changed);
+  }
+
+  /// Tries a stroke from its last waypoint to its first, where that was not free to choose. By
+  /// itself it has a path either way unless the lines of approach and retract differ.
+  void reverse(std::size_t stroke) {
+    const Stroke& of = job_.strokes[stroke];
+    const bool free = job_.order == StrokeOrder::kBest && of.reversible;
+    const bool alone = result_.runs.size() == 1 ||
+                       std::any_of(result_.runs.begin(), result_.runs.end(), [&](const auto& run) {
+                         return run.run.stroke == stroke &&
+                                run.status == PlanStatus::kInfeasible;
+                       });
+    if (free || (alone && of.approach == of.retract)) return;
+    Job changed = job_;
+    Stroke& turned = changed.strokes[stroke];
+    std::reverse(turned.waypoints.begin(), turned.waypoints.end());
+    // a feed holds from its waypoint to the next
+    if (turned.feed.size() > 1) std::reverse(turned.feed.begin(), turned.feed.end() - 1);
+    add({.change = Change::kReversed, .strokes = {name(stroke)}}, changed);
+  }
+
+  [[nodiscard]] std::vector<std::size_t> all_strokes() const {
+    std::vector<std::size_t> all(job_.strokes.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
+  /// Tries longer lines of approach, of retract, or of both at some strokes until one length helps.
+  /// Returns true if one does.
+  bool lengthen(Change change, const std::vector<std::size_t>& strokes) {
+    for (const double length : kLengths) {
+      Job changed = job_;
+      bool any = false;
+      const auto extend = [&](Vector3d& line) {
+        if (line.norm() >= length) return;
+        line = Vector3d(0, 0, -length);
+        any = true;
+      };
+      JobAdvice advice{.change = change, .strokes = {}, .length = length};
+      for (const std::size_t stroke : strokes) {
+        if (change != Change::kRetract) extend(changed.strokes[stroke].approach);
+        if (change != Change::kApproach) extend(changed.strokes[stroke].retract);
+        if (change != Change::kLines) advice.strokes.push_back(name(stroke));
+      }
+      if (!any) continue;
+      const Outcome outcome = add(std::move(advice), changed);
+      if (outcome == Outcome::kSolved) return true;
+      if (outcome != Outcome::kNoHelp) return false;
+    }
+    return false;
+  }
+
+  /// Tries the home at which the cheapest job without one begins.
+  void move_home() {
+    JobAdvice advice{.change = Change::kHome, .strokes = {}};
+    Job changed = job_;
+    changed.home.reset();
+    PlanOptions options = options_;
+    options.timeout_s = seconds_left();
+    if (*options.timeout_s > 0) {
+      const JobResult found = plan_job(robot_, changed, options);
+      if (!found.parts.empty()) {
+        Config home = found.parts.front().rows.front().q;
+        for (double& joint : home) joint = std::round(1e4 * joint) / 1e4;
+        changed.home = advice.home = home;
+        add(std::move(advice), changed);
+        return;
+      }
+      if (found.status == PlanStatus::kInfeasible) advice.outcome = Outcome::kNoHelp;
+    }
+    advice_.job.push_back(std::move(advice));
+  }
+
+  const PreparedRobot& robot_;
+  const Job& job_;
+  const JobResult& result_;
+  PlanOptions options_;
+  Clock::time_point until_;
+  AdviceOnJob advice_;
+};
+
+}  // namespace
+
+AdviceOnJob advise_job(const PreparedRobot& robot, const Job& job, const JobResult& result,
+                       PlanOptions options) {
+  if (result.status != PlanStatus::kInfeasible) return {};
+  return JobTrials(robot, job, result, options).advise();
+}
+
+}  // namespace swivel
