@@ -329,7 +329,6 @@ ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
 void require_options_of_jobs(const PlanArguments& arguments) {
   refuse_options_of_jobs(arguments.problem, {{arguments.refine, "--refine"},
                                              {arguments.motion.chord.has_value(), "--chord"},
-                                             {!arguments.report.empty(), "--report"},
                                              {!arguments.trace.empty(), "--trace"},
                                              {arguments.map, "--map"},
                                              {!arguments.map_svg.empty(), "--map-svg"},
@@ -344,10 +343,13 @@ void require_options_of_jobs(const PlanArguments& arguments) {
 int plan_job_of(const PlanArguments& arguments, LoadedFile file,
                 std::optional<io::OutputFiles>& outputs) {
   require_options_of_jobs(arguments);
+  if (!arguments.report.empty()) require_pages();
   JobRequest request{
       .job = chosen_job(std::get<Job>(std::move(file.what)), arguments.search, arguments.episode),
       .options = arguments.search.plan_options(),
       .out = arguments.out,
+      .which = arguments.episode.words(),
+      .report = !arguments.report.empty(),
       .quiet = arguments.quiet,
       .load_ms = file.load_ms};
   if (arguments.motion.ask_for_job_motion()) {
@@ -365,7 +367,8 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
   request.options.check = !arguments.no_check;
-  if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();
+  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
+    request.options.evidence = Evidence::all();
   outputs.emplace(std::move(file.inputs));
   add_outputs(arguments, *outputs);
   return plan_job_file(std::move(request), *outputs);
@@ -488,7 +491,7 @@ void add_plan(CLI::App& app, int& exit_code) {
                     "print the (s, phi) map: what the search looked at, and the path");
   command->add_option("--map-svg", arguments->map_svg, "the same map as an SVG drawing");
   command->add_option("--report", arguments->report,
-                      "the plan as one HTML file: playback, map, plots, summary");
+                      "the plan as one HTML file: playback, maps, plots, summary");
   command->add_flag("--full-map", arguments->full_map,
                     "ask about every node before the map is drawn");
   command->add_flag("--no-check", arguments->no_check,

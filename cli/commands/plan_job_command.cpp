@@ -4,6 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
@@ -13,10 +16,12 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/job/advise_job.hpp"
+#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/report/job_page.hpp"
 #include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
 
@@ -85,24 +90,49 @@ void find_certificate(const Job& job, const PlanOptions& options, const Budget& 
   }
 }
 
-/// Plans, and where there is no job, seeks advice and a certificate as far as they are asked for.
-JobAnswer answer_of(const JobRequest& request, bool certificate) {
-  const Job job = request.timing ? with_motion_defaults(request.job) : request.job;
-  const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const Budget budget = request.options.budget();  // of the certificate; plans have their own
-  JobAnswer answer;
-  if (request.timing)
-    answer.plan = plan_job_motion(robot, request.job, request.options, *request.timing);
-  else
-    answer.plan.result = plan_job(robot, job, request.options);
-  if (answer.plan.result.status != PlanStatus::kInfeasible) return answer;
-  if (certificate) find_certificate(job, request.options, budget, answer);
-  if (request.advise_s) {
-    PlanOptions trials = request.options;
-    trials.timeout_s = request.advise_s;
-    answer.advice = advise_job(robot, job, answer.plan.result, trials);
+/// Where there is no job, seeks changes that would help, within --advise.
+void find_advice(const JobRequest& request, const PreparedRobot& robot, const Job& job,
+                 JobAnswer& answer) {
+  if (!request.advise_s) return;
+  PlanOptions trials = request.options;
+  trials.timeout_s = request.advise_s;
+  answer.advice = advise_job(robot, job, answer.plan.result, trials);
+}
+
+/// Returns what followed the plan, for the result file. It points into `answer`.
+io::JobExtras extras_of(const JobAnswer& answer) {
+  const JobMotionPlan& plan = answer.plan;
+  return {plan.timing ? &*plan.timing : nullptr, plan.stopped,
+          answer.advice ? &*answer.advice : nullptr};
+}
+
+JobMotionPlan planned(const JobRequest& request, const PreparedRobot& robot, const Job& job,
+                      JobView* view) {
+  if (request.timing) return plan_job_motion(robot, job, request.options, *request.timing, view);
+  return {.result = plan_job(robot, job, request.options, view), .timing = {}};
+}
+
+/// Returns the page of --report; unset where there is neither a job nor a verdict, or where time is
+/// up first, of which a warning tells.
+std::optional<std::string> page_of(const JobRequest& request, const PreparedRobot& robot,
+                                   const Job& job, const JobView& view, const Budget& budget,
+                                   JobAnswer& answer) {
+  const JobMotionPlan& plan = answer.plan;
+  const JobResult& result = plan.result;
+  if (!request.report || (result.parts.empty() && result.status != PlanStatus::kInfeasible))
+    return std::nullopt;
+  try {
+    std::string text = job_text(result, job);
+    if (answer.advice) text += advice_text(*answer.advice);
+    if (plan.timing) text += job_motion_text(*plan.timing, result.parts, job);
+    const JobMotion* motion = plan.timing && plan.timing->motion ? &*plan.timing->motion : nullptr;
+    return to_job_page({robot, job, result, view, motion},
+                       io::to_job_json(result, job, extras_of(answer)), budget,
+                       {request.which, text});
+  } catch (const Stopped&) {
+    answer.plan.result.warnings.push_back("stopped before the page was made: there is no report");
+    return std::nullopt;
   }
-  return answer;
 }
 
 /// Gives --out its text: the motion where one is asked for, else the trajectory. Marks an earlier
@@ -125,10 +155,19 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  JobAnswer answer = answer_of(request, outputs.wants("--certificate"));
+  const Job job = request.timing ? with_motion_defaults(request.job) : request.job;
+  const Budget budget = request.options.budget();  // of certificate and page; plans have their own
+  const PreparedRobot robot(problem_of_run(job, {0, false}));
+  JobView view;
+  JobAnswer answer{planned(request, robot, job, request.report ? &view : nullptr)};
+  if (answer.plan.result.status == PlanStatus::kInfeasible) {
+    if (outputs.wants("--certificate")) find_certificate(job, request.options, budget, answer);
+    find_advice(request, robot, job, answer);
+  }
   JobMotionPlan& plan = answer.plan;
   JobResult& result = plan.result;
   result.time_ms["load"] = request.load_ms;
+  std::optional<std::string> page = page_of(request, robot, job, view, budget, answer);
   progress.clear();
 
   write_rows(request, plan, outputs);
@@ -137,8 +176,11 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
     outputs.write("--certificate", std::move(answer.certificate));
   else
     outputs.remove("--certificate");
-  const io::JobExtras extras{plan.timing ? &*plan.timing : nullptr, plan.stopped,
-                             answer.advice ? &*answer.advice : nullptr};
+  if (page)
+    outputs.write("--report", std::move(*page));
+  else
+    outputs.remove("--report");
+  const io::JobExtras extras = extras_of(answer);
   if (outputs.wants("--json"))
     outputs.write("--json", io::to_job_json(result, request.job, extras) + "\n");
   const bool infeasible = result.status == PlanStatus::kInfeasible;

@@ -17,12 +17,14 @@ struct JobRequest {
   std::optional<JobTimingOptions> timing{};  ///< set: the job is timed
   std::string out{};                         ///< name of --out, whose ending tells the format
   std::optional<double> advise_s{};          ///< s, time for all trials of --advise
+  std::string which{};                       ///< of the jobs that one file describes, for the page
+  bool report = false;                       ///< --report asks for a page
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took
 };
 
 /// Plans a job, writes its trajectory or motion and its result, and prints the answer. `outputs`
-/// has --out, --certificate and --json. Returns the exit code. Throws InputError.
+/// has --out, --report, --certificate and --json. Returns the exit code. Throws InputError.
 int plan_job_file(JobRequest request, io::OutputFiles& outputs);
 
 }  // namespace swivel::cli

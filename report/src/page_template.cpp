@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "page_template.hpp"
 
+#include <sstream>
 #include <stdexcept>
 
+#include "drawing.hpp"
 #include "swivel/core/messages/bounds.hpp"
 
 #ifdef SWIVEL_PAGES
@@ -20,8 +22,10 @@
 SWIVEL_EMBED("report");
 SWIVEL_EMBED("overview");
 SWIVEL_EMBED("placements");
+SWIVEL_EMBED("job");
 extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[],
-    swivel_overview_end[], swivel_placements_begin[], swivel_placements_end[];
+    swivel_overview_end[], swivel_placements_begin[], swivel_placements_end[], swivel_job_begin[],
+    swivel_job_end[];
 #endif
 
 namespace swivel::detail {
@@ -50,6 +54,21 @@ std::string_view placement_template() {
 #else
   return {};
 #endif
+}
+
+std::string_view job_template() {
+#ifdef SWIVEL_PAGES
+  return {swivel_job_begin, static_cast<std::size_t>(swivel_job_end - swivel_job_begin)};
+#else
+  return {};
+#endif
+}
+
+std::string escaped_lines(const std::string& text) {
+  std::istringstream lines(text);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) result += escaped(line) + '\n';
+  return result;
 }
 
 std::string fill(std::string_view page, const std::string& json,

@@ -12,6 +12,10 @@ namespace swivel::detail {
 [[nodiscard]] std::string_view page_template();
 [[nodiscard]] std::string_view overview_template();
 [[nodiscard]] std::string_view placement_template();
+[[nodiscard]] std::string_view job_template();
+
+/// Returns the text with its lines escaped for HTML.
+[[nodiscard]] std::string escaped_lines(const std::string& text);
 
 /// Returns the page with its data, a JSON text, in place of "@@DATA@@". `besides`: other marks, in
 /// the order of the page and all before the data, each with the HTML that takes its place.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bundles each page into one file, report.html, overview.html and placements.html; "@@DATA@@" in
-// them stands for the data. Argument: the folder that holds node_modules and gets the pages,
+// Bundles each page into one file, report.html, overview.html, placements.html and job.html;
+// "@@DATA@@" in them stands for the data. Argument: the folder that holds node_modules and gets the pages,
 // THIRD-PARTY.txt (the notices of all that was bundled, which the pages carry too) and pages.d
 // (what was read).
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
@@ -52,6 +52,7 @@ for (const [frame, entry, result, title] of [
   ['page.html', 'main.js', 'report.html', 'Swivel report'],
   ['campaign.html', 'campaign.js', 'overview.html', 'Swivel campaign'],
   ['placement.html', 'placement.js', 'placements.html', 'Swivel placements'],
+  ['job.html', 'job.js', 'job.html', 'Swivel job'],
 ]) {
   const bundle = await build({
     entryPoints: [source(entry)],

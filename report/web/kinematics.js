@@ -30,6 +30,10 @@ export function displacements(chain, q) {
   return g;
 }
 
+/** The pose of the tool; g: displacements(chain, q), where they are known. */
+export const toolPose = (chain, q, g = displacements(chain, q)) =>
+  g[chain.joints.length].clone().multiply(matrix(chain.home));
+
 /**
  * Yoshikawa's sqrt(det(J J^T)), J the 6 x 7 geometric Jacobian at the base origin (the value does
  * not depend on the point).

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the search knows of the lattice: the cells of the (s, phi) map, decoded.
 import { bytes } from './bytes.js';
+import { number } from './page.js';
 
 // States in the order of report/lattice_map.hpp.
 export const [NO_IK, SINGULAR, LIMIT, UNSEEN, FREE, BLOCKED] = [0, 1, 2, 3, 4, 5];
@@ -138,4 +139,43 @@ export class Cells {
       .map((k) => [this.group(k), this.colour(k, colours)]);
     return [...new Map(entries)];
   }
+}
+
+const turns = (cells) => cells.panels.some(({ rolls }) => rolls);
+/** What the map is called. */
+export const mapTitle = (cells) =>
+  turns(cells) ? '(s, φ) and (s, ρ) maps' : `(s, ${cells.letter}) map`;
+/**
+ * How the map is to be read. lattice: of the result; beside: a path is drawn beside the refined
+ * one; ended: a line shows where every path has ended.
+ */
+export function mapNote(cells, lattice, { beside, ended }) {
+  const unseen = cells.count((state) => state === UNSEEN),
+    known = cells.count((state) => state === FREE || state === BLOCKED);
+  const several = cells.layers_each * cells.angles_each > 1;
+  const upwards = turns(cells)
+    ? 'arm angle φ or roll ρ'
+    : `${cells.coordinate} ${cells.letter}`;
+  return (
+    `s to the right, ${upwards} upwards. ` +
+    (cells.arcs
+      ? 'Solutions lie on arcs: between two nodes of an arc a cell shows the nearer one' +
+        (several ? ', of several a blocked one before a free one. ' : '. ')
+      : several
+        ? `A cell stands for up to ${cells.layers_each} × ${cells.angles_each} of the ` +
+          `${number(lattice.nodes)} nodes and shows a blocked one before a free one, ` +
+          'and that before the others. '
+        : 'A cell is a node. ') +
+    (unseen + known
+      ? `Of the cells that exist in closed form, ` +
+        `${number((100 * unseen) / (unseen + known), 3)} % were never looked at.`
+      : '') +
+    (lattice.rolls
+      ? ' Branches are drawn at the rolls with which the path was found, rolls at its arm angles.'
+      : '') +
+    (beside
+      ? ' The thin dashed line is the path that was found on the lattice, before it was refined.'
+      : '') +
+    (ended ? ' The dashed line is where every path has ended.' : '')
+  );
 }

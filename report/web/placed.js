@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plans of the best placements in three dimensions, above the map of placements as a floor.
 import { bytes } from './bytes.js';
-import { displacements, matrix } from './kinematics.js';
+import { toolPose } from './kinematics.js';
 import { $, data, isDark } from './page.js';
 import { View } from './scene.js';
 
@@ -61,10 +61,7 @@ export class Placed {
       s: at,
       q: [...joints.subarray(k * this.chain.joints.length, (k + 1) * this.chain.joints.length)],
     }));
-    const tool = matrix(this.chain.home);
-    const tool_path = rows.map(({ q }) =>
-      displacements(this.chain, q).at(-1).multiply(tool).elements.slice(12, 15),
-    );
+    const tool_path = rows.map(({ q }) => toolPose(this.chain, q).elements.slice(12, 15));
     this.shown = { ...data.scene, rows, tool_path, poses: plan.poses };
     Object.assign(this, { plan, offset, cursor: 0 });
     window.swivel.cell = cell;

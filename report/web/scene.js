@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { bytes } from './bytes.js';
-import { displacements, matrix, vector } from './kinematics.js';
+import { displacements, matrix, toolPose, vector } from './kinematics.js';
 import { Quality } from './quality.js';
 import { surface } from './surface.js';
 
@@ -60,6 +60,17 @@ function geometry(body, meshes, around) {
   // three.js turns about y, swivel about z.
   if (body.cylinder || body.capsule) shape.rotateX(Math.PI / 2);
   return shape;
+}
+
+const kDashes = 24; // of each straight move between strokes
+const toolPoint = (chain, q) => new THREE.Vector3().setFromMatrixPosition(toolPose(chain, q));
+function rodBetween(from, to) {
+  const rod = new THREE.CylinderGeometry(0.0022, 0.0022, from.distanceTo(to), 5),
+    way = to.clone().sub(from).normalize();
+  rod.deleteAttribute('uv');
+  return rod
+    .applyQuaternion(new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), way))
+    .translate(...from.clone().lerp(to, 0.5));
 }
 
 /** What stands still of the robot is told apart from what moves. */
@@ -215,25 +226,30 @@ export class View {
       );
     }
   }
+  /** Where the tool goes: on the path, or on the paths of several strokes with moves between. */
   addPath() {
-    const points = this.data.tool_path.map(vector);
-    this.rings = Math.min(2 * points.length, 200);
+    const { tool_path, paths, moves } = this.data;
+    this.lines = (paths ?? [tool_path]).map((path) => this.addLine(path.map(vector)));
+    if (moves?.length) this.addMoves(moves);
+  }
+  /** A path that colourPath() colours; arrows tell its direction. */
+  addLine(points) {
+    const rings = Math.min(2 * points.length, 200);
     const tube =
       points.length > 1
         ? new THREE.TubeGeometry(
             new THREE.CatmullRomCurve3(points, false, 'centripetal'),
-            this.rings,
+            rings,
             0.004,
             5,
           )
         : new THREE.BufferGeometry();
-    this.line = new THREE.Mesh(tube, surface(null));
-    // What bodies hide of the path shows through them, faintly; arrows tell its direction.
+    // What bodies hide of the path shows through them, faintly.
     const through = Object.assign(
       new THREE.Mesh(tube, surface(null, { opacity: 0.3, lit: false, depthTest: false })),
       { renderOrder: 1 },
     );
-    this.shown.add(this.line, through);
+    this.shown.add(new THREE.Mesh(tube, surface(null)), through);
     const length = points.reduce(
       (sum, point, k) => sum + (k ? point.distanceTo(points[k - 1]) : 0),
       0,
@@ -250,7 +266,36 @@ export class View {
       mesh.lookAt(points[k].clone().add(way));
       this.shown.add(mesh);
     }
-    this.around = 6; // vertices of a ring: the first again at the end
+    return { tube, rings };
+  }
+  /**
+   * The tool's way on moves between strokes, dashed. moves: of each the joints at its corners,
+   * between which they move straight.
+   */
+  addMoves(moves) {
+    const rods = [];
+    for (const corners of moves)
+      for (let k = 0; k + 1 < corners.length; ++k) {
+        const at = (share) =>
+          toolPoint(
+            this.data.chain,
+            corners[k].map((v, j) => v + share * (corners[k + 1][j] - v)),
+          );
+        for (let dash = 0; dash < kDashes; ++dash) {
+          const from = at(dash / kDashes),
+            to = at((dash + 0.6) / kDashes);
+          if (from.distanceTo(to) > 1e-4) rods.push(rodBetween(from, to));
+        }
+      }
+    if (!rods.length) return;
+    const shape = mergeGeometries(rods);
+    this.shown.add(
+      new THREE.Mesh(shape, surface(0x8453c6, { lit: false })),
+      Object.assign(
+        new THREE.Mesh(shape, surface(0x8453c6, { opacity: 0.3, lit: false, depthTest: false })),
+        { renderOrder: 1 },
+      ),
+    );
   }
   /** The shortest line between two bodies, drawn over everything. */
   addNearest() {
@@ -285,7 +330,7 @@ export class View {
     this.tool.matrixAutoUpdate = false;
     this.scene.add(this.tool);
   }
-  /** The names of the scene's objects, beside them. */
+  /** The names of the scene's objects, beside them, and the numbers of strokes. */
   addNames() {
     const objects = new Map();
     for (const { body, rest, fine } of this.parts) {
@@ -294,15 +339,20 @@ export class View {
       const box = fine.boundingBox.clone().applyMatrix4(rest);
       objects.set(body.name, objects.has(body.name) ? objects.get(body.name).union(box) : box);
     }
-    this.names = [...objects].map(([name, box]) => {
+    const labelled = (text, className, at) => {
       const label = document.createElement('span');
-      label.className = 'name';
-      label.textContent = name;
+      label.className = className;
+      label.textContent = text;
       this.gap.parentElement.append(label);
+      return { label, at };
+    };
+    this.names = [...objects].map(([name, box]) => {
       const top = box.getCenter(new THREE.Vector3());
       top.z = Math.min(box.max.z, top.z + 0.25);
-      return { label, at: top };
+      return labelled(name, 'name', top);
     });
+    for (const { text, point } of this.data.numbers ?? [])
+      this.names.push(labelled(text, 'number', vector(point)));
   }
   /** The path, and the arm's bodies that move at both ends of it: what should be seen. */
   subject() {
@@ -429,7 +479,7 @@ export class View {
         : kindOf(body);
       mesh.material = this.materials[kind];
     }
-    this.tool.matrix.multiplyMatrices(g.at(-1), matrix(this.data.chain.home));
+    this.tool.matrix.copy(toolPose(this.data.chain, q, g));
     this.nearest.visible = line !== null;
     this.gap.hidden = line === null;
     if (line) {
@@ -445,19 +495,23 @@ export class View {
     }
     this.dirty = true;
   }
-  /** values: one in 0..1 for each layer of the path, or NaN where nothing is known. */
-  colourPath(values) {
-    const count = this.line.geometry.attributes.position?.count ?? 0,
-      colours = new Float32Array(3 * count);
+  /**
+   * values: one in 0..1 for each layer of a path, or NaN where nothing is known; path: its number,
+   * where there are several.
+   */
+  colourPath(values, path = 0) {
+    const { tube, rings } = this.lines[path],
+      count = tube.attributes.position?.count ?? 0,
+      colours = new Float32Array(3 * count),
+      around = 6; // vertices of a ring: the first again at the end
     for (let k = 0; k < count; ++k) {
-      const value =
-        values[Math.round((Math.floor(k / this.around) / this.rings) * (values.length - 1))];
+      const value = values[Math.round((Math.floor(k / around) / rings) * (values.length - 1))];
       colours.set(
         Number.isNaN(value) || value === undefined ? [0.55, 0.55, 0.55] : ramp(value),
         3 * k,
       );
     }
-    this.line.geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
+    tube.setAttribute('color', new THREE.BufferAttribute(colours, 3));
     this.dirty = true;
   }
   background(colour) {

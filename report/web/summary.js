@@ -112,7 +112,7 @@ export function verdict(host, { result, chain, map }, jump) {
   }
 }
 
-const words = (object) =>
+export const words = (object) =>
   Object.entries(object ?? {})
     .filter(([, v]) => typeof v !== 'object')
     .map(([key, v]) => [key.replaceAll('_', ' '), typeof v === 'number' ? number(v) : String(v)]);

@@ -141,7 +141,7 @@ class Jobs(WithFolder):
     def test_options_that_jobs_do_not_take(self):
         file = self.file(one_job())
         options = [
-            ("--refine",), ("--chord", 1), ("--advise", 1), ("--report", "r.html"),
+            ("--refine",), ("--chord", 1), ("--advise", 1),
             ("--certificate", "c.json"),
             ("--trace", "t.json"), ("--map",), ("--map-svg", "m.svg"), ("--full-map",),
             ("--base", "--x", 0.1)

@@ -25,7 +25,9 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/job_search.hpp"
 #include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "validity/collision_validity.hpp"
@@ -55,6 +57,8 @@ struct PlannedRun {
   Executor alone{1};
   std::optional<CollisionValidity> validity;
   std::optional<HookedValidity> hooked;
+  /// The plan of the run by itself, where it has no path.
+  std::optional<Planner> alone_plan;
 };
 
 class JobPlan {
@@ -98,6 +102,22 @@ class JobPlan {
       if (result_.parts.empty()) result_.status = stopped_status();
     }
     return std::move(result_);
+  }
+
+  /// Returns what plan() found out about the runs, valid while this and the robot live; empty if it
+  /// was stopped before there was a job or a verdict.
+  [[nodiscard]] std::vector<PlanView> views() const {
+    std::vector<PlanView> views;
+    if (paths_.size() != runs_.size()) return views;
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      const PlannedRun& run = *runs_[k];
+      if (run.alone_plan)
+        views.push_back(run.alone_plan->view());
+      else
+        views.push_back({robot_, run.problem, *run.lattice, *run.world, &run.cost_to_go->verdicts(),
+                         paths_[k]});
+    }
+    return views;
   }
 
  private:
@@ -165,6 +185,8 @@ class JobPlan {
       if (home_is_barred(transitions)) return;
       const JobOutcome outcome = search(transitions);
       note(outcome, transitions);
+      paths_ = outcome.paths;
+      paths_.resize(runs_.size());
       if (outcome.paths.empty()) return;
       std::vector<JobPart> parts = parts_of(outcome, transitions);
       const Lattice::Joints off = lift(parts, *runs_.front()->lattice, job_.home);
@@ -329,7 +351,11 @@ class JobPlan {
       if (result_.runs[k].status == PlanStatus::kInfeasible) {
         PlanOptions alone = options_;
         alone.check = false;
-        result_.runs[k].diagnosis = swivel::plan(robot_, runs_[k]->problem, alone).diagnosis;
+        // The pointer does not own the robot, which outlives the plan.
+        Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot_),
+                        runs_[k]->problem);
+        result_.runs[k].diagnosis = planner.plan(alone).diagnosis;
+        if (result_.runs[k].diagnosis) runs_[k]->alone_plan.emplace(std::move(planner));
       }
   }
 
@@ -345,6 +371,7 @@ class JobPlan {
   std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
   const World* transition_world_ = nullptr;
   std::vector<std::unique_ptr<PlannedRun>> runs_;
+  std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
   JobResult result_;
 };
 
@@ -364,9 +391,15 @@ std::vector<StrokeRun> given_order(const Job& job) {
 /// Plans a job in the cheapest orders by estimate.
 class OrderSearch {
  public:
+  /// Keeps the plan of the best job for `view`, unless that is null.
   OrderSearch(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-              const Budget& budget, bool one_branch)
-      : robot_(robot), job_(job), options_(options), budget_(budget), one_branch_(one_branch) {}
+              const Budget& budget, bool one_branch, JobView* view)
+      : robot_(robot),
+        job_(job),
+        options_(options),
+        budget_(budget),
+        one_branch_(one_branch),
+        view_(view) {}
 
   JobResult plan() {
     const std::vector<StrokeRun> given = given_order(job_);
@@ -397,10 +430,14 @@ class OrderSearch {
   /// can have in this direction, if any: it has no path by itself, or no transition can begin at
   /// its end or end at its begin.
   std::optional<StrokeRun> take(const std::vector<StrokeRun>& order) {
-    JobResult found = JobPlan(robot_, job_, options_, budget_, order, one_branch_).plan();
+    const auto plan =
+        std::make_shared<JobPlan>(robot_, job_, options_, budget_, order, one_branch_);
+    JobResult found = plan->plan();
     const std::optional<StrokeRun> impossible = impossible_run(found);
-    if (!best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost)))
+    if (!best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost))) {
       best_ = std::move(found);
+      if (view_ != nullptr) view_->runs = plan->views(), view_->owner = plan;
+    }
     planned_ = order;
     return impossible;
   }
@@ -444,14 +481,15 @@ class OrderSearch {
   const PlanOptions& options_;
   const Budget& budget_;
   bool one_branch_;
+  JobView* view_;
   OrderCosts costs_;
   std::optional<JobResult> best_;
   std::vector<StrokeRun> planned_;  // the last order
 };
 
 JobResult plan_in_order(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-                        const Budget& budget, bool one_branch = false) {
-  return OrderSearch(robot, job, options, budget, one_branch).plan();
+                        const Budget& budget, JobView* view, bool one_branch = false) {
+  return OrderSearch(robot, job, options, budget, one_branch, view).plan();
 }
 
 /// Returns true if the rows of a run of the job are not all on one branch.
@@ -463,11 +501,14 @@ bool any_changes_branch(const JobResult& job) {
 /// Plans a job of which motions are to be made: the cheapest, or the cheapest whose runs do not
 /// change branch if the cheapest does and there is one.
 JobResult plan_executable(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-                          const Budget& budget) {
-  JobResult found = plan_in_order(robot, job, options, budget);
+                          const Budget& budget, JobView* view) {
+  JobResult found = plan_in_order(robot, job, options, budget, view);
   if (found.parts.empty() || !robot.arm_class().srs || !any_changes_branch(found)) return found;
-  JobResult other = plan_in_order(robot, job, options, budget, true);
+  JobView other_view;
+  JobResult other =
+      plan_in_order(robot, job, options, budget, view == nullptr ? nullptr : &other_view, true);
   if (other.parts.empty()) return found;
+  if (view != nullptr) std::swap(*view, other_view);
   other.warnings.push_back(
       formatted("the cheapest job, of cost %.6g, jumps to another branch, which no controller can "
                 "follow: this is the cheapest that does not",
@@ -477,11 +518,12 @@ JobResult plan_executable(const PreparedRobot& robot, const Job& job, const Plan
 
 }  // namespace
 
-JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions& options) {
+JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+                   JobView* view) {
   validate(job);
   require_supported(options);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
-  return plan_in_order(robot, job, options, options.budget());
+  return plan_in_order(robot, job, options, options.budget(), view);
 }
 
 JobResult plan_job(const Job& job, const PlanOptions& options) {
@@ -491,7 +533,8 @@ JobResult plan_job(const Job& job, const PlanOptions& options) {
 }
 
 JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
-                              const PlanOptions& options, const JobTimingOptions& timing) {
+                              const PlanOptions& options, const JobTimingOptions& timing,
+                              JobView* view) {
   validate(job);
   require_supported(options);
   require_speeds(job, timing);
@@ -499,7 +542,7 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
   robot.require_prepared_for(problem_of_run(completed, {0, false}));
   const Budget budget = options.budget();
   JobMotionPlan plan;
-  plan.result = plan_executable(robot, completed, options, budget);
+  plan.result = plan_executable(robot, completed, options, budget, view);
   if (plan.result.parts.empty()) return plan;
   try {
     Stopwatch watch;

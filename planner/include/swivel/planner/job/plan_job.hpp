@@ -7,6 +7,7 @@
 namespace swivel {
 
 class PreparedRobot;
+struct JobView;
 
 /// Plans a job: the cheapest path through every stroke, joined by transitions in joint space, from
 /// home and back. The result is the same at any thread count, unless it times out; then its parts
@@ -16,8 +17,9 @@ class PreparedRobot;
 /// finds an answer invalid.
 [[nodiscard]] JobResult plan_job(const Job& job, const PlanOptions& options = {});
 /// Plans a job with a robot that was prepared before. Throws InvalidArgument also if it was not
-/// prepared for this job (PreparedRobot::require_prepared_for).
+/// prepared for this job (PreparedRobot::require_prepared_for). `view`, if given, gets what was
+/// found out about the runs.
 [[nodiscard]] JobResult plan_job(const PreparedRobot& robot, const Job& job,
-                                 const PlanOptions& options = {});
+                                 const PlanOptions& options = {}, JobView* view = nullptr);
 
 }  // namespace swivel

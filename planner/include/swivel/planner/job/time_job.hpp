@@ -13,6 +13,7 @@
 namespace swivel {
 
 class PreparedRobot;
+struct JobView;
 
 /// How time_job() times a job.
 struct JobTimingOptions {
@@ -50,10 +51,12 @@ struct JobMotionPlan {
 /// Plans a job completed by with_motion_defaults(), and times it. A job whose cheapest runs jump
 /// from branch to branch at a singularity is planned again without such steps, if that is possible.
 /// The time-out of `options` covers everything. Throws as plan_job() and time_job() do, InputError
-/// of a stroke without a speed before planning.
+/// of a stroke without a speed before planning. `view`, if given, gets what was found out about the
+/// runs.
 [[nodiscard]] JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
                                             const PlanOptions& options,
-                                            const JobTimingOptions& timing);
+                                            const JobTimingOptions& timing,
+                                            JobView* view = nullptr);
 
 /// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
 /// of parts, with runs judged as check_motion() judges them; the rates of transitions as

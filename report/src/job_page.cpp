@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/report/job_page.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "drawing.hpp"
+#include "page_parts.hpp"
+#include "page_template.hpp"
+#include "swivel/core/lattice/scale.hpp"
+#include "swivel/core/motion/time_path.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+
+using namespace detail;
+
+namespace {
+
+/// Makes the data of a job's page, and the maps for a page without JavaScript.
+class JobPage {
+ public:
+  JobPage(const PlannedJob& planned, const std::string& result_json, const Budget& budget)
+      : job_(planned.job),
+        result_(planned.result),
+        runs_(planned.view.runs),
+        motion_(planned.motion),
+        chain_(planned.robot.arm().chain),
+        world_(runs_.empty() ? planned.robot.world() : runs_.front().world),
+        budget_(budget),
+        json_(Json::parse(result_json)) {
+    for (const RunResult& run : result_.runs) order_.push_back(run.run);
+    for (std::size_t k = 0; order_.size() < job_.strokes.size(); ++k) order_.push_back({k, false});
+  }
+
+  /// Returns the data of the page. Throws Stopped.
+  Json data(const std::string& name, const PageWords& words) {
+    Bodies bodies(world_, job_.scene);
+    Json strokes = Json::array();
+    for (std::size_t k = 0; k < order_.size(); ++k) strokes.push_back(stroke(k));
+    Json parts = result_.parts.empty() ? partial_parts() : parts_of_job();
+    json_.erase("parts");
+    return {{"problem", name},
+            {"which", words.which},
+            {"answer", words.answer},
+            {"result", std::move(json_)},
+            {"chain", chain_json(chain_)},
+            {"bodies", std::move(bodies.bodies)},
+            {"meshes", std::move(bodies.meshes)},
+            {"home", home()},
+            {"strokes", std::move(strokes)},
+            {"parts", std::move(parts)},
+            {"motion", motion()}};
+  }
+  /// Returns the maps of the strokes as HTML, after data() was called.
+  [[nodiscard]] const std::string& maps() const { return maps_; }
+
+ private:
+  /// Returns the index of a run's part in the result; nullopt where there is no job.
+  [[nodiscard]] std::optional<std::size_t> part_of(std::size_t run) const {
+    for (std::size_t p = 0; p < result_.parts.size(); ++p)
+      if (result_.parts[p].run == order_[run]) return p;
+    return std::nullopt;
+  }
+
+  /// Returns a stroke in its direction: where the tool goes, its rows, map, and where its paths
+  /// end.
+  Json stroke(std::size_t k) {
+    const std::string& name = job_.strokes[order_[k].stroke].name;
+    Json json = {{"name", name}, {"reversed", order_[k].reversed}, {"rows", Json::array()}};
+    if (runs_.empty()) {
+      json["tool_path"] =
+          tool_path_json(path_within_scale(problem_of_run(job_, order_[k]), chain_, budget_));
+      json["map"] = json["cut"] = json["run"] = nullptr;
+      return json;
+    }
+    const PlanView& view = runs_[k];
+    const Lattice& lattice = view.lattice;
+    const auto part = part_of(k);
+    const LatticeMap map = make_map(view, false, budget_);
+    const std::vector<PageRow> rows = placed(
+        lattice, map, part ? result_.parts[*part].rows : rows_of(lattice, view.path), view.path);
+    json["run"] = json_["runs"][k];
+    json["settings"] = settings_json(view.problem, lattice);
+    json["tool_path"] = tool_path_json(lattice.path_of_rows());
+    json["rows"] = rows_json(view.world, lattice, rows, budget_);
+    if (part)
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        json["rows"][row]["process"] = json_["parts"][*part]["rows"][row]["process"];
+    const Json& diagnosis = json["run"]["diagnosis"];
+    json["cut"] = diagnosis.is_object()
+                      ? cut_json(map, lattice, view.world, view.path, rows, diagnosis)
+                      : Json(nullptr);
+    json["map"] = map_json(map, lattice, view.world, view.path, rows, cells_each(), budget_);
+    maps_ += "<h2>" + std::to_string(k + 1) + " " + escaped(name) +
+             (order_[k].reversed ? " (backwards)" : "") + "</h2>\n" + to_svg(map);
+    return json;
+  }
+  /// Returns how many cells the map of a stroke may have.
+  [[nodiscard]] std::size_t cells_each() const {
+    constexpr std::size_t kAll = 3 * kMostCells, kLeast = kMostCells / 10;
+    return std::clamp(kAll / order_.size(), kLeast, kMostCells);
+  }
+
+  /// Returns the job's parts in their order: the index of the stroke, or the joints of a
+  /// transition's corners.
+  Json parts_of_job() {
+    Json list = Json::array();
+    std::size_t next = 0;
+    for (const JobPart& part : result_.parts) {
+      Json json = {{"stroke", part.run ? Json(next++) : Json(nullptr)}, {"cost", part.cost}};
+      if (!part.run) {
+        json["rows"] = Json::array();
+        for (const TrajectoryRow& row : part.rows)
+          json["rows"].push_back({{"q", std::vector<double>(row.q.begin(), row.q.end())}});
+        json["barred_by"] = part.barred_by ? Json(*part.barred_by) : Json(nullptr);
+      }
+      list.push_back(std::move(json));
+    }
+    return list;
+  }
+  /// Returns the strokes that have a path as far as it goes, where there is no job.
+  Json partial_parts() {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < runs_.size(); ++k)
+      if (!runs_[k].path.empty()) list.push_back({{"stroke", k}, {"cost", nullptr}});
+    return list;
+  }
+
+  /// Returns the joints at home, and the two bodies that come too near there.
+  [[nodiscard]] Json home() const {
+    if (!job_.home) return nullptr;
+    return {{"q", std::vector<double>(job_.home->begin(), job_.home->end())},
+            {"pair", result_.home_barred ? Json(*result_.barred_by) : Json(nullptr)}};
+  }
+
+  /// Returns the job's motion in time. The place of a sample counts the steps between rows of all
+  /// parts; the last row of a part is the first one of the next.
+  [[nodiscard]] Json motion() const {
+    if (motion_ == nullptr) return nullptr;
+    std::vector<SampleFinder> finders;
+    std::vector<double> first, begin(result_.parts.size(), 0.0);
+    double steps = 0;
+    std::size_t run = 0;
+    for (const JobPart& part : result_.parts) {
+      finders.emplace_back(part.rows, part.run ? &runs_[run].lattice.path_of_rows() : nullptr);
+      run += part.run ? 1 : 0;
+      first.push_back(steps);
+      steps += static_cast<double>(part.rows.size() - 1);
+    }
+    const auto& rows = motion_->rows;
+    for (std::size_t k = 1; k < rows.size(); ++k)
+      if (motion_->part[k] != motion_->part[k - 1]) begin[motion_->part[k]] = rows[k - 1].t;
+    Json json = motion_json(rows, motion_->rate, joint_rates(chain_, job_.limits, job_.source),
+                            chain_, [&](std::size_t k) {
+                              const std::size_t part = motion_->part[k];
+                              return first[part] + finders[part].place(rows[k].row);
+                            });
+    json["begin"] = begin;
+    return json;
+  }
+
+  const Job& job_;
+  const JobResult& result_;
+  const std::vector<PlanView>& runs_;
+  const JobMotion* motion_;
+  const Chain& chain_;
+  const World& world_;
+  const Budget& budget_;
+  Json json_;                     ///< the result
+  std::vector<StrokeRun> order_;  ///< in which the strokes are shown
+  std::string maps_;
+};
+
+}  // namespace
+
+std::string to_job_page(const PlannedJob& planned, const std::string& result_json,
+                        const Budget& budget, const PageWords& words) {
+  const std::string name = std::filesystem::path(planned.job.source).filename().string();
+  const std::string title = words.which.empty() ? name : name + ", " + words.which;
+  JobPage page(planned, result_json, budget);
+  const Json data = page.data(name, words);
+  return fill(
+      job_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+      {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", page.maps()}});
+}
+
+}  // namespace swivel

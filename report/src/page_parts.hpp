@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the pages of plans and of jobs say of one path: rows, motion, map, and where it ends.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene_json.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/report/lattice_map.hpp"
+
+namespace swivel::detail {
+
+/// A row of a trajectory, and where it is in the map.
+struct PageRow {
+  TrajectoryRow at;
+  /// Layer of the lattice. Not a whole number for a row between two layers of the lattice, where
+  /// the path has more layers than the lattice.
+  double layer = 0;
+  int solution = 0;
+  double angle = 0;              ///< in cells
+  std::optional<double> roll{};  ///< rad
+};
+
+/// Returns true if the tool may stand turned, so that nodes have rolls.
+[[nodiscard]] bool may_turn(const Lattice& lattice);
+
+/// Returns the rows with their places in the map. `rows` are those of the path's layers, from the
+/// first on; `slots` is the lattice's path. A row has the IK solution of the lattice's path if it
+/// is on that branch, else the solution of the nearest node of its own branch.
+[[nodiscard]] std::vector<PageRow> placed(const Lattice& lattice, const LatticeMap& map,
+                                          const std::vector<TrajectoryRow>& rows,
+                                          const std::vector<int>& slots);
+/// Returns the rows of a path that may end anywhere, as far as its joints stay within their limits.
+[[nodiscard]] std::vector<TrajectoryRow> rows_of(const Lattice& lattice, std::vector<int> slots);
+
+/// Returns the rows with their clearances, which it asks for. Throws Stopped.
+[[nodiscard]] Json rows_json(const World& world, const Lattice& lattice,
+                             const std::vector<PageRow>& shown, const Budget& budget);
+/// Returns the path beside which a refined one is drawn.
+[[nodiscard]] Json beside_json(const std::vector<PageRow>& rows);
+/// Returns the points of the tool in each layer.
+[[nodiscard]] Json tool_path_json(const ToolPath& path);
+/// Returns what was asked of a path, for the page's table and the bounds in its plots.
+[[nodiscard]] Json settings_json(const Problem& problem, const Lattice& lattice);
+
+/// Finds samples of a motion among the rows that it leads through.
+class SampleFinder {
+ public:
+  /// `path`: the layers of the rows; null where the joints move straight from row to row. All
+  /// references must outlive the finder; there are at least two rows.
+  SampleFinder(const std::vector<TrajectoryRow>& rows, const ToolPath* path)
+      : rows_(rows), path_(path) {}
+  /// Returns the place of a sample in rows, not always whole. Samples are asked for in their order.
+  [[nodiscard]] double place(const TrajectoryRow& sample);
+
+ private:
+  const std::vector<TrajectoryRow>& rows_;
+  const ToolPath* path_;
+  std::size_t step_ = 0;
+};
+
+/// Returns a motion over time at as many samples as a plot has room for: the place, as `place_of`
+/// says for the index of each sample, which it is asked for in their order; the tool's speed; and
+/// for speed, acceleration and jerk, the largest share of a joint's limit since the sample before
+/// that is shown, in percent.
+[[nodiscard]] Json motion_json(const std::vector<TimedRow>& samples, double rate,
+                               const JointRates& rates, const Chain& chain,
+                               const std::function<double(std::size_t)>& place_of);
+
+/// Returns a node's joints `q`, turned by whole turns to come nearest to a row of the path, as the
+/// trajectory has them. A joint that such a turn would take out of its limits stays as it is.
+[[nodiscard]] Config turned_towards(const Lattice& lattice, const Config& q,
+                                    const std::vector<PageRow>& rows, std::size_t row);
+
+/// Returns the place where every path has ended: the node past it that the path's last node would
+/// have moved to, and what keeps it from there. Null if there is no such node, or the problem is
+/// solved.
+[[nodiscard]] Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
+                            const std::vector<int>& path, const std::vector<PageRow>& rows,
+                            const Json& diagnosis);
+
+/// Returns the map for the page, of at most about `most_cells` cells: the state of each cell and
+/// the posture of one node for each. `path`: slots of the lattice's path; `rows`: of the path that
+/// is shown, towards which postures turn their joints. Throws Stopped.
+[[nodiscard]] Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
+                            const std::vector<int>& path, const std::vector<PageRow>& rows,
+                            std::size_t most_cells, const Budget& budget);
+/// The cells of the map of a page with one map.
+inline constexpr std::size_t kMostCells = 200'000;
+
+}  // namespace swivel::detail
