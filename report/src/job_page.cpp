@@ -98,7 +98,7 @@ class JobPage {
   }
   /// Returns how many cells the map of a stroke may have.
   [[nodiscard]] std::size_t cells_each() const {
-    constexpr std::size_t kAll = 3 * kMostCells, kLeast = kMostCells / 10;
+    constexpr std::size_t kAll = kMostCells * 3 / 2, kLeast = kMostCells / 10;
     return std::clamp(kAll / order_.size(), kLeast, kMostCells);
   }
 

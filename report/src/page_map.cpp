@@ -44,9 +44,16 @@ bool looked_at(const LatticeMap::Node& node) {
   return node.state >= NodeState::kFree;
 }
 
+/// Returns how many rows of cells each panel of a map has at most.
+int most_rows(std::size_t most_cells) {
+  return most_cells >= kMostCells ? 252 : most_cells >= kMostCells / 4 ? 126 : 63;
+}
+
 /// Returns how many columns of cells each panel of a map has at most.
 int most_columns(std::size_t panels, std::size_t most_cells) {
-  return std::max(100, static_cast<int>(most_cells / (std::max<std::size_t>(1, panels) * 252)));
+  const std::size_t rows =
+      std::max<std::size_t>(1, panels) * static_cast<std::size_t>(most_rows(most_cells));
+  return std::max(most_cells >= kMostCells ? 100 : 50, static_cast<int>(most_cells / rows));
 }
 
 /// Writes the map for the page: the state of each cell and the posture of one node for each cell.
@@ -63,7 +70,7 @@ class MapWriter {
         rows_(rows),
         budget_(budget),
         solutions_(map.inhabited_solutions()),
-        cells_(map, most_columns(solutions_.size(), most_cells), 252),
+        cells_(map, most_columns(solutions_.size(), most_cells), most_rows(most_cells)),
         turned_(may_turn(lattice)),
         // A question costs up to a millisecond.
         clearances_(world, cells_looked_at(), most_cells / 100),

@@ -41,8 +41,10 @@ export class JobList {
   title(parts, p) {
     const { stroke } = parts[p];
     if (stroke !== null) return strokeName(this.strokes[stroke], stroke);
-    const next = parts[p + 1];
-    return next ? `transition to ${strokeName(this.strokes[next.stroke], next.stroke)}` : 'way home';
+    const next = parts[p + 1]?.stroke;
+    return next === undefined
+      ? 'way home'
+      : `transition to ${strokeName(this.strokes[next], next)}`;
   }
   /** How far the joint that moves most has moved up to each row, degrees. */
   travel() {
@@ -90,7 +92,7 @@ export class JobList {
       ? inside.indexOf(true)
       : this.parts.findLastIndex(({ first }) => first <= place);
   }
-  /** The pose at a place; `part`: the number of its part, `row`: in a stroke, null in transitions. */
+  /** The pose at a place; part: the number of its part; row: in a stroke, null in transitions. */
   poseAt(place) {
     const part = this.partAt(place),
       { stroke, rows, first } = this.parts[part],

@@ -4,6 +4,8 @@ import { strokeName } from './joblist.js';
 import { $, number, table } from './page.js';
 import { words } from './summary.js';
 
+const kOpen = 2; // warnings; more are folded
+
 /** The answer in one line, and warnings. go: shows a stroke, its number, at s, m. */
 export function verdict({ answer, result, strokes }, go) {
   const host = $('verdict'),
@@ -27,13 +29,17 @@ export function verdict({ answer, result, strokes }, go) {
   const warnings = [...(result.warnings ?? []), ...(result.motion?.warnings ?? [])];
   // What is said of the job need not be said of each stroke.
   const again = (text) => warnings.some((other) => other !== text && text.endsWith(`: ${other}`));
-  for (const warning of warnings) {
-    if (again(warning)) continue;
-    const line = document.createElement('p');
-    line.className = 'warning';
-    line.textContent = warning;
-    host.after(line);
-  }
+  const lines = warnings
+    .filter((warning) => !again(warning))
+    .map((warning) =>
+      Object.assign(document.createElement('p'), { className: 'warning', textContent: warning }),
+    );
+  if (lines.length <= kOpen) return host.after(...lines);
+  const fold = Object.assign(document.createElement('details'), { className: 'warnings' }),
+    title = document.createElement('summary');
+  title.textContent = `${lines.length} warnings`;
+  fold.append(title, ...lines);
+  host.after(fold);
 }
 
 const kColumns = [
@@ -90,7 +96,7 @@ export function jobSummary({ answer, result }, list) {
       ]),
   );
   if (result.motion) add('Motion', words(result.motion));
-  add('Times, ms', words(result.time_ms));
+  add('Times, ms', [...words(result.time_ms), ...words(result.time_ms.stages)]);
   add('Counters', [...words(result.counters), ...words(result.transition_counters)]);
   add('Settings', [
     ['planner', result.planner],

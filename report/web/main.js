@@ -187,7 +187,8 @@ function frame(now) {
       go(last);
     }
   }
-  if (view.draw(now, player.playing) && ++window.swivel.frames === 1) performance.mark('first picture');
+  if (view.draw(now, player.playing) && ++window.swivel.frames === 1)
+    performance.mark('first picture');
   requestAnimationFrame(frame);
 }
 

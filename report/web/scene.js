@@ -62,10 +62,10 @@ function geometry(body, meshes, around) {
   return shape;
 }
 
-const kDashes = 24; // of each straight move between strokes
+const kDash = 0.012; // m, of a move between strokes, with the gap behind it
 const toolPoint = (chain, q) => new THREE.Vector3().setFromMatrixPosition(toolPose(chain, q));
 function rodBetween(from, to) {
-  const rod = new THREE.CylinderGeometry(0.0022, 0.0022, from.distanceTo(to), 5),
+  const rod = new THREE.CylinderGeometry(0.003, 0.003, from.distanceTo(to), 5),
     way = to.clone().sub(from).normalize();
   rod.deleteAttribute('uv');
   return rod
@@ -281,9 +281,12 @@ export class View {
             this.data.chain,
             corners[k].map((v, j) => v + share * (corners[k + 1][j] - v)),
           );
-        for (let dash = 0; dash < kDashes; ++dash) {
-          const from = at(dash / kDashes),
-            to = at((dash + 0.6) / kDashes);
+        let length = 0;
+        for (let i = 0; i < 8; ++i) length += at(i / 8).distanceTo(at((i + 1) / 8));
+        const dashes = Math.min(60, Math.ceil(length / kDash));
+        for (let dash = 0; dash < dashes; ++dash) {
+          const from = at(dash / dashes),
+            to = at((dash + 0.6) / dashes);
           if (from.distanceTo(to) > 1e-4) rods.push(rodBetween(from, to));
         }
       }

@@ -20,7 +20,9 @@ function ranges(chain, rows, named) {
   if (!lines.length || !rows.length) return [];
   const at = lines.findIndex(({ name }) => name === named),
     bold =
-      at >= 0 ? at : lines.reduce((best, line, k) => (room(line) < room(lines[best]) ? k : best), 0);
+      at >= 0
+        ? at
+        : lines.reduce((best, line, k) => (room(line) < room(lines[best]) ? k : best), 0);
   return [
     {
       title: `joints; bold: ${lines[bold].name}`,

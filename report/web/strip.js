@@ -28,8 +28,6 @@ export class Strip {
   }
   /** Marks the section in which the cursor stands; -1: none. */
   mark(k) {
-    this.buttons.forEach((button, at) =>
-      at === k ? button.setAttribute('aria-current', 'true') : button.removeAttribute('aria-current'),
-    );
+    this.buttons.forEach((button, at) => button.setAttribute('aria-current', at === k));
   }
 }

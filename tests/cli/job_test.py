@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -137,6 +138,20 @@ class Jobs(WithFolder):
         self.assertEqual(
             [run["diagnosis"] is not None for run in result["runs"]], [False, True]
         )
+
+    def test_page(self):
+        file, page = self.file(one_job()), self.folder / "page.html"
+        done = run("plan", file, "--report", page)
+        if "built without reports" in done.stderr:
+            self.skipTest(done.stderr)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue(done.stdout.startswith("solved: 2 strokes, "), done.stdout)
+        data = re.search(r'<script id="data"[^>]*>(.*?)</script>', page.read_text(), re.DOTALL)
+        strokes = json.loads(data.group(1))["strokes"]
+        self.assertEqual([stroke["name"] for stroke in strokes], ["left", "right"])
+        done = run("plan", file, "--report", page, "--timeout", 1e-9)
+        self.assertEqual(done.returncode, 3)
+        self.assertFalse(page.exists())
 
     def test_options_that_jobs_do_not_take(self):
         file = self.file(one_job())

@@ -94,7 +94,7 @@ async function checkSections(page, { data, result }) {
   });
   return sections;
 }
-/** The map is that of the stroke at the cursor; a section, the list and the table go to a stroke. */
+/** The map is that of the stroke at the cursor; section, list and table go to a stroke. */
 async function checkMaps(page, sections, { data }) {
   const isShown = async (k) => {
     assert.equal((await shown(page)).stroke, k);
@@ -102,6 +102,8 @@ async function checkMaps(page, sections, { data }) {
     assert.equal(await page.locator('#map > div:visible').count(), 1);
     assert.ok((await page.textContent('#plots-section h2')).startsWith(`Along ${k + 1} `));
     assert.equal(await page.locator('#strokes tr.marked td').first().textContent(), String(k + 1));
+    const marked = await page.locator('#strip [aria-current=true]').allTextContents();
+    assert.match(marked.join(), new RegExp(`^${k + 1} row_\\d$`));
   };
   const at = (k) => data.parts.findIndex(({ stroke }) => stroke === k);
   const pictures = new Set();
@@ -284,6 +286,21 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.equal((await shown(failed.page)).stroke, 1);
   assert.ok((await failed.page.locator('#map .panel:visible').count()) > 0);
   await failed.close();
+
+  // Home is barred: strokes and the arm at home, no maps.
+  const ball = '  - {name: ball, sphere: {radius: 0.1}, xyz: [0.55, 0.45, 1.0]}\n',
+    home = planned(folder, doorJob(folder, 'home', (line) => /stroke_0/.test(line), ball));
+  assert.equal(home.status, 1);
+  const stuck = await open(home.html, { viewport: wide });
+  assert.match(
+    await stuck.page.textContent('#verdict'),
+    /^no job: at home .* - ball come too near/,
+  );
+  assert.deepEqual((await shown(stuck.page)).joints, home.data.home.q);
+  for (const id of ['map-section', 'controls', 'plots-section', 'motion-section'])
+    assert.ok(!(await stuck.page.isVisible(`#${id}`)), id);
+  assert.equal(await stuck.page.locator('#strokes tbody tr').count(), 1);
+  await stuck.close();
   console.log(
     `pages of ${[door, timed, barred].map(({ bytes }) => (bytes / 1e6).toFixed(2)).join(', ')} MB`,
   );

@@ -32,6 +32,13 @@ try {
       '--out',
       join(folder, 'a.csv'),
     ),
+    job: page(
+      'job.html',
+      'plan',
+      join(problems, 'door_job.yaml'),
+      '--out',
+      join(folder, 'job.csv'),
+    ),
     overview: page(
       'campaign.html',
       'campaign',

@@ -9,13 +9,17 @@
 
 #include "seed.hpp"
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/study/campaign.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/problems/job.hpp"
 #include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -105,6 +109,50 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
   EXPECT_GE(solved, at_least(20));
   EXPECT_GE(best, at_least(3));
   EXPECT_GE(detours, at_least(3));
+}
+
+/// Expects that a run's view has the rows of its part, but for whole turns, and knows their nodes.
+void expect_shows(const PlanView& view, const JobPart& part, const std::string& what) {
+  const std::vector<TrajectoryRow> rows = view.lattice.path_rows(view.path);
+  ASSERT_EQ(rows.size(), part.rows.size()) << what;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const double away : Config(rows[i].q - part.rows[i].q))
+      ASSERT_NEAR(wrap_angle(away), 0, 1e-9) << what << ", row " << i;
+  for (std::size_t i = 0; i < view.path.size(); ++i)
+    ASSERT_EQ(view.verdicts->node(static_cast<int>(i), view.path[i]), Verdict::kValid) << what;
+}
+
+TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
+  Random random(seed("JobView"));
+  const JobCase door("door_job.yaml");
+  int solved = 0, without = 0;
+  const int count = trials(20);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "trial " + std::to_string(trial);
+    const Job job = random_job(door, random);
+    JobView view;
+    const JobResult found = plan_job(door.robot, job, {}, &view);
+    expect_same(found, plan_job(door.robot, job), what);
+    if (HasFatalFailure()) return;
+    if (view.runs.empty()) {
+      ASSERT_TRUE(found.home_barred) << what;
+      continue;
+    }
+    ASSERT_EQ(view.runs.size(), found.runs.size()) << what;
+    std::size_t run = 0;
+    for (const JobPart& part : found.parts)
+      if (part.run) expect_shows(view.runs[run++], part, what);
+    if (HasFatalFailure()) return;
+    solved += run > 0;
+    for (; run < view.runs.size(); ++run) {
+      const auto layers = static_cast<std::size_t>(view.runs[run].lattice.layers());
+      ASSERT_LT(view.runs[run].path.size(), layers) << what;
+      without += !view.runs[run].path.empty();
+    }
+  }
+  std::printf("%d jobs, %d solved, %d runs with a part of a path\n", count, solved, without);
+  EXPECT_GE(solved, at_least(8));
+  EXPECT_GE(without, at_least(2));
 }
 
 TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
