@@ -193,8 +193,9 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     ...'123456',
   ]);
   assert.ok(!(await page.isVisible('#motion-section')));
-  await slide(page, (sections[3][0] + sections[3][1]) / 2);
-  await shoot(page, 'job_door.png', { fullPage: true });
+  await slide(page, (sections[5][0] + sections[5][1]) / 2);
+  await page.evaluate(() => scrollTo(0, 0));
+  await shoot(page, 'job_door.png');
   await close();
   const still = await open(door.html, { viewport: wide, javaScriptEnabled: false });
   assert.match(await still.page.textContent('noscript pre'), /solved: 6 strokes, cost /);
