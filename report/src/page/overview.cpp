@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "page_template.hpp"
+#include "page/page_template.hpp"
 #include "swivel/report/ended_by.hpp"
 
 namespace swivel {

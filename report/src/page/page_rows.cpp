@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "page_parts.hpp"
+#include "page/page_parts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "page_parts.hpp"
-#include "page_template.hpp"
+#include "page/page_parts.hpp"
+#include "page/page_template.hpp"
 #include "swivel/core/motion/time_path.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene_json.hpp"
+#include "page/scene_json.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene_json.hpp"
+#include "page/scene_json.hpp"
 
 #include <algorithm>
 #include <variant>

@@ -4,8 +4,8 @@
 #include <optional>
 #include <tuple>
 
-#include "page_template.hpp"
-#include "scene_json.hpp"
+#include "page/page_template.hpp"
+#include "page/scene_json.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/report/placement_map.hpp"

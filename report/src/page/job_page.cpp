@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "drawing.hpp"
-#include "page_parts.hpp"
-#include "page_template.hpp"
+#include "page/page_parts.hpp"
+#include "page/page_template.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "page_template.hpp"
+#include "page/page_template.hpp"
 
 #include <sstream>
 #include <stdexcept>
