@@ -139,6 +139,42 @@ class Jobs(WithFolder):
             [run["diagnosis"] is not None for run in result["runs"]], [False, True]
         )
 
+    def test_advice_and_certificate(self):
+        job = one_job()
+        for waypoint in job["strokes"][1]["path"]["waypoints"]:
+            waypoint["xyz"][0] = 3
+        proof = self.folder / "proof.json"
+        done, _, result = self.plan(job, "--advise", 5, "--certificate", proof)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("\n  would help: stroke 'right' left out (solved, cost ", done.stdout)
+        self.assertRegex(done.stdout, r"\n  stroke 'right': certificate")
+        without = result["advice"]["job"][0]
+        self.assertEqual((without["change"], without["outcome"]), ("without_strokes", "solved"))
+        self.assertEqual(without["strokes"], ["right"])
+        left = dict(one_job())
+        left["strokes"] = left["strokes"][:1]
+        self.assertEqual(self.plan(left)[2]["cost"], without["cost"])
+        self.assertEqual([one["stroke"] for one in result["advice"]["strokes"]], ["right"])
+        self.assertEqual(json.loads(proof.read_text())["stroke"], "right")
+        file = self.file(job)
+        done = run("check", file, "--certificate", proof)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue(done.stdout.startswith("stroke 'right': passed: no path"), done.stdout)
+        proof.write_text(proof.read_text().replace('"right"', '"left"'))
+        done = run("check", file, "--certificate", proof)
+        self.assertIn(done.returncode, (1, 2), done.stdout)
+        proof.write_text(proof.read_text().replace('"left"', '"middle"'))
+        for arguments, needle in (
+            ((file,), "stroke: 'middle' is none of the job"),
+            ((DATA / "problems/experiment_a.yaml",), "stroke: is of stroke 'middle' of a job"),
+        ):
+            done = run("check", *arguments, "--certificate", proof)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(needle, done.stderr)
+        done = run("plan", file, "--certificate", proof, "--rate", 50)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--certificate: is of the job as its file has it", done.stderr)
+
     def test_page(self):
         file, page = self.file(one_job()), self.folder / "page.html"
         done = run("plan", file, "--report", page)
@@ -156,8 +192,7 @@ class Jobs(WithFolder):
     def test_options_that_jobs_do_not_take(self):
         file = self.file(one_job())
         options = [
-            ("--refine",), ("--chord", 1), ("--advise", 1),
-            ("--certificate", "c.json"),
+            ("--refine",), ("--chord", 1),
             ("--trace", "t.json"), ("--map",), ("--map-svg", "m.svg"), ("--full-map",),
             ("--base", "--x", 0.1)
         ]
@@ -549,7 +584,8 @@ class SpoiltJobs(unittest.TestCase):
     def test_words(self):
         for arguments, needle in (
             ((), "trajectory: is missing"),
-            (("--certificate", "c.json"), "--certificate: is not supported yet for jobs"),
+            ((self.folder / "plain.csv", "--certificate", "c.json"), "allowed is one of the two"),
+            (("--certificate", self.folder / "missing.json"), "missing.json"),
             ((self.folder / "plain.csv", "--base", "--x", 1), "is not supported yet for jobs"),
             ((self.folder / "missing.csv",), "missing.csv"),
             ((JOB,), "is not the header of a job's trajectory"),

@@ -202,11 +202,21 @@ class JobReader : ProblemReader {
                  formatted("at most %.3g m/s", most));
   }
 
+  /// Returns the configuration of `home`. Of an arm of six joints six numbers are enough: the roll
+  /// of the tool means nothing there.
+  [[nodiscard]] Config home_of(const YamlValue& joints) const {
+    if (!(joints.is_sequence() && joints.items().size() == kDof - 1 && model_->chain.roll))
+      return Config::Map(joint_numbers(joints).data());
+    Config home = Config::Zero();
+    for (std::size_t k = 0; k + 1 < kDof; ++k)
+      home[static_cast<Eigen::Index>(k)] = joints.items()[k].number();
+    return home;
+  }
+
   /// Reads the keys of the job that are of no single stroke.
   void read_motion_between() {
     if (const auto home = root_.find_filled("home")) {
-      const YamlValue joints = home->section().require("joints");
-      job_.home = Config::Map(joint_numbers(joints).data());
+      job_.home = home_of(home->section().require("joints"));
     }
     if (const auto order = root_.find("order"))
       job_.order = word(*order, {StrokeOrder::kGiven, StrokeOrder::kBest});

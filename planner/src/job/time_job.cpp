@@ -105,10 +105,9 @@ class JobTimer {
     append(k, timed.motion->rows);
     add_events(run, problem, first);
     for (const std::string& warning : timed.motion->warnings) {
-      const std::string named = "stroke '" + job_.strokes[run.stroke].name + "': " + warning;
-      if (std::find(motion_.warnings.begin(), motion_.warnings.end(), named) ==
-          motion_.warnings.end())
-        motion_.warnings.push_back(named);
+      const auto said_of_job = [&](const std::string& line) { return warning.starts_with(line); };
+      if (std::none_of(motion_.warnings.begin(), motion_.warnings.end(), said_of_job))
+        motion_.warnings.push_back("stroke '" + job_.strokes[run.stroke].name + "': " + warning);
     }
     timed.motion->rows.clear();
     motion_.runs.push_back(std::move(*timed.motion));

@@ -155,6 +155,23 @@ TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
   EXPECT_GE(without, at_least(2));
 }
 
+TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
+  for (const char* const name : {"door_job.yaml", "iiwa14_bench_job.yaml",
+                                 "kr6_weld_pipe_job.yaml", "ur5e_deburr_plate_job.yaml"}) {
+    SCOPED_TRACE(name);
+    const Job job = with_motion_defaults(load(name));
+    const PreparedRobot robot(problem_of_run(job, {0, false}));
+    const JobMotionPlan plan = plan_job_motion(robot, job, {}, {.rate = 50});
+    ASSERT_TRUE(plan.timing && plan.timing->motion);
+    EXPECT_EQ(plan.timing->motion->events.size(), 2 * job.strokes.size());
+    std::vector<StrokeRun> order;
+    for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+    const JobCheckResult check = check_job_motion(robot, job, order, *plan.timing->motion);
+    EXPECT_TRUE(check.passed) << check.failures.front();
+    EXPECT_LE(plan.result.cost, 1.05 * plan.result.bound_any);
+  }
+}
+
 TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
   const JobCase door("door_job.yaml");
   int solved = 0;
