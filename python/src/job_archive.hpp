@@ -65,10 +65,11 @@ void serialize(A& archive, NoTransition& x) {
 }
 template <class A>
 void serialize(A& archive, JobResult& x) {
-  auto& [status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters, transitions, time_ms, checked, joint_names, held,
-         dropped_pairs, reduced_pairs, warnings] = x;
-  archive(status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters, transitions, time_ms, checked, joint_names, held,
-          dropped_pairs, reduced_pairs, warnings);
+  auto& [status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters,
+         transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs, warnings] =
+      x;
+  archive(status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters,
+          transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs, warnings);
 }
 template <class A>
 void serialize(A& archive, ProcessEvent& x) {

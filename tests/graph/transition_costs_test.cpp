@@ -93,7 +93,8 @@ void expect_best_ways(const Chain& chain, const Lattice& metric, Random& random,
     std::vector<double> rest;
     for (std::size_t k = 0; k < costs.begins().size(); ++k)
       rest.push_back(random.coin(0.1) ? kUnreachable
-                                      : grid ? 0.5 * random.below(6) : random.uniform(0, 10));
+                     : grid           ? 0.5 * random.below(6)
+                                      : random.uniform(0, 10));
     costs.set_rest(rest);
     raise_some(costs, random);
     expect_best_of_all_pairs(costs, met);

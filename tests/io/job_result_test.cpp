@@ -270,8 +270,7 @@ TEST(JobResult, Unsolved) {
   EXPECT_FALSE(stroke["runs"][0]["diagnosis"].is_null());
   EXPECT_EQ(stroke["parts"], Json::array());
   const Json way = Json::parse(to_job_json(without_a_job(false), two_strokes()));
-  EXPECT_EQ(way["no_transition"],
-            Json::parse(R"({"from": "left", "to": null, "where": "end",
+  EXPECT_EQ(way["no_transition"], Json::parse(R"({"from": "left", "to": null, "where": "end",
                             "bodies": ["link_5", "post"]})"));
 }
 

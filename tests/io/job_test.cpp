@@ -190,9 +190,8 @@ TEST(JobFile, OneOfPathAndStrokes) {
 TEST(JobFile, ProblemsAreNoJobs) {
   const JobFolder folder;
   const std::string message = input_error([&] { (void)load_problem(folder.write({})); });
-  expect_message(message,
-                 {"problem.yaml:2: strokes: makes this file a job",
-                  "`swivel plan`, `check`, `time`", "a `path`"});
+  expect_message(message, {"problem.yaml:2: strokes: makes this file a job",
+                           "`swivel plan`, `check`, `time`", "a `path`"});
   const Sections keys{{"home", "{joints: [0, 0, 0, 0, 0, 0, 0]}"},
                       {"order", "best"},
                       {"rapid", "0.5"},

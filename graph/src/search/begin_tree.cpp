@@ -11,8 +11,7 @@ BeginTree::BeginTree(std::span<const Config> configurations) : order_(configurat
   if (!order_.empty()) divide(configurations, 0, order_.size());
 }
 
-void BeginTree::divide(std::span<const Config> configurations, std::size_t begin,
-                       std::size_t end) {
+void BeginTree::divide(std::span<const Config> configurations, std::size_t begin, std::size_t end) {
   const std::size_t index = boxes_.size();
   Box box;
   box.begin = begin;

@@ -609,11 +609,11 @@ Schema job_result() {
       "", {key("from", or_null(text()), "stroke; `null`: the home"),
            key("to", or_null(text()), "stroke; `null`: the home"), key("cost", number(), "of it"),
            key("via", integer(), "configurations between its ends; 0: the joints move straight")}));
-  const Schema missing = section(
-      "", {key("from", or_null(text()), "stroke; `null`: the home"),
-           key("to", or_null(text()), "stroke; `null`: the home"),
-           key("where", text(), "`between`, `home`, `end` or `begin`"),
-           key("bodies", or_null(bodies()), "that are in the way, where they are known")});
+  const Schema missing =
+      section("", {key("from", or_null(text()), "stroke; `null`: the home"),
+                   key("to", or_null(text()), "stroke; `null`: the home"),
+                   key("where", text(), "`between`, `home`, `end` or `begin`"),
+                   key("bodies", or_null(bodies()), "that are in the way, where they are known")});
   const std::vector<Schema::Key> parts{
       key("runs", runs_of_job(), "of the strokes, in this order, [below](#run-of-a-stroke)"),
       key("transitions", transitions,
@@ -622,7 +622,8 @@ Schema job_result() {
       key("no_transition", or_null(missing),
           "where every stroke has a path and there is no way between two: `from`, `to`, the two "
           "`bodies` that come nearer to each other than transitions may or `null`, and `where` "
-          "they do: `between` the two, at `home`, wherever the stroke before may `end`, wherever the "
+          "they do: `between` the two, at `home`, wherever the stroke before may `end`, wherever "
+          "the "
           "next one may `begin`"),
       key("advice", or_null(advice_on_job()),
           "with `--advise`, of jobs that cannot be planned; [below](#advice-on-a-job)"),

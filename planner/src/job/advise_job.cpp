@@ -30,9 +30,9 @@ class JobTrials {
         job_(job),
         result_(result),
         options_(options),
-        until_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(
-                                      std::min(options.timeout_s.value_or(1.0), 1e6)))) {
+        until_(Clock::now() +
+               std::chrono::duration_cast<Clock::duration>(
+                   std::chrono::duration<double>(std::min(options.timeout_s.value_or(1.0), 1e6)))) {
     options_.check = false;
     options_.evidence = {};
   }
@@ -139,8 +139,7 @@ class JobTrials {
     const bool free = job_.order == StrokeOrder::kBest && of.reversible;
     const bool alone = result_.runs.size() == 1 ||
                        std::any_of(result_.runs.begin(), result_.runs.end(), [&](const auto& run) {
-                         return run.run.stroke == stroke &&
-                                run.status == PlanStatus::kInfeasible;
+                         return run.run.stroke == stroke && run.status == PlanStatus::kInfeasible;
                        });
     if (free || (alone && of.approach == of.retract)) return;
     Job changed = job_;

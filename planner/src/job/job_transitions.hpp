@@ -37,8 +37,7 @@ class JobTransitions final : public Transitions {
   }
   [[nodiscard]] double least_distance(const Config& from, const Config& lower,
                                       const Config& upper) const override;
-  void find_barred(std::span<const Config> configurations,
-                   std::span<std::uint8_t> barred) override;
+  void find_barred(std::span<const Config> configurations, std::span<std::uint8_t> barred) override;
   void find(std::span<const TransitionQuestion> questions,
             std::span<TransitionAnswer> answers) override;
 

@@ -445,8 +445,7 @@ class OrderSearch {
     for (const RunResult& run : found.runs)
       if (run.status == PlanStatus::kInfeasible) return run.run;
     const auto& none = found.no_transition;
-    if (none && none->where == NoTransition::Where::kEndBefore)
-      return found.runs[none->to - 1].run;
+    if (none && none->where == NoTransition::Where::kEndBefore) return found.runs[none->to - 1].run;
     if (none && none->where == NoTransition::Where::kBegin) return found.runs[none->to].run;
     return std::nullopt;
   }

@@ -156,8 +156,8 @@ TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
 }
 
 TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
-  for (const char* const name : {"door_job.yaml", "iiwa14_bench_job.yaml",
-                                 "kr6_weld_pipe_job.yaml", "ur5e_deburr_plate_job.yaml"}) {
+  for (const char* const name : {"door_job.yaml", "iiwa14_bench_job.yaml", "kr6_weld_pipe_job.yaml",
+                                 "ur5e_deburr_plate_job.yaml"}) {
     SCOPED_TRACE(name);
     const Job job = with_motion_defaults(load(name));
     const PreparedRobot robot(problem_of_run(job, {0, false}));

@@ -75,7 +75,7 @@ struct JobResult {
   /// Transitions and runs in the order in which they are executed: of the answer, or of
   /// the cheapest job known where time was up; empty if there is none.
   std::vector<JobPart> parts;
-  std::vector<RunResult> runs;  ///< in the order in which they are executed
+  std::vector<RunResult> runs;                ///< in the order in which they are executed
   std::optional<NoTransition> no_transition;  ///< where there is no job for want of a transition
   std::string planner;
   int threads = 1;

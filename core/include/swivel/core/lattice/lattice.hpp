@@ -194,8 +194,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] Config delta(const Config& q0, const Config& q1) const;
   /// Returns for each joint a number, rad, that the absolute value of no delta(q, p) is less than,
   /// for all p with lower <= p <= upper.
-  [[nodiscard]] Config least_delta(const Config& q, const Config& lower,
-                                   const Config& upper) const;
+  [[nodiscard]] Config least_delta(const Config& q, const Config& lower, const Config& upper) const;
   /// Returns whether every |delta_j| is within step_bound(layer).
   [[nodiscard]] bool step_allowed(int layer, const Config& delta) const;
   /// Returns the largest |delta_j| between nodes on the step from `layer`, rad, by joint: the least
