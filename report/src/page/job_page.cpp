@@ -130,8 +130,10 @@ class JobPage {
   /// Returns the joints at home, and the two bodies that come too near there.
   [[nodiscard]] Json home() const {
     if (!job_.home) return nullptr;
+    const std::optional<NoTransition>& none = result_.no_transition;
+    const bool barred = none && none->where == NoTransition::Where::kHome && none->bodies;
     return {{"q", std::vector<double>(job_.home->begin(), job_.home->end())},
-            {"pair", result_.home_barred ? Json(*result_.barred_by) : Json(nullptr)}};
+            {"pair", barred ? Json(*none->bodies) : Json(nullptr)}};
   }
 
   /// Returns the job's motion in time. The place of a sample counts the steps between rows of all

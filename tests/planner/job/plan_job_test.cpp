@@ -135,7 +135,8 @@ TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
     expect_same(found, plan_job(door.robot, job), what);
     if (HasFatalFailure()) return;
     if (view.runs.empty()) {
-      ASSERT_TRUE(found.home_barred) << what;
+      ASSERT_TRUE(found.no_transition) << what;
+      ASSERT_EQ(found.no_transition->where, NoTransition::Where::kHome) << what;
       continue;
     }
     ASSERT_EQ(view.runs.size(), found.runs.size()) << what;
