@@ -76,6 +76,7 @@ TEST(AdviseJob, LeavesOutStrokesThatHaveNoPath) {
 
 TEST(AdviseJob, MovesAHomeThatIsBarred) {
   Job job = door_of(1);
+  (*job.home)[0] -= 0.6;  // away from the door, so that the stroke is free
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   SceneObject ball;
   ball.name = "ball";
@@ -85,7 +86,8 @@ TEST(AdviseJob, MovesAHomeThatIsBarred) {
   const Advised advised(job);
   ASSERT_TRUE(advised.result.no_transition);
   EXPECT_EQ(advised.result.no_transition->where, NoTransition::Where::kHome);
-  EXPECT_EQ((*advised.result.no_transition->bodies)[1], "ball");
+  EXPECT_EQ((*advised.result.no_transition->bodies)[1], "ball")
+      << (*advised.result.no_transition->bodies)[0];
   const JobAdvice* home = advised.find(Change::kHome);
   ASSERT_NE(home, nullptr);
   ASSERT_TRUE(home->home);
@@ -98,7 +100,8 @@ TEST(AdviseJob, MovesAHomeThatIsBarred) {
 /// pair, and longer lines help.
 TEST(AdviseJob, LengthensLinesWhereEndsAreTooNear) {
   Job job = door_of(2);
-  job.limits.clearance = 0.03;
+  job.limits.clearance = 0.06;
+  job.limits.self_clearance = 0.005;
   for (Stroke& stroke : job.strokes) stroke.approach = stroke.retract = Vector3d::Zero();
   const Advised advised(job);
   ASSERT_EQ(advised.result.status, PlanStatus::kInfeasible);

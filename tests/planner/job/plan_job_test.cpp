@@ -167,7 +167,8 @@ TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
     EXPECT_EQ(plan.timing->motion->events.size(), 2 * job.strokes.size());
     std::vector<StrokeRun> order;
     for (const RunResult& run : plan.result.runs) order.push_back(run.run);
-    const JobCheckResult check = check_job_motion(robot, job, order, *plan.timing->motion);
+    const JobCheckResult check =
+        check_job_motion(robot, job, order, *plan.timing->motion, {.margins = false});
     EXPECT_TRUE(check.passed) << check.failures.front();
     EXPECT_LE(plan.result.cost, 1.05 * plan.result.bound_any);
   }
