@@ -18,6 +18,19 @@ bool varies(const Variation& vary, int k) {
   return (k < 3 ? vary.xyz[k] : vary.rpy[k - 3]) != 0;
 }
 
+/// Moves the objects of a scene that vary as they stand in an episode.
+void draw_scene(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode,
+                std::vector<SceneObject>& scene) {
+  draw_episode(vary, seed, episode,
+               [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
+                 for (SceneObject& object : scene)
+                   if (object.name == one.object) {
+                     object.pose.translation() += offset;
+                     object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
+                   }
+               });
+}
+
 template <class Value>
 Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
   std::vector<double> values;
@@ -37,14 +50,13 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
 
 Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
   Problem result = problem;
-  draw_episode(problem.vary, seed, episode,
-               [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
-                 for (SceneObject& object : result.scene)
-                   if (object.name == one.object) {
-                     object.pose.translation() += offset;
-                     object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
-                   }
-               });
+  draw_scene(problem.vary, seed, episode, result.scene);
+  return result;
+}
+
+Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode) {
+  Job result = job;
+  draw_scene(job.vary, seed, episode, result.scene);
   return result;
 }
 
@@ -83,8 +95,39 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const Pro
     failed_s = result.diagnosis.reached_s;
     if (result.diagnosis.cause.kind != Cause::Kind::kNone)
       cause = to_string(result.diagnosis.cause.kind);
-    by = subject_of(result.diagnosis.cause, problem);
+    by = subject_of(result.diagnosis.cause, problem.scene);
     reason = words(result.diagnosis.cause);
+  }
+}
+
+EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Job& job)
+    : episode(number),
+      status(result.status),
+      nodes_checked(result.counters.nodes_checked),
+      fcl_calls(result.counters.fcl_calls) {
+  for (const char* const stage : {"lattice", "find", "order"})
+    if (const auto time = result.time_ms.find(stage); time != result.time_ms.end())
+      plan_ms += time->second;
+  if (status == PlanStatus::kSolved) {
+    cost = result.cost;
+    double sum = 0, steps = 0, most = 0;
+    std::size_t run = 0;
+    for (const JobPart& part : result.parts) {
+      if (!part.run) continue;
+      const auto& error = result.runs[run++].measures.tool_path_error_mm;
+      const double weight = static_cast<double>(part.rows.size()) - 1;
+      sum += weight * error.mean;
+      steps += weight;
+      most = std::max(most, error.max);
+    }
+    tool_path_error_mm_mean = sum / steps;
+    tool_path_error_mm_max = most;
+  } else if (status == PlanStatus::kInfeasible) {
+    JobFailure failure = failure_of(result, job);
+    failed_s = failure.reached_s;
+    cause = std::move(failure.cause);
+    by = std::move(failure.by);
+    reason = std::move(failure.reason);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/split_mix.hpp"
 #include "swivel/core/base/rpy.hpp"
@@ -113,6 +114,20 @@ Problem placed_problem(const Problem& problem, const Movable& thing, const Offse
   return result;
 }
 
+Job placed_job(const Job& job, const Movable& thing, const Offset& offset) {
+  Job result = job;
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
+    Problem stroke;
+    static_cast<Robot&>(stroke) = job;
+    static_cast<Task&>(stroke) = job.strokes[k];
+    stroke.scene = job.scene;
+    Problem placed = placed_problem(stroke, thing, offset);
+    result.strokes[k].waypoints = std::move(placed.waypoints);
+    if (k == 0) result.scene = std::move(placed.scene);
+  }
+  return result;
+}
+
 double PlacementAxis::at(int k) const {
   return tidy(from + k * step);
 }
@@ -166,10 +181,10 @@ Offset sampled_offset(const std::vector<PlacementAxis>& axes, std::uint64_t seed
   return result;
 }
 
-std::string subject_of(const Cause& cause, const Problem& problem) {
+std::string subject_of(const Cause& cause, const std::vector<SceneObject>& scene) {
   if (!cause.object.empty()) return cause.object;
   const auto is_object = [&](const std::string& name) {
-    return std::any_of(problem.scene.begin(), problem.scene.end(),
+    return std::any_of(scene.begin(), scene.end(),
                        [&](const auto& object) { return object.name == name; });
   };
   for (const std::string& body : cause.bodies)

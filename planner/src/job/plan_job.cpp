@@ -13,6 +13,7 @@
 #include "job/job_lift.hpp"
 #include "job/job_transitions.hpp"
 #include "job/order_estimate.hpp"
+#include "job/supported_options.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/stopwatch.hpp"
 #include "refine/keeps_branch.hpp"
@@ -22,7 +23,6 @@
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/job_search.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/job_view.hpp"
@@ -374,13 +374,6 @@ class JobPlan {
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
   JobResult result_;
 };
-
-void require_supported(const PlanOptions& options) {
-  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
-    throw InvalidArgument("planner: allowed for jobs are lazy and parallel");
-  if (options.hooks.check || options.hooks.cost)
-    throw InvalidArgument("hooks: allowed for jobs are none");
-}
 
 std::vector<StrokeRun> given_order(const Job& job) {
   std::vector<StrokeRun> order;

@@ -12,11 +12,14 @@
 #include <string>
 #include <utility>
 
+#include "job/supported_options.hpp"
 #include "measure/nearest_approach.hpp"
+#include "study/job_answered.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/parallel/executor.hpp"
+#include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -97,18 +100,25 @@ std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {
 
 }  // namespace
 
+/// What all placements share. Derived classes say how one is planned.
 struct PlacementPlanner::Impl {
-  Problem problem;
-  Movable thing;
   PlanOptions single;
   Executor executor;
-  struct Worker {
-    Planner planner;
-    LeastMargins margins;
-  };
-  std::vector<Worker> workers;
   std::optional<std::chrono::steady_clock::time_point> deadline;
   std::atomic<bool> stopped{false};
+
+  explicit Impl(const PlanOptions& options) : single(options), executor(options.threads) {
+    single.threads = 1;
+    single.evidence = {};
+    single.hooks = {};
+    single.progress = nullptr;
+    constexpr double kFar = 1e9;  // s; what no clock can measure never passes
+    if (single.timeout_s && *single.timeout_s < kFar)
+      deadline = std::chrono::steady_clock::now() +
+                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                     std::chrono::duration<double>(*single.timeout_s));
+  }
+  virtual ~Impl() = default;
 
   [[nodiscard]] PlanOptions options_now() const {
     PlanOptions options = single;
@@ -118,36 +128,13 @@ struct PlacementPlanner::Impl {
           std::chrono::duration<double>(*deadline - std::chrono::steady_clock::now()).count());
     return options;
   }
-  /// None where it was stopped.
-  std::optional<PlacementRow> plan(const PlacementCell& cell, Worker& worker) const {
-    Planner& planner = worker.planner;
+  /// Returns the row of a cell; none where it was stopped.
+  std::optional<PlacementRow> plan(const PlacementCell& cell, int worker) {
     PlacementRow row;
     row.cell = cell.cell;
     row.offset = cell.offset;
     try {
-      planner.set_problem(placed_problem(problem, thing, cell.offset));
-      const PlanOptions options = options_now();
-      const Budget budget = options.budget();
-      const PlanResult result = planner.plan(options);
-      row.status = result.status;
-      if (result.status == PlanStatus::kSolved) {
-        row.cost = result.cost;
-        if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
-        if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
-        if (const auto least = worker.margins.of(planner.view(), result.trajectory, budget)) {
-          row.clearance = least->clearance.distance;
-          row.clearance_margin = least->clearance.margin();
-        }
-        return row;
-      }
-      if (result.status != PlanStatus::kInfeasible ||
-          (!result.diagnosis.complete && budget.spent()))
-        return std::nullopt;
-      const Cause& cause = result.diagnosis.cause;
-      row.failed_s = result.diagnosis.reached_s;
-      if (cause.kind != Cause::Kind::kNone) row.cause = to_string(cause.kind);
-      row.by = subject_of(cause, problem);
-      row.reason = words(cause);
+      if (!fill(row, worker)) return std::nullopt;
     } catch (const Stopped&) {
       return std::nullopt;
     } catch (const InputError&) {
@@ -163,27 +150,130 @@ struct PlacementPlanner::Impl {
     }
     return row;
   }
+  /// Plans a placement, and fills in its row. Returns false if it was stopped.
+  virtual bool fill(PlacementRow& row, int worker) = 0;
+  virtual std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells) = 0;
+};
+
+struct PlacementPlanner::ProblemPlacements : Impl {
+  Problem problem;
+  Movable thing;
+  struct Worker {
+    Planner planner;
+    LeastMargins margins;
+  };
+  std::vector<Worker> workers;
+
+  ProblemPlacements(const std::shared_ptr<const PreparedRobot>& robot, Problem p, Movable t,
+                    const PlanOptions& options)
+      : Impl(options), problem(std::move(p)), thing(std::move(t)) {
+    static_cast<void>(placed_problem(problem, thing, {}));
+    for (int worker = 0; worker < executor.threads(); ++worker)
+      workers.push_back({Planner(robot, problem), LeastMargins(alone_moved(problem, thing))});
+  }
+
+  bool fill(PlacementRow& row, int worker) override {
+    auto& [planner, margins] = workers[static_cast<std::size_t>(worker)];
+    planner.set_problem(placed_problem(problem, thing, row.offset));
+    const PlanOptions options = options_now();
+    const Budget budget = options.budget();
+    const PlanResult result = planner.plan(options);
+    row.status = result.status;
+    if (result.status == PlanStatus::kSolved) {
+      row.cost = result.cost;
+      if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
+      if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
+      if (const auto least = margins.of(planner.view(), result.trajectory, budget)) {
+        row.clearance = least->clearance.distance;
+        row.clearance_margin = least->clearance.margin();
+      }
+      return true;
+    }
+    if (result.status != PlanStatus::kInfeasible || (!result.diagnosis.complete && budget.spent()))
+      return false;
+    const Cause& cause = result.diagnosis.cause;
+    row.failed_s = result.diagnosis.reached_s;
+    if (cause.kind != Cause::Kind::kNone) row.cause = to_string(cause.kind);
+    row.by = subject_of(cause, problem.scene);
+    row.reason = words(cause);
+    return true;
+  }
+
+  std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells) override {
+    std::vector<PlacedPlan> plans;
+    Planner& planner = workers.front().planner;
+    for (const PlacementCell& cell : cells) {
+      planner.set_problem(placed_problem(problem, thing, cell.offset));
+      PlanResult result = planner.plan(options_now());
+      if (result.status == PlanStatus::kSolved)
+        plans.push_back({cell, planner.problem().scene, std::move(result.trajectory)});
+    }
+    return plans;
+  }
+};
+
+struct PlacementPlanner::JobPlacements : Impl {
+  std::shared_ptr<const PreparedRobot> robot;
+  Job job;
+  Movable thing;
+
+  JobPlacements(std::shared_ptr<const PreparedRobot> r, Job j, Movable t,
+                const PlanOptions& options)
+      : Impl(options), robot(std::move(r)), job(std::move(j)), thing(std::move(t)) {
+    single.evidence.postures = true;  // clearances
+    validate(job);
+    require_supported(single);
+    robot->require_prepared_for(problem_of_run(job, {0, false}));
+    static_cast<void>(placed_job(job, thing, {}));
+  }
+
+  bool fill(PlacementRow& row, int /*worker*/) override {
+    const PlanOptions options = options_now();
+    const Budget budget = options.budget();
+    const JobResult result = plan_job(*robot, placed_job(job, thing, row.offset), options);
+    if (!answered(result, budget)) return false;
+    row.status = result.status;
+    if (result.status == PlanStatus::kSolved) {
+      row.cost = result.cost;
+      fill_measures(result, row);
+      return true;
+    }
+    JobFailure failure = failure_of(result, job);
+    row.failed_s = failure.reached_s;
+    row.cause = std::move(failure.cause);
+    row.by = std::move(failure.by);
+    row.reason = std::move(failure.reason);
+    return true;
+  }
+  /// Fills in the least of what the strokes keep, and the highest speed that all of them allow.
+  static void fill_measures(const JobResult& result, PlacementRow& row) {
+    const auto lower = [](std::optional<double>& least, double value) {
+      least = std::min(least.value_or(value), value);
+    };
+    for (const RunResult& run : result.runs) {
+      const Measures& m = run.measures;
+      if (m.nearest_limit) lower(row.joint_margin, m.nearest_limit->margin);
+      if (m.top_tool_speed) lower(row.tool_speed, m.top_tool_speed->speed);
+      if (!m.min_margin || (row.clearance_margin && *row.clearance_margin <= m.min_margin->margin))
+        continue;
+      row.clearance = m.min_margin->clearance;
+      row.clearance_margin = m.min_margin->margin;
+    }
+  }
+
+  std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& /*cells*/) override {
+    return {};
+  }
 };
 
 PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem,
                                    Movable thing, PlanOptions options)
-    : impl_(new Impl{
-          std::move(problem), std::move(thing), options, Executor(options.threads), {}, {}}) {
-  static_cast<void>(placed_problem(impl_->problem, impl_->thing, {}));
-  for (int worker = 0; worker < impl_->executor.threads(); ++worker)
-    impl_->workers.push_back(
-        {Planner(robot, impl_->problem), LeastMargins(alone_moved(impl_->problem, impl_->thing))});
-  PlanOptions& single = impl_->single;
-  single.threads = 1;
-  single.evidence = {};
-  single.hooks = {};
-  single.progress = nullptr;
-  constexpr double kFar = 1e9;  // s; what no clock can measure never passes
-  if (single.timeout_s && *single.timeout_s < kFar)
-    impl_->deadline = std::chrono::steady_clock::now() +
-                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                          std::chrono::duration<double>(*single.timeout_s));
-}
+    : impl_(std::make_unique<ProblemPlacements>(robot, std::move(problem), std::move(thing),
+                                                options)) {}
+PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Job job,
+                                   Movable thing, PlanOptions options)
+    : impl_(std::make_unique<JobPlacements>(std::move(robot), std::move(job), std::move(thing),
+                                            options)) {}
 PlacementPlanner::~PlacementPlanner() = default;
 
 bool PlacementPlanner::stopped() const {
@@ -191,15 +281,7 @@ bool PlacementPlanner::stopped() const {
 }
 
 std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<PlacementCell>& cells) {
-  std::vector<PlacedPlan> plans;
-  Planner& planner = impl_->workers.front().planner;
-  for (const PlacementCell& cell : cells) {
-    planner.set_problem(placed_problem(impl_->problem, impl_->thing, cell.offset));
-    PlanResult result = planner.plan(impl_->options_now());
-    if (result.status == PlanStatus::kSolved)
-      plans.push_back({cell, planner.problem().scene, std::move(result.trajectory)});
-  }
-  return plans;
+  return impl_->trajectories(cells);
 }
 
 std::vector<PlacementRow> PlacementPlanner::plan(
@@ -216,7 +298,7 @@ std::vector<PlacementRow> PlacementPlanner::plan(
     }
     const std::size_t k = next++;
     try {
-      rows[k] = impl_->plan(cells[k], impl_->workers[static_cast<std::size_t>(worker)]);
+      rows[k] = impl_->plan(cells[k], worker);
       if (!rows[k]) impl_->stopped = true;
       if (!rows[k] || !done) return;
       const std::lock_guard lock(one_at_a_time);

@@ -104,7 +104,7 @@ PlacementRow row_of(const PlacementCell& cell, const PlanResult& result, const P
   } else {
     row.failed_s = result.diagnosis.reached_s;
     row.cause = to_string(result.diagnosis.cause.kind);
-    row.by = subject_of(result.diagnosis.cause, placed);
+    row.by = subject_of(result.diagnosis.cause, placed.scene);
     row.reason = words(result.diagnosis.cause);
   }
   return row;

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
@@ -27,6 +29,8 @@ struct Shard {
 /// `vary`, x y z roll pitch yaw: p' = p + d, R' = Rz Ry Rx R, about the object's origin.
 [[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed,
                                       std::uint64_t episode);
+/// Returns the job of an episode under a seed: its objects are moved as those of a problem.
+[[nodiscard]] Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode);
 
 /// Returns the names of the coordinates in which episodes differ, such as "door.x", in the order of
 /// `vary` and x y z roll pitch yaw.
@@ -58,6 +62,10 @@ struct EpisodeRow {
   /// Takes an episode's row from its result, for which Evidence::tool_path_error must have been
   /// asked. `problem` may be that of any episode.
   EpisodeRow(std::uint64_t episode, const PlanResult& result, const Problem& problem);
+  /// Takes an episode's row from the result of its job, for which Evidence::tool_path_error must
+  /// have been asked. Its plan_ms is the time that lattices, search and order took; its mean error
+  /// is that of the strokes, weighted by their steps. `job` may be that of any episode.
+  EpisodeRow(std::uint64_t episode, const JobResult& result, const Job& job);
   /// Makes the row of an episode that ended with an internal error.
   EpisodeRow(std::uint64_t episode, std::string error_message);
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
@@ -34,6 +35,10 @@ struct Movable {
 /// file can state them exactly. Throws InvalidArgument for an unknown object.
 [[nodiscard]] Problem placed_problem(const Problem& problem, const Movable& thing,
                                      const Offset& offset);
+/// Returns the job with one thing moved as by placed_problem(), for Movable::Kind::kPath the paths
+/// of all strokes. Its home stays as it is, seven joints. Throws InvalidArgument for an unknown
+/// object.
+[[nodiscard]] Job placed_job(const Job& job, const Movable& thing, const Offset& offset);
 
 /// Returns roll, pitch and yaw of a rotation as multiples of 1e-12 rad. For an object that
 /// placed_problem() has turned, a problem file with these angles gives its rotation bit for bit.
@@ -103,7 +108,7 @@ struct PlacementRow {
 
 /// Returns what a cause is about: the scene object, else the two bodies, else the joint, else the
 /// name of the check, else "".
-[[nodiscard]] std::string subject_of(const Cause& cause, const Problem& problem);
+[[nodiscard]] std::string subject_of(const Cause& cause, const std::vector<SceneObject>& scene);
 
 /// A measure by which placements are compared.
 enum class PlacementCriterion { kClearance, kCost, kMargin, kSpeed };

@@ -19,6 +19,8 @@ struct CampaignOptions {
   /// Called with every answer before its row is delivered, from the planning threads, several at a
   /// time and in any order.
   std::function<void(std::uint64_t episode, const PlanResult& result)> planned;
+  /// Called alike with the answers of a campaign of jobs.
+  std::function<void(std::uint64_t episode, const JobResult& result)> job_planned;
 };
 
 /// Plans the episodes of a shard and calls row_done with their rows in episode order, one call at a
@@ -29,6 +31,10 @@ struct CampaignOptions {
 /// problem without `vary` if there is more than one episode.
 void run_campaign(const PreparedRobot& robot, const Problem& problem,
                   const CampaignOptions& options,
+                  const std::function<void(const EpisodeRow&)>& row_done);
+/// Plans the episodes of a shard of a job's campaign, each as plan_job() does with one thread.
+/// Throws InvalidArgument and InputError as plan_job() does.
+void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 
 }  // namespace swivel

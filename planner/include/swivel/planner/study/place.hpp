@@ -35,6 +35,10 @@ class PlacementPlanner {
   /// an unknown object.
   PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing,
                    PlanOptions options);
+  /// Prepares to plan placements of `thing` in `job`, each in full as plan_job() does with one
+  /// thread. Clearances, margins and speeds of rows are those of the strokes.
+  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Job job, Movable thing,
+                   PlanOptions options);
   ~PlacementPlanner();
 
   /// Plans the cells and returns their rows in the order of `cells`, without those that were not
@@ -44,13 +48,15 @@ class PlacementPlanner {
   std::vector<PlacementRow> plan(const std::vector<PlacementCell>& cells,
                                  const std::function<void(const PlacementRow&)>& done = {});
   /// Plans the cells again and returns their trajectories, which rows do not hold, in the order of
-  /// `cells`, without those that have no path or were not answered in time.
+  /// `cells`, without those that have no path or were not answered in time. Returns none for a job.
   [[nodiscard]] std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells);
   /// Returns true if the time ran out or work was cancelled; rows may then be missing.
   [[nodiscard]] bool stopped() const;
 
  private:
   struct Impl;
+  struct ProblemPlacements;
+  struct JobPlacements;
   std::unique_ptr<Impl> impl_;
 };
 
