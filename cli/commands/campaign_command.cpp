@@ -8,9 +8,11 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "options/commands.hpp"
+#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
 #include "output/campaign_output.hpp"
@@ -45,9 +47,11 @@ class Trajectories {
   [[nodiscard]] static bool is_name(const std::string& name) {
     return name.starts_with("episode_") && name.ends_with(".csv");
   }
-  /// Writes the trajectory of an episode, or removes that of an older campaign if there is no path.
-  /// Several threads may call it at a time. Throws InputError if the folder cannot be written.
-  void write(std::uint64_t episode, const PlanResult& result) {
+  /// Writes the trajectory of an episode, which to_csv(result) returns as text, or removes that of
+  /// an older campaign if there is no path. Several threads may call it at a time. Throws
+  /// InputError if the folder cannot be written.
+  template <class Result, class ToCsv>
+  void write(std::uint64_t episode, const Result& result, const ToCsv& to_csv) {
     std::error_code error;
     if (result.status != PlanStatus::kSolved) {
       removed_ += fs::remove(file(episode), error);
@@ -57,7 +61,7 @@ class Trajectories {
     if (error)
       throw InputError("--trajectories: " + folder_.string() + ": " + error.message() +
                        ": allowed is a folder that can be written");
-    io::write_trajectory(file(episode), result);
+    io::write_file(file(episode), to_csv(result));
   }
   /// Returns how many files of an older campaign were removed.
   [[nodiscard]] std::uint64_t removed() const { return removed_; }
@@ -122,19 +126,33 @@ CampaignOptions campaign_options(const CampaignArguments& arguments) {
   return options;
 }
 
-/// Loads the problem file and sets `inputs` to the files that were read: with hashes of their
-/// contents if there is a results file, which says what it was computed from. Throws InputError.
-Problem load_problem(const CampaignArguments& arguments,
-                     std::vector<io::InputFiles::File>& inputs) {
-  Problem problem = [&] {
+/// What the episodes are drawn of.
+struct Drawn {
+  std::optional<Job> job;  ///< unset for a problem of one path
+  Problem problem;         ///< of a job: that of its first stroke
+  std::vector<io::InputFiles::File> inputs;
+};
+
+/// Loads the problem file, and notes the files that were read: with hashes of their contents if
+/// there is a results file, which says what it was computed from. Throws InputError.
+Drawn load_drawn(const CampaignArguments& arguments) {
+  Drawn drawn;
+  std::variant<Problem, Job> loaded = [&] {
     const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
                                                      : io::InputFiles::Contents::kHash);
-    Problem loaded = io::load_problem(arguments.problem);
-    inputs = noted.files();
-    return loaded;
+    std::variant<Problem, Job> read = io::load_problem_or_job(arguments.problem);
+    drawn.inputs = noted.files();
+    return read;
   }();
-  arguments.search.apply(problem);
-  return problem;
+  if (Job* const job = std::get_if<Job>(&loaded)) {
+    require_planner_of_jobs(arguments.search);
+    drawn.job = chosen_job(std::move(*job), arguments.search, {});
+    drawn.problem = problem_of_run(*drawn.job, {0, false});
+  } else {
+    drawn.problem = std::get<Problem>(std::move(loaded));
+    arguments.search.apply(drawn.problem);
+  }
+  return drawn;
 }
 
 /// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
@@ -182,9 +200,8 @@ std::vector<EpisodeRow> resume(io::CampaignFile& file, const std::vector<Episode
 
 /// Plans the episodes that `rows` lacks, and appends them to `rows` and to the results file. Shows
 /// on standard error how many are done.
-void plan_episodes(const PreparedRobot& robot, const Problem& problem,
-                   const CampaignOptions& options, std::vector<EpisodeRow>& rows,
-                   std::optional<io::CampaignFile>& file) {
+void plan_episodes(const PreparedRobot& robot, const Drawn& drawn, const CampaignOptions& options,
+                   std::vector<EpisodeRow>& rows, std::optional<io::CampaignFile>& file) {
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
   const std::uint64_t size = options.shard.size(options.episodes);
   auto solved = std::count_if(rows.begin(), rows.end(), [](const EpisodeRow& row) {
@@ -195,12 +212,16 @@ void plan_episodes(const PreparedRobot& robot, const Problem& problem,
                   std::to_string(solved) + " solved");
   };
   show();
-  run_campaign(robot, problem, options, [&](const EpisodeRow& row) {
+  const auto row_done = [&](const EpisodeRow& row) {
     if (file) file->append(row);
     rows.push_back(row);
     solved += row.status == PlanStatus::kSolved;
     show();
-  });
+  };
+  if (drawn.job)
+    run_campaign(robot, *drawn.job, options, row_done);
+  else
+    run_campaign(robot, drawn.problem, options, row_done);
 }
 
 /// Writes results, summary and page, prints the summary, and finishes the results file if all rows
@@ -220,12 +241,12 @@ int run(const CampaignArguments& arguments) {
   CampaignOptions options = campaign_options(arguments);
   if (!arguments.report.empty()) require_pages();
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
-  std::vector<io::InputFiles::File> inputs;
-  const Problem problem = load_problem(arguments, inputs);
+  const Drawn drawn = load_drawn(arguments);
+  const Problem& problem = drawn.problem;
   const PreparedRobot robot(problem);
   warn_of_held(robot.arm().held);
 
-  std::vector<io::InputFiles::File> read = inputs;
+  std::vector<io::InputFiles::File> read = drawn.inputs;
   std::vector<EpisodeRow> rows = [&] {
     const io::InputFiles noted;
     std::vector<EpisodeRow> found =
@@ -239,10 +260,14 @@ int run(const CampaignArguments& arguments) {
   if (!arguments.trajectories.empty()) {
     trajectories.emplace(arguments.trajectories);
     options.planned = [&](std::uint64_t episode, const PlanResult& result) {
-      trajectories->write(episode, result);
+      trajectories->write(episode, result, [](const PlanResult& one) { return io::to_csv(one); });
+    };
+    options.job_planned = [&](std::uint64_t episode, const JobResult& result) {
+      trajectories->write(episode, result,
+                          [&](const JobResult& one) { return io::to_job_csv(one, *drawn.job); });
     };
   }
-  const io::ShardRecord record = record_of(arguments, options, problem, robot, inputs);
+  const io::ShardRecord record = record_of(arguments, options, problem, robot, drawn.inputs);
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
     file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
@@ -251,7 +276,7 @@ int run(const CampaignArguments& arguments) {
   options.skip = rows.size();
 
   catch_interrupts();
-  plan_episodes(robot, problem, options, rows, file);
+  plan_episodes(robot, drawn, options, rows, file);
   const bool complete = rows.size() == options.shard.size(options.episodes);
   write_results(arguments, rows, complete, record, file, outputs);
   if (trajectories && trajectories->removed() > 0)
@@ -265,10 +290,11 @@ int run(const CampaignArguments& arguments) {
 
 void add_campaign(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "campaign", "Plan many episodes: the problem with the objects of 'vary' at random poses");
+      "campaign",
+      "Plan many episodes: the problem or job with the objects of 'vary' at random poses");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<CampaignArguments>();
-  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("problem", arguments->problem, "problem file, or job")->required();
   command->add_option("--episodes", arguments->episodes, "how many, all shards together")
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "what the poses are drawn from")

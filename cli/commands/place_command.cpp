@@ -10,9 +10,11 @@
 #include <optional>
 #include <sstream>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "options/commands.hpp"
+#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
 #include "output/placement_output.hpp"
@@ -105,34 +107,57 @@ std::string problem_text(const PlaceArguments& arguments) {
   return text.str();
 }
 
-/// The problem whose thing is placed.
+/// The problem or job whose thing is placed.
 struct PlacedProblem {
   std::string text;  ///< of the problem file; empty without --write
   std::vector<io::InputFiles::File> inputs;
-  Problem problem;
+  std::optional<Job> job;  ///< unset for a problem of one path
+  Problem problem;         ///< of a job: that of its first stroke
   Movable thing;
 };
 
 /// Loads the problem file and notes which files were read: with hashes of their contents for a
 /// shard, whose results say what they were computed from. Throws InputError.
 PlacedProblem load_problem(const PlaceArguments& arguments) {
-  std::string text;
-  if (!arguments.write.empty()) text = problem_text(arguments);
-  std::vector<io::InputFiles::File> inputs;
-  Problem problem = [&] {
+  PlacedProblem placed;
+  if (!arguments.write.empty()) placed.text = problem_text(arguments);
+  std::variant<Problem, Job> loaded = [&] {
     const io::InputFiles noted(arguments.shard.empty() ? io::InputFiles::Contents::kIgnore
                                                        : io::InputFiles::Contents::kHash);
-    Problem loaded = io::load_problem(arguments.problem);
-    inputs = noted.files();
-    return loaded;
+    std::variant<Problem, Job> read = io::load_problem_or_job(arguments.problem);
+    placed.inputs = noted.files();
+    return read;
   }();
-  arguments.search.apply(problem);
-  Movable thing = arguments.request.placement.thing(problem);
-  return {std::move(text), std::move(inputs), std::move(problem), std::move(thing)};
+  std::string source;
+  if (Job* const job = std::get_if<Job>(&loaded)) {
+    require_planner_of_jobs(arguments.search);
+    source = job->source;
+    placed.job = chosen_job(std::move(*job), arguments.search, {});
+    placed.problem = problem_of_run(*placed.job, {0, false});
+  } else {
+    placed.problem = std::get<Problem>(std::move(loaded));
+    source = placed.problem.source;
+    arguments.search.apply(placed.problem);
+  }
+  placed.thing = arguments.request.placement.thing(placed.problem.scene, source);
+  return placed;
+}
+
+/// Returns the text of a job's file with the thing moved by `offset`. Throws InputError where that
+/// moves the path of a stroke in its frame, which files cannot say.
+std::string text_with_job(const std::string& text, const Job& job, const Movable& thing,
+                          const Offset& offset) {
+  const Job moved = placed_job(job, thing, offset);
+  std::size_t stroke = 0;
+  for (std::size_t k = job.strokes.size(); k-- > 0;)
+    if (moved.strokes[k].waypoints != job.strokes[k].waypoints) stroke = k;
+  return io::with_poses(text, problem_of_run(job, {stroke, false}),
+                        problem_of_run(moved, {stroke, false}));
 }
 
 /// Returns the problem file with the thing moved by `offset`.
 std::string text_with(const PlacedProblem& placed, const Offset& offset) {
+  if (placed.job) return text_with_job(placed.text, *placed.job, placed.thing, offset);
   return io::with_poses(placed.text, placed.problem,
                         placed_problem(placed.problem, placed.thing, offset));
 }
@@ -258,7 +283,9 @@ int run(const PlaceArguments& arguments) {
   const auto prepared = std::make_shared<const PreparedRobot>(placed.problem);
   record.held = prepared->arm().held;
   warn_of_held(record.held);
-  PlacementPlanner planner(prepared, placed.problem, placed.thing, options);
+  PlacementPlanner planner =
+      placed.job ? PlacementPlanner(prepared, *placed.job, placed.thing, options)
+                 : PlacementPlanner(prepared, placed.problem, placed.thing, options);
   const std::vector<PlacementRow> rows = plan_placements(planner, asked, arguments.refine_grid);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -269,7 +296,7 @@ int run(const PlaceArguments& arguments) {
   std::snprintf(rate, sizeof rate, "; %.1f s, %.0f a second", seconds,
                 static_cast<double>(rows.size()) / seconds);
   PlacementScene scene;
-  if (outputs.wants("--report"))
+  if (outputs.wants("--report") && !placed.job)
     scene = {prepared.get(), &placed.problem, placed.thing,
              planner.trajectories(cells_on_page(rows, asked.criteria))};
   show_placements(outputs, rows, arguments.request, record, arguments.top, rate, scene);
@@ -286,7 +313,7 @@ void add_place(CLI::App& app, int& exit_code) {
       "place", "Plan many placements of the part, the path or the robot: where should it stand?");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<PlaceArguments>();
-  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("problem", arguments->problem, "problem file, or job")->required();
   arguments->request.placement.add_to(*command,
                                       ": FROM:TO:STEP, or a number; with --sample FROM:TO");
   command->add_option("--sample", arguments->request.sample,

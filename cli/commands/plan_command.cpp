@@ -333,10 +333,7 @@ void require_options_of_jobs(const PlanArguments& arguments) {
                                              {arguments.map, "--map"},
                                              {!arguments.map_svg.empty(), "--map-svg"},
                                              {arguments.full_map, "--full-map"}});
-  const PlannerKind planner = arguments.search.plan_options().planner;
-  if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
-    throw InputError("--planner: " + arguments.search.planner +
-                     " is not supported for jobs: allowed are lazy, parallel");
+  require_planner_of_jobs(arguments.search);
 }
 
 /// Plans a job and writes and prints the answer, as plan_problem() does for one path.
@@ -455,9 +452,18 @@ std::string EpisodeChoice::words() const {
              : "";
 }
 
-Problem EpisodeChoice::apply(const Problem& problem) const {
+void EpisodeChoice::require_both_or_neither() const {
   if (seed.has_value() != episode.has_value())
     throw InputError("--seed, --episode: one without the other: allowed are both or neither");
+}
+
+Job EpisodeChoice::apply(const Job& job) const {
+  require_both_or_neither();
+  return placement.apply(seed ? episode_job(job, *seed, *episode) : job);
+}
+
+Problem EpisodeChoice::apply(const Problem& problem) const {
+  require_both_or_neither();
   return placement.apply(seed ? episode_problem(problem, *seed, *episode) : problem);
 }
 

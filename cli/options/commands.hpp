@@ -11,6 +11,7 @@
 #include "options/placement_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/held_joint.hpp"
+#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/io/files/files.hpp"
 
@@ -36,9 +37,16 @@ struct EpisodeChoice {
   std::optional<std::uint64_t> seed, episode;
   PlacementOptions placement;
   void add_to(CLI::App& command);
+  /// Returns the problem or job with its objects as the episode and the placement say. Throws
+  /// InputError.
   [[nodiscard]] Problem apply(const Problem& problem) const;
+  [[nodiscard]] Job apply(const Job& job) const;
   /// Returns words such as "episode 33 of seed 1"; "" if no episode is chosen.
   [[nodiscard]] std::string words() const;
+
+ private:
+  /// Throws InputError where the seed or the episode is given without the other.
+  void require_both_or_neither() const;
 };
 
 /// Flushes standard output. Throws InputError if it does not take the text, because it is full or

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options/job_options.hpp"
 
-#include <algorithm>
-
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::cli {
@@ -15,13 +13,15 @@ void refuse_options_of_jobs(const std::string& job_file,
                        " is one: allowed are problems with one path");
 }
 
+void require_planner_of_jobs(const SearchOptions& search) {
+  const PlannerKind planner = search.plan_options().planner;
+  if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
+    throw InputError("--planner: " + search.planner +
+                     " is not supported for jobs: allowed are lazy, parallel");
+}
+
 Job chosen_job(Job job, const LatticeOptions& lattice, const EpisodeChoice& episode) {
-  const PlacementOptions& placement = episode.placement;
-  const bool placed = !placement.object.empty() || placement.path || placement.base ||
-                      std::any_of(placement.coordinates.begin(), placement.coordinates.end(),
-                                  [](const std::string& value) { return !value.empty(); });
-  refuse_options_of_jobs(job.source, {{placed, "--object, --path, --base"}});
-  job.scene = episode.apply(problem_of_run(job, {})).scene;
+  job = episode.apply(job);
   for (Stroke& stroke : job.strokes) lattice.apply(stroke);
   return job;
 }

@@ -15,8 +15,11 @@ namespace swivel::cli {
 void refuse_options_of_jobs(const std::string& job_file,
                             const std::vector<std::pair<bool, const char*>>& options);
 
-/// Returns the job with the lattice and the episode that the command line chooses. Throws
-/// InputError, also for a placement, which jobs do not take.
+/// Throws InputError for a planner that jobs do not have.
+void require_planner_of_jobs(const SearchOptions& search);
+
+/// Returns the job with the lattice, the episode and the placement that the command line chooses.
+/// Throws InputError.
 [[nodiscard]] Job chosen_job(Job job, const LatticeOptions& lattice, const EpisodeChoice& episode);
 
 }  // namespace swivel::cli

@@ -77,7 +77,8 @@ void PlacementOptions::add_to(CLI::App& command, const std::string& values) {
         ->group(group);
 }
 
-Movable PlacementOptions::thing(const Problem& problem) const {
+Movable PlacementOptions::thing(const std::vector<SceneObject>& scene,
+                                const std::string& source) const {
   if (static_cast<int>(!object.empty()) + static_cast<int>(path) + static_cast<int>(base) != 1)
     throw InputError("--object, --path, --base: what is to be moved is " +
                      std::string(object.empty() && !path && !base ? "not said" : "said twice") +
@@ -85,11 +86,11 @@ Movable PlacementOptions::thing(const Problem& problem) const {
   if (path) return {Movable::Kind::kPath, ""};
   if (base) return {Movable::Kind::kBase, ""};
   std::vector<std::string> names;
-  for (const SceneObject& known : problem.scene) names.push_back(known.name);
+  for (const SceneObject& known : scene) names.push_back(known.name);
   if (std::find(names.begin(), names.end(), object) == names.end())
     throw InputError("--object: unknown object '" + object + "'" +
                      (names.empty() ? "" : ", nearest is '" + nearest_name(object, names) + "'") +
-                     ": allowed are objects of the scene of " + problem.source);
+                     ": allowed are objects of the scene of " + source);
   return {Movable::Kind::kObject, object};
 }
 
@@ -100,18 +101,31 @@ std::vector<PlacementAxis> PlacementOptions::axes() const {
   return axes;
 }
 
+bool PlacementOptions::any() const {
+  return !axes().empty() || !object.empty() || path || base;
+}
+
 Problem PlacementOptions::apply(const Problem& problem) const {
-  const std::vector<PlacementAxis> given = axes();
-  if (given.empty() && object.empty() && !path && !base) return problem;
-  const Movable what = thing(problem);
+  if (!any()) return problem;
+  const Movable what = thing(problem.scene, problem.source);
+  return placed_problem(problem, what, one_offset());
+}
+
+Job PlacementOptions::apply(const Job& job) const {
+  if (!any()) return job;
+  const Movable what = thing(job.scene, job.source);
+  return placed_job(job, what, one_offset());
+}
+
+Offset PlacementOptions::one_offset() const {
   Offset offset{};
-  for (const PlacementAxis& axis : given) {
+  for (const PlacementAxis& axis : axes()) {
     const auto k = static_cast<std::size_t>(axis.coordinate);
     if (axis.count != 1 || axis.step != 0)
       refuse(k, coordinates[k], "", "one number; swivel place takes FROM:TO:STEP");
     offset[k] = axis.from;
   }
-  return placed_problem(problem, what, offset);
+  return offset;
 }
 
 std::string PlacementOptions::words(const Offset& offset) const {

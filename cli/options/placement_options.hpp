@@ -19,16 +19,24 @@ struct PlacementOptions {
   /// Adds the options to a command. `values` completes "--x: ..." in the help.
   void add_to(CLI::App& command, const std::string& values);
   /// Returns what is to be moved. Throws InputError unless exactly one thing is named and the
-  /// problem has it.
-  [[nodiscard]] Movable thing(const Problem& problem) const;
+  /// scene has it. `source`: the problem file, for messages.
+  [[nodiscard]] Movable thing(const std::vector<SceneObject>& scene,
+                              const std::string& source) const;
   /// Lists the coordinates that are given, in the order of kCoordinates: FROM:TO:STEP, FROM:TO
   /// (count 0) or a number (count 1). Throws InputError.
   [[nodiscard]] std::vector<PlacementAxis> axes() const;
-  /// Returns the problem with one thing moved by one number for each given coordinate; the problem
-  /// itself if nothing is named. Throws InputError.
+  /// Returns the problem or job with one thing moved by one number for each given coordinate; the
+  /// problem or job itself if nothing is named. Throws InputError.
   [[nodiscard]] Problem apply(const Problem& problem) const;
+  [[nodiscard]] Job apply(const Job& job) const;
   /// Returns the words of a command line that ask for one placement, with a space before each.
   [[nodiscard]] std::string words(const Offset& offset) const;
+
+ private:
+  /// Returns true if a thing or a coordinate is named.
+  [[nodiscard]] bool any() const;
+  /// Returns the offset that has one number for each given coordinate. Throws InputError.
+  [[nodiscard]] Offset one_offset() const;
 };
 
 }  // namespace swivel::cli

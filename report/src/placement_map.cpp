@@ -124,7 +124,7 @@ namespace {
 
 /// Returns true if the row's path was ended by bodies that came too near or touched.
 bool ended_by_bodies(const PlacementRow& row) {
-  return row.cause == "pair" || row.cause == "contact";
+  return row.cause == "pair" || row.cause == "contact" || row.cause == "transition";
 }
 
 /// Returns true if some place of the map was not planned.

@@ -23,7 +23,8 @@ export function enders(rows) {
   const ordered = [...found.values()].sort((a, b) => b.count - a.count),
     used = [0, 0, 0];
   for (const ender of ordered) {
-    const group = /^(pair|contact)$/.test(ender.cause) ? 0 : ender.cause === 'limit' ? 1 : 2,
+    const bodies = /^(pair|contact|transition)$/.test(ender.cause),
+      group = bodies ? 0 : ender.cause === 'limit' ? 1 : 2,
       palette = kPalettes[group];
     ender.colour = palette[used[group]++ % palette.length];
   }

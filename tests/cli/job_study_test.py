@@ -59,7 +59,8 @@ class Studies(WithFolder):
 class JobCampaigns(Studies):
     def campaign(self, name, *options, code=0):
         out = self.folder / name
-        done = run("campaign", JOB, *COARSE, "--episodes", 6, "--out", out, *options)
+        # Of these episodes three are solved.
+        done = run("campaign", JOB, *COARSE, "--episodes", 6, "--seed", 2, "--out", out, *options)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done, out
 
@@ -75,7 +76,7 @@ class JobCampaigns(Studies):
             without_time(rows), without_time(rows_of(self.campaign("many.csv", "--threads", 3)[1]))
         )
         for row in rows:
-            episode = ("--seed", 1, "--episode", row["episode"])
+            episode = ("--seed", 2, "--episode", row["episode"])
             self.expect_answer(row, self.planned(JOB, *COARSE, *episode))
             path = paths / f"episode_{row['episode']}.csv"
             self.assertEqual(path.exists(), row["status"] == "solved")
@@ -89,9 +90,7 @@ class JobCampaigns(Studies):
 
     def test_shards_and_pages(self):
         whole = rows_of(self.campaign("whole.csv")[1])
-        shards = [
-            self.campaign(f"{k}.csv", "--shard", f"{k}/2", "--seed", 1)[1] for k in range(2)
-        ]
+        shards = [self.campaign(f"{k}.csv", "--shard", f"{k}/2")[1] for k in range(2)]
         merged, page = self.folder / "merged.csv", self.folder / "page.html"
         done = run("merge", merged, *shards)
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -193,8 +193,7 @@ class Jobs(WithFolder):
         file = self.file(one_job())
         options = [
             ("--refine",), ("--chord", 1),
-            ("--trace", "t.json"), ("--map",), ("--map-svg", "m.svg"), ("--full-map",),
-            ("--base", "--x", 0.1)
+            ("--trace", "t.json"), ("--map",), ("--map-svg", "m.svg"), ("--full-map",)
         ]
         for option in options:
             with self.subTest(option[0]):
@@ -586,7 +585,6 @@ class SpoiltJobs(unittest.TestCase):
             ((), "trajectory: is missing"),
             ((self.folder / "plain.csv", "--certificate", "c.json"), "allowed is one of the two"),
             (("--certificate", self.folder / "missing.json"), "missing.json"),
-            ((self.folder / "plain.csv", "--base", "--x", 1), "is not supported yet for jobs"),
             ((self.folder / "missing.csv",), "missing.csv"),
             ((JOB,), "is not the header of a job's trajectory"),
         ):
@@ -602,8 +600,6 @@ class Refused(WithFolder):
         rows = self.folder / "rows.csv"
         rows.write_text("")
         commands = [
-            ("campaign", JOB, "--episodes", 1, "--out", self.folder / "c.csv"),
-            ("place", JOB, "--base", "--x", "0:1:0.5", "--out", self.folder / "p.csv"),
             ("info", JOB, "--pairs"),
         ]
         for command in commands:
@@ -612,8 +608,8 @@ class Refused(WithFolder):
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertRegex(
                     done.stderr, r"^swivel: .*door_job.yaml:[0-9]+: strokes: makes this file a "
-                    r"job, which `swivel plan`, `check`, `time` and io::load_job\(\) take: allowed "
-                    r"is a `path` here\n$"
+                    r"job, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
+                    r"io::load_job\(\) take: allowed is a `path` here\n$"
                 )
                 self.assertEqual(done.stdout, "")
 

@@ -191,7 +191,7 @@ TEST(JobFile, ProblemsAreNoJobs) {
   const JobFolder folder;
   const std::string message = input_error([&] { (void)load_problem(folder.write({})); });
   expect_message(message, {"problem.yaml:2: strokes: makes this file a job",
-                           "`swivel plan`, `check`, `time`", "a `path`"});
+                           "`swivel plan`, `check`, `time`, `campaign`, `place`", "a `path`"});
   const Sections keys{{"home", "{joints: [0, 0, 0, 0, 0, 0, 0]}"},
                       {"order", "best"},
                       {"rapid", "0.5"},

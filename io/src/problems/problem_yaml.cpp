@@ -110,7 +110,8 @@ void ProblemReader::require_one_path() const {
   if (root_.find_filled("strokes")) {
     const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
     value.fail(
-        "makes this file a job, which `swivel plan`, `check`, `time` and io::load_job() take",
+        "makes this file a job, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
+        "io::load_job() take",
         "a `path` here");
   }
   for (const Schema::Key& key : problem_schema().keys)
