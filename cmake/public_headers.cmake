@@ -43,6 +43,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/certificate/infeasibility_certificate.hpp
   swivel/planner/measure/measure.hpp
   swivel/planner/job/check_job.hpp
+  swivel/planner/job/job_view.hpp
   swivel/planner/job/plan_job.hpp
   swivel/planner/job/time_job.hpp
   swivel/planner/plan/plan_options.hpp
@@ -68,5 +69,6 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
+  swivel/report/job_page.hpp
   swivel/report/lattice_map.hpp
   swivel/report/page.hpp)

@@ -156,7 +156,8 @@ std::string infeasible_text(const JobResult& result, const Job& job) {
   if (!result.no_transition) return "no job found\n";
   std::vector<std::string> runs;
   for (const RunResult& run : result.runs) runs.push_back("stroke " + quoted_name(job, run.run));
-  return "no job found: " + words(*result.no_transition, runs) + '\n';
+  const bool searched = result.no_transition->where == NoTransition::Where::kBetween;
+  return (searched ? "no job found: " : "no job: ") + words(*result.no_transition, runs) + '\n';
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ class Jobs(WithFolder):
             done = run("check", *arguments, "--certificate", proof)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(needle, done.stderr)
-        done = run("plan", file, "--certificate", proof, "--rate", 50)
+        done = run("plan", file, "--certificate", proof, "--speed", 0.1)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--certificate: is of the job as its file has it", done.stderr)
 

@@ -346,6 +346,11 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
     add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
   const JobTimingResult timed = timed_plan(true);
   add_keys(Json::parse(to_job_json(plan_of_two(), two_strokes(), {&timed})), "", seen);
+  AdviceOnJob advice;
+  advice.job.push_back({.change = JobAdvice::Change::kHome, .strokes = {}, .home = Config::Zero()});
+  advice.strokes.push_back({"left", {Advice{}}});
+  add_keys(Json::parse(to_job_json(without_a_job(true), two_strokes(), {nullptr, false, &advice})),
+           "", seen);
   for (const std::string& key : seen) EXPECT_TRUE(known.contains(key)) << key;
   // The parts that plans have as well are tested with those (result_test.cpp, tests/docs).
   for (const std::string& key : known) {

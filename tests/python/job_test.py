@@ -390,7 +390,7 @@ class JobAnswers(unittest.TestCase):
         plan = swivel.plan_job(job)
         self.assertEqual(plan.barred_where, "home", plan)
         self.assertIn("wall", plan.barred_by)
-        self.assertRegex(repr(plan), "at home .*wall.* too near")
+        self.assertRegex(repr(plan), "at home .*wall come nearer")
         stopped = swivel.plan_job(DOOR, timeout=1e-3)
         self.assertEqual(stopped.status, "timeout")
 

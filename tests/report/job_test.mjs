@@ -295,7 +295,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   const stuck = await open(home.html, { viewport: wide });
   assert.match(
     await stuck.page.textContent('#verdict'),
-    /^no job: at home .* - ball come too near/,
+    /^no job: at home .* - ball come nearer/,
   );
   assert.deepEqual((await shown(stuck.page)).joints, home.data.home.q);
   for (const id of ['map-section', 'controls', 'plots-section', 'motion-section'])

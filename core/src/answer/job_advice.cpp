@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/answer/job_advice.hpp"
-
+#include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "study/episode_draw.hpp"
 #include "swivel/core/base/rpy.hpp"
+#include "swivel/core/study/job_failure.hpp"
 #include "swivel/core/study/placement.hpp"
 
 namespace swivel {

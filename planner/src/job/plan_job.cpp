@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "job/job_lift.hpp"
-#include "job/job_transitions.hpp"
-#include "job/order_estimate.hpp"
+#include "job/order/order_estimate.hpp"
 #include "job/supported_options.hpp"
+#include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/stopwatch.hpp"
 #include "refine/keeps_branch.hpp"

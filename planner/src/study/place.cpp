@@ -18,6 +18,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/study/job_failure.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"

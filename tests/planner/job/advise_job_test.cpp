@@ -7,9 +7,9 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/io/problems/job.hpp"
-#include "swivel/planner/job/advise_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/study/advise.hpp"
 
 namespace swivel {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "job/stroke_order.hpp"
+#include "job/order/stroke_order.hpp"
 #include "seed.hpp"
 
 namespace swivel {

@@ -10,6 +10,7 @@
 #include "seed.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/study/job_failure.hpp"
 #include "swivel/io/problems/job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"

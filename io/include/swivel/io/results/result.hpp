@@ -7,7 +7,6 @@
 
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
-#include "swivel/core/answer/job_advice.hpp"
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"

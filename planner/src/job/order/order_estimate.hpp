@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "job/stroke_order.hpp"
+#include "job/order/stroke_order.hpp"
 #include "swivel/graph/verdicts/parallel_for.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 

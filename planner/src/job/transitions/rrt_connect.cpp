@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "job/rrt_connect.hpp"
+#include "job/transitions/rrt_connect.hpp"
 
 #include <algorithm>
 #include <cmath>

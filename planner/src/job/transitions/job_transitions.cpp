@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "job/job_transitions.hpp"
+#include "job/transitions/job_transitions.hpp"
 
 #include <algorithm>
 
-#include "job/rrt_connect.hpp"
+#include "job/transitions/rrt_connect.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 
 namespace swivel {

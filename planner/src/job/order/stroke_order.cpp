@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "job/stroke_order.hpp"
+#include "job/order/stroke_order.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/job/advise_job.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -15,9 +14,6 @@
 namespace swivel {
 
 namespace {
-
-using Change = JobAdvice::Change;
-using Outcome = Advice::Outcome;
 
 constexpr double kLengths[] = {0.02, 0.05, 0.1};  // of lines that are tried, m
 
@@ -85,16 +81,17 @@ class JobTrials {
     const bool from_home = none.to == 0, to_home = none.to == runs;
     bool lengthened = none.where == Where::kHome;
     if (none.where == Where::kEndBefore || (none.where == Where::kBetween && !from_home))
-      lengthened = lengthen(Change::kRetract, {result_.runs[none.to - 1].run.stroke});
+      lengthened = lengthen(JobAdvice::Change::kRetract, {result_.runs[none.to - 1].run.stroke});
     if (none.where == Where::kBegin || (none.where == Where::kBetween && !to_home))
-      lengthened = lengthen(Change::kApproach, {result_.runs[none.to].run.stroke}) || lengthened;
-    if (!lengthened) lengthen(Change::kLines, all_strokes());
+      lengthened =
+          lengthen(JobAdvice::Change::kApproach, {result_.runs[none.to].run.stroke}) || lengthened;
+    if (!lengthened) lengthen(JobAdvice::Change::kLines, all_strokes());
     if (none.where == Where::kHome || from_home || to_home) move_home();
     if (none.where == Where::kHome) return;
     if (job_.order == StrokeOrder::kGiven && runs > 1) {
       Job changed = job_;
       changed.order = StrokeOrder::kBest;
-      add({.change = Change::kBestOrder, .strokes = {}}, changed);
+      add({.change = JobAdvice::Change::kBestOrder, .strokes = {}}, changed);
     }
     std::vector<std::size_t> beside;
     if (!from_home) beside.push_back(result_.runs[none.to - 1].run.stroke);
@@ -104,17 +101,17 @@ class JobTrials {
   }
 
   /// Notes what planning a changed job gives.
-  Outcome add(JobAdvice advice, const Job& changed) {
+  Advice::Outcome add(JobAdvice advice, const Job& changed) {
     const double seconds = seconds_left();
     if (seconds > 0) {
       PlanOptions options = options_;
       options.timeout_s = seconds;
       const JobResult found = plan_job(robot_, changed, options);
       if (!found.parts.empty()) {
-        advice.outcome = Outcome::kSolved;
+        advice.outcome = Advice::Outcome::kSolved;
         advice.cost = found.cost;
       } else if (found.status == PlanStatus::kInfeasible) {
-        advice.outcome = Outcome::kNoHelp;
+        advice.outcome = Advice::Outcome::kNoHelp;
       }
     }
     advice_.job.push_back(std::move(advice));
@@ -124,7 +121,7 @@ class JobTrials {
   void leave_out(std::vector<std::size_t> strokes) {
     std::sort(strokes.begin(), strokes.end());
     if (strokes.size() == job_.strokes.size()) return;
-    JobAdvice advice{.change = Change::kWithoutStrokes, .strokes = {}};
+    JobAdvice advice{.change = JobAdvice::Change::kWithoutStrokes, .strokes = {}};
     for (const std::size_t stroke : strokes) advice.strokes.push_back(name(stroke));
     Job changed = job_;
     for (std::size_t k = strokes.size(); k-- > 0;)
@@ -147,7 +144,7 @@ class JobTrials {
     std::reverse(turned.waypoints.begin(), turned.waypoints.end());
     // a feed holds from its waypoint to the next
     if (turned.feed.size() > 1) std::reverse(turned.feed.begin(), turned.feed.end() - 1);
-    add({.change = Change::kReversed, .strokes = {name(stroke)}}, changed);
+    add({.change = JobAdvice::Change::kReversed, .strokes = {name(stroke)}}, changed);
   }
 
   [[nodiscard]] std::vector<std::size_t> all_strokes() const {
@@ -157,7 +154,7 @@ class JobTrials {
   }
   /// Tries longer lines of approach, of retract, or of both at some strokes until one length helps.
   /// Returns true if one does.
-  bool lengthen(Change change, const std::vector<std::size_t>& strokes) {
+  bool lengthen(JobAdvice::Change change, const std::vector<std::size_t>& strokes) {
     for (const double length : kLengths) {
       Job changed = job_;
       bool any = false;
@@ -168,21 +165,21 @@ class JobTrials {
       };
       JobAdvice advice{.change = change, .strokes = {}, .length = length};
       for (const std::size_t stroke : strokes) {
-        if (change != Change::kRetract) extend(changed.strokes[stroke].approach);
-        if (change != Change::kApproach) extend(changed.strokes[stroke].retract);
-        if (change != Change::kLines) advice.strokes.push_back(name(stroke));
+        if (change != JobAdvice::Change::kRetract) extend(changed.strokes[stroke].approach);
+        if (change != JobAdvice::Change::kApproach) extend(changed.strokes[stroke].retract);
+        if (change != JobAdvice::Change::kLines) advice.strokes.push_back(name(stroke));
       }
       if (!any) continue;
-      const Outcome outcome = add(std::move(advice), changed);
-      if (outcome == Outcome::kSolved) return true;
-      if (outcome != Outcome::kNoHelp) return false;
+      const Advice::Outcome outcome = add(std::move(advice), changed);
+      if (outcome == Advice::Outcome::kSolved) return true;
+      if (outcome != Advice::Outcome::kNoHelp) return false;
     }
     return false;
   }
 
   /// Tries the home at which the cheapest job without one begins.
   void move_home() {
-    JobAdvice advice{.change = Change::kHome, .strokes = {}};
+    JobAdvice advice{.change = JobAdvice::Change::kHome, .strokes = {}};
     Job changed = job_;
     changed.home.reset();
     PlanOptions options = options_;
@@ -196,7 +193,7 @@ class JobTrials {
         add(std::move(advice), changed);
         return;
       }
-      if (found.status == PlanStatus::kInfeasible) advice.outcome = Outcome::kNoHelp;
+      if (found.status == PlanStatus::kInfeasible) advice.outcome = Advice::Outcome::kNoHelp;
     }
     advice_.job.push_back(std::move(advice));
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "job/order_estimate.hpp"
+#include "job/order/order_estimate.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
 
-#include "job/job_transitions.hpp"
+#include "job/transitions/job_transitions.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
