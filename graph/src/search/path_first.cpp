@@ -20,14 +20,27 @@ SearchOutcome search(CostToGo& cost_to_go, Validity& validity, const PathFirstOp
   return first_valid_path(cost_to_go, validity, validator, earlier, counters);
 }
 
+/// Returns the first slot of layer 0 from which a path of the least cost leads, -1 when no path is
+/// left.
+int cheapest_slot(const CostToGo& cost_to_go) {
+  const double best = cost_to_go.best();
+  if (best == kUnreachable) return -1;
+  int slot = 0;
+  while (cost_to_go.at(0, slot) != best) ++slot;
+  return slot;
+}
+
 }  // namespace
 
 SearchOutcome first_valid_path(CostToGo& cost_to_go, const Validity& validity,
                                PathValidator& validator, PathCache& earlier,
-                               SearchCounters& counters) {
+                               SearchCounters& counters, FirstPath first) {
   for (;;) {
     cost_to_go.budget().poll();
-    const SlotPath path = best_path(cost_to_go, counters.expansions, &earlier);
+    const int slot =
+        first == FirstPath::kCheapest ? cheapest_slot(cost_to_go) : cost_to_go.first_slot();
+    const SlotPath path =
+        slot < 0 ? SlotPath() : best_path_from(slot, cost_to_go, counters.expansions, &earlier);
     if (path.empty()) return {};
     earlier.add(path, cost_to_go);
     validator.begin();

@@ -168,10 +168,15 @@ class PathValidator {
   std::vector<int> same_poses_;
 };
 
+/// Which path is the first: that of the order of answers (docs/model.md); or the cheapest, and of
+/// equal ones that with the smallest slots.
+enum class FirstPath { kInOrderOfAnswers, kCheapest };
+
 /// Returns the first valid path of a swept cost-to-go, as path_first() does; an empty one when none
 /// is left. `earlier` remembers paths of this cost-to-go. Throws Stopped.
 [[nodiscard]] SearchOutcome first_valid_path(CostToGo& cost_to_go, const Validity& validity,
                                              PathValidator& validator, PathCache& earlier,
-                                             SearchCounters& counters);
+                                             SearchCounters& counters,
+                                             FirstPath first = FirstPath::kInOrderOfAnswers);
 
 }  // namespace swivel
