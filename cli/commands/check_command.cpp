@@ -131,16 +131,13 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
   const Job job = chosen_job(file, arguments.lattice, arguments.episode);
   if (arguments.certificate.empty()) return check_job_file(job, arguments.trajectory);
   const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
-  const auto stroke = std::find_if(job.strokes.begin(), job.strokes.end(), [&](const Stroke& one) {
-    return one.name == certificate.stroke;
-  });
-  if (stroke == job.strokes.end())
+  const auto stroke = find_stroke(job, certificate.stroke);
+  if (!stroke)
     throw InputError(arguments.certificate, "stroke: '" + certificate.stroke +
                                                 "' is none of the job: allowed are the names of "
                                                 "its strokes");
-  const auto index = static_cast<std::size_t>(stroke - job.strokes.begin());
-  say("stroke '%s'%s: ", stroke->name.c_str(), certificate.reversed ? " backwards" : "");
-  return run_on_certificate(problem_of_run(job, {index, certificate.reversed}), certificate);
+  say("stroke '%s'%s: ", certificate.stroke.c_str(), certificate.reversed ? " backwards" : "");
+  return run_on_certificate(problem_of_run(job, {*stroke, certificate.reversed}), certificate);
 }
 
 int run(const CheckArguments& arguments) {

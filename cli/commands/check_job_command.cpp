@@ -10,7 +10,6 @@
 #include "output/check_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
@@ -20,23 +19,15 @@ namespace swivel::cli {
 
 namespace {
 
-/// Adds a failure for each stroke whose `process` in the file is not 1 on the stroke itself alone.
-void examine_process(const Job& job, const io::JobTrajectory& read,
-                     const std::vector<JobPart>& parts, JobCheckResult& result) {
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (!parts[k].run) continue;
-    const std::vector<bool> should = io::process_of_rows(parts[k], job);
-    for (std::size_t row = 0; row < should.size(); ++row) {
-      const bool is = row >= read.parts[k].first_process && row <= read.parts[k].last_process;
-      if (is == should[row]) continue;
-      result.failures.push_back("stroke '" + read.parts[k].stroke +
-                                formatted("': row %zu: process is %d: allowed is %d", row, is,
-                                          static_cast<int>(should[row])));
-      ++result.failure_count;
-      result.passed = false;
-      break;
-    }
+/// Returns what the column `process` of a file says of each row, by part.
+std::vector<std::vector<bool>> process_of(const io::JobTrajectory& read) {
+  std::vector<std::vector<bool>> process;
+  for (const io::JobTrajectoryPart& part : read.parts) {
+    std::vector<bool>& rows = process.emplace_back(part.rows.size());
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      rows[row] = row >= part.first_process && row <= part.last_process;
   }
+  return process;
 }
 
 /// Returns what all runs of a job show together.
@@ -99,7 +90,7 @@ int check_job_file(const Job& job, const std::string& trajectory) {
     const std::vector<JobPart> parts =
         in_the_name_of(trajectory, [&] { return parts_of(robot, job, *read); });
     result = check_job(robot, job, parts);
-    examine_process(job, *read, parts, result);
+    check_process(job, parts, process_of(*read), result);
     std::size_t strokes = 0, rows = 0;
     for (const JobPart& part : parts) {
       strokes += part.run.has_value();
@@ -108,7 +99,8 @@ int check_job_file(const Job& job, const std::string& trajectory) {
     print_verdict(result, held, strokes, rows, 0);
   } else {
     const auto& timed = std::get<io::JobMotionFile>(file);
-    result = check_job_motion(robot, job, order_of(robot, job, timed), timed.motion);
+    const auto order = runs_of_motion(robot, job, timed.strokes, timed.motion);
+    result = check_job_motion(robot, job, order, timed.motion);
     print_verdict(result, held, timed.strokes.size(), timed.motion.rows.size(),
                   timed.motion.duration);
   }

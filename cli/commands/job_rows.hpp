@@ -14,9 +14,4 @@ namespace swivel::cli {
 [[nodiscard]] std::vector<JobPart> parts_of(const PreparedRobot& robot, const Job& job,
                                             const io::JobTrajectory& read);
 
-/// Returns the runs of a job's motion that a file has, in their order. A stroke is run backwards
-/// if the tool begins at its last waypoint.
-[[nodiscard]] std::vector<StrokeRun> order_of(const PreparedRobot& robot, const Job& job,
-                                              const io::JobMotionFile& read);
-
 }  // namespace swivel::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Functions that plan, prove and time jobs.
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -40,13 +39,7 @@ JobTimingOptions timing_of(std::optional<double> speed, std::optional<double> tu
   return options;
 }
 
-/// Returns the number of a stroke in a job; none for an unknown name.
-std::optional<std::size_t> find_stroke(const swivel::Job& job, const std::string& name) {
-  for (std::size_t k = 0; k < job.strokes.size(); ++k)
-    if (job.strokes[k].name == name) return k;
-  return {};
-}
-/// Returns that number. Throws InvalidArgument for an unknown name.
+/// Returns the index of the stroke with this name. Throws InvalidArgument if there is none.
 std::size_t stroke_of(const swivel::Job& job, const std::string& name) {
   if (const auto found = find_stroke(job, name)) return *found;
   std::vector<std::string> known;
@@ -97,15 +90,7 @@ JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobM
   JobMotion motion;
   motion.joint_names = robot.arm().chain.joint_names;
   motion.job = without_surroundings(job);
-  for (std::size_t k = 0; k < read.strokes.size(); ++k) {
-    const std::size_t part = job.home ? 2 * k + 1 : 2 * k;
-    const auto own = std::find(read.motion.part.begin(), read.motion.part.end(), part);
-    // A run begins with the last row of the transition before it.
-    const auto row = static_cast<std::size_t>(own - read.motion.part.begin());
-    const TrajectoryRow& first = read.motion.rows[row > 0 ? row - 1 : 0].row;
-    motion.order.push_back(
-        {read.strokes[k], begins_at_last_waypoint(robot, job, read.strokes[k], {first})});
-  }
+  motion.order = runs_of_motion(robot, job, read.strokes, read.motion);
   auto timing = std::make_shared<JobTimingResult>();
   timing->motion = std::move(read.motion);
   motion.timing = std::move(timing);
@@ -120,29 +105,13 @@ std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swive
   return from_file(robot, job, std::get<io::JobTrajectory>(std::move(read)), file);
 }
 
-/// Adds a failure for each stroke whose `process` is given and not true on the stroke itself alone.
-void examine_process(const swivel::Job& job, const Parts& parts,
-                     const std::vector<swivel::JobPart>& all, JobCheckResult& result) {
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (!parts[k].stroke || parts[k].process.empty()) continue;
-    const std::vector<bool> should = io::process_of_rows(all[k], job);
-    const std::vector<bool>& is = parts[k].process;
-    const auto first = std::mismatch(is.begin(), is.end(), should.begin(), should.end()).first;
-    if (first == is.end()) continue;
-    const auto row = static_cast<std::size_t>(first - is.begin());
-    result.failures.push_back("stroke '" + *parts[k].stroke +
-                              formatted("': row %zu: process is %d: allowed is %d", row,
-                                        static_cast<int>(is[row]), static_cast<int>(!is[row])));
-    ++result.failure_count;
-    result.passed = false;
-  }
-}
-
 JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Job& job, const Parts& parts,
                            const CheckOptions& options) {
   const std::vector<swivel::JobPart> all = to_core(job, parts);
   JobCheckResult result = swivel::check_job(robot, job, all, options);
-  examine_process(job, parts, all, result);
+  std::vector<std::vector<bool>> process;
+  for (const JobPart& part : parts) process.push_back(part.process);
+  check_process(job, all, process, result);
   return result;
 }
 

@@ -536,7 +536,7 @@ std::vector<JobPart> parts_of(const JobPlan& plan) {
     part.joint_names = plan.result().joint_names;
     if (one.run) part.stroke = name_of(*plan.job, *one.run), part.reversed = one.run->reversed;
     part.cost = one.cost, part.barred_by = one.barred_by;
-    part.process = io::process_of_rows(one, *plan.job);
+    part.process = process_of_rows(one, *plan.job);
   }
   return parts;
 }

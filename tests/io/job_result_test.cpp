@@ -91,6 +91,14 @@ TEST(JobTrajectory, ProcessIsOnTheStrokeItself) {
   EXPECT_EQ(read.parts[3].last_process, 4u);   // before the retract
 }
 
+TEST(JobTrajectory, StrokesAreFoundByName) {
+  const Job job = two_strokes();
+  EXPECT_EQ(find_stroke(job, "left"), 0u);
+  EXPECT_EQ(find_stroke(job, "right"), 1u);
+  EXPECT_EQ(find_stroke(job, ""), std::nullopt);
+  EXPECT_EQ(find_stroke(job, "Left"), std::nullopt);
+}
+
 TEST(JobTrajectory, EveryBitIsReadAgain) {
   const TempFolder folder;
   swivel::test::Random random(swivel::test::seed("JobTrajectory"));

@@ -42,6 +42,12 @@ void validate(const Stroke& stroke) {
 
 }  // namespace
 
+std::optional<std::size_t> find_stroke(const Job& job, const std::string& name) {
+  for (std::size_t k = 0; k < job.strokes.size(); ++k)
+    if (job.strokes[k].name == name) return k;
+  return std::nullopt;
+}
+
 std::vector<Waypoint> waypoints_of_run(const Stroke& stroke, bool reversed) {
   std::vector<Waypoint> waypoints = stroke.waypoints;
   if (reversed) std::reverse(waypoints.begin(), waypoints.end());

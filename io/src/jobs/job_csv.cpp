@@ -29,24 +29,6 @@ const Schema& job_trajectory_schema() {
   return schema;
 }
 
-std::vector<bool> process_of_rows(const JobPart& part, const Job& job) {
-  std::vector<bool> process(part.rows.size(), false);
-  if (!part.run) return process;
-  constexpr double kTolerance = 1e-9;  // m, of sums of lengths
-  const Stroke& stroke = job.strokes[part.run->stroke];
-  const std::vector<Waypoint> waypoints = waypoints_of_run(stroke, part.run->reversed);
-  const ProcessWaypoints range = process_waypoints(stroke);
-  double s = 0, first = 0, last = 0;
-  for (std::size_t k = 1; k < waypoints.size(); ++k) {
-    s += (waypoints[k].position - waypoints[k - 1].position).norm();
-    if (k == range.first) first = s;
-    if (k == range.last) last = s;
-  }
-  for (std::size_t k = 0; k < process.size(); ++k)
-    process[k] = part.rows[k].s >= first - kTolerance && part.rows[k].s <= last + kTolerance;
-  return process;
-}
-
 bool any_rolls(const JobResult& result) {
   return std::any_of(result.parts.begin(), result.parts.end(),
                      [](const JobPart& part) { return part.run && swivel::any_rolls(part.rows); });

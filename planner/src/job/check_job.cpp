@@ -289,6 +289,30 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& given,
   return result;
 }
 
+void check_process(const Job& job, const std::vector<JobPart>& parts,
+                   const std::vector<std::vector<bool>>& process, JobCheckResult& result) {
+  if (process.size() != parts.size())
+    throw InvalidArgument(formatted("process: of %zu parts: allowed is one item for each of %zu",
+                                    process.size(), parts.size()));
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::vector<bool>& is = process[k];
+    if (!parts[k].run || parts[k].run->stroke >= job.strokes.size() || is.empty()) continue;
+    const std::vector<bool> should = process_of_rows(parts[k], job);
+    if (is.size() != should.size())
+      throw InvalidArgument(
+          formatted("process: of %zu rows of part %zu: allowed is one item for each of %zu",
+                    is.size(), k + 1, should.size()));
+    const auto first = std::mismatch(is.begin(), is.end(), should.begin()).first;
+    if (first == is.end()) continue;
+    const auto row = static_cast<std::size_t>(first - is.begin());
+    result.failures.push_back("stroke '" + job.strokes[parts[k].run->stroke].name +
+                              formatted("': row %zu: process is %d: allowed is %d", row,
+                                        static_cast<int>(is[row]), static_cast<int>(!is[row])));
+    ++result.failure_count;
+    result.passed = false;
+  }
+}
+
 void require_passed(const JobCheckResult& result) {
   if (!result.passed)
     throw std::logic_error("the job does not pass its own check: " + result.failures.at(0));
@@ -306,6 +330,21 @@ bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job, std::si
   const auto forward = distance(false), backward = distance(true);
   if (std::abs(forward.first - backward.first) > 1e-6) return backward.first < forward.first;
   return backward.second < forward.second;
+}
+
+std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Job& job,
+                                      const std::vector<std::size_t>& strokes,
+                                      const JobMotion& motion) {
+  std::vector<StrokeRun> runs;
+  for (std::size_t k = 0; k < strokes.size(); ++k) {
+    const std::size_t part = job.home ? 2 * k + 1 : 2 * k;
+    const auto own = std::find(motion.part.begin(), motion.part.end(), part);
+    // A run begins with the last row of the transition before it.
+    const auto row = static_cast<std::size_t>(own - motion.part.begin());
+    const TrajectoryRow& first = motion.rows.at(row > 0 ? row - 1 : 0).row;
+    runs.push_back({strokes[k], begins_at_last_waypoint(robot, job, strokes[k], {first})});
+  }
+  return runs;
 }
 
 }  // namespace swivel

@@ -13,6 +13,7 @@
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
@@ -572,6 +573,83 @@ TEST(CheckJob, RefusesEventsThatLie) {
     }
     EXPECT_FALSE(passes(motion)) << "trial " << trial;
   }
+}
+
+TEST(CheckJob, HoldsTheProcessAgainstTheStroke) {
+  Random random(seed("CheckJob process"));
+  const JobCase door("door_job.yaml");
+  Job job = door.job;
+  job.strokes.resize(3);
+  for (Stroke& stroke : job.strokes) {
+    stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
+    stroke.resolution.ds = 0.02;
+    stroke.resolution.dphi = 0.1;
+  }
+  const std::vector<JobPart> parts = plan_job(door.robot, job, {}).parts;
+  ASSERT_EQ(parts.size(), 7u);
+  std::vector<std::vector<bool>> process;
+  for (const JobPart& part : parts) process.push_back(process_of_rows(part, job));
+  const auto failures = [&](const std::vector<std::vector<bool>>& said) {
+    JobCheckResult result;
+    result.passed = true;
+    check_process(job, parts, said, result);
+    EXPECT_EQ(result.passed, result.failures.empty());
+    EXPECT_EQ(result.failure_count, static_cast<std::int64_t>(result.failures.size()));
+    return result.failures;
+  };
+  EXPECT_TRUE(failures(process).empty());
+  EXPECT_TRUE(failures(std::vector<std::vector<bool>>(parts.size())).empty());
+  int refused = 0;
+  for (int trial = 0; trial < trials(60); ++trial) {
+    auto spoilt = process;
+    const auto k = static_cast<std::size_t>(random.below(static_cast<int>(parts.size())));
+    const auto row = static_cast<std::size_t>(random.below(static_cast<int>(spoilt[k].size())));
+    spoilt[k][row] = !spoilt[k][row];
+    const std::vector<std::string> said = failures(spoilt);
+    if (!parts[k].run) {
+      EXPECT_TRUE(said.empty()) << said.front();
+      continue;
+    }
+    ASSERT_EQ(said.size(), 1u);
+    const int is = spoilt[k][row];
+    EXPECT_EQ(said.front(), "stroke '" + job.strokes[parts[k].run->stroke].name + "': row " +
+                                std::to_string(row) + ": process is " + std::to_string(is) +
+                                ": allowed is " + std::to_string(1 - is));
+    ++refused;
+  }
+  EXPECT_GE(refused, at_least(10));
+  auto short_of_a_row = process;
+  short_of_a_row[1].pop_back();
+  EXPECT_THROW(failures(short_of_a_row), InvalidArgument);
+  process.pop_back();
+  EXPECT_THROW(failures(process), InvalidArgument);
+}
+
+TEST(CheckJob, FindsTheDirectionsOfRunsInMotions) {
+  const JobCase door("door_job.yaml");
+  int backwards = 0;
+  for (const bool home : {true, false}) {
+    Job job = door.job;
+    if (!home) job.home.reset();
+    job.strokes.resize(4);
+    job.order = StrokeOrder::kBest;
+    for (Stroke& stroke : job.strokes) {
+      stroke.reversible = true;
+      stroke.approach = Vector3d(0, 0, -0.02);
+    }
+    const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
+    ASSERT_TRUE(plan.timing && plan.timing->motion);
+    std::vector<StrokeRun> order;
+    std::vector<std::size_t> strokes;
+    for (const RunResult& run : plan.result.runs) {
+      order.push_back(run.run);
+      strokes.push_back(run.run.stroke);
+      backwards += run.run.reversed;
+    }
+    EXPECT_EQ(runs_of_motion(door.robot, job, strokes, *plan.timing->motion), order);
+  }
+  EXPECT_GT(backwards, 0);
+  EXPECT_LT(backwards, 8);
 }
 
 }  // namespace

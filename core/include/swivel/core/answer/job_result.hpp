@@ -26,6 +26,10 @@ struct JobPart {
   std::optional<std::array<std::string, 2>> barred_by = {};
 };
 
+/// Returns for each row of a part of a job whether it lies on its stroke, rather than on the lines
+/// of approach and retract or in a transition. The stroke of the part must be one of the job's.
+[[nodiscard]] std::vector<bool> process_of_rows(const JobPart& part, const Job& job);
+
 /// What a job's plan found out about one run.
 struct RunResult {
   StrokeRun run;

@@ -53,6 +53,10 @@ struct Job : Robot {
   double rapid = 1;
 };
 
+/// Returns the index in Job::strokes of the stroke with this name; none if the job has no such
+/// stroke.
+[[nodiscard]] std::optional<std::size_t> find_stroke(const Job& job, const std::string& name);
+
 /// A stroke of a job in one of its directions.
 struct StrokeRun {
   std::size_t stroke = 0;  ///< index in Job::strokes

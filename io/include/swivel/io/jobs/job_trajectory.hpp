@@ -40,10 +40,6 @@ struct JobTrajectory {
 [[nodiscard]] JobTrajectory load_job_trajectory(const std::filesystem::path& csv,
                                                 const JointNames& joint_names);
 
-/// Returns for every row of a part of a job whether it lies on its stroke, rather than on the lines
-/// of approach and retract or in a transition: the column `process` of to_job_csv().
-[[nodiscard]] std::vector<bool> process_of_rows(const JobPart& part, const Job& job);
-
 /// Returns the motion of a job as CSV: the columns of to_timed_csv(), then `stroke` and `process`.
 /// The row at which a stroke begins has its s, arm angle, branch and roll, though its `stroke` is
 /// empty where it ends a transition; other rows of transitions have none. `process` is 1 from the

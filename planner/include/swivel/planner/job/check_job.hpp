@@ -10,6 +10,8 @@
 
 namespace swivel {
 
+struct JobMotion;
+
 /// The result of an independent check of a planned job.
 struct JobCheckResult {
   bool passed = false;
@@ -34,6 +36,14 @@ struct JobCheckResult {
                                        const std::vector<JobPart>& parts,
                                        const CheckOptions& options = {});
 
+/// Adds a failure to `result` for each run among the parts of a job of which `process`, by part and
+/// row, is not what process_of_rows() returns: by its first such row. `process` may be empty for a
+/// part that says nothing of it, and is not looked at for transitions and for strokes that the job
+/// does not have. Throws InvalidArgument unless it has an item for each part and, where not empty,
+/// one for each row of a run.
+void check_process(const Job& job, const std::vector<JobPart>& parts,
+                   const std::vector<std::vector<bool>>& process, JobCheckResult& result);
+
 /// Throws std::logic_error, with the first failure, if the result has not passed. For a program's
 /// own answers, which must never fail.
 void require_passed(const JobCheckResult& result);
@@ -43,5 +53,12 @@ void require_passed(const JobCheckResult& result);
 [[nodiscard]] bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job,
                                            std::size_t stroke,
                                            const std::vector<TrajectoryRow>& rows);
+
+/// Returns the runs of which the samples of a job's motion are. `strokes` has the stroke of each
+/// run in their order, as indices in Job::strokes; one is run backwards if the tool begins at its
+/// last waypoint (begins_at_last_waypoint()).
+[[nodiscard]] std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Job& job,
+                                                    const std::vector<std::size_t>& strokes,
+                                                    const JobMotion& motion);
 
 }  // namespace swivel
