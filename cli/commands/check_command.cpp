@@ -91,7 +91,10 @@ bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& row
          std::all_of(rows.begin(), rows.end(), as_degrees);
 }
 
-int run_on_certificate(const Problem& problem, const InfeasibilityCertificate& certificate) {
+/// Verifies a certificate and prints the verdict behind `prefix`. Prints nothing where it
+/// throws.
+int run_on_certificate(const Problem& problem, const InfeasibilityCertificate& certificate,
+                       const std::string& prefix = {}) {
   catch_interrupts();
   CertificateCheck result;
   std::vector<HeldJoint> held;
@@ -101,19 +104,20 @@ int run_on_certificate(const Problem& problem, const InfeasibilityCertificate& c
     held = robot.arm().held;
     result = verify_certificate(robot, problem, certificate, budget);
   } catch (const Stopped&) {
-    say("stopped\n");
+    say("%sstopped\n", prefix.c_str());
     return kStopped;
   }
   warn_of_held(held);
   if (!result.passed) {
-    say("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
+    say("%s%s\nfailed: this certificate proves nothing\n", prefix.c_str(), result.failure.c_str());
     return kNo;
   }
-  say("passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld "
+  say("%spassed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld "
       "nodes and %lld edges asked\n",
-      with_held(held).c_str(), result.complete ? "" : ", among the solutions that were found",
-      result.s[0], result.s[1], removed_text(certificate).c_str(),
-      static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
+      prefix.c_str(), with_held(held).c_str(),
+      result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1],
+      removed_text(certificate).c_str(), static_cast<long long>(result.nodes),
+      static_cast<long long>(result.edges));
   return kOk;
 }
 
@@ -136,8 +140,10 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
     throw InputError(arguments.certificate, "stroke: '" + certificate.stroke +
                                                 "' is none of the job: allowed are the names of "
                                                 "its strokes");
-  say("stroke '%s'%s: ", certificate.stroke.c_str(), certificate.reversed ? " backwards" : "");
-  return run_on_certificate(problem_of_run(job, {*stroke, certificate.reversed}), certificate);
+  const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
+  return run_on_certificate(
+      problem, certificate,
+      "stroke '" + certificate.stroke + (certificate.reversed ? "' backwards: " : "': "));
 }
 
 int run(const CheckArguments& arguments) {

@@ -160,6 +160,10 @@ class Jobs(WithFolder):
         done = run("check", file, "--certificate", proof)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertTrue(done.stdout.startswith("stroke 'right': passed: no path"), done.stdout)
+        # What cannot be verified leaves no half of a line.
+        done = run("check", file, "--certificate", proof, "--ds", 0.01)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, r"^swivel: .*allowed.*\n$")
         proof.write_text(proof.read_text().replace('"right"', '"left"'))
         done = run("check", file, "--certificate", proof)
         self.assertIn(done.returncode, (1, 2), done.stdout)
