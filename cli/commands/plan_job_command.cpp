@@ -18,7 +18,6 @@
 #include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
-#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/report/job_page.hpp"
@@ -64,9 +63,9 @@ struct JobAnswer {
   std::string certificate{};                        ///< `proof` as JSON
 };
 
-/// Proves that a stroke of the job has no path, if one has none. Adds a warning to the result if
-/// all have one, or if the budget ends first.
-void find_certificate(const Job& job, const PlanOptions& options, const Budget& budget,
+/// Proves that a stroke of the job has no path, if one has none, from what the plan found out about
+/// it. Adds a warning to the result if all have one, or if the budget ends first.
+void find_certificate(const Job& job, const JobView& view, const Budget& budget,
                       JobAnswer& answer) {
   JobResult& result = answer.plan.result;
   const auto run = std::find_if(result.runs.begin(), result.runs.end(), [](const RunResult& one) {
@@ -77,11 +76,8 @@ void find_certificate(const Job& job, const PlanOptions& options, const Budget& 
     return;
   }
   try {
-    Planner planner(problem_of_run(job, run->run));
-    PlanOptions alone = options;
-    alone.evidence = {};
-    if (planner.plan(alone).status != PlanStatus::kInfeasible) throw Stopped();
-    answer.proof = prove_infeasible(planner.view(), budget);
+    const auto index = static_cast<std::size_t>(run - result.runs.begin());
+    answer.proof = prove_infeasible(view.runs.at(index), budget);
     answer.proof->stroke = job.strokes[run->run.stroke].name;
     answer.proof->reversed = run->run.reversed;
     answer.certificate = io::to_json(*answer.proof);
@@ -159,9 +155,10 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   const Budget budget = request.options.budget();  // of certificate and page; plans have their own
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   JobView view;
-  JobAnswer answer{planned(request, robot, job, request.report ? &view : nullptr)};
+  const bool keeps_view = request.report || outputs.wants("--certificate");
+  JobAnswer answer{planned(request, robot, job, keeps_view ? &view : nullptr)};
   if (answer.plan.result.status == PlanStatus::kInfeasible) {
-    if (outputs.wants("--certificate")) find_certificate(job, request.options, budget, answer);
+    if (outputs.wants("--certificate")) find_certificate(job, view, budget, answer);
     find_advice(request, robot, job, answer);
   }
   JobMotionPlan& plan = answer.plan;

@@ -179,6 +179,21 @@ class Jobs(WithFolder):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--certificate: is of the job as its file has it", done.stderr)
 
+    def test_a_certificate_is_that_of_the_stroke_by_itself(self):
+        ball = {"name": "ball", "sphere": {"radius": 0.02}, "xyz": [0.5, -0.1, 0.4]}
+        job = one_job(scene=[ball])
+        of_job, by_itself = self.folder / "of_job.json", self.folder / "by_itself.json"
+        done, _, _ = self.plan(job, "--certificate", of_job)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        alone = {key: value for key, value in job.items() if key not in ("home", "strokes")}
+        alone["path"] = job["strokes"][1]["path"]
+        done = run("plan", self.file(alone), "--certificate", by_itself)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        proof, other = (json.loads(file.read_text()) for file in (of_job, by_itself))
+        self.assertEqual((proof.pop("stroke"), proof.pop("reversed")), ("right", False))
+        self.assertEqual(proof, other)
+        self.assertTrue(other["witnesses"])
+
     def test_page(self):
         file, page = self.file(one_job()), self.folder / "page.html"
         done = run("plan", file, "--report", page)
