@@ -280,9 +280,9 @@ int run(const CampaignArguments& arguments) {
   const bool complete = rows.size() == options.shard.size(options.episodes);
   write_results(arguments, rows, complete, record, file, outputs);
   if (trajectories && trajectories->removed() > 0)
-    complain("swivel: removed %llu earlier trajectories in %s: there is no path now\n",
+    complain("swivel: removed %llu earlier trajectories in %s: there is no %s now\n",
              static_cast<unsigned long long>(trajectories->removed()),
-             arguments.trajectories.c_str());
+             arguments.trajectories.c_str(), drawn.job ? "job" : "path");
   return campaign_exit_code(rows, record);
 }
 

@@ -145,6 +145,15 @@ void write_rows(const JobRequest& request, const JobMotionPlan& plan, io::Output
                                       request.job.base_link, request.out));
 }
 
+/// Returns the reason for which earlier files are removed.
+const char* reason_of_removal(const JobMotionPlan& plan, const io::OutputFiles& outputs) {
+  if (plan.result.status == PlanStatus::kInfeasible) return "there is no job now";
+  if (plan.timing && !plan.timing->motion) return "there is no motion now";
+  const bool solved = plan.result.status == PlanStatus::kSolved && !plan.stopped;
+  if (solved && outputs.wants("--certificate")) return "there is a job now";
+  return "the search was stopped";
+}
+
 }  // namespace
 
 int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
@@ -182,19 +191,15 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
     outputs.write("--json", io::to_job_json(result, request.job, extras) + "\n");
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   const bool no_motion = plan.timing && !plan.timing->motion;
-  deliver(outputs,
-          infeasible  ? "there is no job now"
-          : no_motion ? "there is no motion now"
-                      : "the search was stopped",
-          [&] {
-            if (request.quiet || outputs.takes_standard_output()) return;
-            print_job(plan, request.job);
-            if (answer.proof)
-              say_text("  stroke '" + answer.proof->stroke +
-                       (answer.proof->reversed ? "' backwards: " : "': ") +
-                       certificate_text(*answer.proof, certificate_bytes));
-            if (answer.advice) say_text(advice_text(*answer.advice));
-          });
+  deliver(outputs, reason_of_removal(plan, outputs), [&] {
+    if (request.quiet || outputs.takes_standard_output()) return;
+    print_job(plan, request.job);
+    if (answer.proof)
+      say_text("  stroke '" + answer.proof->stroke +
+               (answer.proof->reversed ? "' backwards: " : "': ") +
+               certificate_text(*answer.proof, certificate_bytes));
+    if (answer.advice) say_text(advice_text(*answer.advice));
+  });
   if (infeasible || no_motion) return kNo;
   return result.status == PlanStatus::kSolved && !plan.stopped ? kOk : kStopped;
 }

@@ -66,6 +66,9 @@ class JobCampaigns(Studies):
 
     def test_rows_are_what_plan_says(self):
         paths, summary = self.folder / "paths", self.folder / "s.json"
+        paths.mkdir()
+        for episode in range(6):
+            (paths / f"episode_{episode}.csv").write_text("earlier")
         done, out = self.campaign(
             "one.csv", "--threads", 1, "--trajectories", paths, "--json", summary
         )
@@ -86,6 +89,10 @@ class JobCampaigns(Studies):
                 self.assertTrue(0 < float(row["tool_path_error_mm_mean"]) < worst <= 1)
         solved = sum(row["status"] == "solved" for row in rows)
         self.assertTrue(0 < solved < 6, rows)
+        self.assertIn(
+            f"removed {6 - solved} earlier trajectories in {paths}: there is no job now\n",
+            done.stderr
+        )
         self.assertEqual(json.loads(summary.read_text())["solved"], solved)
 
     def test_shards_and_pages(self):

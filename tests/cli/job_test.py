@@ -179,6 +179,20 @@ class Jobs(WithFolder):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--certificate: is of the job as its file has it", done.stderr)
 
+    def test_an_earlier_certificate_goes_where_there_is_a_job(self):
+        proof = self.folder / "proof.json"
+        proof.write_text("earlier")
+        done, out, _ = self.plan(one_job(), "--certificate", proof)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("there is a job now", done.stderr)
+        self.assertFalse(proof.exists())
+        self.assertTrue(out.exists())
+        proof.write_text("earlier")
+        done, _, _ = self.plan(one_job(), "--certificate", proof, "--timeout", 1e-9)
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("the search was stopped", done.stderr)
+        self.assertFalse(proof.exists())
+
     def test_a_certificate_is_that_of_the_stroke_by_itself(self):
         ball = {"name": "ball", "sphere": {"radius": 0.02}, "xyz": [0.5, -0.1, 0.4]}
         job = one_job(scene=[ball])
