@@ -7,6 +7,7 @@
 
 #include "interruptible.hpp"
 #include "job_archive.hpp"
+#include "runs.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
 
@@ -321,6 +322,24 @@ void bind_job(py::module_& m) {
       .def(
           "validate", [](const Job& job) { static_cast<void>(to_core(job)); },
           "Raises InvalidArgument, which names stroke and member, for what no job may have.")
+      .def(
+          "placed",
+          [](const Job& job, const Offset& offset, const std::optional<std::string>& object,
+             bool path, bool base) {
+            return from_core(placed_job(to_core(job), to_movable(object, path, base), offset));
+          },
+          py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
+          py::arg("base") = false,
+          "The job of one placement: an object of the scene, the paths of all strokes or the robot "
+          "moved by x y z (m) roll pitch yaw (rad) in the\n"
+          "base frame, about its own origin.")
+      .def(
+          "episode",
+          [](const Job& job, std::uint64_t seed, std::uint64_t episode) {
+            return from_core(episode_job(to_core(job), seed, episode));
+          },
+          py::arg("seed"), py::arg("episode"),
+          "The job of this episode of a campaign: objects moved as the file's `vary` says.")
       .def("__repr__", [](const Job& job) {
         return "<Job" + (job.source.empty() ? "" : " '" + job.source + "'") + ": " +
                py::repr(py::cast(Robot(job))).cast<std::string>() + ", " +

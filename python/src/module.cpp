@@ -17,8 +17,8 @@ PYBIND11_MODULE(_swivel, m) {
   swivel::python::bind_problem(m);
   swivel::python::bind_results(m);
   swivel::python::bind_planner(m);
-  swivel::python::bind_runs(m);
   swivel::python::bind_job(m);
+  swivel::python::bind_runs(m);
   swivel::python::bind_job_results(m);
   swivel::python::bind_job_functions(m);
   py::module_::import("atexit").attr("register")(

@@ -10,11 +10,13 @@
 
 #include "archive.hpp"
 #include "interruptible.hpp"
+#include "job.hpp"
 #include "plan_keywords.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/problems/job.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
@@ -356,15 +358,37 @@ class Cells {
   std::uint64_t seed_;
 };
 
-/// Plans placements of one thing with a planner that remembers earlier plans.
+/// What is planned many times: a problem, or a job.
+using Planned = std::variant<Problem, swivel::Job>;
+
+Planned to_planned(const Problem& problem) {
+  return problem;
+}
+/// Throws as to_core() does.
+Planned to_planned(const Job& job) {
+  return to_core(job);
+}
+
+/// Returns a robot for all plans of a problem or a job.
+std::shared_ptr<const PreparedRobot> prepare(const Planned& planned, const std::stop_token& stop) {
+  const Budget budget({}, nullptr, stop);
+  if (const auto* const job = std::get_if<swivel::Job>(&planned))
+    return std::make_shared<const PreparedRobot>(problem_of_run(*job, {0, false}), budget);
+  return std::make_shared<const PreparedRobot>(std::get<Problem>(planned), budget);
+}
+
+/// Plans placements of one thing; of a problem with a planner that remembers earlier plans.
 class Placer {
  public:
-  Placer(Problem problem, Movable thing, const py::object& planner, int threads,
+  Placer(Planned planned, Movable thing, const py::object& planner, int threads,
          std::optional<double> timeout)
-      : problem_(std::move(problem)),
+      : planned_(std::move(planned)),
         thing_(std::move(thing)),
         options_(to_plan_options(planner, threads, timeout)) {
-    static_cast<void>(placed_problem(problem_, thing_, {}));
+    if (const auto* const job = std::get_if<swivel::Job>(&planned_))
+      static_cast<void>(placed_job(*job, thing_, {}));
+    else
+      static_cast<void>(placed_problem(std::get<Problem>(planned_), thing_, {}));
   }
   Placements plan(const std::vector<std::uint64_t>& cells,
                   const py::array_t<double, py::array::c_style>& offsets, const py::object& each) {
@@ -386,8 +410,9 @@ class Placer {
       if (!planner_) {
         PlanOptions options = options_;
         options.stop = stop_.get_token();
-        planner_.emplace(std::make_shared<const PreparedRobot>(problem_, Budget({}, nullptr, stop)),
-                         problem_, thing_, options);
+        const auto robot = prepare(planned_, stop);
+        std::visit([&](const auto& what) { planner_.emplace(robot, what, thing_, options); },
+                   planned_);
       }
       const std::stop_callback pass_on(stop, [&] { stop_.request_stop(); });
       return planner_->plan(wanted, done);
@@ -396,7 +421,7 @@ class Placer {
   [[nodiscard]] bool stopped() const { return planner_ && planner_->stopped(); }
 
  private:
-  Problem problem_;
+  Planned planned_;
   Movable thing_;
   PlanOptions options_;
   // Stops all plans, because the planner keeps the options with which it was made.
@@ -407,9 +432,9 @@ class Placer {
 /// Plans episodes of one campaign.
 class Campaigner {
  public:
-  Campaigner(Problem problem, std::uint64_t episodes, std::uint64_t seed, const py::object& planner,
+  Campaigner(Planned planned, std::uint64_t episodes, std::uint64_t seed, const py::object& planner,
              int threads)
-      : problem_(std::move(problem)) {
+      : planned_(std::move(planned)) {
     constexpr std::uint64_t kMost = 10'000'000;
     if (episodes < 1 || episodes > kMost)
       throw InvalidArgument("episodes: " + std::to_string(episodes) + ": allowed are 1 to " +
@@ -419,30 +444,50 @@ class Campaigner {
     options_.plan = to_plan_options(planner, threads, {});
   }
   Episodes plan(const Shard& shard, const py::object& each) {
+    const std::vector<std::string> coordinates = varied_coordinates(std::visit(
+        [](const auto& what) -> const auto& { return what.vary; }, planned_));
     return to_table(interruptible([&](const std::stop_token& stop) {
-                      if (!robot_)
-                        robot_ = std::make_shared<const PreparedRobot>(problem_,
-                                                                       Budget({}, nullptr, stop));
+                      if (!robot_) robot_ = prepare(planned_, stop);
                       CampaignOptions options = options_;
                       options.shard = shard;
                       options.plan.stop = stop;
                       std::vector<EpisodeRow> rows;
-                      run_campaign(*robot_, problem_, options, [&](const EpisodeRow& row) {
+                      const auto row_done = [&](const EpisodeRow& row) {
                         rows.push_back(row);
                         if (each.ptr() == Py_None) return;
                         const py::gil_scoped_acquire gil;
-                        each(to_table(std::vector{row}, varied_coordinates(problem_.vary)));
-                      });
+                        each(to_table(std::vector{row}, coordinates));
+                      };
+                      std::visit(
+                          [&](const auto& what) { run_campaign(*robot_, what, options, row_done); },
+                          planned_);
                       return rows;
                     }),
-                    varied_coordinates(problem_.vary));
+                    coordinates);
   }
 
  private:
-  Problem problem_;
+  Planned planned_;
   CampaignOptions options_;
   std::shared_ptr<const PreparedRobot> robot_;
 };
+
+template <class Given>
+auto placer_of() {
+  return py::init([](const Given& given, const std::optional<std::string>& object, bool path,
+                     bool base, const py::object& planner, int threads,
+                     std::optional<double> timeout) {
+    return std::make_unique<Placer>(to_planned(given), to_movable(object, path, base), planner,
+                                    threads, timeout);
+  });
+}
+template <class Given>
+auto campaigner_of() {
+  return py::init([](const Given& given, std::uint64_t episodes, std::uint64_t seed,
+                     const py::object& planner, int threads) {
+    return std::make_unique<Campaigner>(to_planned(given), episodes, seed, planner, threads);
+  });
+}
 
 void bind_parts(py::module_& m) {
   py::class_<GridRefinement>(m, "_Refinement")
@@ -457,20 +502,24 @@ void bind_parts(py::module_& m) {
       .def("offsets", &Cells::offsets)
       .def("refinement", &Cells::refinement);
   py::class_<Placer>(m, "_Placer")
-      .def(py::init([](const Problem& problem, const std::optional<std::string>& object, bool path,
-                       bool base, const py::object& planner, int threads,
-                       std::optional<double> timeout) {
-        return std::make_unique<Placer>(problem, to_movable(object, path, base), planner, threads,
-                                        timeout);
-      }))
+      .def(placer_of<Problem>())
+      .def(placer_of<Job>())
       .def("plan", &Placer::plan)
       .def_property_readonly("stopped", &Placer::stopped);
   py::class_<Campaigner>(m, "_Campaigner")
-      .def(py::init<Problem, std::uint64_t, std::uint64_t, const py::object&, int>())
+      .def(campaigner_of<Problem>())
+      .def(campaigner_of<Job>())
       .def("plan",
            [](Campaigner& self, std::uint64_t index, std::uint64_t count, const py::object& each) {
              return self.plan({index, count}, each);
            });
+  m.def("_load_problem_or_job", [](const std::filesystem::path& file) {
+    auto read =
+        interruptible([&](const std::stop_token&) { return io::load_problem_or_job(file); });
+    if (auto* const job = std::get_if<swivel::Job>(&read))
+      return py::cast(from_core(std::move(*job)));
+    return py::cast(std::get<Problem>(std::move(read)));
+  });
 }
 
 }  // namespace

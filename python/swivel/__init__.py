@@ -12,7 +12,8 @@ tip. Arrays in results are read-only views, which keep alive what they show.
     else:
         print(plan.diagnosis.cause)
 
-A job of many strokes is loaded by load_job() and planned by plan_job().
+A job of many strokes is loaded by load_job() and planned by plan_job(); place() and campaign() take
+problems and jobs.
 """
 import os as _os
 

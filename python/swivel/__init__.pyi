@@ -919,6 +919,8 @@ class Job(Robot):
     @property
     def robot(self) -> Robot: ...
     def validate(self) -> None: ...
+    def placed(self, offset: ArrayLike, *, object: str | None = None, path: bool = False, base: bool = False) -> Job: ...
+    def episode(self, seed: int, episode: int) -> Job: ...
 
 def load_job(file: _File) -> Job: ...
 
@@ -1217,7 +1219,7 @@ class Episodes:
 
 # `client` is a dask.distributed.Client.
 def place(
-    problem: Problem | _File,
+    problem: Problem | Job | _File,
     *,
     object: str | None = None,
     path: bool = False,
@@ -1239,7 +1241,7 @@ def place(
     client: Any = None,
 ) -> Placements: ...
 def campaign(
-    problem: Problem | _File,
+    problem: Problem | Job | _File,
     *,
     episodes: int = 100,
     seed: int = 1,

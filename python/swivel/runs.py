@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes many plans of one problem (placements, campaigns), here or on workers of a Dask cluster."""
+"""Makes many plans of one problem or job (placements, campaigns), here or on workers of a Dask
+cluster."""
 import functools
 import os
 import threading
@@ -35,9 +36,10 @@ def place(
 
     Does what `swivel place` does.
 
-    problem: a Problem, or the name of its file. object (a name of the scene), path, base: what is
-    moved; exactly one of the three. x, y, z (m), roll, pitch, yaw (rad): by how much it is moved,
-    in the base frame, where turns are about the thing's own origin: a number, or (from, to, step).
+    problem: a Problem, a Job, or the name of a file of either. object (a name of the scene), path,
+    base: what is moved; exactly one of the three; with path, the paths of all strokes of a job. x,
+    y, z (m), roll, pitch, yaw (rad): by how much it is moved, in the base frame, where turns are
+    about the thing's own origin: a number, or (from, to, step).
     sample: number of placements drawn at random, by seed, between from and to instead of a grid.
     refine_grid: plan a coarse grid first, then cells between neighbours of unlike verdict and
     beside the best: a third of the cells at most. best: one or several of 'cost', 'clearance',
@@ -49,7 +51,9 @@ def place(
     replace those that end.
 
     Returns Placements in the order of their numbers; the rows are the same at any number of
-    threads, workers and batches. Raises InvalidArgument and InputError.
+    threads, workers and batches. Clearances, margins and speeds of a job's rows are those of its
+    strokes. Rows have no trajectories: plan(problem.placed(row.offset, base=True)), or plan_job()
+    of a job placed so, has that of a row. Raises InvalidArgument, InputError and TypeError.
     """
     problem = _loaded(problem)
     cells = _swivel._Cells([x, y, z, roll, pitch, yaw], sample, seed)
@@ -103,17 +107,18 @@ def place(
 def campaign(
     problem, *, episodes=100, seed=1, planner="parallel", threads=0, progress=None, client=None
 ):
-    """Plans many episodes: the problem with the objects of its `vary` at random poses.
+    """Plans many episodes: the problem or job with the objects of its `vary` at random poses.
 
     Does what `swivel campaign` does.
 
-    problem: a Problem, or the name of its file. episodes: how many. seed: of the random poses;
-    Problem.episode(seed, k) is the k-th episode. planner: a PlannerKind or its name. threads: 0 for
-    all cores. progress(episodes, done, of): called with new rows, the number of rows so far, and
-    the number of all rows. client: a dask.distributed.Client, as for place().
+    problem: a Problem, a Job, or the name of a file of either. episodes: how many. seed: of the
+    random poses; Problem.episode(seed, k), or Job.episode(seed, k), is the k-th episode. planner: a
+    PlannerKind or its name. threads: 0 for all cores. progress(episodes, done, of): called with new
+    rows, the number of rows so far, and the number of all rows. client: a dask.distributed.Client,
+    as for place().
 
     Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any
-    number of threads and workers. Raises InvalidArgument and InputError.
+    number of threads and workers. Raises InvalidArgument, InputError and TypeError.
     """
     here = client is None
     make = functools.partial(
@@ -136,7 +141,14 @@ def campaign(
 
 
 def _loaded(problem):
-    return _swivel.load_problem(problem) if isinstance(problem, (str, os.PathLike)) else problem
+    """Returns the Problem or Job that is given, or that the file has."""
+    if isinstance(problem, (str, os.PathLike)):
+        return _swivel._load_problem_or_job(problem)
+    if not isinstance(problem, (_swivel.Problem, _swivel.Job)):
+        raise TypeError(
+            f"problem: {type(problem).__name__}: allowed are a Problem, a Job, or a file of either"
+        )
+    return problem
 
 
 def _plan_cells(planner, batch, arrived):

@@ -103,6 +103,19 @@ class Cluster(unittest.TestCase):
         used = self.client.run(lambda: "swivel" in sys.modules)
         self.assertEqual(sorted(used.values()), [True, True])
 
+    def test_rows_of_jobs_are_those_of_one_process(self):
+        job = swivel.load_job(PROBLEM.with_name("door_job.yaml"))
+        job.resolution = swivel.Resolution(ds=0.02, dphi=0.1)
+        grid = {"base": True, "x": (-0.1, 0.1, 0.1), "y": (0, 0.1, 0.1)}
+        there, here = swivel.place(job, client=self.client, **grid), swivel.place(job, **grid)
+        self.assertEqual(bits(there), bits(here))
+        self.assertEqual(len(there), 6)
+        there, here = swivel.campaign(
+            job, episodes=20, seed=2, client=self.client
+        ), swivel.campaign(job, episodes=20, seed=2)
+        self.assertEqual(bits(there, {"plan_ms"}), bits(here, {"plan_ms"}))
+        self.assertTrue(0 < there.solved.sum() < 20)
+
     def test_a_worker_is_killed(self):
         problem = quick()
         here = swivel.place(problem, **self.GRID)

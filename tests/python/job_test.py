@@ -2,6 +2,7 @@
 # Jobs in the Python package, as a user has it. Usage: job_test.py CASE; SWIVEL is the program,
 # SWIVEL_DATA the data folder.
 import copy
+import functools
 import json
 import os
 import pickle
@@ -439,6 +440,155 @@ class JobAnswers(unittest.TestCase):
         self.assertGreater(compare.count, 500)
         # An answer holds neither robot nor scene.
         self.assertLess(len(pickle.dumps(plan.parts)), len(pickle.dumps(job)))
+
+
+class JobStudies(unittest.TestCase):
+    """Campaigns and placements of jobs."""
+
+    QUICK = ("--ds", "0.02", "--dphi", "0.1")
+    GRID = {"base": True, "x": (-0.1, 0.1, 0.1), "y": (0, 0.1, 0.1)}
+
+    @staticmethod
+    def job():
+        job = swivel.load_job(DOOR)
+        job.resolution = swivel.Resolution(ds=0.02, dphi=0.1)
+        return job
+
+    def table(self, command, *arguments):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.csv"
+            done = subprocess.run(
+                [PROGRAM, command, DOOR, *arguments, "--out", out], capture_output=True, text=True
+            )
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            return out.read_text()
+
+    def saved(self, table):
+        with tempfile.TemporaryDirectory() as folder:
+            table.save(Path(folder) / "out.csv")
+            return (Path(folder) / "out.csv").read_text()
+
+    @staticmethod
+    def without_time(text):
+        return [[*line.split(",")[:3], *line.split(",")[4:]] for line in text.splitlines()]
+
+    def test_campaigns(self):
+        job = self.job()
+        wanted = self.table("campaign", *self.QUICK, "--episodes", "6", "--seed", "2")
+        for threads in (1, 2):
+            rows = swivel.campaign(job, episodes=6, seed=2, threads=threads)
+            self.assertEqual(self.without_time(self.saved(rows)), self.without_time(wanted))
+        self.assertTrue(0 < rows.solved.sum() < 6)
+        self.assertEqual(rows.episode.tolist(), list(range(6)))
+        for k, row in enumerate(rows):
+            plan = swivel.plan_job(job.episode(2, k))
+            self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
+            self.assertEqual(bool(row.reason), not row.solved)
+
+    def test_placements(self):
+        job = self.job()
+        for arguments, keywords in (
+            (("--base", "--x", "-0.1:0.1:0.1", "--y", "0:0.1:0.1"), self.GRID),
+            (("--path", "--z", "-0.05:0.05", "--sample", "3", "--seed", "4"),
+             {"path": True, "z": (-0.05, 0.05), "sample": 3, "seed": 4}),
+            (("--object", "post", "--x", "-0.4:0.4:0.1", "--refine-grid"),
+             {"object": "post", "x": (-0.4, 0.4, 0.1), "refine_grid": True}),
+        ):
+            wanted = self.table("place", *self.QUICK, *arguments)
+            for threads in (1, 2):
+                rows = swivel.place(job, threads=threads, **keywords)
+                self.assertEqual(self.saved(rows), wanted)
+        rows = swivel.place(job, **self.GRID)
+        self.assertTrue(0 < rows.solved.sum() < len(rows))
+        for row in rows:
+            plan = swivel.plan_job(job.placed(row.offset, base=True), evidence=True)
+            self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
+            if row.solved:
+                self.assertEqual(
+                    row.clearance_margin, min(run.measures.min_margin.margin for run in plan.runs)
+                )
+
+    def test_files(self):
+        self.assertEqual(
+            self.without_time(self.saved(swivel.campaign(DOOR, episodes=2, seed=3))),
+            self.without_time(self.table("campaign", "--episodes", "2", "--seed", "3")),
+        )
+        self.assertEqual(
+            self.saved(swivel.place(str(DOOR), object="post", x=0.02)),
+            self.table("place", "--object", "post", "--x", "0.02"),
+        )
+
+    def test_progress(self):
+        seen = []
+        rows = swivel.place(
+            self.job(), **self.GRID,
+            progress=lambda part, done, of: seen.append((part[0].cell, done, of))
+        )
+        self.assertEqual(sorted(cell for cell, _, _ in seen), rows.cell.tolist())
+        self.assertEqual([(done, of) for _, done, of in seen], [(k + 1, 6) for k in range(6)])
+        seen.clear()
+        swivel.campaign(
+            self.job(), episodes=3,
+            progress=lambda part, done, of: seen.append((part[0].episode, done, of))
+        )
+        self.assertEqual(seen, [(k, k + 1, 3) for k in range(3)])
+
+    def test_timeout_and_ctrl_c(self):
+        many = {"base": True, "x": (-0.1, 0.1, 0.001), "y": (-0.1, 0.1, 0.001)}
+        seen = []
+        rows = swivel.place(
+            self.job(), timeout=1, progress=lambda part, *_: seen.append(part[0].cell), **many
+        )
+        self.assertTrue(0 < len(rows) < 201 * 201)
+        self.assertEqual(rows.cell.tolist(), sorted(seen))
+
+        def interrupt(*_):
+            os.kill(os.getpid(), signal.SIGINT)
+
+        for work in (
+            lambda: swivel.place(self.job(), progress=interrupt, **many),
+            lambda: swivel.campaign(self.job(), episodes=100000, progress=interrupt),
+        ):
+            with self.assertRaises(KeyboardInterrupt):
+                work()
+
+    def test_workers_plan_what_was_pickled(self):
+        # What a worker of a Dask cluster does with the recipe that it gets, without Dask.
+        job = self.job()
+        rows = swivel.campaign(job, episodes=4, seed=2)
+        make = functools.partial(swivel._swivel._Campaigner, job, 4, 2, "lazy", 1)
+        planners = pickle.loads(pickle.dumps(swivel.runs._Planners(make)))
+        parts = [
+            planners.plan(swivel.runs._plan_episodes, (index, 2)) for index in reversed(range(2))
+        ]
+        joined = swivel.Episodes._joined(parts)
+        self.assertEqual(
+            self.without_time(self.saved(joined)), self.without_time(self.saved(rows))
+        )
+
+    def test_refused(self):
+        job = self.job()
+        still = swivel.Job(job.robot, job.strokes, job.scene)
+        for message, function, of, keywords in (
+            ("exactly one", swivel.place, job, {"x": 0}),
+            ("'poste'", swivel.place, job, {"object": "poste", "x": 0}),
+            ("step", swivel.place, job, {"base": True, "x": (0, 1)}),
+            ("allowed for jobs are lazy and parallel", swivel.place, job,
+             {"base": True, "x": 0, "planner": "eager"}),
+            ("allowed for jobs are lazy and parallel", swivel.campaign, job, {"planner": "eager"}),
+            ("episodes: 0", swivel.campaign, job, {"episodes": 0}),
+            ("vary", swivel.campaign, still, {}),
+            ("rapid: allowed", swivel.campaign, small(rapid=2.0), {}),
+            ("exactly one", job.placed, np.zeros(6), {}),
+            ("nowhere", swivel.campaign, "nowhere.yaml", {}),
+        ):
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message) as caught:
+                function(of, **keywords)
+            self.assertNotIn("\n", str(caught.exception))
+        for wrong in (None, 3, job.robot, [job]):
+            for study in (lambda of: swivel.place(of, base=True, x=0), swivel.campaign):
+                with self.assertRaisesRegex(TypeError, "allowed are a Problem, a Job, or a file"):
+                    study(wrong)
 
 
 class JobErrors(unittest.TestCase):

@@ -48,7 +48,8 @@ class PlacementPlanner {
   std::vector<PlacementRow> plan(const std::vector<PlacementCell>& cells,
                                  const std::function<void(const PlacementRow&)>& done = {});
   /// Plans the cells again and returns their trajectories, which rows do not hold, in the order of
-  /// `cells`, without those that have no path or were not answered in time. Returns none for a job.
+  /// `cells`, without those that have no path or were not answered in time. Returns none for a job,
+  /// of which plan_job() of placed_job() gives the parts of a cell.
   [[nodiscard]] std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells);
   /// Returns true if the time ran out or work was cancelled; rows may then be missing.
   [[nodiscard]] bool stopped() const;
