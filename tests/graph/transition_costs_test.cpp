@@ -53,19 +53,20 @@ void raise_some(TransitionCosts& costs, Random& random) {
   const auto any = [&](std::size_t count) {
     return static_cast<std::size_t>(random.below(static_cast<int>(count)));
   };
-  for (std::size_t k = 0; k < costs.begins().size() / 4; ++k) {
-    const std::size_t end = any(costs.ends().size()), begin = any(costs.begins().size());
-    if (random.coin(0.2)) costs.bar_begin(begin);
+  for (std::size_t k = 0; k < costs.nodes(Side::kBegin).size() / 4; ++k) {
+    const std::size_t end = any(costs.nodes(Side::kEnd).size()),
+                      begin = any(costs.nodes(Side::kBegin).size());
+    if (random.coin(0.2)) costs.bar(Side::kBegin, begin);
     costs.raise(end, begin, random.coin(0.3) ? kUnreachable : costs.at(end, begin) + 0.5);
   }
-  if (random.coin(0.3)) costs.bar_end(any(costs.ends().size()));
+  if (random.coin(0.3)) costs.bar(Side::kEnd, any(costs.nodes(Side::kEnd).size()));
 }
 
 void expect_best_of_all_pairs(const TransitionCosts& costs, Met& met) {
-  for (std::size_t end = 0; end < costs.ends().size(); ++end) {
+  for (std::size_t end = 0; end < costs.nodes(Side::kEnd).size(); ++end) {
     TransitionCosts::Onward best;
     int equal = 0;
-    for (std::size_t begin = 0; begin < costs.begins().size(); ++begin) {
+    for (std::size_t begin = 0; begin < costs.nodes(Side::kBegin).size(); ++begin) {
       const double cost = costs.at(end, begin) + costs.rest(begin);
       if (cost == kUnreachable) continue;
       equal = cost < best.cost ? 1 : equal + (cost == best.cost);
@@ -91,7 +92,7 @@ void expect_best_ways(const Chain& chain, const Lattice& metric, Random& random,
         transitions, random_nodes(chain, 20, grid, random),
         random_nodes(chain, 1 + random.below(trial % 2 == 0 ? 20 : 1000), grid, random));
     std::vector<double> rest;
-    for (std::size_t k = 0; k < costs.begins().size(); ++k)
+    for (std::size_t k = 0; k < costs.nodes(Side::kBegin).size(); ++k)
       rest.push_back(random.coin(0.1) ? kUnreachable
                      : grid           ? 0.5 * random.below(6)
                                       : random.uniform(0, 10));

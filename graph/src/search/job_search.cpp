@@ -172,7 +172,7 @@ class JobSearch {
           take_rest(k);
           onward = costs(k).onward(end);
           if (onward.cost == kUnreachable) return false;
-          slot = costs(k).begins()[onward.begin].slot;
+          slot = costs(k).nodes(Side::kBegin)[onward.begin].slot;
         }
         if (slot < 0) return false;
         run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
@@ -180,7 +180,7 @@ class JobSearch {
       if (exists(k)) greedy_.pairs.push_back({k, end, onward.begin});
       greedy_.paths.push_back(run.path);
       greedy_costs_.push_back(run.cost_to_go->at(0, run.path.front()));
-      if (exists(k + 1)) end = index_of(costs(k + 1).ends(), run.path.back());
+      if (exists(k + 1)) end = index_of(costs(k + 1).nodes(Side::kEnd), run.path.back());
     }
     if (exists(last())) greedy_.pairs.push_back({last(), end, 0});
     return true;
@@ -192,9 +192,9 @@ class JobSearch {
       Run& run = at(k);
       const TransitionCosts& next = costs(k + 1);
       std::vector<double> exits(last_slots(run));
-      for (std::size_t end = 0; end < next.ends().size(); ++end)
-        if (next.is_barred_end(end))
-          exits[static_cast<std::size_t>(next.ends()[end].slot)] = kUnreachable;
+      for (std::size_t end = 0; end < next.nodes(Side::kEnd).size(); ++end)
+        if (next.is_barred(Side::kEnd, end))
+          exits[static_cast<std::size_t>(next.nodes(Side::kEnd)[end].slot)] = kUnreachable;
       raise_exit_costs(run, exits);
     }
   }
@@ -243,7 +243,8 @@ class JobSearch {
   std::vector<TransitionAnswer> ask(const std::vector<Pair>& pairs, bool thorough) {
     std::vector<TransitionQuestion> questions;
     for (const auto& [k, end, begin] : pairs)
-      questions.push_back({k, costs(k).ends()[end].q, costs(k).begins()[begin].q, thorough});
+      questions.push_back(
+          {k, costs(k).nodes(Side::kEnd)[end].q, costs(k).nodes(Side::kBegin)[begin].q, thorough});
     std::vector<TransitionAnswer> answers(pairs.size());
     transitions_.find(questions, answers);
     outcome_.pairs += static_cast<std::int64_t>(pairs.size());
@@ -268,7 +269,7 @@ class JobSearch {
   }
   [[nodiscard]] bool is_barred(const Pair& pair) {
     const TransitionCosts& known = costs(pair.transition);
-    return known.is_barred_end(pair.end) || known.is_barred_begin(pair.begin);
+    return known.is_barred(Side::kEnd, pair.end) || known.is_barred(Side::kBegin, pair.begin);
   }
   /// Finds out whether pairs without a known way are so since no transition can leave their end
   /// nodes or reach their begin nodes. Where one cannot, bars all such nodes beside it, so that
@@ -278,28 +279,26 @@ class JobSearch {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       if (answers[n].verdict == Verdict::kValid) continue;
       const auto& [k, end, begin] = pairs[n];
-      TransitionCosts& known = costs(k);
-      any = bar(k, true, known.ends(), end, [&](std::size_t x) { known.bar_end(x); }) || any;
-      any = bar(k, false, known.begins(), begin, [&](std::size_t x) { known.bar_begin(x); }) || any;
+      any = bar(k, Side::kEnd, end) || any;
+      any = bar(k, Side::kBegin, begin) || any;
     }
     return any;
   }
-  template <class Bar>
-  bool bar(int transition, bool of_ends, const std::vector<EndNode>& nodes, std::size_t suspect,
-           const Bar& bar) {
-    const std::pair<int, bool> side(transition, of_ends);
-    if (barred_at_.contains(side)) return false;  // all of them are known
+  bool bar(int transition, Side side, std::size_t suspect) {
+    if (barred_at_.contains({transition, side})) return false;  // all of them are known
+    TransitionCosts& known = costs(transition);
+    const std::vector<EndNode>& nodes = known.nodes(side);
     std::vector<Config> asked{nodes[suspect].q};
     std::vector<std::uint8_t> barred(1);
     transitions_.find_barred(asked, barred);
     if (!barred.front()) return false;
-    barred_at_.emplace(side, asked.front());
+    barred_at_.emplace(std::pair(transition, side), asked.front());
     asked.clear();
     for (const EndNode& node : nodes) asked.push_back(node.q);
     barred.assign(asked.size(), 0);
     transitions_.find_barred(asked, barred);
     for (std::size_t k = 0; k < nodes.size(); ++k)
-      if (barred[k]) bar(k);
+      if (barred[k]) known.bar(side, k);
     return true;
   }
   /// Raises the costs that were noted. Returns true if one of them rose.
@@ -347,7 +346,7 @@ class JobSearch {
   void raise_exits(int k) {
     Run& run = at(k);
     TransitionCosts& next = costs(k + 1);
-    const std::size_t count = next.ends().size();
+    const std::size_t count = next.nodes(Side::kEnd).size();
     run.onward.resize(count);
     std::vector<double> exits(last_slots(run), kUnreachable);
     constexpr std::size_t kEach = 64;  // ends that one thread takes at a time
@@ -360,7 +359,7 @@ class JobSearch {
         if (onward.cost == kUnreachable ||
             next.at(end, onward.begin) + next.rest(onward.begin) != onward.cost)
           onward = next.onward(end);
-        exits[static_cast<std::size_t>(next.ends()[end].slot)] = onward.cost;
+        exits[static_cast<std::size_t>(next.nodes(Side::kEnd)[end].slot)] = onward.cost;
       }
     });
     raise_exit_costs(run, exits);
@@ -381,7 +380,7 @@ class JobSearch {
   }
   void take_rest(int k) {
     std::vector<double> rest;
-    for (const EndNode& begin : costs(k).begins())
+    for (const EndNode& begin : costs(k).nodes(Side::kBegin))
       rest.push_back(at(k).cost_to_go->at(0, begin.slot));
     costs(k).set_rest(std::move(rest));
   }
@@ -397,7 +396,7 @@ class JobSearch {
       if (onward.cost == kUnreachable) return job;
       value_ = onward.cost;
       job.pairs.push_back({0, 0, onward.begin});
-      slot = costs(0).begins()[onward.begin].slot;
+      slot = costs(0).nodes(Side::kBegin)[onward.begin].slot;
     } else {
       slot = at(0).cost_to_go->first_slot();
       if (slot < 0) return job;
@@ -409,9 +408,9 @@ class JobSearch {
       run.earlier.add(run.path, *run.cost_to_go);
       job.paths.push_back(run.path);
       if (!exists(k + 1)) continue;
-      const std::size_t end = index_of(costs(k + 1).ends(), run.path.back());
+      const std::size_t end = index_of(costs(k + 1).nodes(Side::kEnd), run.path.back());
       job.pairs.push_back({k + 1, end, run.onward[end].begin});
-      if (k + 1 < last()) slot = costs(k + 1).begins()[run.onward[end].begin].slot;
+      if (k + 1 < last()) slot = costs(k + 1).nodes(Side::kBegin)[run.onward[end].begin].slot;
     }
     return job;
   }
@@ -466,15 +465,15 @@ class JobSearch {
     outcome_.transition_without_way = static_cast<std::size_t>(transition);
     const auto pair = without_way_.find(transition);
     if (pair != without_way_.end()) outcome_.pair_without_way = pair->second;
-    note_barred(transition, true, costs(transition).ends().size(), outcome_.barred_end);
-    note_barred(transition, false, costs(transition).begins().size(), outcome_.barred_begin);
+    note_barred(transition, Side::kEnd, outcome_.barred_end);
+    note_barred(transition, Side::kBegin, outcome_.barred_begin);
   }
-  void note_barred(int transition, bool of_ends, std::size_t count, std::optional<Config>& noted) {
-    const auto found = barred_at_.find({transition, of_ends});
+  void note_barred(int transition, Side side, std::optional<Config>& noted) {
+    const auto found = barred_at_.find({transition, side});
     if (found == barred_at_.end()) return;
-    for (std::size_t k = 0; k < count; ++k)
-      if (of_ends ? !costs(transition).is_barred_end(k) : !costs(transition).is_barred_begin(k))
-        return;
+    const TransitionCosts& known = costs(transition);
+    for (std::size_t k = 0; k < known.nodes(side).size(); ++k)
+      if (!known.is_barred(side, k)) return;
     noted = found->second;
   }
 
@@ -510,8 +509,8 @@ class JobSearch {
       const auto w = static_cast<std::size_t>(reach);
       return std::pair{centre < w ? 0 : centre - w, std::min(count, centre + w + 1)};
     };
-    const auto [first_end, last_end] = range(barred.end, known.ends().size());
-    const auto [first_begin, last_begin] = range(barred.begin, known.begins().size());
+    const auto [first_end, last_end] = range(barred.end, known.nodes(Side::kEnd).size());
+    const auto [first_begin, last_begin] = range(barred.begin, known.nodes(Side::kBegin).size());
     for (std::size_t end = first_end; end < last_end; ++end)
       for (std::size_t begin = first_begin; begin < last_begin; ++begin) {
         const double cost = known.at(end, begin) + known.rest(begin);
@@ -565,9 +564,9 @@ class JobSearch {
   std::vector<std::optional<TransitionCosts>> costs_;  // by transition
   std::map<int, std::array<Config, 2>> without_way_;   // by transition: the first pair
   std::map<std::size_t, int> reach_;                   // of ask_around(), by transition
-  /// One of the nodes that no transition can leave (true) or reach (false), by transition: then all
-  /// such nodes are barred.
-  std::map<std::pair<int, bool>, Config> barred_at_;
+  /// One of the nodes that no transition can leave or reach, by transition and side: then all such
+  /// nodes are barred.
+  std::map<std::pair<int, Side>, Config> barred_at_;
   struct Noted {
     Pair pair;
     double cost;

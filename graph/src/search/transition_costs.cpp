@@ -20,13 +20,12 @@ std::vector<Config> joints_of(const std::vector<EndNode>& nodes) {
 TransitionCosts::TransitionCosts(const Transitions& transitions, std::vector<EndNode> ends,
                                  std::vector<EndNode> begins)
     : transitions_(&transitions),
-      ends_(std::move(ends)),
-      begins_(std::move(begins)),
-      tree_(joints_of(begins_)),
-      raised_ends_(ends_.size()),
-      barred_ends_(ends_.size()),
-      barred_begins_(begins_.size()) {
-  set_rest(std::vector<double>(begins_.size()));
+      nodes_{std::move(ends), std::move(begins)},
+      tree_(joints_of(nodes(Side::kBegin))),
+      raised_ends_(nodes(Side::kEnd).size()) {
+  for (const Side side : {Side::kEnd, Side::kBegin})
+    barred_[index(side)].resize(nodes(side).size());
+  set_rest(std::vector<double>(nodes(Side::kBegin).size()));
 }
 
 void TransitionCosts::set_rest(std::vector<double> rest) {
@@ -36,8 +35,8 @@ void TransitionCosts::set_rest(std::vector<double> rest) {
 
 TransitionCosts::Onward TransitionCosts::onward(std::size_t end) const {
   Onward best;
-  if (barred_ends_[end]) return best;
-  const Config& from = ends_[end].q;
+  if (is_barred(Side::kEnd, end)) return best;
+  const Config& from = nodes(Side::kEnd)[end].q;
   const auto rank = [&](const Onward& x) { return std::tuple(x.cost, rest_[x.begin], x.begin); };
   tree_.search(
       [&](const Config& lower, const Config& upper) {

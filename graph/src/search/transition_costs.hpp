@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -17,34 +18,37 @@ struct EndNode {
   Config q = Config::Zero();
 };
 
+/// A side of a transition: the end nodes of the run before it, or the begin nodes of the run after
+/// it.
+enum class Side : std::uint8_t { kEnd, kBegin };
+
 /// What is known of the costs of one transition of a job, from each end node of a run to each begin
 /// node of the next: the joint distance, until a way was found that costs more. Costs only rise.
-/// Nodes are named by their indices in the lists of end and begin nodes.
+/// Nodes are named by their indices among the nodes of their side.
 class TransitionCosts {
  public:
   TransitionCosts(const Transitions& transitions, std::vector<EndNode> ends,
                   std::vector<EndNode> begins);
 
-  [[nodiscard]] const std::vector<EndNode>& ends() const { return ends_; }
-  [[nodiscard]] const std::vector<EndNode>& begins() const { return begins_; }
+  [[nodiscard]] const std::vector<EndNode>& nodes(Side side) const { return nodes_[index(side)]; }
   /// Returns the cost from an end node to a begin node; kUnreachable where there is no way.
   [[nodiscard]] double at(std::size_t end, std::size_t begin) const {
-    if (barred_ends_[end] || barred_begins_[begin]) return kUnreachable;
+    if (is_barred(Side::kEnd, end) || is_barred(Side::kBegin, begin)) return kUnreachable;
     if (raised_ends_[end]) {
       const auto found = raised_.find(key(end, begin));
       if (found != raised_.end()) return found->second;
     }
-    return transitions_->distance(ends_[end].q, begins_[begin].q);
+    return transitions_->distance(nodes(Side::kEnd)[end].q, nodes(Side::kBegin)[begin].q);
   }
   void raise(std::size_t end, std::size_t begin, double cost) {
     raised_ends_[end] = true;
     raised_[key(end, begin)] = cost;
   }
   /// Makes all transitions from an end node, or to a begin node, unreachable.
-  void bar_end(std::size_t end) { barred_ends_[end] = true; }
-  void bar_begin(std::size_t begin) { barred_begins_[begin] = true; }
-  [[nodiscard]] bool is_barred_end(std::size_t end) const { return barred_ends_[end]; }
-  [[nodiscard]] bool is_barred_begin(std::size_t begin) const { return barred_begins_[begin]; }
+  void bar(Side side, std::size_t node) { barred_[index(side)][node] = true; }
+  [[nodiscard]] bool is_barred(Side side, std::size_t node) const {
+    return barred_[index(side)][node];
+  }
 
   /// What has been asked about a pair of nodes.
   enum class Asked : std::uint8_t { kNothing, kInPassing, kThoroughly };
@@ -70,15 +74,16 @@ class TransitionCosts {
 
  private:
   [[nodiscard]] std::uint64_t key(std::size_t end, std::size_t begin) const {
-    return static_cast<std::uint64_t>(end) * begins_.size() + begin;
+    return static_cast<std::uint64_t>(end) * nodes(Side::kBegin).size() + begin;
   }
+  static constexpr std::size_t index(Side side) { return static_cast<std::size_t>(side); }
 
   const Transitions* transitions_;
-  std::vector<EndNode> ends_, begins_;
-  std::vector<double> rest_;  // by begin node
+  std::array<std::vector<EndNode>, 2> nodes_;  // by side
+  std::vector<double> rest_;                   // by begin node
   BeginTree tree_;
-  std::vector<std::uint8_t> raised_ends_;  // ends of which a pair is raised
-  std::vector<std::uint8_t> barred_ends_, barred_begins_;
+  std::vector<std::uint8_t> raised_ends_;            // ends of which a pair is raised
+  std::array<std::vector<std::uint8_t>, 2> barred_;  // by side, then node
   std::unordered_map<std::uint64_t, double> raised_;
   std::unordered_map<std::uint64_t, Asked> asked_;
 };
