@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "chance.hpp"
 #include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
@@ -17,60 +18,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-/// Returns a number in [0, 1) that the arguments alone decide.
-double chance(std::uint64_t seed, std::uint64_t a, std::uint64_t b, std::uint64_t c = 0) {
-  std::uint64_t x = seed;
-  for (const std::uint64_t y : {a, b, c}) {
-    x = (x ^ y) * 0x9e3779b97f4a7c15ull;
-    x ^= x >> 29;
-    x *= 0xbf58476d1ce4e5b9ull;
-    x ^= x >> 32;
-  }
-  return static_cast<double>(x >> 11) * 0x1.0p-53;
-}
-
-/// A validity of which chance decides: shares of nodes and edges fail, and nodes may cost
-/// something.
-class FakeValidity : public Validity {
- public:
-  FakeValidity(const Lattice& lattice, std::uint64_t seed, double nodes_fail, double edges_fail,
-               double cost)
-      : lattice_(&lattice),
-        seed_(seed),
-        nodes_fail_(nodes_fail),
-        edges_fail_(edges_fail),
-        cost_(cost) {}
-  [[nodiscard]] bool node(int layer, int slot) const {
-    return chance(seed_, as(layer), as(slot)) >= nodes_fail_;
-  }
-  [[nodiscard]] bool edge(int layer, int a, int b) const {
-    return chance(seed_ + 1, as(layer), as(a), as(b)) >= edges_fail_;
-  }
-  [[nodiscard]] double cost(int layer, int slot) const {
-    return cost_ == 0 ? 0 : lattice_->rounded_cost(cost_ * chance(seed_ + 2, as(layer), as(slot)));
-  }
-  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
-    for (std::size_t k = 0; k < questions.size(); ++k)
-      answers[k].valid = node(questions[k].layer, questions[k].slot);
-  }
-  void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override {
-    for (std::size_t k = 0; k < questions.size(); ++k)
-      answers[k] = edge(questions[k].layer, questions[k].a, questions[k].b);
-  }
-  [[nodiscard]] bool asks_edges() const override { return edges_fail_ > 0; }
-  void costs(std::span<const NodeQuestion> questions, std::span<double> costs) override {
-    for (std::size_t k = 0; k < questions.size(); ++k)
-      costs[k] = cost(questions[k].layer, questions[k].slot);
-  }
-  [[nodiscard]] bool asks_costs() const override { return cost_ > 0; }
-
- private:
-  static std::uint64_t as(int x) { return static_cast<std::uint64_t>(x); }
-  const Lattice* lattice_;
-  std::uint64_t seed_;
-  double nodes_fail_, edges_fail_, cost_;
-};
 
 /// Transitions of which chance decides: most straight moves are free, some lead around something,
 /// some have no way, and at some nodes none can begin or end. In passing, some ways around are
@@ -144,7 +91,7 @@ class FakeTransitions : public Transitions {
 struct RandomJob {
   std::vector<std::unique_ptr<ToolPath>> paths;
   std::vector<std::unique_ptr<Lattice>> lattices;
-  std::vector<std::unique_ptr<FakeValidity>> validities;
+  std::vector<std::unique_ptr<ChanceValidity>> validities;
   std::unique_ptr<FakeTransitions> transitions;
   std::optional<Config> home;
 };
@@ -191,7 +138,7 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
       job.lattices.push_back(std::make_unique<SrsLattice>(arm.chain, srs, path, problem));
     else
       job.lattices.push_back(random_list(arm.chain, path, problem, q0, random));
-    job.validities.push_back(std::make_unique<FakeValidity>(
+    job.validities.push_back(std::make_unique<ChanceValidity>(
         *job.lattices.back(), base + static_cast<std::uint64_t>(10 * k), nodes_fail, edges_fail,
         cost));
   }
@@ -219,7 +166,7 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
   std::vector<Lattice::Node> nodes, next;
   for (int k = runs - 1; k >= 0; --k) {
     const Lattice& lattice = *job.lattices[static_cast<std::size_t>(k)];
-    const FakeValidity& validity = *job.validities[static_cast<std::size_t>(k)];
+    const ChanceValidity& validity = *job.validities[static_cast<std::size_t>(k)];
     std::vector<double> values, own, after, after_own;
     for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
       lattice.layer_nodes(layer, nodes);
@@ -297,7 +244,7 @@ void expect_valid(const RandomJob& job, const JobOutcome& found, const std::stri
   std::optional<Config> before = job.home;
   for (std::size_t k = 0; k < job.lattices.size(); ++k) {
     const Lattice& lattice = *job.lattices[k];
-    const FakeValidity& validity = *job.validities[k];
+    const ChanceValidity& validity = *job.validities[k];
     const SlotPath& path = found.paths[k];
     ASSERT_EQ(static_cast<int>(path.size()), lattice.layers()) << what;
     const Config first = *lattice.node(0, path[0]);

@@ -10,6 +10,7 @@
 #include <thread>
 #include <tuple>
 
+#include "chance.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -24,46 +25,19 @@ std::size_t at(int k) {
   return static_cast<std::size_t>(k);
 }
 
-/// Returns a number in [0, 1) that the arguments alone decide.
-double chance(std::uint64_t seed, int a, int b, int c = 0) {
-  std::uint64_t x = seed;
-  for (const int y : {a, b, c}) {
-    x = (x ^ static_cast<std::uint64_t>(y)) * 0x9e3779b97f4a7c15ull;
-    x ^= x >> 29;
-    x *= 0xbf58476d1ce4e5b9ull;
-    x ^= x >> 32;
-  }
-  return static_cast<double>(x >> 11) * 0x1.0p-53;
-}
-
 constexpr int kNoEnd = 1 << 30;
 
-/// A validity of which chance decides: shares of nodes and edges fail by one of three causes, and
-/// nodes may cost something. Counts questions that are asked again.
-class FakeValidity : public Validity {
+/// A validity of which chance decides, whose nodes fail by one of three causes. Counts questions
+/// that are asked again.
+class FakeValidity : public ChanceValidity {
  public:
-  FakeValidity(const Lattice& lattice, std::uint64_t seed, double nodes_fail, double edges_fail,
-               double cost)
-      : lattice_(&lattice),
-        seed_(seed),
-        nodes_fail_(nodes_fail),
-        edges_fail_(edges_fail),
-        cost_(cost) {}
-  [[nodiscard]] bool node(int layer, int slot) const {
-    return chance(seed_, layer, slot) >= nodes_fail_;
-  }
-  [[nodiscard]] bool edge(int layer, int a, int b) const {
-    return chance(seed_ + 1, layer, a, b) >= edges_fail_;
-  }
-  [[nodiscard]] double cost(int layer, int slot) const {
-    return cost_ == 0 ? 0 : lattice_->rounded_cost(cost_ * chance(seed_ + 2, layer, slot));
-  }
+  using ChanceValidity::ChanceValidity;
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
     count(questions.size());
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const auto& [layer, slot, q, suspected, only_scene] = questions[k];
       nodes_twice += !only_scene && !nodes_.insert({layer, slot}).second;
-      wrong += *lattice_->node(layer, slot) != q;
+      wrong += *lattice().node(layer, slot) != q;
       answers[k] = {.valid = node(layer, slot)};
       if (answers[k].valid) continue;
       answers[k].failure = slot % 3;
@@ -75,16 +49,10 @@ class FakeValidity : public Validity {
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const EdgeQuestion& x = questions[k];
       edges_twice += !edges_.insert({x.layer, x.a, x.b}).second;
-      wrong += *lattice_->node(x.layer, x.a) != x.qa || *lattice_->node(x.layer + 1, x.b) != x.qb;
+      wrong += *lattice().node(x.layer, x.a) != x.qa || *lattice().node(x.layer + 1, x.b) != x.qb;
       answers[k] = edge(x.layer, x.a, x.b);
     }
   }
-  [[nodiscard]] bool asks_edges() const override { return edges_fail_ > 0; }
-  void costs(std::span<const NodeQuestion> questions, std::span<double> costs) override {
-    for (std::size_t k = 0; k < questions.size(); ++k)
-      costs[k] = cost(questions[k].layer, questions[k].slot);
-  }
-  [[nodiscard]] bool asks_costs() const override { return cost_ > 0; }
   void forget() {
     nodes_.clear();
     edges_.clear();
@@ -97,9 +65,6 @@ class FakeValidity : public Validity {
     asked += static_cast<int>(questions);
     if (asked > most_asked) throw Stopped();
   }
-  const Lattice* lattice_;
-  std::uint64_t seed_;
-  double nodes_fail_, edges_fail_, cost_;
   std::set<std::pair<int, int>> nodes_;
   std::set<std::tuple<int, int, int>> edges_;
 };
@@ -124,7 +89,7 @@ class FakeBetween : public Between {
     if (random.coin(0.5)) move_width_ = random.uniform(0.05, 0.4);
   }
   [[nodiscard]] double place(int arm, int layer, int slot) const {
-    if (scattered_) return chance(seed_ + at(arm), layer, slot);
+    if (scattered_) return chance(seed_ + at(arm), at(layer), at(slot));
     return (slot + 0.5) / (*lattices_)[at(arm)]->slots(layer);
   }
   [[nodiscard]] double off(double p, double q, int layer) const {
