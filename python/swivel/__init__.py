@@ -42,7 +42,7 @@ for _name in __all__:
     _thing.__module__ = __name__
     if hasattr(_thing, "__members__"):
         _thing.__reduce__ = lambda member: (getattr, (type(member), member.name))
-    elif hasattr(_thing, "__setstate__"):
+    elif hasattr(_thing, "__setstate__") and not issubclass(_thing, Exception):
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
 campaign.__module__ = place.__module__ = __name__
 __all__ += [

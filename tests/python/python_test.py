@@ -1157,6 +1157,12 @@ class Pickles(unittest.TestCase):
             self.same(thing, pickle.loads(pickle.dumps(thing, protocol)), type(thing).__name__)
         return pickle.loads(pickle.dumps(thing))
 
+    def test_errors_keep_their_message(self):
+        for kind in (swivel.InputError, swivel.InvalidArgument):
+            again = pickle.loads(pickle.dumps(kind("a.yaml:3: ds: allowed are numbers above 0")))
+            self.assertIs(type(again), kind)
+            self.assertEqual(str(again), "a.yaml:3: ds: allowed are numbers above 0")
+
     def test_problems(self):
         for file in sorted(PROBLEMS.glob("*.yaml")):
             if file.stem.endswith("_job"):
