@@ -64,7 +64,7 @@ struct JobAnswer {
 };
 
 /// Proves that a stroke of the job has no path, if one has none, from what the plan found out about
-/// it. Adds a warning to the result if all have one, or if the budget ends first.
+/// it. Adds a warning to the result if none is known to have none, or if the budget ends first.
 void find_certificate(const Job& job, const JobView& view, const Budget& budget,
                       JobAnswer& answer) {
   JobResult& result = answer.plan.result;
@@ -72,7 +72,9 @@ void find_certificate(const Job& job, const JobView& view, const Budget& budget,
     return one.status == PlanStatus::kInfeasible;
   });
   if (run == result.runs.end()) {
-    result.warnings.push_back("each stroke has a path by itself: there is no certificate");
+    result.warnings.push_back(result.runs.empty()  // where home is barred
+                                  ? "no stroke was planned by itself: there is no certificate"
+                                  : "each stroke has a path by itself: there is no certificate");
     return;
   }
   try {

@@ -208,6 +208,16 @@ class Jobs(WithFolder):
         self.assertEqual(proof, other)
         self.assertTrue(other["witnesses"])
 
+    def test_no_certificate_where_home_is_barred(self):
+        wall = {"name": "wall", "box": [4, 4, 4], "xyz": [0, 0, 0]}
+        proof = self.folder / "proof.json"
+        done, _, result = self.plan(one_job(scene=[wall]), "--certificate", proof)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertTrue(done.stdout.startswith("no job: at home "), done.stdout)
+        warning = "no stroke was planned by itself: there is no certificate"
+        self.assertIn(warning, result["warnings"])
+        self.assertFalse(proof.exists())
+
     def test_page(self):
         file, page = self.file(one_job()), self.folder / "page.html"
         done = run("plan", file, "--report", page)
