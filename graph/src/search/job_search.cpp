@@ -330,7 +330,7 @@ class JobSearch {
     }
     outcome_.bound = std::min(value_, outcome_.cost);
     if (!raised_) outcome_.bound_any = outcome_.bound;
-    if (outcome_.cost <= value_) return false;
+    if (outcome_.cost <= value_ || value_ >= options_.most_cost) return false;
     if (!validate_runs() || raise_noted()) return true;
     return !take_if_transitions_hold(job);
   }

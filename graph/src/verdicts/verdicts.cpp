@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/graph/verdicts/verdicts.hpp"
 
+#include <stdexcept>
+
 namespace swivel {
 
 Verdicts::Verdicts(const Lattice& lattice) : lattice_(&lattice) {
@@ -109,6 +111,19 @@ void Verdicts::raise_exit_costs(std::span<const double> costs) {
     exit_costs_[slot] = costs[slot];
     raised->push_back({static_cast<int>(slot), by});
   }
+}
+
+void Verdicts::forget_exit_costs() {
+  if (exit_costs_.empty()) return;
+  if (!cost_known_.empty())
+    throw std::logic_error("exit costs cannot be told from what nodes of the last layer cost");
+  const int last = static_cast<int>(first_.size()) - 1;
+  std::vector<double>& costs = costs_of(last);
+  for (std::size_t slot = 0; slot < costs.size(); ++slot)
+    costs[slot] =
+        lattice_->has_node_costs() ? lattice_->node_cost(last, static_cast<int>(slot)) : 0.0;
+  exit_costs_.clear();
+  pending.erase(last);
 }
 
 const Verdicts::RemovedEdges* Verdicts::removed_edges(int layer) const {

@@ -53,7 +53,9 @@ struct PlannedRun {
   EdgeRule rule;
   ToolPath path;
   std::unique_ptr<Lattice> lattice;
+  /// Of the last job that the run was searched in. What it knows of nodes and edges holds in any.
   std::unique_ptr<CostToGo> cost_to_go;
+  std::int64_t ik_nodes_before = 0, edges_before = 0;  // counts of cost_to_go before this search
   Executor alone{1};
   std::optional<CollisionValidity> validity;
   std::optional<HookedValidity> hooked;
@@ -61,13 +63,73 @@ struct PlannedRun {
   std::optional<Planner> alone_plan;
 };
 
+/// The runs of a job's strokes, each made when it is first asked for, and the worlds that they are
+/// in. Jobs in several orders share them.
+class JobRuns {
+ public:
+  JobRuns(const PreparedRobot& robot, const Job& job, const Budget& budget)
+      : robot_(robot), job_(job), budget_(budget) {}
+
+  /// Returns the world of the job's bodies with some limits. Runs with equal limits share it.
+  const World& world_of(const Limits& limits, const Problem& problem) {
+    for (const auto& [known, world] : worlds_)
+      if (known == limits) return world;
+    worlds_.emplace_back(
+        limits, World(worlds_.empty() ? robot_.world() : worlds_.front().second, problem, budget_));
+    return worlds_.back().second;
+  }
+  /// Returns runs in their order; those that are not known yet are made on the threads of
+  /// `executor`. Throws InputError and Stopped.
+  std::vector<std::shared_ptr<PlannedRun>> in_order(const std::vector<StrokeRun>& order,
+                                                    Executor& executor) {
+    std::vector<std::pair<StrokeRun, Problem>> missing;
+    std::vector<const World*> worlds;
+    for (const StrokeRun& run : order) {
+      if (find(run)) continue;
+      missing.emplace_back(run, problem_of_run(job_, run));
+      worlds.push_back(&world_of(missing.back().second.limits, missing.back().second));
+    }
+    std::vector<std::shared_ptr<PlannedRun>> made(missing.size());
+    executor.for_each(static_cast<int>(missing.size()), [&](int k, int) {
+      const auto i = static_cast<std::size_t>(k);
+      made[i] = std::make_shared<PlannedRun>(missing[i].first, std::move(missing[i].second), robot_,
+                                             *worlds[i], budget_);
+    });
+    known_.insert(known_.end(), made.begin(), made.end());
+    std::vector<std::shared_ptr<PlannedRun>> runs;
+    for (const StrokeRun& run : order) runs.push_back(find(run));
+    return runs;
+  }
+  /// Returns a run like `run` with another lattice, which is no other job's.
+  [[nodiscard]] std::shared_ptr<PlannedRun> with_lattice(const PlannedRun& run,
+                                                         std::unique_ptr<Lattice> lattice) const {
+    auto other = std::make_shared<PlannedRun>(run.run, run.problem, robot_, *run.world, budget_);
+    other->lattice = std::move(lattice);
+    return other;
+  }
+
+ private:
+  [[nodiscard]] std::shared_ptr<PlannedRun> find(const StrokeRun& run) const {
+    for (const auto& known : known_)
+      if (known->run == run) return known;
+    return nullptr;
+  }
+  const PreparedRobot& robot_;
+  const Job& job_;
+  const Budget& budget_;
+  std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
+  std::vector<std::shared_ptr<PlannedRun>> known_;
+};
+
 class JobPlan {
  public:
   /// Prepares the plan of a job in an order. With `one_branch`, no run of an S-R-S arm changes its
   /// branch.
   JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-          const Budget& budget, std::vector<StrokeRun> order, bool one_branch)
+          const Budget& budget, std::shared_ptr<JobRuns> shared, std::vector<StrokeRun> order,
+          bool one_branch)
       : robot_(robot),
+        shared_(std::move(shared)),
         order_(std::move(order)),
         chain_(robot.arm().chain),
         job_(job),
@@ -78,8 +140,11 @@ class JobPlan {
     if (one_branch) hooks_.check = std::make_shared<KeepsBranch>(robot.srs());
   }
 
-  JobResult plan() {
+  /// Searches for a job that costs less than `most_cost`. The result has no parts where there is
+  /// none; finish() completes it.
+  const JobResult& search(double most_cost) {
     const TraceSpan span("plan job");
+    most_cost_ = most_cost;
     result_.planner = to_string(options_.planner);
     result_.threads = executor_.threads();
     result_.joint_names = chain_.joint_names;
@@ -90,6 +155,17 @@ class JobPlan {
       result_.time_ms["lattice"] = watch.lap();
       find();
       result_.time_ms["find"] = watch.lap();
+    } catch (const Stopped&) {
+      stopped_ = result_.parts.empty();
+      if (stopped_) result_.status = stopped_status();
+    }
+    return result_;
+  }
+  /// Proves and measures the job that was found, or finds out why there is none.
+  JobResult finish() {
+    if (stopped_) return std::move(result_);
+    try {
+      Stopwatch watch;
       if (options_.check && !result_.parts.empty()) {
         require_passed(
             check_job(robot_, job_, result_.parts, {.margins = false, .budget = budget_}));
@@ -129,32 +205,12 @@ class JobPlan {
             [this](int parts, const auto& body) { executor_.for_each(parts, body); }};
   }
 
-  /// Returns the world of the job's bodies with some limits. Runs with equal limits share it.
-  const World& world_of(const Limits& limits, const Problem& problem) {
-    for (const auto& [known, world] : worlds_)
-      if (known == limits) return world;
-    worlds_.emplace_back(
-        limits, World(worlds_.empty() ? robot_.world() : worlds_.front().second, problem, budget_));
-    return worlds_.back().second;
-  }
-
   void lay_out() {
     require_home_within_limits();
-    std::vector<std::pair<Problem, const World*>> of;
-    for (const StrokeRun& run : order_) {
-      Problem problem = problem_of_run(job_, run);
-      const World& world = world_of(problem.limits, problem);
-      of.emplace_back(std::move(problem), &world);
-    }
-    Problem between = of.front().first;
+    runs_ = shared_->in_order(order_, executor_);
+    Problem between = runs_.front()->problem;
     between.limits = transition_limits_;
-    transition_world_ = &world_of(transition_limits_, between);
-    runs_.resize(order_.size());
-    executor_.for_each(static_cast<int>(order_.size()), [&](int k, int) {
-      const auto i = static_cast<std::size_t>(k);
-      runs_[i] = std::make_unique<PlannedRun>(order_[i], std::move(of[i].first), robot_,
-                                              *of[i].second, budget_);
-    });
+    transition_world_ = &shared_->world_of(transition_limits_, between);
     collect_warnings();
   }
   void collect_warnings() {
@@ -195,12 +251,7 @@ class JobPlan {
         result_.parts = std::move(parts);
         return;
       }
-      for (const auto& run : runs_) {
-        run->hooked.reset();
-        run->validity.reset();
-        run->cost_to_go.reset();
-        run->lattice = run->lattice->with_windings(off);
-      }
+      for (auto& run : runs_) run = shared_->with_lattice(*run, run->lattice->with_windings(off));
     }
   }
   [[nodiscard]] DistanceProofs distance_proofs() const {
@@ -232,8 +283,15 @@ class JobPlan {
   JobOutcome search(JobTransitions& transitions) {
     std::vector<SearchedRun> searched;
     for (const auto& run : runs_) {
-      run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget_);
-      run->cost_to_go->set_single_use();
+      if (run->cost_to_go) {
+        run->cost_to_go->verdicts().forget_exit_costs();
+      } else {
+        run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget_);
+        run->cost_to_go->set_single_use();
+      }
+      run->ik_nodes_before = run->cost_to_go->ik_nodes();
+      run->edges_before = run->cost_to_go->edges();
+      run->hooked.reset();
       run->validity.emplace(*run->lattice, *run->world, run->rule, run->problem.limits.edges,
                             distance_proofs(), run->alone, 1, budget_);
       run->hooked.emplace(*run->lattice, *run->validity, hooks_, budget_);
@@ -242,6 +300,7 @@ class JobPlan {
     JobSearchOptions options;
     options.paths.batch = 8;
     options.work = work();
+    options.most_cost = most_cost_;
     return search_job(searched, transitions, job_.home, options);
   }
 
@@ -290,8 +349,8 @@ class JobPlan {
   }
   void add_counters(const PlannedRun& run) {
     Counters& sum = result_.counters;
-    sum.ik_nodes += run.cost_to_go->ik_nodes();
-    sum.edges += run.cost_to_go->edges();
+    sum.ik_nodes += run.cost_to_go->ik_nodes() - run.ik_nodes_before;
+    sum.edges += run.cost_to_go->edges() - run.edges_before;
     sum.nodes_checked += run.validity->nodes_checked();
     sum.edges_checked += run.validity->edges_checked();
     add_collision(run.validity->counters());
@@ -360,6 +419,7 @@ class JobPlan {
   }
 
   const PreparedRobot& robot_;
+  std::shared_ptr<JobRuns> shared_;
   std::vector<StrokeRun> order_;
   const Chain& chain_;
   const Job& job_;
@@ -368,9 +428,10 @@ class JobPlan {
   Budget budget_;
   Hooks hooks_;
   Executor executor_;
-  std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
+  double most_cost_ = kUnreachable;
+  bool stopped_ = false;  // before there was a job or a verdict
   const World* transition_world_ = nullptr;
-  std::vector<std::unique_ptr<PlannedRun>> runs_;
+  std::vector<std::shared_ptr<PlannedRun>> runs_;
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
   JobResult result_;
 };
@@ -381,7 +442,8 @@ std::vector<StrokeRun> given_order(const Job& job) {
   return order;
 }
 
-/// Plans a job in the cheapest orders by estimate.
+/// Plans a job in its given order, or in the cheapest that is found: the cheapest one by estimate,
+/// and then orders that differ from the best so far by one move, the cheapest by estimate first.
 class OrderSearch {
  public:
   /// Keeps the plan of the best job for `view`, unless that is null.
@@ -392,24 +454,29 @@ class OrderSearch {
         options_(options),
         budget_(budget),
         one_branch_(one_branch),
-        view_(view) {}
+        view_(view),
+        runs_(std::make_shared<JobRuns>(robot, job, budget)) {}
 
   JobResult plan() {
-    const std::vector<StrokeRun> given = given_order(job_);
-    Stopwatch watch;
     double order_ms = 0;
     if (job_.order == StrokeOrder::kBest) {
       try {
+        Stopwatch watch;
         estimate();
         std::vector<StrokeRun> order = cheapest_order(costs_, budget_);
         order_ms = watch.lap();
         plan_feasible(std::move(order));
+        improve();
       } catch (const Stopped&) {  // the given order is left
       }
     }
-    if (!best_ || best_->parts.empty() || may_be_cheaper(given)) take(given);
-    if (job_.order == StrokeOrder::kBest) best_->time_ms["order"] = order_ms;
-    return std::move(*best_);
+    if (!best_ || best_cost_ == kUnreachable) take(given_order(job_));
+    JobResult found = best_->finish();
+    found.counters = counters_;
+    found.transitions = transitions_;
+    if (job_.order == StrokeOrder::kBest) found.time_ms["order"] = order_ms;
+    if (view_ != nullptr) view_->runs = best_->views(), view_->owner = best_;
+    return found;
   }
 
  private:
@@ -424,14 +491,16 @@ class OrderSearch {
   /// its end or end at its begin.
   std::optional<StrokeRun> take(const std::vector<StrokeRun>& order) {
     const auto plan =
-        std::make_shared<JobPlan>(robot_, job_, options_, budget_, order, one_branch_);
-    JobResult found = plan->plan();
+        std::make_shared<JobPlan>(robot_, job_, options_, budget_, runs_, order, one_branch_);
+    const JobResult& found = plan->search(best_cost_);
     const std::optional<StrokeRun> impossible = impossible_run(found);
-    if (!best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost))) {
-      best_ = std::move(found);
-      if (view_ != nullptr) view_->runs = plan->views(), view_->owner = plan;
+    add(found);
+    if (!best_ || (!found.parts.empty() && found.cost < best_cost_)) {
+      best_ = plan;
+      best_order_ = order;
+      if (!found.parts.empty()) best_cost_ = found.cost;
     }
-    planned_ = order;
+    planned_.push_back(order);
     return impossible;
   }
   static std::optional<StrokeRun> impossible_run(const JobResult& found) {
@@ -454,18 +523,41 @@ class OrderSearch {
       order = next;
     }
   }
+  /// Plans the given order and orders that differ by one move from the best one, as many as are
+  /// likely to find a cheaper job: estimates, which know no obstacles, are off by some per cent.
+  void improve() {
+    constexpr int kMostOrders = 16;
+    if (best_cost_ == kUnreachable) return;
+    if (!was_planned(given_order(job_))) take(given_order(job_));
+    for (int k = 0; k < kMostOrders; ++k) {
+      const auto next = cheapest_neighbour(costs_, best_order_, planned_, budget_);
+      if (!next) return;
+      if (const auto barred = take(*next); barred && job_.strokes[barred->stroke].reversible)
+        forbid(*barred);
+    }
+  }
+  /// Adds what one search did to what all did.
+  void add(const JobResult& found) {
+    counters_.ik_nodes += found.counters.ik_nodes;
+    counters_.edges += found.counters.edges;
+    counters_.nodes_checked += found.counters.nodes_checked;
+    counters_.edges_checked += found.counters.edges_checked;
+    counters_.fcl_calls += found.counters.fcl_calls;
+    counters_.proved_free += found.counters.proved_free;
+    counters_.proved_colliding += found.counters.proved_colliding;
+    transitions_.pairs += found.transitions.pairs;
+    transitions_.searches += found.transitions.searches;
+    transitions_.rounds += found.transitions.rounds;
+  }
+  [[nodiscard]] bool was_planned(const std::vector<StrokeRun>& order) const {
+    return std::find(planned_.begin(), planned_.end(), order) != planned_.end();
+  }
   void forbid(const StrokeRun& run) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const std::size_t k = 2 * run.stroke + (run.reversed ? 1 : 0);
     costs_.first[k] = costs_.last[k] = kNever;
     costs_.follow[k].assign(costs_.follow[k].size(), kNever);
     for (std::vector<double>& next : costs_.follow) next[k] = kNever;
-  }
-  /// Returns true if an order was not the last one planned and is estimated to cost hardly more.
-  [[nodiscard]] bool may_be_cheaper(const std::vector<StrokeRun>& order) const {
-    constexpr double kHardlyMore = 1.1;  // estimates are off by some per cent
-    return order != planned_ &&
-           cost_of_order(costs_, order) <= kHardlyMore * cost_of_order(costs_, planned_);
   }
 
   const PreparedRobot& robot_;
@@ -474,9 +566,14 @@ class OrderSearch {
   const Budget& budget_;
   bool one_branch_;
   JobView* view_;
+  std::shared_ptr<JobRuns> runs_;
   OrderCosts costs_;
-  std::optional<JobResult> best_;
-  std::vector<StrokeRun> planned_;  // the last order
+  std::shared_ptr<JobPlan> best_;
+  std::vector<StrokeRun> best_order_;
+  double best_cost_ = kUnreachable;
+  std::vector<std::vector<StrokeRun>> planned_;  // orders, all so far
+  Counters counters_;                            // of all searches, like the next
+  TransitionCounters transitions_;
 };
 
 JobResult plan_in_order(const PreparedRobot& robot, const Job& job, const PlanOptions& options,

@@ -22,6 +22,12 @@ std::vector<StrokeRun> as_order(const Runs& runs) {
   return order;
 }
 
+Runs as_runs(const std::vector<StrokeRun>& order) {
+  Runs runs;
+  for (const StrokeRun& run : order) runs.push_back(2 * run.stroke + (run.reversed ? 1 : 0));
+  return runs;
+}
+
 double cost_of(const OrderCosts& costs, const Runs& runs) {
   double cost = costs.first[runs.front()] + costs.last[runs.back()];
   for (std::size_t k = 1; k < runs.size(); ++k) cost += costs.follow[runs[k - 1]][runs[k]];
@@ -92,19 +98,11 @@ Runs nearest_next(const OrderCosts& costs, std::size_t first) {
   return order;
 }
 
-/// Takes `tried` if it is cheaper than `order`.
-bool take_if_cheaper(const OrderCosts& costs, const Runs& tried, Runs& order, double& cost) {
-  const double of_tried = cost_of(costs, tried);
-  if (!(of_tried < cost)) return false;
-  order = tried;
-  cost = of_tried;
-  return true;
-}
-
-/// Improves an order by the first cheaper one among those with a stroke turned round, a stretch
-/// turned round, or up to three strokes moved elsewhere, either way round. Returns false if there
-/// is none.
-bool improve(const OrderCosts& costs, Runs& order, double& cost) {
+/// Calls `visit` with each order that differs from `order` by one move, until it returns true: with
+/// a stroke turned round, a stretch turned round, or up to three strokes moved elsewhere, either
+/// way round. Returns whether one did.
+template <class Visit>
+bool any_neighbour(const Runs& order, const Visit& visit) {
   const std::size_t n = order.size();
   const auto turn = [](Runs& runs, std::size_t first, std::size_t last) {
     std::reverse(runs.begin() + static_cast<std::ptrdiff_t>(first),
@@ -116,10 +114,10 @@ bool improve(const OrderCosts& costs, Runs& order, double& cost) {
     for (std::size_t last = first + 1; last <= n; ++last) {
       tried = order;
       turn(tried, first, last);
-      if (take_if_cheaper(costs, tried, order, cost)) return true;
+      if (visit(tried)) return true;
       // a stretch in the other order, each stroke in its own direction
       for (std::size_t k = first; k < last; ++k) tried[k] ^= 1;
-      if (take_if_cheaper(costs, tried, order, cost)) return true;
+      if (visit(tried)) return true;
     }
   for (std::size_t length = 1; length <= 3 && length < n; ++length)
     for (std::size_t first = 0; first + length <= n; ++first)
@@ -132,9 +130,21 @@ bool improve(const OrderCosts& costs, Runs& order, double& cost) {
           tried.erase(at, at + static_cast<std::ptrdiff_t>(length));
           if (turned) turn(moved, 0, length);
           tried.insert(tried.begin() + static_cast<std::ptrdiff_t>(to), moved.begin(), moved.end());
-          if (take_if_cheaper(costs, tried, order, cost)) return true;
+          if (visit(tried)) return true;
         }
   return false;
+}
+
+/// Improves an order by the first cheaper one among its neighbours. Returns false if there is none.
+bool improve(const OrderCosts& costs, Runs& order, double& cost) {
+  const Runs from = order;
+  return any_neighbour(from, [&](const Runs& tried) {
+    const double of_tried = cost_of(costs, tried);
+    if (!(of_tried < cost)) return false;
+    order = tried;
+    cost = of_tried;
+    return true;
+  });
 }
 
 Runs searched_order(const OrderCosts& costs, const Budget& budget) {
@@ -155,9 +165,27 @@ Runs searched_order(const OrderCosts& costs, const Budget& budget) {
 }  // namespace
 
 double cost_of_order(const OrderCosts& costs, const std::vector<StrokeRun>& order) {
-  Runs runs;
-  for (const StrokeRun& run : order) runs.push_back(2 * run.stroke + (run.reversed ? 1 : 0));
-  return cost_of(costs, runs);
+  return cost_of(costs, as_runs(order));
+}
+
+std::optional<std::vector<StrokeRun>> cheapest_neighbour(
+    const OrderCosts& costs, const std::vector<StrokeRun>& order,
+    const std::vector<std::vector<StrokeRun>>& others, const Budget& budget) {
+  if (order.size() > kMostLocal) return std::nullopt;
+  std::vector<Runs> left_out;
+  for (const std::vector<StrokeRun>& other : others) left_out.push_back(as_runs(other));
+  Runs best;
+  double least = kNone;
+  any_neighbour(as_runs(order), [&](const Runs& tried) {
+    const double cost = cost_of(costs, tried);
+    if (!(cost < least) || std::find(left_out.begin(), left_out.end(), tried) != left_out.end())
+      return false;
+    budget.poll();
+    best = tried;
+    least = cost;
+    return false;
+  });
+  return best.empty() ? std::nullopt : std::optional(as_order(best));
 }
 
 std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget) {

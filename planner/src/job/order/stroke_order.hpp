@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
@@ -25,5 +26,13 @@ struct OrderCosts {
 /// of local searches from some first runs, fewer the more strokes there are, which move stretches
 /// of up to three strokes and turn stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget);
+
+/// Returns the cheapest order but those of `others` that differs from `order` by one move: a
+/// stretch of strokes turned round, each stroke of it too or not, or up to three strokes moved
+/// elsewhere, either way round. Returns none where no such order can be run, or where there are
+/// more strokes than local searches take.
+[[nodiscard]] std::optional<std::vector<StrokeRun>> cheapest_neighbour(
+    const OrderCosts& costs, const std::vector<StrokeRun>& order,
+    const std::vector<std::vector<StrokeRun>>& others, const Budget& budget);
 
 }  // namespace swivel

@@ -63,6 +63,9 @@ struct JobSearchOptions {
   /// Most thorough searches that find no way, of all transitions: each takes long, and where some
   /// fail the others mostly do. After these the cheapest job found so far is returned, if any.
   int most_failed_searches = 8;
+  /// Jobs that cost so much or more are of no interest: the search ends once none that is cheaper
+  /// can be left.
+  double most_cost = kUnreachable;
   ParallelFor work;  ///< shares runs among threads; the result is the same
 };
 

@@ -81,6 +81,9 @@ class Verdicts {
   /// slot, a multiple of 2^-40 Lattice::cost_unit() or infinite, not less than before. Values
   /// follow at the next CostToGo::repair() or sweep().
   void raise_exit_costs(std::span<const double> costs);
+  /// Sets all exit costs to 0 again; other verdicts stay. CostToGo::sweep() must follow. Throws
+  /// std::logic_error if set_cost() has been called.
+  void forget_exit_costs();
 
   /// A removed edge as one of its nodes sees it.
   struct HalfEdge {
