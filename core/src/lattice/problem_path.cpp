@@ -11,8 +11,8 @@ namespace swivel {
 ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
                       const std::optional<PathSmoothing>& otherwise) {
   ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget,
-                problem.smooth ? problem.smooth : otherwise,
-                problem.roll && problem.roll->circle());
+                problem.smooth ? problem.smooth : otherwise, problem.roll && problem.roll->circle(),
+                problem.steps);
   if (problem.start) {
     Pose tool = chain.tool(*problem.start);
     if (chain.free_roll) {  // the roll is free: compare poses without it

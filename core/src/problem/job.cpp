@@ -31,6 +31,7 @@ void validate(const Stroke& stroke) {
   if (stroke.start || stroke.start_at)
     throw InvalidArgument(name + "start: allowed is the home of the job");
   if (!stroke.rolls.empty()) throw InvalidArgument(name + "rolls: allowed are none");
+  if (!stroke.steps.empty()) throw InvalidArgument(name + "steps: allowed are none");
   if (!stroke.approach.allFinite() || !stroke.retract.allFinite())
     throw InvalidArgument(name + "approach, retract: allowed are finite numbers");
   require_speed(stroke.process_speed, name + "process_speed");

@@ -163,6 +163,18 @@ std::vector<Stop> stops_of(const std::vector<Waypoint>& waypoints, const Resolut
   return stops;
 }
 
+/// Throws InputError where two neighbouring waypoints are one pose, so that a stop stands for both.
+void require_distinct(const std::vector<Stop>& stops, std::size_t waypoints,
+                      const std::string& source) {
+  std::size_t k = 1;
+  while (k < stops.size() && stops[k].row == static_cast<int>(k)) ++k;
+  if (k < waypoints)
+    throw InputError(source, "path: waypoint " + std::to_string(k) +
+                                 " is where the one before it is: allowed are waypoints at which "
+                                 "the tool is elsewhere than at the one before, since the path is "
+                                 "cut into given steps");
+}
+
 /// Returns true if the stops between `first` and `last` are no corners: one straight segment leads
 /// through all of them.
 bool one_segment(const std::vector<Stop>& stops, std::size_t first, std::size_t last,
@@ -364,13 +376,16 @@ PathLayer layer_within_step(const PathLayer& from, const PathLayer& to, double s
 
 ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
                    const std::string& source, const Budget& budget,
-                   const std::optional<PathSmoothing>& smooth, bool turns_freely) {
+                   const std::optional<PathSmoothing>& smooth, bool turns_freely,
+                   const std::vector<int>& given_steps) {
   if (waypoints.empty()) throw InputError(source, "path: no waypoints: allowed are at least two");
   // A waypoint with a window of its own bends what the roll may be, if not the path.
   const bool windows = waypoints[0].roll.has_value();
   const std::vector<Stop> stops = stops_of(waypoints, resolution, source, turns_freely, merged_);
+  if (!given_steps.empty()) require_distinct(stops, waypoints.size(), source);
   const auto fits = [&](std::size_t first, std::size_t count) {
-    return !windows && one_segment(stops, first, first + count, turns_freely);
+    return !windows && given_steps.empty() &&
+           one_segment(stops, first, first + count, turns_freely);
   };
   layers_.push_back(
       {0.0, pose_of(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
@@ -379,7 +394,8 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
   cut_into_runs(stops.size() - 1, fits, [&](std::size_t first, std::size_t count) {
     const Stop &from = stops[first], &to = stops[first + count];
     const Way way(from.waypoint, to.waypoint, turns_freely);
-    const int steps = steps_of(way, resolution, layers_.size(), source);
+    const int steps = given_steps.empty() ? steps_of(way, resolution, layers_.size(), source)
+                                          : given_steps[first];
     const double begun = layers_.back().travel,
                  travel = travel_of(way.length, way.angle, resolution);
     segments_.push_back({static_cast<int>(layers_.size()) - 1, begun, layers_.back().tool,
@@ -403,6 +419,21 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
   }
   rounding_ = smooth ? smooth->angle : 0;
   find_corners(smooth.value_or(PathSmoothing{0, 0}));
+}
+
+std::vector<int> steps_between(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
+                               const std::string& source, bool turns_freely) {
+  int merged = 0;
+  const std::vector<Stop> stops = stops_of(waypoints, resolution, source, turns_freely, merged);
+  std::vector<int> steps(waypoints.empty() ? 0 : waypoints.size() - 1, 1);
+  std::size_t layers = 1;
+  for (std::size_t k = 1; k < stops.size(); ++k) {
+    const Way way(stops[k - 1].waypoint, stops[k].waypoint, turns_freely);
+    const int count = steps_of(way, resolution, layers, source);
+    steps[static_cast<std::size_t>(stops[k].row) - 1] = count;
+    layers += static_cast<std::size_t>(count);
+  }
+  return steps;
 }
 
 void ToolPath::find_corners(const PathSmoothing& smooth) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -36,6 +37,8 @@ struct Field {
 [[noreturn]] void fail(const Field& field, const std::string& what, const std::string& allowed) {
   throw InvalidArgument(field.text() + ": " + what + ": allowed is " + allowed);
 }
+
+constexpr std::int64_t kMostSteps = 2'000'000;  // of a path: each layer takes about 1 kB
 
 enum class Range { kFinite, kNonNegative, kPositive, kLength };
 
@@ -267,6 +270,17 @@ void validate_path(const Field& root, const Problem& problem) {
     if (!(std::abs(waypoint.orientation.norm() - 1) <= 1e-3))
       fail(field("orientation"), "is no rotation", "a finite quaternion of length 1 within 1e-3");
     validate_window(field("roll"), problem, waypoint);
+  }
+  if (problem.steps.empty()) return;
+  if (problem.steps.size() + 1 != problem.waypoints.size())
+    fail(root("steps"), "has " + std::to_string(problem.steps.size()) + " entries",
+         "one for each waypoint but the last");
+  std::int64_t sum = 0;
+  for (std::size_t k = 0; k < problem.steps.size(); ++k) {
+    sum += problem.steps[k];
+    if (problem.steps[k] < 1 || sum > kMostSteps)
+      fail(root("steps", k), "is " + std::to_string(problem.steps[k]),
+           "a number of at least 1, of at most 2e6 in all");
   }
 }
 

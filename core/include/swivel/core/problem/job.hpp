@@ -10,7 +10,7 @@
 namespace swivel {
 
 /// One run of the tool on the workpiece, as a job has many of them: a task with a name. Its
-/// `start`, `start_at` and `rolls` are unset.
+/// `start`, `start_at`, `rolls` and `steps` are unset.
 struct Stroke : Task {
   std::string name;
   /// True: the tool may run from the last waypoint to the first.

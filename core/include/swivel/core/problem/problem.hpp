@@ -197,6 +197,9 @@ struct Task {
   double start_tolerance = 1e-6;
   Cost cost;
   Refinement refinement;
+  /// Into how many steps the way from each waypoint to the next is cut, instead of what the
+  /// resolution says: every waypoint is a layer then. Empty: as the resolution says.
+  std::vector<int> steps;
   bool operator==(const Task&) const = default;
 };
 

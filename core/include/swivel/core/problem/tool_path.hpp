@@ -55,12 +55,15 @@ class ToolPath {
  public:
   /// Cuts waypoints, in the base frame, into layers. `source` is the file for messages; `smooth`
   /// rounds corners. With `turns_freely` the tool may be turned about its z axis without bounds, so
-  /// that a half turn about that axis is the right-handed one. Throws InputError for fewer than two
-  /// distinct waypoints, another turn of 180 deg between neighbours, or more layers than fit in
-  /// memory. Throws Stopped.
+  /// that a half turn about that axis is the right-handed one. `steps`, unless it is empty, has for
+  /// each waypoint but the last the number of steps to the next, whatever the resolution; no
+  /// waypoint is merged then. Throws InputError for fewer than two distinct waypoints, for
+  /// neighbours that are one pose where `steps` are given, another turn of 180 deg between
+  /// neighbours, or more layers than fit in memory. Throws Stopped.
   ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution,
            const std::string& source, const Budget& budget = {},
-           const std::optional<PathSmoothing>& smooth = {}, bool turns_freely = false);
+           const std::optional<PathSmoothing>& smooth = {}, bool turns_freely = false,
+           const std::vector<int>& steps = {});
 
   /// Returns the number of layers.
   [[nodiscard]] int size() const { return static_cast<int>(layers_.size()); }
@@ -158,6 +161,13 @@ class ToolPath {
   double rounding_ = 0;
   int merged_ = 0;
 };
+
+/// Returns into how many steps a resolution cuts the way from each waypoint, in the base frame, to
+/// the next: at least one. Throws InputError for another turn of 180 deg between neighbours than
+/// `turns_freely` allows (ToolPath), or for more layers than fit in memory.
+[[nodiscard]] std::vector<int> steps_between(const std::vector<Waypoint>& waypoints,
+                                             const Resolution& resolution,
+                                             const std::string& source, bool turns_freely = false);
 
 /// Returns a pose turned about its own z axis by a roll, rad.
 [[nodiscard]] Pose rolled(const Pose& pose, double roll);
