@@ -5,6 +5,7 @@
 
 #include "shapes/fcl_shapes.hpp"
 #include "swivel/collision/world/world.hpp"
+#include "world/robot_pairs.hpp"
 
 namespace swivel::detail {
 
@@ -24,7 +25,9 @@ class RobotPart {
 
   /// Returns the robot pairs by a problem's limits. The part must know the medians that these
   /// limits need.
-  [[nodiscard]] std::vector<RobotPair> pairs(const Limits& limits) const;
+  [[nodiscard]] std::vector<RobotPair> pairs(const Limits& limits) const {
+    return pairs_.pairs(limits);
+  }
   /// Returns the robot pairs by a problem's limits, with the median clearance of every sampled
   /// pair, however far, which is computed by this call.
   [[nodiscard]] std::vector<RobotPair> pairs_with_medians(const Limits& limits) const;
@@ -37,21 +40,10 @@ class RobotPart {
   FollowerMotion followers;
 
  private:
-  struct Candidate {
-    BodyPair pair;
-    bool sampled = false;  // no SRDF speaks for it
-    bool dropped = false;
-  };
-  void find_medians(double far, const Budget& budget);
-  void drop_always_touching(const Budget& budget);
-  [[nodiscard]] double median(const BodyPair& pair, double far,
-                              const std::vector<std::vector<Pose>>& samples,
-                              const Budget& budget) const;
+  [[nodiscard]] SampledBodies sampled() const;
 
-  std::vector<Candidate> candidates_;
+  RobotPairs pairs_;
   std::vector<std::string> warnings_;
-  double medians_up_to_ = 0;     // m
-  std::vector<double> medians_;  // by candidate; infinite from medians_up_to_ on
 };
 
 }  // namespace swivel::detail
