@@ -387,12 +387,9 @@ struct Planner::Impl {
       count(validity);
       return found;
     }
-    constexpr int kFewLayers = 64;  // with fewer layers, chords are too long to give good bounds
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
-      cost_to_go = make_cost_to_go(
-          lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget,
-          std::move(recycled));
+      cost_to_go = make_cost_to_go(lattice, pruning_of(lattice), budget, std::move(recycled));
     if (single_use) cost_to_go->set_single_use();
     const bool shares = shares_work(lattice);
     if (shares) threads.start_helpers();

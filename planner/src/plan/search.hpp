@@ -8,6 +8,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
@@ -18,6 +19,12 @@ namespace swivel {
 [[nodiscard]] inline bool shares_work(const Lattice& lattice) {
   // from this size on, each of these takes some milliseconds
   return lattice.nodes() >= 150'000;
+}
+
+/// Returns how much a sweep of the lattice's cost-to-go may leave out.
+[[nodiscard]] inline Pruning pruning_of(const Lattice& lattice) {
+  constexpr int kFewLayers = 64;  // with fewer layers, chords are too long to give good bounds
+  return lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound;
 }
 
 /// The result of a search by any of the planners.

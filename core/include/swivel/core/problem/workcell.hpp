@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "swivel/core/problem/problem.hpp"
+
+namespace swivel {
+
+/// One arm of a workcell: its chain and what it carries, and the path of its tool. `rolls` and
+/// `steps` of its task are unset.
+struct WorkcellArm : Robot, Task {
+  std::string name;
+};
+
+/// Two arms of one robot model that work at one time: at every waypoint both arms are at theirs,
+/// and between two waypoints both paths are cut into the same number of steps. The arms have the
+/// same model, base_link and `hold`.
+///
+/// Task::path_frame of one arm may be the name of the other one. That other arm leads: its tool
+/// carries the path of this arm, the follower.
+struct Workcell {
+  std::string source;  ///< workcell file, for messages
+  std::array<WorkcellArm, 2> arms;
+  std::vector<SceneObject> scene;
+  std::vector<Variation> vary;
+  /// Pairs of bodies, one of either arm, that may touch at any depth: names of links or of attached
+  /// bodies.
+  std::vector<std::array<std::string, 2>> may_touch;
+  /// Returns the number of the arm that leads the arm of number `arm`, if one does: 1 - arm; else
+  /// -1.
+  [[nodiscard]] int leader_of(std::size_t arm) const {
+    const std::string& frame = arms[arm].path_frame;
+    return !frame.empty() && frame == arms[1 - arm].name ? static_cast<int>(1 - arm) : -1;
+  }
+};
+
+/// Throws InvalidArgument for a workcell that makes no sense whatever the robot: names of arms that
+/// are empty, equal or those of a scene object or the base link; arms whose model, base_link or
+/// hold differ, which lead each other, or whose paths have different numbers of waypoints; windows
+/// of the roll at waypoints; attached bodies of one name; and what validate(Problem) refuses of
+/// either arm.
+void validate(const Workcell& cell);
+
+}  // namespace swivel

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swivel/core/answer/plan.hpp"
+#include "swivel/core/problem/workcell.hpp"
+#include "swivel/planner/verify/check.hpp"
+
+namespace swivel {
+
+class PreparedWorkcell;
+
+/// The result of an independent check of two arms' trajectories.
+struct WorkcellCheckResult {
+  bool passed = false;
+  std::array<CheckResult, 2> arms;     ///< each arm by itself
+  std::vector<std::string> failures;   ///< of both arms together, one line each; at most 20
+  std::int64_t failure_count = 0;      ///< number of these
+  std::optional<LeastMargin> between;  ///< of bodies of both arms at rows; with margins only
+};
+
+/// Proves the trajectories of two arms from the workcell alone, or tells what is wrong with them.
+/// Each passes check_trajectory() by itself; rows are at the layers of the paths, as many as there
+/// are, so that row k of one arm and row k of the other are simultaneous; and at every row, and on
+/// every motion from one row to the next in which both arms move at one time, each straight in
+/// joint space, bodies of the two arms keep clear of each other (0.05 mm are forgiven, contact
+/// never). Throws InvalidArgument and InputError as PreparedWorkcell does, and Stopped.
+[[nodiscard]] WorkcellCheckResult check_workcell(
+    const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const CheckOptions& options = {});
+[[nodiscard]] WorkcellCheckResult check_workcell(
+    const Workcell& cell, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const CheckOptions& options = {});
+/// Throws std::logic_error, with the first failure, if the result has not passed.
+void require_passed(const WorkcellCheckResult& result);
+
+}  // namespace swivel

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <memory>
+
+#include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/problem/workcell.hpp"
+#include "swivel/planner/plan/plan_options.hpp"
+
+namespace swivel {
+
+class InterArmWorld;
+class PreparedRobot;
+
+/// What is known of a workcell before it is planned: the problem that each arm poses by itself and
+/// its prepared robot, and the bodies of both arms that must keep clear of each other. Immutable
+/// and safe to share between threads.
+class PreparedWorkcell {
+ public:
+  /// Prepares both arms. Throws InvalidArgument for what validate(Workcell) refuses, InputError for
+  /// what PreparedRobot refuses of either arm, arms that share a joint or a link, a follower whose
+  /// tool stands still in the base frame on a step, and a roll that is chosen besides the arm
+  /// angle; Stopped.
+  explicit PreparedWorkcell(const Workcell& cell, const Budget& budget = {});
+  ~PreparedWorkcell();
+  PreparedWorkcell(PreparedWorkcell&&) noexcept;
+  PreparedWorkcell& operator=(PreparedWorkcell&&) noexcept;
+  /// Returns the problem of an arm by itself: its path in the base frame, cut into as many steps as
+  /// the other's, and a robot model without the collision shapes of the links that the other arm
+  /// moves.
+  [[nodiscard]] const Problem& problem(std::size_t arm) const;
+  [[nodiscard]] const PreparedRobot& robot(std::size_t arm) const;
+  [[nodiscard]] const InterArmWorld& between() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+/// Plans two arms that work at one time: the two paths without conflict whose costs together are
+/// least. Where the arms' own answers have no conflict, they are the answer, bit for bit. The
+/// result is the same at any thread count, unless it times out. Throws InvalidArgument for options
+/// that workcells do not have (an eager planner, hooks), InputError as plan() does of either arm,
+/// std::logic_error if options.check finds an answer invalid.
+[[nodiscard]] WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options = {});
+/// Plans a workcell that was prepared before, whose `cell` must be the same.
+[[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const Workcell& cell,
+                                           const PlanOptions& options = {});
+
+}  // namespace swivel

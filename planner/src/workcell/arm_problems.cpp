@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "workcell/arm_problems.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/tool_path.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Returns the models of both arms in the whole robot. Throws InputError where a joint or a link is
+/// of both.
+std::array<ArmModel, 2> arms_of(const Workcell& cell) {
+  const auto build = [](const WorkcellArm& arm) {
+    return build_arm(*arm.model, arm.base_link, arm.tip_link, arm.hold, arm.tool, arm.roll);
+  };
+  std::array<ArmModel, 2> arms{build(cell.arms[0]), build(cell.arms[1])};
+  for (std::size_t l = 0; l < arms[0].links.size(); ++l)
+    if (arms[0].links[l].group != 0 && arms[1].links[l].group != 0)
+      throw InputError(cell.source, "arms: link '" + cell.arms[0].model->links[l].name +
+                                        "' moves with both arms: allowed are arms that have no "
+                                        "joint in common; `hold` holds a torso");
+  return arms;
+}
+
+/// Returns a robot model without the collision shapes of the links that an arm moves.
+std::shared_ptr<const RobotModel> without_shapes_of(const RobotModel& model, const ArmModel& arm) {
+  auto left = std::make_shared<RobotModel>(model);
+  for (std::size_t l = 0; l < left->links.size(); ++l)
+    if (arm.links[l].group != 0) left->links[l].collision.clear();
+  return left;
+}
+
+/// Returns the scene without what it allows to bodies that the other arm carries or moves.
+std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm, const ArmModel& other) {
+  std::vector<SceneObject> scene = cell.scene;
+  const std::vector<AttachedBody>& carried = cell.arms[1 - arm].attached;
+  for (SceneObject& object : scene)
+    std::erase_if(object.allow, [&](const Allowed& allowed) {
+      const int link = cell.arms[arm].model->find_link(allowed.body);
+      return (link >= 0 && other.links[static_cast<std::size_t>(link)].group != 0) ||
+             std::any_of(carried.begin(), carried.end(),
+                         [&](const AttachedBody& body) { return body.name == allowed.body; });
+    });
+  return scene;
+}
+
+/// Returns the problem of an arm by itself, but for its path. `other` is the other arm.
+Problem problem_of(const Workcell& cell, std::size_t arm, const ArmModel& other) {
+  Problem problem;
+  static_cast<Robot&>(problem) = cell.arms[arm];
+  static_cast<Task&>(problem) = cell.arms[arm];
+  problem.model = without_shapes_of(*cell.arms[arm].model, other);
+  problem.scene = scene_of(cell, arm, other);
+  problem.vary = cell.vary;
+  problem.source = cell.source.empty() ? "arm '" + cell.arms[arm].name + "'"
+                                       : cell.source + ": arm '" + cell.arms[arm].name + "'";
+  return problem;
+}
+
+bool turns_freely(const Problem& problem) {
+  return problem.roll && problem.roll->circle();
+}
+
+ToolPath path_of(const Problem& problem, const std::vector<Waypoint>& waypoints,
+                 const std::vector<int>& steps, const Budget& budget) {
+  return ToolPath(waypoints, problem.resolution, problem.source, budget, problem.smooth,
+                  turns_freely(problem), steps);
+}
+
+/// Makes each entry of `steps` at least that of `more`.
+void raise(std::vector<int>& steps, const std::vector<int>& more) {
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = std::max(steps[k], more[k]);
+}
+
+/// Returns a pose between two waypoints: the position is linear, the orientation turns on the short
+/// arc. `t`: 0 to 1.
+Pose between(const Waypoint& from, const Waypoint& to, double t) {
+  Pose pose = Pose::Identity();
+  pose.translation() = from.position + t * (to.position - from.position);
+  pose.linear() = from.orientation.slerp(t, to.orientation).toRotationMatrix();
+  return pose;
+}
+
+/// Returns the waypoints of a follower, one at each layer, in the base frame: each is the leader's
+/// tool at that layer times the follower's path, which the leader's tool carries. `steps`: those of
+/// both paths between waypoints.
+std::vector<Waypoint> carried(const ToolPath& leader, const std::vector<Waypoint>& on_tool,
+                              const std::vector<int>& steps) {
+  std::vector<Waypoint> waypoints;
+  const auto add = [&](const Pose& on_leader) {
+    const Pose tool = leader.layer(static_cast<int>(waypoints.size())).tool * on_leader;
+    Waypoint& waypoint = waypoints.emplace_back();
+    waypoint.position = tool.translation();
+    waypoint.orientation = Quaterniond(tool.linear()).normalized();
+  };
+  add(between(on_tool[0], on_tool[1], 0));
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    for (int step = 1; step <= steps[k]; ++step)
+      add(between(on_tool[k], on_tool[k + 1], static_cast<double>(step) / steps[k]));
+  return waypoints;
+}
+
+/// Returns by how much more steps each of `steps` needs so that no step of a follower's path in the
+/// base frame is longer than its resolution says; all 1 where none is.
+std::vector<int> too_long(const std::vector<Waypoint>& carried, const std::vector<int>& steps,
+                          const Resolution& resolution, const std::string& source) {
+  const std::vector<int> needed = steps_between(carried, resolution, source);
+  std::vector<int> times(steps.size(), 1);
+  std::size_t layer = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    for (int step = 0; step < steps[k]; ++step) times[k] = std::max(times[k], needed[layer++]);
+  return times;
+}
+
+/// Cuts the paths of a leader and its follower into as many steps each, and gives the follower its
+/// path in the base frame.
+void follow(Problem& leader, Problem& follower, const Budget& budget) {
+  const auto carrying = waypoints_in_base(leader);
+  follower.path_frame = follower.base_link;
+  const auto on_tool = waypoints_in_base(follower);  // in the leader's tool frame
+  std::vector<int> steps =
+      steps_between(carrying, leader.resolution, leader.source, turns_freely(leader));
+  raise(steps,
+        steps_between(on_tool, follower.resolution, follower.source, turns_freely(follower)));
+  for (;;) {
+    const std::vector<Waypoint> waypoints =
+        carried(path_of(leader, carrying, steps, budget), on_tool, steps);
+    const std::vector<int> times = too_long(waypoints, steps, follower.resolution, follower.source);
+    if (std::all_of(times.begin(), times.end(), [](int n) { return n == 1; })) {
+      follower.waypoints = waypoints;
+      follower.steps.assign(waypoints.size() - 1, 1);
+      break;
+    }
+    for (std::size_t k = 0; k < steps.size(); ++k) steps[k] *= times[k];
+  }
+  follower.smooth.reset();  // its path has the leader's curve already
+  leader.steps = std::move(steps);
+}
+
+/// Cuts the paths of two arms into as many steps each.
+void cut_alike(std::array<Problem, 2>& problems, const Budget& budget) {
+  std::vector<int> steps(problems[0].waypoints.size() - 1, 1);
+  for (const Problem& problem : problems)
+    raise(steps, steps_between(waypoints_in_base(problem), problem.resolution, problem.source,
+                               turns_freely(problem)));
+  for (Problem& problem : problems) {
+    problem.steps = steps;
+    static_cast<void>(path_of(problem, waypoints_in_base(problem), steps, budget));  // or throws
+  }
+}
+
+}  // namespace
+
+std::array<Problem, 2> problems_of_arms(const Workcell& cell, const Budget& budget) {
+  const std::array<ArmModel, 2> arms = arms_of(cell);
+  std::array<Problem, 2> problems{problem_of(cell, 0, arms[1]), problem_of(cell, 1, arms[0])};
+  for (std::size_t k = 0; k < 2; ++k)
+    if (arms[k].chain.free_roll)
+      throw InputError(problems[k].source,
+                       "path.roll: of an arm with an arm angle: allowed in a workcell are arms of "
+                       "six joints with a roll, or none");
+  for (std::size_t k = 0; k < 2; ++k)
+    if (cell.leader_of(k) >= 0) {
+      follow(problems[1 - k], problems[k], budget);
+      return problems;
+    }
+  cut_alike(problems, budget);
+  return problems;
+}
+
+}  // namespace swivel

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/workcell/plan_workcell.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "measure/measure_rows.hpp"
+#include "plan/search.hpp"
+#include "plan/stopwatch.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/scale.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/graph/search/pair_search.hpp"
+#include "swivel/parallel/executor.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
+#include "validity/collision_validity.hpp"
+#include "workcell/between_arms.hpp"
+
+namespace swivel {
+
+namespace {
+
+void require_supported_by_workcells(const PlanOptions& options) {
+  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
+    throw InvalidArgument("planner: allowed for workcells are lazy and parallel");
+  if (options.hooks.check || options.hooks.cost)
+    throw InvalidArgument("hooks: allowed for workcells are none");
+}
+
+/// One arm with what its search needs. It is searched by one thread at a time.
+struct PlannedArm {
+  PlannedArm(const Problem& p, const PreparedRobot& r, const Budget& budget)
+      : problem(p),
+        robot(r),
+        world(r.world(), p, budget),
+        rule(world.edge_rule(r.radii())),
+        path(path_within_scale(p, r.arm().chain, budget)),
+        lattice(make_lattice(r.arm().chain, r.arm_class(), path, p, budget)) {
+    if (const std::string rest = joints_at_rest(*p.model, r.arm().chain); !rest.empty())
+      throw InputError(rest);
+  }
+  const Problem& problem;
+  const PreparedRobot& robot;
+  World world;
+  EdgeRule rule;
+  ToolPath path;
+  std::unique_ptr<Lattice> lattice;
+  std::unique_ptr<CostToGo> cost_to_go;
+  Executor alone{1};
+  std::optional<CollisionValidity> validity;
+};
+
+class WorkcellPlan {
+ public:
+  WorkcellPlan(const PreparedWorkcell& prepared, const Workcell& cell, const PlanOptions& options,
+               const Budget& budget)
+      : prepared_(prepared),
+        cell_(cell),
+        options_(options),
+        budget_(budget),
+        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {}
+
+  WorkcellResult plan() {
+    const TraceSpan span("plan workcell");
+    result_.planner = to_string(options_.planner);
+    result_.threads = executor_.threads();
+    for (std::size_t k = 0; k < 2; ++k) result_.names[k] = cell_.arms[k].name;
+    try {
+      Stopwatch watch;
+      lay_out();
+      result_.time_ms["lattice"] = watch.lap();
+      search();
+      result_.time_ms["search"] = watch.lap();
+      if (options_.check && !result_.arms[0].trajectory.empty()) {
+        require_passed(check_workcell(prepared_,
+                                      {result_.arms[0].trajectory, result_.arms[1].trajectory},
+                                      {.margins = false, .budget = budget_}));
+        result_.checked = true;
+        result_.time_ms["check"] = watch.lap();
+      }
+      explain();
+      result_.time_ms["report"] = watch.lap();
+    } catch (const Stopped&) {
+      if (result_.arms[0].trajectory.empty()) result_.status = stopped_status();
+    }
+    for (PlanResult& arm : result_.arms) arm.status = result_.status;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] PlanStatus stopped_status() const {
+    return budget_.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
+  }
+  [[nodiscard]] DistanceProofs distance_proofs() const {
+    return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
+  }
+  [[nodiscard]] ParallelFor work() {
+    return {executor_.threads(),
+            [this](int parts, const auto& body) { executor_.for_each(parts, body); }};
+  }
+
+  void lay_out() {
+    executor_.for_each(2, [&](int arm, int) {
+      const auto k = static_cast<std::size_t>(arm);
+      arms_[k] = std::make_unique<PlannedArm>(prepared_.problem(k), prepared_.robot(k), budget_);
+    });
+    if (arms_[0]->path.size() != arms_[1]->path.size())  // one of them is cut off
+      throw InputError(cell_.source,
+                       "a path leads far beyond its arm's reach: are these millimetres? Lengths "
+                       "are read as metres");
+    for (std::size_t k = 0; k < 2; ++k) describe(*arms_[k], result_.arms[k]);
+    result_.warnings = prepared_.between().warnings();
+  }
+  void describe(const PlannedArm& arm, PlanResult& result) const {
+    const Chain& chain = arm.robot.arm().chain;
+    result.planner = result_.planner;
+    result.threads = result_.threads;
+    result.joint_names = chain.joint_names;
+    result.held = arm.robot.arm().held;
+    for (const auto& lines :
+         {limit_warnings(chain), held_warnings(result.held),
+          file_warnings(*arm.problem.model, chain), scale_warnings(chain, arm.problem),
+          limit_scale_warnings(chain, arm.problem),
+          scale_warnings(chain, arm.path, arm.problem.scene), arm.world.warnings()})
+      result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
+  }
+
+  /// Searches until the joints of both answers keep their limits without jumps of whole turns.
+  void search() {
+    for (;;) {
+      make_searched();
+      BetweenArms between(prepared_.between(), {arms_[0]->lattice.get(), arms_[1]->lattice.get()},
+                          {arms_[0]->robot.radii(), arms_[1]->robot.radii()}, asks_moves(),
+                          distance_proofs(), budget_);
+      PairSearchOptions options;
+      options.paths.batch = 8;
+      options.work = work();
+      const PairOutcome outcome =
+          search_pair({PairArm{arms_[0]->cost_to_go.get(), &*arms_[0]->validity},
+                       PairArm{arms_[1]->cost_to_go.get(), &*arms_[1]->validity}},
+                      between, options);
+      note(outcome, between);
+      if (outcome.paths[0].empty()) return;
+      if (tell_turns_apart(outcome)) continue;
+      for (std::size_t k = 0; k < 2; ++k) {
+        result_.arms[k].trajectory = arms_[k]->lattice->path_rows(outcome.paths[k]);
+        result_.arms[k].cost = result_.arms[k].lattice.cost = outcome.costs[k];
+      }
+      result_.status = outcome.decided() ? PlanStatus::kSolved : stopped_status();
+      return;
+    }
+  }
+  [[nodiscard]] bool asks_moves() const {
+    return std::any_of(arms_.begin(), arms_.end(), [](const auto& arm) {
+      return arm->problem.limits.edges == EdgeMode::kContinuous;
+    });
+  }
+  void make_searched() {
+    executor_.for_each(2, [&](int k, int) {
+      PlannedArm& arm = *arms_[static_cast<std::size_t>(k)];
+      arm.validity.reset();
+      arm.cost_to_go = make_cost_to_go(*arm.lattice, pruning_of(*arm.lattice), budget_);
+      arm.validity.emplace(*arm.lattice, arm.world, arm.rule, arm.problem.limits.edges,
+                           distance_proofs(), arm.alone, 1, budget_);
+    });
+  }
+  /// Replaces the lattice of an arm whose answer leaves the limits of joints that the lattice
+  /// treats as circles by one that tells their turns apart. Returns true if there was one.
+  bool tell_turns_apart(const PairOutcome& outcome) {
+    bool any = false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Lattice::Joints off = arms_[k]->lattice->off_nearest(outcome.paths[k]);
+      if (off == Lattice::Joints{}) continue;
+      arms_[k]->validity.reset();
+      arms_[k]->cost_to_go.reset();
+      arms_[k]->lattice = arms_[k]->lattice->with_windings(off);
+      any = true;
+    }
+    return any;
+  }
+
+  void note(const PairOutcome& outcome, BetweenArms& between) {
+    result_.cost = outcome.paths[0].empty() ? 0 : outcome.cost;
+    result_.bound = outcome.bound;
+    result_.least_costs = outcome.least_costs;
+    result_.decided_by = static_cast<WorkcellSearch>(outcome.decided_by);
+    result_.counters.rounds += outcome.rounds;
+    result_.counters.pops += outcome.pops;
+    result_.counters.node_pairs += outcome.node_pairs;
+    result_.counters.move_pairs += outcome.move_pairs;
+    for (std::size_t k = 0; k < 2; ++k) count(*arms_[k], result_.arms[k]);
+    if (!outcome.decided() && outcome.paths[0].empty()) throw Stopped();
+    result_.conflict.reset();
+    if (outcome.decided() && outcome.paths[0].empty() && !outcome.tree.empty() &&
+        outcome.tree.front().region)
+      note_conflict(*outcome.tree.front().region, between);
+  }
+  void count(const PlannedArm& arm, PlanResult& result) const {
+    Counters& sum = result.counters;
+    sum.ik_nodes += arm.cost_to_go->ik_nodes();
+    sum.edges += arm.cost_to_go->edges();
+    sum.nodes_checked += arm.validity->nodes_checked();
+    sum.edges_checked += arm.validity->edges_checked();
+    const CollisionCounters collision = arm.validity->counters();
+    sum.fcl_calls += collision.fcl_calls;
+    sum.proved_free += collision.proved_free;
+    sum.proved_colliding += collision.proved_colliding;
+    result.lattice = arm.lattice->describe();
+    result.lattice.method = arm.robot.arm_class().method();
+    result.lattice.complete = arm.robot.arm_class().complete();
+  }
+  /// Notes where and by which bodies the arms bar each other in a region.
+  void note_conflict(const ConflictRegion& region, BetweenArms& between) {
+    ArmConflict& conflict = result_.conflict.emplace();
+    conflict.layer = region.layer;
+    conflict.of_motion = region.of_moves;
+    std::optional<BodyPair> pair;
+    if (region.of_moves) {
+      MovePair moves{.layer = region.layer};
+      for (std::size_t k = 0; k < 2; ++k) {
+        moves.moves[k] = region.moves[k].front();
+        moves.from[k] = *arms_[k]->lattice->node(region.layer, moves.moves[k].from);
+        moves.to[k] = *arms_[k]->lattice->node(region.layer + 1, moves.moves[k].to);
+      }
+      pair = between.barred(moves);
+    } else {
+      NodePair nodes{.layer = region.layer};
+      for (std::size_t k = 0; k < 2; ++k) {
+        nodes.slots[k] = region.slots[k].front();
+        nodes.q[k] = *arms_[k]->lattice->node(region.layer, nodes.slots[k]);
+      }
+      pair = between.barred(nodes);
+    }
+    if (pair) conflict.bodies = prepared_.between().names(*pair);
+    for (std::size_t k = 0; k < 2; ++k) conflict.s[k] = arms_[k]->path.layer(region.layer).s;
+  }
+
+  /// Measures the trajectories, or finds out why an arm has no path by itself.
+  void explain() {
+    if (!result_.arms[0].trajectory.empty()) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        PlanResult& arm = result_.arms[k];
+        measure_margins(arms_[k]->robot.arm().chain, arms_[k]->path, arm.trajectory, arm);
+        measure_rows(arms_[k]->robot, arms_[k]->path, arms_[k]->world, arm.trajectory,
+                     options_.evidence, budget_, arm);
+      }
+      if (options_.evidence.postures) measure_between();
+      return;
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (result_.least_costs[k] != kUnreachable) continue;
+      PlanOptions alone = options_;
+      alone.check = false;
+      // The pointer does not own the robot, which outlives the plan.
+      Planner planner(
+          std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &prepared_.robot(k)),
+          prepared_.problem(k));
+      PlanResult found = planner.plan(alone);
+      result_.arms[k].diagnosis = std::move(found.diagnosis);
+      result_.arms[k].partial = std::move(found.partial);
+    }
+  }
+  void measure_between() {
+    InterArmWorld::Query query(prepared_.between());
+    const auto& rows = result_.arms;
+    for (std::size_t row = 0; row < rows[0].trajectory.size(); ++row) {
+      budget_.poll();
+      const auto found = query.clearance({rows[0].trajectory[row].q, rows[1].trajectory[row].q});
+      if (!found) return;
+      if (result_.between_arms && found->margin() >= result_.between_arms->margin) continue;
+      result_.between_arms = {found->margin(), found->distance, found->required,
+                              prepared_.between().names(found->pair), static_cast<int>(row)};
+    }
+  }
+
+  const PreparedWorkcell& prepared_;
+  const Workcell& cell_;
+  const PlanOptions& options_;
+  Budget budget_;
+  Executor executor_;
+  std::array<std::unique_ptr<PlannedArm>, 2> arms_;
+  WorkcellResult result_;
+};
+
+}  // namespace
+
+WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const Workcell& cell,
+                             const PlanOptions& options) {
+  require_supported_by_workcells(options);
+  return WorkcellPlan(prepared, cell, options, options.budget()).plan();
+}
+
+WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options) {
+  require_supported_by_workcells(options);
+  return plan_workcell(PreparedWorkcell(cell), cell, options);
+}
+
+}  // namespace swivel

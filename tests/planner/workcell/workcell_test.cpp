@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plans of two arms against a plain program over all pairs of nodes, and their check against
+// spoilt answers.
+#include "swivel/planner/workcell/plan_workcell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "plain_edge_rule.hpp"
+#include "swivel/collision/arms/inter_arm_world.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
+#include "two_arms.hpp"
+
+namespace swivel::test {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// One arm for the plain program: the nodes of each layer that its own world allows, and which of
+/// its edges that world allows, asked when they are needed.
+class PlainArm {
+ public:
+  PlainArm(const Problem& problem, const PreparedRobot& robot)
+      : path_(problem_path(problem, robot.arm().chain)),
+        lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
+        world_(robot.world(), problem),
+        rule_(world_.edge_rule(robot.radii())),
+        query_(world_, DistanceProofs::kOff) {
+    layers_.resize(static_cast<std::size_t>(lattice_->layers()));
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      std::vector<Lattice::Node> nodes;
+      lattice_->layer_nodes(static_cast<int>(i), nodes);
+      for (const Lattice::Node& node : nodes)
+        if (!query_.find_violating_pair(node.q, ClearanceRule::kNode)) layers_[i].push_back(node);
+    }
+  }
+  [[nodiscard]] std::size_t layers() const { return layers_.size(); }
+  [[nodiscard]] const std::vector<Lattice::Node>& nodes(std::size_t layer) const {
+    return layers_[layer];
+  }
+  struct Edge {
+    std::size_t to = 0;
+    double cost = 0;
+  };
+  /// Returns the edges that are not known to be invalid from node a of a layer.
+  [[nodiscard]] std::vector<Edge> edges(std::size_t layer, std::size_t a) const {
+    std::vector<Edge> edges;
+    const Lattice::Node& from = layers_[layer][a];
+    for (std::size_t b = 0; b < layers_[layer + 1].size(); ++b) {
+      const Lattice::Node& to = layers_[layer + 1][b];
+      const int i = static_cast<int>(layer);
+      const Config delta = lattice_->delta(from.q, to.q);
+      if (lattice_->in_window(i, from.slot, to.slot) && lattice_->step_allowed(i, delta) &&
+          !invalid_.contains({layer, a, b}))
+        edges.push_back({b, lattice_->edge_cost(delta)});
+    }
+    return edges;
+  }
+  /// Returns whether an edge is valid; if not, edges() leaves it out from now on.
+  bool valid(std::size_t layer, std::size_t a, std::size_t b) {
+    const Lattice::Node &from = layers_[layer][a], &to = layers_[layer + 1][b];
+    const bool valid =
+        lattice_->follows_path(static_cast<int>(layer), from.slot, from.q, to.slot, to.q) &&
+        !edge_blocked_plain(query_, rule_, from.q, to.q);
+    if (!valid) invalid_.insert({layer, a, b});
+    return valid;
+  }
+
+ private:
+  ToolPath path_;
+  std::unique_ptr<Lattice> lattice_;
+  World world_;
+  EdgeRule rule_;
+  World::Query query_;
+  std::vector<std::vector<Lattice::Node>> layers_;
+  std::set<std::tuple<std::size_t, std::size_t, std::size_t>> invalid_;
+};
+
+/// The cheapest two paths without conflict, by a dynamic program over all pairs of nodes that is
+/// begun anew whenever an edge or a motion of its best two paths turns out to be invalid. FCL alone
+/// answers.
+class PlainProgram {
+ public:
+  explicit PlainProgram(const PreparedWorkcell& prepared)
+      : prepared_(prepared),
+        arms_{PlainArm(prepared.problem(0), prepared.robot(0)),
+              PlainArm(prepared.problem(1), prepared.robot(1))},
+        query_(prepared.between(), DistanceProofs::kOff) {}
+
+  /// Returns the least cost; infinite where there is none.
+  double cost() {
+    for (;;) {
+      run();
+      const auto [a, b] = best();
+      if (a == kNowhere) return kNone;
+      if (holds(a, b)) return value_[0][a][b].cost;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+  struct Value {
+    double cost = kNone;
+    std::size_t a = kNowhere, b = kNowhere;  // the next pair
+  };
+
+  bool apart(std::size_t layer, std::size_t a, std::size_t b) {
+    const auto key = std::tuple(layer, a, b);
+    const auto known = apart_.find(key);
+    if (known != apart_.end()) return known->second;
+    const bool apart = !query_.find_violating_pair(
+        {arms_[0].nodes(layer)[a].q, arms_[1].nodes(layer)[b].q}, ClearanceRule::kNode);
+    return apart_[key] = apart;
+  }
+  void run() {
+    value_.assign(arms_[0].layers(), {});
+    for (std::size_t i = arms_[0].layers(); i-- > 0;) {
+      auto& here = value_[i];
+      here.assign(arms_[0].nodes(i).size(), std::vector<Value>(arms_[1].nodes(i).size()));
+      std::vector<std::vector<PlainArm::Edge>> others;
+      if (i + 1 < arms_[0].layers())
+        for (std::size_t b = 0; b < arms_[1].nodes(i).size(); ++b)
+          others.push_back(arms_[1].edges(i, b));
+      for (std::size_t a = 0; a < here.size(); ++a) {
+        std::vector<PlainArm::Edge> own;
+        if (i + 1 < arms_[0].layers()) own = arms_[0].edges(i, a);
+        for (std::size_t b = 0; b < here[a].size(); ++b) set(i, a, b, own, others);
+      }
+    }
+  }
+  void set(std::size_t i, std::size_t a, std::size_t b, const std::vector<PlainArm::Edge>& own,
+           const std::vector<std::vector<PlainArm::Edge>>& others) {
+    Value& value = value_[i][a][b];
+    if (i + 1 == arms_[0].layers()) {
+      if (apart(i, a, b)) value.cost = 0;
+      return;
+    }
+    for (const PlainArm::Edge& x : own)
+      for (const PlainArm::Edge& y : others[b]) {
+        const double cost = x.cost + y.cost + value_[i + 1][x.to][y.to].cost;
+        if (!(cost < value.cost) || barred_.contains({i, a, x.to, b, y.to})) continue;
+        value = {cost, x.to, y.to};
+      }
+    if (value.cost < kNone && !apart(i, a, b)) value = {};
+  }
+  [[nodiscard]] std::pair<std::size_t, std::size_t> best() const {
+    std::pair<std::size_t, std::size_t> at{kNowhere, kNowhere};
+    double least = kNone;
+    for (std::size_t a = 0; a < value_[0].size(); ++a)
+      for (std::size_t b = 0; b < value_[0][a].size(); ++b)
+        if (value_[0][a][b].cost < least) least = value_[0][a][b].cost, at = {a, b};
+    return at;
+  }
+  /// Asks about the edges and motions of the best two paths.
+  bool holds(std::size_t a, std::size_t b) {
+    bool all = true;
+    for (std::size_t i = 0; i + 1 < arms_[0].layers(); ++i) {
+      const Value& value = value_[i][a][b];
+      all = arms_[0].valid(i, a, value.a) && all;
+      all = arms_[1].valid(i, b, value.b) && all;
+      if (query_.find_pair_blocking_motion(
+              {prepared_.robot(0).radii(), prepared_.robot(1).radii()},
+              {arms_[0].nodes(i)[a].q, arms_[1].nodes(i)[b].q},
+              {arms_[0].nodes(i + 1)[value.a].q, arms_[1].nodes(i + 1)[value.b].q})) {
+        barred_.insert({i, a, value.a, b, value.b});
+        all = false;
+      }
+      a = value.a, b = value.b;
+    }
+    return all;
+  }
+
+  const PreparedWorkcell& prepared_;
+  std::array<PlainArm, 2> arms_;
+  InterArmWorld::Query query_;
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, bool> apart_;
+  std::set<std::tuple<std::size_t, std::size_t, std::size_t, std::size_t, std::size_t>> barred_;
+  std::vector<std::vector<std::vector<Value>>> value_;
+};
+
+TestRobot two_armed(const char* name) {
+  return data_robot(name);
+}
+
+/// Returns a post that stands or lies somewhere before the torso.
+SceneObject random_post(Random& random) {
+  SceneObject post;
+  post.name = "post";
+  post.shape = Cylinder{0.03, 0.6};
+  post.pose.translation() =
+      Vector3d(random.uniform(0.3, 0.6), random.uniform(-0.5, 0.5), random.uniform(0.6, 1.3));
+  if (random.coin())
+    post.pose.linear() = Eigen::AngleAxisd(kPi / 2, Vector3d::UnitX()).toRotationMatrix();
+  return post;
+}
+
+PlanOptions lazily() {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  options.check = true;
+  return options;
+}
+
+TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
+  Random random(seed("Workcell.CostsAsMuchAsAPlainProgramOverPairs"));
+  const std::array<TestRobot, 2> robots{two_armed("sda10f"), two_armed("sda5f")};
+  int solved = 0, none = 0, conflicts = 0;
+  const int count = trials(500);
+  for (int trial = 0; trial < count; ++trial) {
+    SCOPED_TRACE(trial);
+    Workcell cell = random_workcell(robots[random.coin() ? 0 : 1], random);
+    if (random.coin()) cell.scene.push_back(random_post(random));
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    const double least = found.least_costs[0] + found.least_costs[1];
+    conflicts += found.decided_by == WorkcellSearch::kRegions ||
+                 found.decided_by == WorkcellSearch::kProduct;
+    const double cost = PlainProgram(prepared).cost();
+    ASSERT_EQ(found.status == PlanStatus::kSolved, cost < kNone);
+    ASSERT_NE(found.decided_by, WorkcellSearch::kNone);
+    (cost < kNone ? solved : none) += 1;
+    if (!(cost < kNone)) continue;
+    EXPECT_NEAR(found.cost, cost, 1e-9);
+    EXPECT_LE(least, found.cost + 1e-9);
+    const WorkcellCheckResult check =
+        check_workcell(prepared, {found.arms[0].trajectory, found.arms[1].trajectory});
+    EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
+  }
+  std::printf("%d workcells: %d solved, %d none, %d with a conflict\n", count, solved, none,
+              conflicts);
+  EXPECT_GE(conflicts, at_least(count / 8));
+  EXPECT_GE(solved, at_least(count / 4));
+}
+
+TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
+  Random random(seed("Workcell.IsTheAnswerOfEachArmWhereTheseDoNotMeet"));
+  const TestRobot robot = two_armed("sda10f");
+  int alone = 0;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    const Workcell cell = random_workcell(robot, random);
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    if (found.decided_by != WorkcellSearch::kArmsAlone || found.status != PlanStatus::kSolved)
+      continue;
+    ++alone;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const PlanResult own = Planner(prepared.problem(k)).plan(lazily());
+      ASSERT_EQ(own.trajectory.size(), found.arms[k].trajectory.size());
+      for (std::size_t row = 0; row < own.trajectory.size(); ++row)
+        EXPECT_EQ(own.trajectory[row].q, found.arms[k].trajectory[row].q);
+    }
+  }
+  EXPECT_GE(alone, at_least(count / 5));
+}
+
+TEST(Workcell, IsTheSameOnTwoThreads) {
+  Random random(seed("Workcell.IsTheSameOnTwoThreads"));
+  const TestRobot robot = two_armed("sda10f");
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    const Workcell cell = random_workcell(robot, random);
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult one = plan_workcell(prepared, cell, lazily());
+    PlanOptions parallel = lazily();
+    parallel.planner = PlannerKind::kParallel;
+    parallel.threads = 2;
+    const WorkcellResult two = plan_workcell(prepared, cell, parallel);
+    ASSERT_EQ(one.status, two.status);
+    EXPECT_EQ(one.cost, two.cost);
+    EXPECT_EQ(one.counters.rounds, two.counters.rounds);
+    for (std::size_t k = 0; k < 2; ++k) {
+      ASSERT_EQ(one.arms[k].trajectory.size(), two.arms[k].trajectory.size());
+      for (std::size_t row = 0; row < one.arms[k].trajectory.size(); ++row)
+        EXPECT_EQ(one.arms[k].trajectory[row].q, two.arms[k].trajectory[row].q);
+    }
+  }
+}
+
+TEST(Workcell, FollowsALeader) {
+  Random random(seed("Workcell.FollowsALeader"));
+  const TestRobot robot = two_armed("sda10f");
+  int solved = 0;
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    Workcell cell = random_workcell(robot, random);
+    // The right tool stands against a place beside the left one's and moves a little about it.
+    WorkcellArm& right = cell.arms[1];
+    right.path_frame = "left";
+    for (std::size_t k = 0; k < 2; ++k) {
+      right.waypoints[k].position = Vector3d(0.05 * static_cast<double>(k), 0.18, 0.02);
+      right.waypoints[k].orientation = Quaterniond(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitX()) *
+                                                   Eigen::AngleAxisd(0.1, Vector3d::UnitZ()));
+    }
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    if (found.status != PlanStatus::kSolved) continue;
+    ++solved;
+    const Chain &left = prepared.robot(0).arm().chain, &follower = prepared.robot(1).arm().chain;
+    const auto& rows = found.arms;
+    const std::size_t last = rows[0].trajectory.size() - 1;
+    for (const std::size_t row : {std::size_t{0}, last / 2, last}) {
+      const Pose relative =
+          left.tool(rows[0].trajectory[row].q).inverse() * follower.tool(rows[1].trajectory[row].q);
+      const double t = static_cast<double>(row) / static_cast<double>(last);
+      EXPECT_NEAR((relative.translation() - Vector3d(0.05 * t, 0.18, 0.02)).norm(), 0, 1e-6);
+    }
+  }
+  std::printf("%d of %d followers\n", solved, count);
+  EXPECT_GE(solved, at_least_among(1));
+}
+
+TEST(Workcell, CarriesABarWithTwoHands) {
+  Random random(seed("Workcell.CarriesABarWithTwoHands"));
+  const TestRobot robot = two_armed("sda10f");
+  int solved = 0;
+  double at_rows = 0, on_moves = 0;
+  const int count = trials(100);
+  for (int trial = 0; trial < count; ++trial) {
+    Workcell cell = random_workcell(robot, random);
+    // Both hands point forward and keep their pose to each other along a random line.
+    const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
+    const double width = random.uniform(0.2, 0.5);
+    const Vector3d middle(random.uniform(0.5, 0.65), random.uniform(-0.1, 0.1),
+                          random.uniform(0.9, 1.2)),
+        half(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.15, 0.15));
+    for (std::size_t k = 0; k < 2; ++k) {
+      Waypoint& waypoint = cell.arms[0].waypoints[k];
+      waypoint.position = middle + Vector3d(0, width / 2, 0) + (k == 0 ? -1.0 : 1.0) * half;
+      waypoint.orientation = forward;
+      cell.arms[1].waypoints[k].position = Vector3d(0, -width, 0);
+      cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
+      cell.arms[k].limits.tool_path_error = 0.001;
+      cell.arms[k].resolution = {.ds = 0.01, .dphi = 0.1};
+    }
+    cell.arms[1].path_frame = "left";
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    if (found.status != PlanStatus::kSolved) continue;
+    ++solved;
+    const Chain &left = prepared.robot(0).arm().chain, &right = prepared.robot(1).arm().chain;
+    const auto off = [&](const Config& l, const Config& r) {
+      return (left.tool(l).inverse() * right.tool(r).translation() - Vector3d(0, -width, 0)).norm();
+    };
+    const auto &a = found.arms[0].trajectory, &b = found.arms[1].trajectory;
+    for (std::size_t row = 0; row < a.size(); ++row) {
+      at_rows = std::max(at_rows, off(a[row].q, b[row].q));
+      if (row + 1 == a.size()) continue;
+      for (const double t : {0.25, 0.5, 0.75})
+        on_moves = std::max(on_moves, off(a[row].q + t * (a[row + 1].q - a[row].q),
+                                          b[row].q + t * (b[row + 1].q - b[row].q)));
+    }
+  }
+  std::printf("%d of %d bars; the hands off by %.2g m at rows, %.2g m between\n", solved, count,
+              at_rows, on_moves);
+  EXPECT_GE(solved, at_least(count / 3));
+  EXPECT_LE(at_rows, 1e-9);
+  EXPECT_LE(on_moves, 2 * 0.001);
+}
+
+TEST(Workcell, CheckRefusesSpoiltAnswers) {
+  Random random(seed("Workcell.CheckRefusesSpoiltAnswers"));
+  const TestRobot robot = two_armed("sda10f");
+  int spoilt = 0, met = 0;
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    const Workcell cell = random_workcell(robot, random);
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    if (found.status == PlanStatus::kSolved) {
+      const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
+                                                           found.arms[1].trajectory};
+      const CheckOptions quick{.margins = false};
+      auto joint = rows;
+      joint[random.below(2)][rows[0].size() / 2].q[3] += 0.01;
+      EXPECT_FALSE(check_workcell(prepared, joint, quick).passed);
+      auto missing = rows;
+      missing[1].erase(missing[1].begin() + 1);
+      EXPECT_FALSE(check_workcell(prepared, missing, quick).passed);
+      auto swapped = rows;
+      std::swap(swapped[0], swapped[1]);
+      EXPECT_FALSE(check_workcell(prepared, swapped, quick).passed);
+      spoilt += 3;
+    }
+    if (found.decided_by == WorkcellSearch::kArmsAlone || found.least_costs[0] == kNone ||
+        found.least_costs[1] == kNone)
+      continue;
+    // The answers of both arms alone meet each other, and the check says so.
+    std::array<std::vector<TrajectoryRow>, 2> alone;
+    for (std::size_t k = 0; k < 2; ++k)
+      alone[k] = Planner(prepared.problem(k)).plan(lazily()).trajectory;
+    const WorkcellCheckResult check = check_workcell(prepared, alone);
+    EXPECT_TRUE(check.arms[0].passed && check.arms[1].passed);
+    EXPECT_FALSE(check.passed);
+    ++met;
+  }
+  EXPECT_GE(spoilt, at_least(count));
+  EXPECT_GE(met, at_least(count / 8));
+}
+
+TEST(Workcell, RefusesWhatMakesNoSense) {
+  Random random(7);
+  const Workcell good = random_workcell(two_armed("sda10f"), random);
+  const auto refuses = [&](const auto& spoil, const char* words) {
+    Workcell cell = good;
+    spoil(cell);
+    try {
+      static_cast<void>(PreparedWorkcell(cell));
+      ADD_FAILURE() << "not refused: " << words;
+    } catch (const std::exception& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  refuses([](Workcell& c) { c.arms[1].name = "left"; }, "is taken");
+  refuses([](Workcell& c) { c.arms[0].name = "base_link"; }, "is taken by the base link");
+  refuses([](Workcell& c) { c.arms[1].waypoints.pop_back(); }, "same number");
+  refuses(
+      [](Workcell& c) {
+        c.arms[0].path_frame = "right";
+        c.arms[1].path_frame = "left";
+      },
+      "lead each other");
+  refuses([](Workcell& c) { c.arms[1].hold["torso_joint_b1"] = 0.1; }, "hold");
+  refuses([](Workcell& c) { c.arms[1].attached[0].name = "left_tool"; }, "is on both arms");
+  refuses([](Workcell& c) { c.arms[1].tip_link = c.arms[0].tip_link; }, "moves with both arms");
+  refuses([](Workcell& c) { c.arms[0].waypoints[1] = c.arms[0].waypoints[0]; },
+          "is where the one before it is");
+  refuses([](Workcell& c) { c.may_touch.push_back({"left_tool", "nobody"}); }, "'nobody'");
+  refuses([](Workcell& c) { c.arms[0].steps = {3}; }, "steps");
+}
+
+}  // namespace
+
+}  // namespace swivel::test
