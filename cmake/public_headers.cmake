@@ -16,6 +16,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/problem/shape.hpp
   swivel/core/problem/tool_path.hpp
   swivel/core/problem/validate.hpp
+  swivel/core/problem/workcell.hpp
   swivel/core/answer/advice.hpp
   swivel/core/answer/job_result.hpp
   swivel/core/answer/answer_text.hpp
@@ -24,6 +25,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/answer/plan.hpp
   swivel/core/answer/refined.hpp
   swivel/core/answer/stated.hpp
+  swivel/core/answer/workcell_result.hpp
   swivel/core/kinematics/chain/arm.hpp
   swivel/core/lattice/body_pose_classes.hpp
   swivel/core/lattice/kinds/make_lattice.hpp
@@ -58,6 +60,8 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/study/place.hpp
   swivel/planner/verify/check.hpp
   swivel/planner/verify/complete_rows.hpp
+  swivel/planner/workcell/check_workcell.hpp
+  swivel/planner/workcell/plan_workcell.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp
   swivel/io/jobs/job_trajectory.hpp
@@ -66,9 +70,11 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/motions/trajectory.hpp
   swivel/io/problems/job.hpp
   swivel/io/problems/problem.hpp
+  swivel/io/problems/workcell.hpp
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
+  swivel/io/workcells/workcell_csv.hpp
   swivel/report/job_page.hpp
   swivel/report/lattice_map.hpp
   swivel/report/page.hpp)

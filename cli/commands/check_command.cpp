@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands/check_job_command.hpp"
+#include "commands/workcell_command.hpp"
 #include "options/commands.hpp"
 #include "options/job_options.hpp"
 #include "options/search_options.hpp"
@@ -146,9 +147,21 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
       "stroke '" + certificate.stroke + (certificate.reversed ? "' backwards: " : "': "));
 }
 
+int run_on_workcell(const CheckArguments& arguments, const Workcell& file) {
+  const bool moved =
+      arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
+  refuse_options_of_workcells(arguments.problem, {{!arguments.certificate.empty(), "--certificate"},
+                                                  {moved, "--episode and placements"}});
+  require_one_file(arguments);
+  Workcell cell = file;
+  for (WorkcellArm& arm : cell.arms) arguments.lattice.apply(arm);
+  return check_workcell_file(cell, arguments.trajectory);
+}
+
 int run(const CheckArguments& arguments) {
-  const std::variant<Problem, Job> file = io::load_problem_or_job(arguments.problem);
+  const std::variant<Problem, Job, Workcell> file = io::load_problem_file(arguments.problem);
   if (const Job* job = std::get_if<Job>(&file)) return run_on_job(arguments, *job);
+  if (const Workcell* cell = std::get_if<Workcell>(&file)) return run_on_workcell(arguments, *cell);
   Problem problem = arguments.episode.apply(std::get<Problem>(file));
   arguments.lattice.apply(problem);
   require_one_file(arguments);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "commands/plan_job_command.hpp"
+#include "commands/workcell_command.hpp"
 #include "options/commands.hpp"
 #include "options/job_options.hpp"
 #include "options/search_options.hpp"
@@ -115,7 +116,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 /// A problem file as it was read.
 struct LoadedFile {
-  std::variant<Problem, Job> what{};
+  std::variant<Problem, Job, Workcell> what{};
   std::vector<io::InputFiles::File> inputs{};  ///< the files that were read
   double load_ms = 0;                          ///< time that loading took
 };
@@ -124,7 +125,7 @@ LoadedFile load_file(const PlanArguments& arguments) {
   const TraceSpan span("load");
   const auto start = std::chrono::steady_clock::now();
   const io::InputFiles noted;
-  LoadedFile file{.what = io::load_problem_or_job(arguments.problem)};
+  LoadedFile file{.what = io::load_problem_file(arguments.problem)};
   file.inputs = noted.files();
   file.load_ms = milliseconds_since(start);
   return file;
@@ -371,14 +372,51 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
   return plan_job_file(std::move(request), *outputs);
 }
 
-/// Plans the problem or job of the command line and writes and prints the answer. Returns the exit
-/// code. Sets `outputs` as soon as it is known that they may be written. Throws InputError.
+/// Plans a workcell and writes and prints the answer.
+int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
+                     std::optional<io::OutputFiles>& outputs) {
+  const bool moved =
+      arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
+  refuse_options_of_workcells(arguments.problem,
+                              {{arguments.refine, "--refine"},
+                               {arguments.motion.ask_for_job_motion(), "--speed, --rate"},
+                               {arguments.advise.has_value(), "--advise"},
+                               {!arguments.certificate.empty(), "--certificate"},
+                               {!arguments.report.empty(), "--report"},
+                               {!arguments.trace.empty(), "--trace"},
+                               {arguments.map, "--map"},
+                               {!arguments.map_svg.empty(), "--map-svg"},
+                               {arguments.full_map, "--full-map"},
+                               {moved, "--episode and placements"}});
+  require_table_name("--out", arguments.out, "the trajectory of a workcell", "a name like X.csv");
+  WorkcellRequest request{.cell = std::get<Workcell>(std::move(file.what)),
+                          .options = arguments.search.plan_options(),
+                          .quiet = arguments.quiet,
+                          .load_ms = file.load_ms};
+  for (WorkcellArm& arm : request.cell.arms) arguments.search.apply(arm);
+  if (request.options.planner == PlannerKind::kEager ||
+      request.options.planner == PlannerKind::kEagerDp)
+    throw InputError("--planner: " + arguments.search.planner +
+                     " is not supported for workcells: allowed are lazy, parallel");
+  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
+  request.options.check = !arguments.no_check;
+  if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();
+  outputs.emplace(std::move(file.inputs));
+  add_outputs(arguments, *outputs);
+  return plan_workcell_file(std::move(request), *outputs);
+}
+
+/// Plans the problem, job or workcell of the command line and writes and prints the answer. Returns
+/// the exit code. Sets `outputs` as soon as it is known that they may be written. Throws
+/// InputError.
 int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>& outputs) {
   std::optional<Timeline> timeline;
   if (!arguments.trace.empty()) timeline.emplace();
   LoadedFile file = load_file(arguments);
   if (std::holds_alternative<Job>(file.what))
     return plan_job_of(arguments, std::move(file), outputs);
+  if (std::holds_alternative<Workcell>(file.what))
+    return plan_workcell_of(arguments, std::move(file), outputs);
   PlanRequest request = request_of(arguments, std::move(file));
 
   catch_interrupts();
@@ -471,7 +509,7 @@ void add_plan(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("plan", "Plan a joint trajectory");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<PlanArguments>();
-  command->add_option("problem", arguments->problem, "problem file, or job")->required();
+  command->add_option("problem", arguments->problem, "problem file, job or workcell")->required();
   arguments->search.add_to(*command);
   arguments->episode.add_to(*command);
   command->add_option("--timeout", arguments->timeout, "seconds");

@@ -29,6 +29,8 @@ struct PlacementOptions {
   /// problem or job itself if nothing is named. Throws InputError.
   [[nodiscard]] Problem apply(const Problem& problem) const;
   [[nodiscard]] Job apply(const Job& job) const;
+  /// Returns true if a thing or a coordinate is named.
+  [[nodiscard]] bool given() const { return any(); }
   /// Returns the words of a command line that ask for one placement, with a space before each.
   [[nodiscard]] std::string words(const Offset& offset) const;
 

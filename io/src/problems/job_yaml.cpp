@@ -238,17 +238,21 @@ YamlSection load_root(const fs::path& yaml) {
 
 }  // namespace
 
+Job read_job(const fs::path& file, YamlSection root) {
+  return JobReader(file, std::move(root)).read();
+}
+
 bool is_job(const fs::path& yaml) {
   return load_root(yaml).find_filled("strokes").has_value();
 }
 
 Job load_job(const fs::path& yaml) {
-  return JobReader(yaml, load_root(yaml)).read();
+  return read_job(yaml, load_root(yaml));
 }
 
 std::variant<Problem, Job> load_problem_or_job(const fs::path& yaml) {
   YamlSection root = load_root(yaml);
-  if (root.find_filled("strokes")) return JobReader(yaml, std::move(root)).read();
+  if (root.find_filled("strokes")) return read_job(yaml, std::move(root));
   return ProblemReader(yaml, std::move(root)).read();
 }
 

@@ -13,6 +13,7 @@
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
+#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 
@@ -44,6 +45,15 @@ class ProblemReader {
  protected:
   /// Reads the robot and the bodies about it into `problem_`: `robot`, `scene`.
   void read_surroundings();
+  /// Reads the robot's files, `base_link` and `hold` of the section `robot`.
+  void read_model(const YamlValue& value);
+  /// Reads `tip_link`, `tool` and `attached` of the robot or of one arm.
+  void read_hand(const YamlValue& value);
+  void read_scene();
+  /// Reads `start`, of the file or of one arm.
+  void read_start(const YamlValue& value);
+  /// Throws InputError for a key of the file that only stands beside another one that is missing.
+  void require_keys_beside() const;
   /// Reads `path` into `problem_`: frame, waypoints, smoothing, roll, and feeds where `feeds_` is
   /// set.
   void read_path(const YamlValue& value);
@@ -86,6 +96,8 @@ class ProblemReader {
   std::optional<Roll> path_roll_;
   /// Where a path's CSV file may have feeds: those of the path that was read last, m/s.
   std::optional<std::vector<double>> feeds_;
+  /// Names of frames that a path may be in besides `base_link` and those of scene objects.
+  std::vector<std::string> more_frames_;
 
  private:
   [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;
@@ -118,7 +130,6 @@ class ProblemReader {
   void read_attached(const YamlValue& value);
   Shape shape(const YamlSection& section);
   static Vector3d mesh_scale(const YamlValue& value);
-  void read_scene();
   void read_allowed(const YamlValue& value, SceneObject& object) const;
   void read_waypoints(const YamlValue& value);
   /// Limits the window of rolls of each waypoint to the range of path.roll, and that range to what
@@ -132,7 +143,6 @@ class ProblemReader {
   void read_refine(const YamlValue& value);
   void read_resolution(const YamlValue& value);
   [[nodiscard]] ArmModel arm() const;
-  void read_start(const YamlValue& value);
   void read_start_place();
   void require_one_path() const;
 
@@ -146,5 +156,8 @@ class ProblemReader {
 
   MeshCache meshes_;
 };
+
+/// Reads the root of a job's file, which has `strokes` or a path. Throws InputError.
+[[nodiscard]] Job read_job(const std::filesystem::path& file, YamlSection root);
 
 }  // namespace swivel::io

@@ -114,6 +114,16 @@ void ProblemReader::require_one_path() const {
         "io::load_job() take",
         "a `path` here");
   }
+  if (root_.find_filled("arms")) {
+    const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
+    value.fail(
+        "makes this file a workcell, which `swivel plan`, `check` and io::load_workcell() take",
+        "a `path` here");
+  }
+  require_keys_beside();
+}
+
+void ProblemReader::require_keys_beside() const {
   for (const Schema::Key& key : problem_schema().keys)
     if (const auto value = root_.find_filled(key.name); value && !key.beside.empty())
       value->fail("is given without " + key.beside, "this key beside " + key.beside);
@@ -155,10 +165,16 @@ bool ProblemReader::is_object(const std::string& name) const {
 }
 
 void ProblemReader::read_robot(const YamlValue& value) {
+  static_cast<void>(value.section().require("tip_link"));
+  read_model(value);
+  read_hand(value);
+}
+
+void ProblemReader::read_model(const YamlValue& value) {
   const YamlSection section = value.section();
   const YamlValue urdf = section.require("urdf");
   const auto srdf = section.find_filled("srdf");
-  const YamlValue base = section.require("base_link"), tip = section.require("tip_link");
+  const YamlValue base = section.require("base_link");
   const auto packages = read_packages(section);
   RobotOptions options;
   if (const auto without = section.find_filled("without"))
@@ -175,9 +191,13 @@ void ProblemReader::read_robot(const YamlValue& value) {
              [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
   problem_.model = robot.model;
   problem_.base_link = link_name(base);
-  problem_.tip_link = link_name(tip);
-  if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section());
   if (const auto hold = section.find_filled("hold")) read_hold(*hold);
+}
+
+void ProblemReader::read_hand(const YamlValue& value) {
+  const YamlSection section = value.section();
+  problem_.tip_link = link_name(section.require("tip_link"));
+  if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section());
   if (const auto attached = section.find_filled("attached"))
     for (const YamlValue& item : attached->items()) read_attached(item);
   if (problem_.attached.size() > kMostBodies)
@@ -300,7 +320,9 @@ void ProblemReader::read_path(const YamlValue& value) {
   problem_.path_frame = problem_.base_link;
   if (const auto frame = section.find_filled("frame")) {
     problem_.path_frame = frame->text();
-    if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame))
+    const bool is_other = std::find(more_frames_.begin(), more_frames_.end(),
+                                    problem_.path_frame) != more_frames_.end();
+    if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame) && !is_other)
       frame->fail("unknown frame '" + problem_.path_frame + "'",
                   "'" + problem_.base_link + "' or the name of a scene object");
   }

@@ -82,7 +82,7 @@ Schema robot() {
            "link that the arm is reached from, or the hand where the part is in it; everything is "
            "in its frame, unless said",
            "the name of a link"},
-          {"tip_link", text(), "", required(),
+          {"tip_link", text(), "", in_words("**required**, or of each of the `arms`"),
            "link that carries the tool: the arm is the last seven movable joints between the two "
            "(six with `path.roll`)",
            "the name of a link"},
@@ -323,19 +323,22 @@ Keys keys_of_strokes(const char* other) {
   };
 }
 
-Schema strokes() {
-  Schema limits_of_stroke =
+/// Returns the schema of limits in place of the file's.
+Schema limits_of_one() {
+  Schema limits =
       section("", join(join(clearance_limits(), joint_and_path_limits()), speed_limits()));
-  std::erase_if(limits_of_stroke.keys,
-                [](const Schema::Key& key) { return key.name == "soft_limits"; });
-  limits_of_stroke.refused = {
-      {"soft_limits", "is of the robot", "this key in the `limits` of the file"}};
+  std::erase_if(limits.keys, [](const Schema::Key& key) { return key.name == "soft_limits"; });
+  limits.refused = {{"soft_limits", "is of the robot", "this key in the `limits` of the file"}};
+  return limits;
+}
+
+Schema strokes() {
   const Keys first{
       {"name", text(), "", required(), "a name of its own, without commas and quotes", "a name"},
       {"path", path(), "", required(), "its [path](#path)", "a section with waypoints or file"},
       {"reversible", boolean(), "", otherwise("false"),
        "whether the tool may run from the last waypoint to the first as well"}};
-  const Keys last{{"limits", std::move(limits_of_stroke), "", optional(),
+  const Keys last{{"limits", limits_of_one(), "", optional(),
                    "[limits](#limits) in place of the file's, key by key"}};
   Schema stroke = section("stroke", join(join(first, keys_of_strokes("that of the job")), last));
   return list(refusing(std::move(stroke),
@@ -343,6 +346,34 @@ Schema strokes() {
                         not_yet("closed"),
                         not_yet("end"),
                         {"start", "is of problems with one path", "`home`, of a job as a whole"}}));
+}
+
+/// Returns the schema of the two arms of a workcell.
+Schema arms() {
+  const Keys body{
+      {"name", text(), "", required(), "neither that of a link nor of another body", "a name"}};
+  const Keys where{{"link", text(), "", in_words("`tip_link` of the arm"),
+                    "the link that it moves with, and in whose frame its pose is"},
+                   {"allow", list(text()), "", optional(),
+                    "links and attached bodies of the other arm that may touch it"}};
+  const Keys keys{
+      {"name", text(), "", required(), "a name of its own, without commas and quotes", "a name"},
+      {"tip_link", text(), "", required(), "link that carries its tool", "the name of a link"},
+      {"tool", section("", pose_keys(), {kOneOrientation}), "", in_words("that of `tip_link`"),
+       "tool frame in its `tip_link`: a [pose](#poses)"},
+      {"attached",
+       list(section("", join(join(body, shape_keys()), join(pose_keys(), where)),
+                    {kOneShape, kOneOrientation})),
+       "", optional(), "bodies that move with the arm: tools, held parts"},
+      {"path", path(), "", required(),
+       "its [path](#path); `frame` may be the name of the other arm, whose tool carries it then",
+       "a section with waypoints or file"},
+      {"start", configuration(), "", in_words("Swivel chooses"),
+       "`{joints: [...]}` (rad): its configuration at the first waypoint"},
+      {"limits", limits_of_one(), "", optional(),
+       "[limits](#limits) in place of the file's, key by key"}};
+  return refusing(list(section("arm", keys), 2),
+                  {not_yet("trajectory"), not_yet("axes"), not_yet("cost")});
 }
 
 /// Returns the keys that only jobs have.
@@ -379,10 +410,11 @@ const Schema& problem_schema() {
     const Keys what{
         {"robot", robot(), "", required(), "the [robot](#robot)",
          "a section with urdf, base_link, tip_link"},
-        {"path", path(), "", in_words("**required**, or `strokes`"),
+        {"path", path(), "", in_words("**required**, or `strokes`, or `arms`"),
          "the [path](#path) of the tool",
-         "a section with waypoints or file; or `strokes`, of a job"},
+         "a section with waypoints or file; or `strokes`, of a job; or `arms`, of a workcell"},
         {"strokes", strokes(), "", optional(), "of a [job](#jobs) instead: the strokes"},
+        {"arms", arms(), "", optional(), "of a [workcell](#workcells) instead: two arms"},
         {"scene", scene(), "", optional(), "the [bodies](#scene) that stand around"},
         {"resolution", resolution(), "", optional(), "how fine the [lattice](#resolution) is"},
         {"limits", limits(), "", optional(), "what is to be [kept](#limits)"}};
@@ -392,10 +424,10 @@ const Schema& problem_schema() {
         {"vary", vary(), "", optional(),
          "uniform random offsets of objects, for [campaigns](#vary)"}};
     return refusing(section("problem", join(join(join(what, start_keys()), how), job_keys()),
-                            {{{"path", "strokes"}, true},
-                             {{"start", "strokes"}},
-                             {{"start_at", "strokes"}},
-                             {{"start_tolerance", "strokes"}}}),
+                            {{{"path", "strokes", "arms"}, true},
+                             {{"start", "strokes", "arms"}},
+                             {{"start_at", "strokes", "arms"}},
+                             {{"start_tolerance", "strokes", "arms"}}}),
                     {not_yet("lift")});
   }();
   return schema;

@@ -8,6 +8,8 @@
 #include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/job.hpp"
 #include "swivel/io/problems/problem.hpp"
+#include "swivel/io/problems/workcell.hpp"
 #include "swivel/io/results/result.hpp"
 #include "swivel/io/robots/robot.hpp"
 #include "swivel/io/tables/campaign.hpp"
+#include "swivel/io/workcells/workcell_csv.hpp"

@@ -10,6 +10,7 @@
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
+#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
@@ -34,6 +35,8 @@ struct JobExtras {
 /// rows is null unless there are some, `motion` unless one was asked for.
 [[nodiscard]] std::string to_job_json(const JobResult& result, const Job& job,
                                       const JobExtras& extras = {});
+/// Returns RESULT.json of a workcell as text, docs/formats.md "Result of a workcell".
+[[nodiscard]] std::string to_workcell_json(const WorkcellResult& result);
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.

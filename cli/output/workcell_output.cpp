@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output/workcell_output.hpp"
+
+#include <cmath>
+
+#include "swivel/core/answer/answer_text.hpp"
+#include "swivel/core/messages/formatted.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+bool has_path_alone(const WorkcellResult& result, std::size_t arm) {
+  return std::isfinite(result.least_costs[arm]);
+}
+
+/// Returns why two arms, each of which has a path by itself, have none together.
+std::string conflict_text(const WorkcellResult& result) {
+  std::string text = "no plan: each arm has a path by itself, and no two of them keep clear";
+  if (result.decided_by == WorkcellSearch::kRegions)
+    text +=
+        formatted(" (%lld regions of conflict)", static_cast<long long>(result.counters.rounds));
+  text += "\n";
+  if (const auto& conflict = result.conflict)
+    text += formatted("  the cheapest paths meet at s = %.4f m of '%s' and %.4f m of '%s'%s: ",
+                      conflict->s[0], result.names[0].c_str(), conflict->s[1],
+                      result.names[1].c_str(), conflict->of_motion ? ", on the way on" : "") +
+            conflict->bodies[0] + " and " + conflict->bodies[1] + "\n";
+  return text;
+}
+
+std::string solved_text(const WorkcellResult& result) {
+  std::string text =
+      formatted("two arms, %zu layers, cost %.6g", result.arms[0].trajectory.size(), result.cost);
+  const double alone = result.least_costs[0] + result.least_costs[1];
+  if (result.decided_by == WorkcellSearch::kArmsAlone)
+    text += ": that of both arms alone, which do not meet";
+  else if (alone > 0)
+    text += formatted(": %.2g %% more than both arms alone, which would meet",
+                      100 * (result.cost / alone - 1));
+  if (result.status != PlanStatus::kSolved && result.bound > 0)
+    text += formatted("; stopped, at most %.2g %% from the best",
+                      100 * (result.cost / result.bound - 1));
+  if (const auto& nearest = result.between_arms)
+    text += formatted("; nearest to each other %.3g mm: ", 1e3 * nearest->clearance) +
+            nearest->bodies[0] + " and " + nearest->bodies[1];
+  return text + "\n";
+}
+
+std::string indented(const std::string& text) {
+  std::string all;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    all += "  " + text.substr(begin, end - begin);
+    begin = end;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string workcell_text(const WorkcellResult& result) {
+  const bool solved = !result.arms[0].trajectory.empty();
+  std::string text;
+  if (solved)
+    text = solved_text(result);
+  else if (result.status != PlanStatus::kInfeasible)
+    return std::string("stopped before there was a plan: ") + to_string(result.status) + "\n";
+  else if (has_path_alone(result, 0) && has_path_alone(result, 1))
+    return conflict_text(result);
+  else
+    text = "no plan: an arm has no path by itself\n";
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!solved && has_path_alone(result, k)) continue;
+    PlanResult arm = result.arms[k];
+    text += "  " + result.names[k] + ":\n" + indented(indented(answer_text(arm)));
+  }
+  return text;
+}
+
+}  // namespace swivel::cli

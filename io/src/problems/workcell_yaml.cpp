@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "problems/problem_reader.hpp"
+#include "schema/schema.hpp"
+#include "swivel/io/problems/workcell.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+/// Reads a problem file with `arms`.
+class WorkcellReader : ProblemReader {
+ public:
+  WorkcellReader(const std::filesystem::path& file, YamlSection root)
+      : ProblemReader(file, std::move(root)) {}
+
+  Workcell read() {
+    const auto [key, arms] = *root_.chosen("path");  // throws where there is another as well
+    require_keys_beside();
+    for (const char* const other : {"start", "start_at", "start_tolerance"})
+      if (const auto value = root_.find_filled(other))
+        value->fail("is of problems with one path", "`start`, in one of the `arms`");
+    read_robot_of_both();
+    list_arms(arms);
+    read_scene();
+    for (std::size_t k = 0; k < 2; ++k) read_arm(k);
+    require_equal_lengths();
+    read_may_touch();
+    read_vary();
+    cell_.source = problem_.source;
+    cell_.scene = std::move(problem_.scene);
+    cell_.vary = std::move(problem_.vary);
+    return std::move(cell_);
+  }
+
+ private:
+  void read_robot_of_both() {
+    problem_.source = file_.string();
+    const YamlValue robot = root_.require("robot");
+    for (const char* const key : {"tip_link", "tool", "attached"})
+      if (const auto value = robot.section().find_filled(key))
+        value->fail("is of one arm, and this file has two", "this key in each of the `arms`");
+    read_model(robot);
+  }
+
+  /// Reads names and hands of both arms. `problem_` has the attached bodies of both then, which the
+  /// scene may allow to touch.
+  void list_arms(const YamlValue& arms) {
+    sections_ = arms.items();
+    if (sections_.size() != 2)
+      arms.fail("has " + std::to_string(sections_.size()) + " arms", "a list of two");
+    for (std::size_t k = 0; k < 2; ++k) {
+      const YamlSection section = sections_[k].section();
+      WorkcellArm& arm = cell_.arms[k];
+      const YamlValue name = section.require("name");
+      arm.name = name.name();
+      if (arm.name.find_first_of(",\"'\n\r ") != std::string::npos)
+        name.fail("is '" + arm.name + "'", "a name without commas, quotes, spaces and line breaks");
+      if (k == 1 && arm.name == cell_.arms[0].name)
+        name.fail("'" + arm.name + "' is the name of the other arm", "a name of its own");
+      if (arm.name == problem_.base_link)
+        name.fail("'" + arm.name + "' is the base link", "a name of its own");
+      const std::size_t attached = problem_.attached.size();
+      problem_.tool = Pose::Identity();
+      read_hand(sections_[k]);
+      static_cast<Robot&>(arm) = problem_;
+      arm.attached.erase(arm.attached.begin(),
+                         arm.attached.begin() + static_cast<std::ptrdiff_t>(attached));
+    }
+  }
+
+  void read_arm(std::size_t k) {
+    WorkcellArm& arm = cell_.arms[k];
+    const YamlSection section = sections_[k].section();
+    static_cast<Robot&>(problem_) = arm;
+    static_cast<Task&>(problem_) = Task();
+    problem_.roll.reset();
+    more_frames_ = {cell_.arms[1 - k].name};
+    const YamlValue path = section.require("path");
+    read_path(path);
+    if (!problem_.waypoints.empty() && problem_.waypoints.front().roll)
+      path.fail("has windows of the roll at waypoints, in a workcell",
+                "a roll of the whole path, or none");
+    read_task();
+    std::vector<YamlValue> limits;
+    if (const auto value = root_.find_filled("limits")) limits.push_back(*value);
+    if (const auto value = section.find_filled("limits")) {
+      read_limits(*value);
+      limits.push_back(*value);
+    }
+    read_cost();
+    const ArmModel model = suitable_arm();
+    require_in_scale(model, path, limits);
+    for (const YamlValue& value : limits) require_arm_angle(model, value);
+    if (const auto start = section.find_filled("start")) read_start(*start);
+    static_cast<Robot&>(arm) = problem_;
+    static_cast<Task&>(arm) = problem_;
+    if (cell_.leader_of(k) >= 0 && k == 1 && cell_.leader_of(0) >= 0)
+      path.fail("leads the arm that leads it", "one arm in the frame of the other");
+  }
+
+  void require_equal_lengths() const {
+    const std::size_t first = cell_.arms[0].waypoints.size(),
+                      second = cell_.arms[1].waypoints.size();
+    if (first != second)
+      sections_[1].section().require("path").fail(
+          "has " + std::to_string(second) + " waypoints, and that of '" + cell_.arms[0].name +
+              "' " + std::to_string(first),
+          "as many waypoints in both, since both arms are at theirs at one time");
+  }
+
+  void read_may_touch() {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto attached = sections_[k].section().find_filled("attached");
+      if (!attached) continue;
+      for (const YamlValue& item : attached->items()) {
+        const YamlSection body = item.section();
+        const auto allow = body.find_filled("allow");
+        if (!allow) continue;
+        for (const YamlValue& other : allow->items()) {
+          require_body_of(cell_.arms[1 - k], other);
+          cell_.may_touch.push_back({body.require("name").name(), other.text()});
+        }
+      }
+    }
+  }
+  static void require_body_of(const WorkcellArm& arm, const YamlValue& value) {
+    const std::string name = value.text();
+    const bool is_attached =
+        std::any_of(arm.attached.begin(), arm.attached.end(),
+                    [&](const AttachedBody& body) { return body.name == name; });
+    if (!is_attached && arm.model->find_link(name) < 0)
+      value.fail("unknown body '" + name + "'",
+                 "a link of arm '" + arm.name + "' or the name of a body attached to it");
+  }
+
+  Workcell cell_;
+  std::vector<YamlValue> sections_;  // of the arms
+};
+
+}  // namespace
+
+Workcell load_workcell(const std::filesystem::path& yaml) {
+  YamlSection root = load_yaml(yaml, problem_schema()).section();
+  static_cast<void>(root.chosen("path"));
+  if (!root.find_filled("arms"))
+    root.self().fail("has no `arms`", "a file with `arms`; io::load_problem_file() takes any");
+  return WorkcellReader(yaml, std::move(root)).read();
+}
+
+std::variant<Problem, Job, Workcell> load_problem_file(const std::filesystem::path& yaml) {
+  YamlSection root = load_yaml(yaml, problem_schema()).section();
+  if (root.find_filled("arms")) return WorkcellReader(yaml, std::move(root)).read();
+  if (root.find_filled("strokes")) return read_job(yaml, std::move(root));
+  return ProblemReader(yaml, std::move(root)).read();
+}
+
+}  // namespace swivel::io

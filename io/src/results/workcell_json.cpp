@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "results/result_parts.hpp"
+#include "schema/schema.hpp"
+#include "swivel/io/results/result.hpp"
+#include "tables/run_settings.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+Json finite_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json arm_json(const WorkcellResult& result, std::size_t arm) {
+  const PlanResult& plan = result.arms[arm];
+  const bool solved = !plan.trajectory.empty();
+  const bool no_path =
+      result.status == PlanStatus::kInfeasible && !std::isfinite(result.least_costs[arm]);
+  Json json = {{"name", result.names[arm]},
+               {"least_cost", finite_or_null(result.least_costs[arm])},
+               {"cost", solved ? Json(plan.cost) : Json(nullptr)},
+               {"summary", summary_json(plan, plan.trajectory)},
+               {"lattice", lattice_json(plan.lattice, solved)}};
+  add_measures(json, plan, solved);
+  json["counters"] = counters_json(plan.counters);
+  json["diagnosis"] = no_path ? diagnosis_json(plan.diagnosis) : Json(nullptr);
+  json["trajectory"] = solved ? trajectory_json(plan.trajectory) : Json(nullptr);
+  json["held"] = held_json(plan.held);
+  json["warnings"] = plan.warnings;
+  json["joint_names"] = plan.joint_names;
+  return json;
+}
+
+}  // namespace
+
+std::string to_workcell_json(const WorkcellResult& result) {
+  const bool solved = !result.arms[0].trajectory.empty();
+  Json json;
+  json["schema_version"] = kResultVersion;
+  json["status"] = to_string(result.status);
+  json["cost"] = solved ? Json(result.cost) : Json(nullptr);
+  json["bound"] = finite_or_null(result.bound);
+  json["checked"] = solved ? Json(result.checked) : Json(nullptr);
+  json["planner"] = result.planner;
+  json["threads"] = result.threads;
+  json["decided_by"] = to_string(result.decided_by);
+  json["arms"] = {arm_json(result, 0), arm_json(result, 1)};
+  json["conflict"] = nullptr;
+  if (const auto& conflict = result.conflict)
+    json["conflict"] = {{"layer", conflict->layer},
+                        {"on_motion", conflict->of_motion},
+                        {"s", conflict->s},
+                        {"bodies", conflict->bodies}};
+  json["between_arms"] = nullptr;
+  if (const auto& nearest = result.between_arms)
+    json["between_arms"] = {{"clearance_mm", 1e3 * nearest->clearance},
+                            {"margin_mm", 1e3 * nearest->margin},
+                            {"bodies", nearest->bodies},
+                            {"row", nearest->row}};
+  json["counters"] = {{"rounds", result.counters.rounds},
+                      {"pops", result.counters.pops},
+                      {"node_pairs", result.counters.node_pairs},
+                      {"move_pairs", result.counters.move_pairs}};
+  json["time_ms"] = time_json(result.time_ms);
+  json["warnings"] = result.warnings;
+  return document_of(json);
+}
+
+}  // namespace swivel::io

@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Workcells from outside: what `plan` and `check` say and write of two arms, and who refuses
+them."""
+import copy
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+SWIVEL = os.environ["SWIVEL"]
+DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
+
+
+def run(*arguments):
+    return subprocess.run(
+        [SWIVEL, *map(str, arguments)], capture_output=True, text=True, timeout=300
+    )
+
+
+def arm(name, y, **more):
+    """An arm whose tool moves 0.1 m up in front of the torso, pointing forward."""
+    corners = [[0.72, y, 1.0], [0.72, y, 1.1]]
+    return {
+        "name": name, "tip_link": f"arm_{name}_link_tool0", "tool": {"xyz": [0, 0, 0.1]},
+        "path": {"waypoints": [{"xyz": at, "rpy": [0, 1.5707963, 0]} for at in corners]},
+        **more
+    }
+
+
+def cell(gap=0.5, **changes):
+    """Two arms whose tools are so far from each other, m."""
+    return {
+        "robot": {
+            "urdf": str(DATA / "robots" / "sda10f.urdf"),
+            "srdf": str(DATA / "robots" / "sda10f.srdf"), "base_link": "base_link",
+            "hold": {"torso_joint_b1": 0}
+        },
+        "arms": [arm("left", gap / 2), arm("right", -gap / 2)],
+        "resolution": {"ds": 0.02, "dphi": 0.2},
+        **changes,
+    }
+
+
+class Workcells(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.out, self.result = self.folder / "t.csv", self.folder / "r.json"
+
+    def file(self, problem):
+        file = self.folder / "cell.yaml"
+        file.write_text(json.dumps(problem))
+        return file
+
+    def plan(self, problem, *options):
+        return run(
+            "plan", self.file(problem), "--out", self.out, "--json", self.result, *options
+        )
+
+    def refused(self, problem, words, *options):
+        done = self.plan(problem, *options)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        self.assertIn(words, done.stderr)
+        self.assertIn("allowed is", done.stderr.replace("allowed are", "allowed is"))
+        self.assertFalse(self.out.exists())
+
+    def test_arms_that_do_not_meet(self):
+        done = self.plan(cell())
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(
+            done.stdout.splitlines()[0],
+            r"^two arms, 6 layers, cost [0-9.]+: that of both arms alone, which do not meet; "
+            r"nearest to each other [0-9.]+ mm: "
+        )
+        result = json.loads(self.result.read_text())
+        self.assertEqual(result["status"], "solved")
+        self.assertEqual(result["decided_by"], "arms alone")
+        self.assertEqual([one["name"] for one in result["arms"]], ["left", "right"])
+        self.assertAlmostEqual(result["cost"], sum(one["cost"] for one in result["arms"]))
+        rows = list(csv.DictReader(self.out.read_text().splitlines()))
+        self.assertEqual(len(rows), 6)
+        for k, one in enumerate(result["arms"]):
+            for name, q in zip(one["joint_names"], one["trajectory"][3]["joints"]):
+                self.assertEqual(float(rows[3][name]), q)
+        checked = run("check", self.folder / "cell.yaml", self.out)
+        self.assertEqual(checked.returncode, 0, checked.stdout)
+        self.assertTrue(checked.stdout.startswith("passed: two arms, 6 rows; "))
+
+    def test_arms_that_cannot_keep_clear(self):
+        done = self.plan(cell(gap=0.02))
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertTrue(lines[0].startswith("no plan: each arm has a path by itself, and no two "))
+        self.assertRegex(lines[1], "the cheapest paths meet at s = 0.[0-9]+ m of 'left' and ")
+        result = json.loads(self.result.read_text())
+        self.assertEqual(result["status"], "infeasible")
+        self.assertIsNone(result["cost"])
+        self.assertEqual(len(result["conflict"]["bodies"]), 2)
+        self.assertFalse(self.out.exists())
+
+    def test_an_arm_without_a_path(self):
+        problem = cell()
+        problem["arms"][1] = arm("right", -2.5)
+        done = self.plan(problem)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no plan: an arm has no path by itself\n  right:\n", done.stdout)
+        self.assertIn("no IK", done.stdout)
+        result = json.loads(self.result.read_text())
+        self.assertIsNone(result["arms"][1]["least_cost"])
+        self.assertIsNotNone(result["arms"][1]["diagnosis"])
+        self.assertIsNone(result["arms"][0]["diagnosis"])
+
+    def test_check_refuses_spoilt_rows(self):
+        self.assertEqual(self.plan(cell()).returncode, 0)
+        rows = [line.split(",") for line in self.out.read_text().splitlines()]
+        spoilt = copy.deepcopy(rows)
+        spoilt[3][10] = str(float(spoilt[3][10]) + 0.01)
+        for other, words in (
+            (spoilt, "tool"), (rows[:4] + rows[5:], "allowed is one at each layer"),
+        ):
+            self.out.write_text("\n".join(",".join(row) for row in other) + "\n")
+            done = run("check", self.folder / "cell.yaml", self.out)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertTrue(done.stdout.startswith("failed: two arms"))
+            self.assertIn(words, done.stdout)
+        for column, value, words in ((4, "9", "branch_left"), (6, "x", "not a")):
+            other = copy.deepcopy(rows)
+            other[2][column] = value
+            self.out.write_text("\n".join(",".join(row) for row in other) + "\n")
+            done = run("check", self.folder / "cell.yaml", self.out)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+
+    def test_bad_input(self):
+        self.refused(cell(path={"waypoints": []}), "path")
+        self.refused(cell(arms=[arm("left", 0.2)]), "arms")
+        self.refused(cell(strokes=[]), "strokes")
+        self.refused(cell(home={"joints": [0] * 7}), "home")
+        self.refused(cell(start={"joints": [0] * 7}), "start")
+        for key in ("tip_link", "tool", "attached"):
+            problem = cell()
+            problem["robot"][key] = {"xyz": [0, 0, 0]} if key == "tool" else (
+                "arm_left_link_tool0" if key == "tip_link" else [
+                    {"name": "x", "sphere": 0.1, "link": "arm_left_link_tool0"}
+                ]
+            )
+            self.refused(problem, "is of one arm, and this file has two")
+
+        def changed(index, **keys):
+            problem = cell()
+            problem["arms"][index].update(keys)
+            return problem
+
+        self.refused(changed(1, name="left"), "name of the other arm")
+        self.refused(changed(0, name="base_link"), "is the base link")
+        self.refused(changed(0, tip_link="nowhere"), "unknown link 'nowhere'")
+        self.refused(changed(1, trajectory="x.csv"), "trajectory")
+        self.refused(changed(1, axes={}), "axes")
+        self.refused(changed(1, tip_link="arm_left_link_7_t"), "moves with both arms")
+        body = {"name": "tool", "sphere": 0.02, "xyz": [0, 0, 0.05]}
+        self.refused(changed(0, attached=[{**body, "allow": ["nobody"]}]), "unknown body 'nobody'")
+        both = changed(0, attached=[body])
+        both["arms"][1]["attached"] = [body]
+        self.refused(both, "attached twice")
+        path = copy.deepcopy(cell()["arms"][0]["path"])
+        self.refused(changed(0, path={**path, "frame": "nowhere"}), "unknown frame 'nowhere'")
+        longer = copy.deepcopy(path)
+        longer["waypoints"].append({"xyz": [0.72, 0.25, 1.2], "rpy": [0, 1.5707963, 0]})
+        self.refused(changed(1, path=longer), "has 3 waypoints, and that of 'left' 2")
+        twice = copy.deepcopy(path)
+        twice["waypoints"][1] = twice["waypoints"][0]
+        self.refused(changed(0, path=twice), "is where the one before it is")
+
+    def test_who_refuses_workcells(self):
+        file = self.file(cell())
+        for command in (("campaign", file), ("place", file, "--object", "x", "--x", "0:1:0.5"),
+                        ("time", file, "t.csv", "--speed", "0.1")):
+            done = run(*command)
+            self.assertEqual(done.returncode, 2, command)
+            self.assertIn("workcell", done.stderr)
+        for options in (
+            ("--report", self.folder / "r.html"), ("--speed", "0.1"), ("--refine",), ("--map",),
+            ("--advise", "1"), ("--certificate", self.folder / "c.json"),
+            ("--planner", "eager"), ("--path", "--x", "0.1"),
+        ):
+            done = self.plan(cell(), *options)
+            self.assertEqual(done.returncode, 2, options)
+            self.assertIn("for workcells", done.stderr)
+
+    def test_threads_and_planners_agree(self):
+        texts = set()
+        for options in (("--planner", "lazy"), ("--threads", "1"), ("--threads", "2")):
+            self.assertEqual(self.plan(cell(gap=0.25), *options).returncode, 0)
+            texts.add(self.out.read_text())
+        self.assertEqual(len(texts), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
