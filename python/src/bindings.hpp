@@ -185,6 +185,7 @@ void bind_problem(py::module_& m);
 void bind_results(py::module_& m);
 void bind_planner(py::module_& m);
 void bind_runs(py::module_& m);
+void bind_workcell(py::module_& m);
 
 }  // namespace swivel::python
 

@@ -13,7 +13,7 @@ tip. Arrays in results are read-only views, which keep alive what they show.
         print(plan.diagnosis.cause)
 
 A job of many strokes is loaded by load_job() and planned by plan_job(); place() and campaign() take
-problems and jobs.
+problems and jobs. Two arms are loaded by load_workcell() and planned by plan_workcell().
 """
 import os as _os
 

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Workcells in the Python package. Usage: workcell_test.py CASE; SWIVEL is the program, SWIVEL_DATA
+# the data folder.
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import swivel
+
+PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
+PLATE = DATA / "problems" / "sda10f_plate_workcell.yaml"
+
+
+class Workcells(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def test_plans_as_the_program_does(self):
+        csv = self.folder / "both.csv"
+        subprocess.run([PROGRAM, "plan", PLATE, "--out", csv, "--quiet"], check=True)
+        cell = swivel.load_workcell(PLATE)
+        self.assertEqual(list(cell.names), ["left", "right"])
+        plan = swivel.plan_workcell(cell, planner="lazy", evidence=True)
+        self.assertTrue(plan.solved)
+        self.assertEqual(plan.decided_by, "arms alone")
+        self.assertAlmostEqual(plan.cost, sum(plan.least_costs))
+        self.assertGreater(plan.clearance, 0.005)
+        self.assertIsNone(plan.conflict)
+        saved = self.folder / "saved.csv"
+        plan.save(saved)
+        self.assertEqual(saved.read_text(), csv.read_text())
+        left = plan.trajectories["left"]
+        self.assertEqual(left.joints.shape, (33, 7))
+        self.assertEqual(left.joint_names[0], "arm_left_joint_1_s")
+        result = json.loads(plan.to_json())
+        self.assertEqual(result["arms"][0]["trajectory"][5]["joints"], list(left.joints[5]))
+        for rows in (plan, plan.trajectories, csv):
+            check = swivel.check_workcell(PLATE, rows)
+            self.assertTrue(check, check.failures)
+
+    def test_check_finds_what_is_wrong(self):
+        plan = swivel.plan_workcell(PLATE)
+        rows = dict(plan.trajectories)
+        joints = np.array(rows["right"].joints)
+        joints[7, 3] += 0.01
+        right = rows["right"]
+        rows["right"] = swivel.Trajectory(
+            joints, right.s, right.phi, right.branch, right.joint_names
+        )
+        check = swivel.check_workcell(PLATE, rows)
+        self.assertFalse(check.passed)
+        self.assertIn("row 7", check.failures[0])
+        with self.assertRaises(KeyError):
+            swivel.check_workcell(PLATE, {"left": plan.trajectories["left"]})
+
+    def arms(self, gap, torso=0):
+        """Two problems of one robot, whose tools move up side by side."""
+        forward = [np.sqrt(0.5), 0, np.sqrt(0.5), 0]
+        arms = {}
+        for name, y in (("left", gap / 2), ("right", -gap / 2)):
+            robot = swivel.Robot(
+                DATA / "robots" / "sda10f.urdf", DATA / "robots" / "sda10f.srdf",
+                base="base_link", tip=f"arm_{name}_link_tool0", hold={"torso_joint_b1": torso}
+            )
+            task = swivel.Task([[0.72, y, z, *forward] for z in (1.0, 1.1)])
+            task.resolution = swivel.Resolution(ds=0.02, dphi=0.2)
+            arms[name] = swivel.Problem(robot, task)
+        return arms
+
+    def test_is_made_of_two_problems(self):
+        cell = swivel.Workcell(self.arms(0.5))
+        self.assertRegex(repr(cell), "<Workcell of 'left' and 'right', 2 waypoints>")
+        plan = swivel.plan_workcell(cell)
+        self.assertTrue(plan.solved)
+        self.assertEqual({len(rows) for rows in plan.trajectories.values()}, {6})
+        self.assertTrue(swivel.check_workcell(cell, plan))
+        barred = swivel.plan_workcell(swivel.Workcell(self.arms(0.02)))
+        self.assertEqual(barred.status, "infeasible")
+        self.assertEqual(len(barred.conflict), 2)
+        self.assertEqual(barred.trajectories, {})
+        self.assertIsNone(barred.diagnosis("left"))
+        with self.assertRaises(KeyError):
+            barred.diagnosis("middle")
+        with self.assertRaisesRegex(ValueError, "there is no plan"):
+            barred.save(self.folder / "none.csv")
+
+    def test_bad_input(self):
+        with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
+            swivel.load_workcell(DATA / "problems" / "experiment_c.yaml")
+        with self.assertRaisesRegex(ValueError, "has 0 entries"):
+            swivel.Workcell({})
+        arms = self.arms(0.5)
+        arms["right"] = self.arms(0.5, torso=0.2)["right"]
+        with self.assertRaisesRegex(swivel.InvalidArgument, "hold"):
+            swivel.Workcell(arms)
+        with self.assertRaises(swivel.InvalidArgument):
+            swivel.plan_workcell(PLATE, planner="eager")
+        with self.assertRaises(ValueError):
+            swivel.plan_workcell(PLATE, threads=-1)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[1:]])
