@@ -46,7 +46,10 @@ for (const [place, { version, dev }] of Object.entries(
   );
 }
 
-const read = new Set([source('../../LICENSE'), source('page.css'), source('head.html')]),
+const read = new Set([
+    source('../../LICENSE'),
+    ...['page.css', 'head.html', 'view.html'].map(source),
+  ]),
   pages = [];
 for (const [frame, entry, result, title] of [
   ['page.html', 'main.js', 'report.html', 'Swivel report'],
@@ -74,6 +77,7 @@ for (const [frame, entry, result, title] of [
   pages.push([
     result,
     (readFileSync(source('head.html'), 'utf8') + readFileSync(source(frame), 'utf8'))
+      .replace('  <!-- view.html -->\n', () => readFileSync(source('view.html'), 'utf8'))
       .replace('@@TITLE@@', () => title)
       .replace('/* page.css */', () => readFileSync(source('page.css'), 'utf8'))
       // Nothing else runs in the page.

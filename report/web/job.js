@@ -5,7 +5,7 @@ import { savers } from './figure.js';
 import { JobList, strokeName } from './joblist.js';
 import { jobSummary, strokeTable, verdict } from './jobtables.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
+import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
 import { Plots } from './plots.js';
@@ -21,7 +21,7 @@ import {
   shades,
   valueAt,
 } from './poses.js';
-import { View } from './scene.js';
+import { startView } from './scene.js';
 import { alongRows, overTime } from './series.js';
 import { Strip } from './strip.js';
 
@@ -251,20 +251,18 @@ function go(x) {
     : `part ${part + 1} / ${parts.length}`;
   timed?.draw(indexAt(motion.t, cursor));
 }
-function frame(now) {
-  if (player.playing) {
-    // A motion takes its own time at speed 1, a job without one four seconds a part.
-    const passed = player.passed(now);
-    go(cursor + passed * (list.timed ? 1 : list.end / (4 * parts.length)));
-    if (cursor >= list.end) to(list.end);
-  }
-  if (view.draw(now, player.playing) && ++window.swivel.frames === 1)
-    performance.mark('first picture');
-  requestAnimationFrame(frame);
+/** Plays on; true while it plays. now: ms. */
+function step(now) {
+  if (!player.playing) return false;
+  // A motion takes its own time at speed 1, a job without one four seconds a part.
+  const passed = player.passed(now);
+  go(cursor + passed * (list.timed ? 1 : list.end / (4 * parts.length)));
+  if (cursor >= list.end) to(list.end);
+  return player.playing;
 }
 
 function colourPaths() {
-  const byPhi = $('colour').value === 'phi',
+  const byPhi = $('path-colour').value === 'phi',
     [low, , high] = $('ramp').children;
   [low.textContent, high.textContent] = shadeEnds(byPhi);
   strokes.forEach(({ tool_path, rows }, k) => {
@@ -274,7 +272,7 @@ function colourPaths() {
   });
 }
 function paint() {
-  view?.background(isDark() ? '#1a2027' : '#ffffff');
+  view?.paint();
   strokes[stroke].maps?.paint();
   strokes[stroke].plots?.paint();
   timed?.paint();
@@ -303,7 +301,7 @@ $('slider').max = list.end;
 $('slider').addEventListener('input', ({ target }) => to(Number(target.value)));
 strokes.forEach((one, k) => $('stroke').append(new Option(strokeName(one, k), k)));
 $('stroke').addEventListener('change', ({ target }) => toStroke(Number(target.value)));
-$('colour').addEventListener('change', colourPaths);
+$('path-colour').addEventListener('change', colourPaths);
 $('blocked').addEventListener('click', showCut);
 viewOptions(() => view);
 const stepBy = (by) => parts.length && to(list.markOf(Math.round(list.placeOf(cursor)) + by));
@@ -337,7 +335,7 @@ savers(document.querySelector('#map-section h2'), `${stem}_map`, () =>
 const turnTheme = themes(paint);
 whenResized(paint);
 const letter = strokes.find(({ map }) => map)?.map.letter;
-if (letter) $('colour').querySelector('[value=phi]').textContent = letter;
+if (letter) $('path-colour').querySelector('[value=phi]').textContent = letter;
 
 /** At the part that the address names (#part=3). */
 function openAtAddress() {
@@ -354,20 +352,12 @@ if (!openAtAddress()) {
 }
 addEventListener('hashchange', openAtAddress);
 
-// The page can be read before WebGL has started, which takes longest.
-requestAnimationFrame(() =>
-  setTimeout(() => {
-    try {
-      view = new View($('scene'), $('gap'), sceneOf());
-    } catch (error) {
-      $('scene').hidden = $('view-options').hidden = true;
-      $('no-view').hidden = false;
-      window.swivel.frames = -1;
-      return;
-    }
-    view.background(isDark() ? '#1a2027' : '#ffffff');
+startView(
+  sceneOf,
+  (begun) => {
+    view = begun;
     colourPaths();
     if (shown()) draw(shown());
-    requestAnimationFrame(frame);
-  }),
+  },
+  step,
 );

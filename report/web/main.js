@@ -2,7 +2,7 @@
 // The report of one plan: text, map and plots first, then the arm; one cursor moves in all of them.
 import { savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
+import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
 import { Plots } from './plots.js';
@@ -20,7 +20,7 @@ import {
   stepsOf,
   valueAt,
 } from './poses.js';
-import { View } from './scene.js';
+import { startView } from './scene.js';
 import { alongRows, overTime } from './series.js';
 import { summary, verdict } from './summary.js';
 
@@ -176,20 +176,18 @@ function go(k) {
     `${timed ? `, ${time.toFixed(2)} / ${number(motion.t.at(-1))} s` : ''}`;
   timed?.draw(indexAt(motion.t, time));
 }
-function frame(now) {
-  if (player.playing) {
-    // A motion takes its own time at speed 1, a path without one eight seconds.
-    const passed = player.passed(now);
-    time += passed;
-    go(timed ? layerAt(time) : cursor + (passed / 8) * last);
-    if (timed ? time >= motion.t.at(-1) : cursor >= last) {
-      pause();
-      go(last);
-    }
+/** Plays on; true while it plays. now: ms. */
+function step(now) {
+  if (!player.playing) return false;
+  // A motion takes its own time at speed 1, a path without one eight seconds.
+  const passed = player.passed(now);
+  time += passed;
+  go(timed ? layerAt(time) : cursor + (passed / 8) * last);
+  if (timed ? time >= motion.t.at(-1) : cursor >= last) {
+    pause();
+    go(last);
   }
-  if (view.draw(now, player.playing) && ++window.swivel.frames === 1)
-    performance.mark('first picture');
-  requestAnimationFrame(frame);
+  return player.playing;
 }
 
 $('controls').hidden = $('plots-section').hidden = !rows.length;
@@ -199,7 +197,7 @@ $('slider').addEventListener('input', (event) => {
   pause();
   go(Number(event.target.value));
 });
-$('colour').addEventListener('change', colourPath);
+$('path-colour').addEventListener('change', colourPath);
 viewOptions(() => view);
 const to = (k) => {
   pause();
@@ -218,7 +216,7 @@ keys({
 });
 
 function colourPath() {
-  const byPhi = $('colour').value === 'phi',
+  const byPhi = $('path-colour').value === 'phi',
     known = shades(rows, byPhi);
   const [low, , high] = $('ramp').children;
   [low.textContent, high.textContent] = shadeEnds(byPhi);
@@ -227,7 +225,7 @@ function colourPath() {
   view?.colourPath(values);
 }
 function paint() {
-  view?.background(isDark() ? '#1a2027' : '#ffffff');
+  view?.paint();
   panels.paint();
   plots.paint();
   timed?.paint();
@@ -242,7 +240,7 @@ savers(document.querySelector('#plots-section h2'), `${stem}_plots`, () => plots
 if (timed)
   savers(document.querySelector('#motion-section h2'), `${stem}_motion`, () => timed.figure());
 document.querySelector('#map-section h2').firstChild.textContent = mapTitle(cells);
-$('colour').querySelector('[value=phi]').textContent = cells.letter;
+$('path-colour').querySelector('[value=phi]').textContent = cells.letter;
 savers(document.querySelector('#map-section h2'), `${stem}_map`, () => panels.figure());
 
 const turnTheme = themes(paint);
@@ -277,20 +275,12 @@ if (!openAtAddress()) {
 }
 addEventListener('hashchange', openAtAddress);
 
-// The page can be read before WebGL has started, which takes longest.
-requestAnimationFrame(() =>
-  setTimeout(() => {
-    try {
-      view = new View($('scene'), $('gap'), data);
-    } catch (error) {
-      $('scene').hidden = $('view-options').hidden = true;
-      $('no-view').hidden = false;
-      window.swivel.frames = -1;
-      return;
-    }
-    view.background(isDark() ? '#1a2027' : '#ffffff');
+startView(
+  () => data,
+  (begun) => {
+    view = begun;
     colourPath();
     if (shown()) draw(shown());
-    requestAnimationFrame(frame);
-  }),
+  },
+  step,
 );

@@ -2,8 +2,8 @@
 // The plans of the best placements in three dimensions, above the map of placements as a floor.
 import { bytes } from './bytes.js';
 import { toolPose } from './kinematics.js';
-import { $, data, isDark } from './page.js';
-import { View } from './scene.js';
+import { $, data } from './page.js';
+import { startView } from './scene.js';
 
 const kSeconds = 8; // that a path takes
 /** For those who test the page: the placement and its joints shown now, pictures drawn. */
@@ -26,31 +26,20 @@ export class Placed {
     $('names').addEventListener('change', ({ target }) =>
       $('view').classList.toggle('nameless', !target.checked),
     );
-    // The page can be read before WebGL has started, which takes longest.
-    requestAnimationFrame(() => setTimeout(() => this.start()));
+    startView(
+      () => this.shown,
+      (view) => this.begin(view),
+      (now) => this.step(now),
+    );
   }
   has(cell) {
     return this.plans.has(cell);
   }
-  start() {
-    try {
-      this.view = new View($('scene'), $('gap'), this.shown);
-    } catch (error) {
-      $('scene').hidden = $('view-options').hidden = true;
-      $('no-view').hidden = false;
-      window.swivel.frames = -1;
-      return;
-    }
-    this.view.colourPath([NaN]);
+  begin(view) {
+    this.view = view;
+    view.colourPath([NaN]);
     if (this.squares) this.lay(this.squares);
-    this.paint();
     this.go(this.cursor);
-    const frame = (now) => {
-      this.step(now);
-      if (this.view.draw(now, this.playing)) ++window.swivel.frames;
-      requestAnimationFrame(frame);
-    };
-    requestAnimationFrame(frame);
   }
   /** Shows the plan of one of its placements, from the beginning. */
   open(cell, offset) {
@@ -111,14 +100,16 @@ export class Placed {
     $('play').textContent = '▶';
     $('play').setAttribute('aria-label', 'Play');
   }
+  /** Plays on; true while it plays. now: ms. */
   step(now) {
-    if (!this.playing) return;
+    if (!this.playing) return false;
     const last = this.shown.rows.length - 1;
     this.go(this.cursor + (Math.max(0, now - this.before) / 1000 / kSeconds) * last);
     this.before = now;
     if (this.cursor >= last) this.pause();
+    return this.playing;
   }
   paint() {
-    this.view?.background(isDark() ? '#1a2027' : '#ffffff');
+    this.view?.paint();
   }
 }

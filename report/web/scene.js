@@ -5,6 +5,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { bytes } from './bytes.js';
 import { displacements, matrix, toolPose, vector } from './kinematics.js';
+import { $, isDark } from './page.js';
 import { Quality } from './quality.js';
 import { surface } from './surface.js';
 
@@ -76,7 +77,7 @@ function rodBetween(from, to) {
 /** What stands still of the robot is told apart from what moves. */
 const kindOf = (body) => (body.kind !== 'scene' && body.group === 0 ? 'fixed' : body.kind);
 
-export class View {
+class View {
   /** gap: an element that is kept beside the line between the nearest bodies. */
   constructor(canvas, gap, data) {
     Object.assign(this, { canvas, gap });
@@ -112,6 +113,7 @@ export class View {
     });
     this.addNearest();
     this.addTool();
+    this.paint();
     this.show(data);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.look('best');
@@ -517,8 +519,9 @@ export class View {
     tube.setAttribute('color', new THREE.BufferAttribute(colours, 3));
     this.dirty = true;
   }
-  background(colour) {
-    this.scene.background = new THREE.Color(colour);
+  /** Takes the colours of the page's theme. */
+  paint() {
+    this.scene.background = new THREE.Color(isDark() ? '#1a2027' : '#ffffff');
     this.dirty = true;
   }
   resize() {
@@ -554,4 +557,33 @@ export class View {
     const top = Math.min(Math.max(4, y), height - 24).toFixed(0);
     element.style.transform = `translate(${left}px, ${top}px)`;
   }
+}
+
+/**
+ * Starts the view of a page after its first picture, since WebGL takes longest; where there is
+ * none, the page says so. sceneOf: returns what the view shows, as the constructor of View takes
+ * it; begin: called with the view once it is there; step: called before every frame with its time,
+ * ms, returns whether the arm plays.
+ */
+export function startView(sceneOf, begin, step) {
+  const start = () => {
+    let view;
+    try {
+      view = new View($('scene'), $('gap'), sceneOf());
+    } catch (error) {
+      $('scene').hidden = $('view-options').hidden = true;
+      $('no-view').hidden = false;
+      window.swivel.frames = -1;
+      return;
+    }
+    begin(view);
+    const frame = (now) => {
+      const playing = step(now);
+      if (view.draw(now, playing) && ++window.swivel.frames === 1)
+        performance.mark('first picture');
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(() => setTimeout(start));
 }
