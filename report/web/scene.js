@@ -3,10 +3,11 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
-import { bytes } from './bytes.js';
+import { bestDirection, fit, subject } from './camera.js';
 import { displacements, matrix, toolPose, vector } from './kinematics.js';
 import { $, isDark } from './page.js';
 import { Quality } from './quality.js';
+import { geometry } from './shapes.js';
 import { surface } from './surface.js';
 
 const kFine = 24,
@@ -27,40 +28,6 @@ export function ramp(t) {
     k = Math.floor(x),
     f = x - k;
   return stops[k].map((v, c) => (v + f * (stops[k + 1][c] - v)) / 255);
-}
-
-/** around: corners of a circle. */
-function geometry(body, meshes, around) {
-  let shape;
-  if (body.sphere) shape = new THREE.SphereGeometry(body.sphere, around, around >> 1);
-  else if (body.box) shape = new THREE.BoxGeometry(...body.box);
-  else if (body.cylinder)
-    shape = new THREE.CylinderGeometry(
-      body.cylinder[0],
-      body.cylinder[0],
-      body.cylinder[1],
-      around,
-    );
-  else if (body.capsule)
-    shape = new THREE.CapsuleGeometry(body.capsule[0], body.capsule[1], around >> 2, around);
-  else {
-    shape = new THREE.BufferGeometry();
-    shape.setAttribute(
-      'position',
-      new THREE.BufferAttribute(new Float32Array(bytes(meshes[body.mesh].vertices)), 3),
-    );
-    shape.setIndex(
-      new THREE.BufferAttribute(new Uint32Array(bytes(meshes[body.mesh].triangles)), 1),
-    );
-    shape = shape.toNonIndexed();
-    shape.computeVertexNormals();
-    // All geometries alike, so that they can be merged.
-    shape.setIndex([...Array(shape.attributes.position.count).keys()]);
-  }
-  shape.deleteAttribute('uv');
-  // three.js turns about y, swivel about z.
-  if (body.cylinder || body.capsule) shape.rotateX(Math.PI / 2);
-  return shape;
 }
 
 const kDash = 0.012; // m, of a move between strokes, with the gap behind it
@@ -116,10 +83,10 @@ class View {
     this.paint();
     this.show(data);
     this.orbit = new OrbitControls(this.camera, canvas);
+    this.resize();
     this.look('best');
     this.orbit.addEventListener('change', () => (this.dirty = this.moving = true));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
-    this.resize();
   }
   /**
    * Another plan of the same arm among the same bodies. poses: of the scene's objects in their
@@ -359,114 +326,20 @@ class View {
     for (const { text, point } of this.data.numbers ?? [])
       this.names.push(labelled(text, 'number', vector(point)));
   }
-  /** The path, and the arm's bodies that move at both ends of it: what should be seen. */
-  subject() {
-    const { rows, cut, chain, tool_path } = this.data,
-      box = new THREE.Box3().setFromPoints(tool_path.map(vector)),
-      centres = [];
-    for (const { q } of rows.length ? [rows[0], rows.at(-1)] : cut ? [cut] : []) {
-      const g = displacements(chain, q);
-      for (const { body, coarse, rest } of this.parts) {
-        if (body.group === 0) continue;
-        coarse.computeBoundingBox();
-        const own = coarse.boundingBox.clone().applyMatrix4(g[body.group].clone().multiply(rest));
-        box.union(own);
-        centres.push(own.getCenter(new THREE.Vector3()));
-      }
-    }
-    return { box, centres };
-  }
-  /**
-   * From where most of the path, of the arm and of the place that is nearest to something is seen
-   * past what stands still.
-   */
-  bestDirection({ box, centres }) {
-    const { tool_path, rows } = this.data,
-      path = tool_path.map(vector),
-      target = box.getCenter(new THREE.Vector3()),
-      radius = box.getSize(new THREE.Vector3()).length();
-    const nearest = rows
-      .filter((row) => row.nearest)
-      .sort((a, b) => a.clearance_mm - b.clearance_mm)
-      .slice(0, 1)
-      .map((row) => vector(row.nearest));
-    const marks = [
-      ...Array.from({ length: 10 }, (_, k) => [path[Math.round((k / 9) * (path.length - 1))], 2]),
-      ...nearest.map((p) => [p, 6]),
-      ...centres.map((p) => [p, 8 / centres.length]),
-    ];
-    const still = this.arm.filter((mesh) => mesh.userData.body.group === 0);
-    // Heavy meshes are boxes here: a ray against each of their triangles would take seconds.
-    const boxes = still.map((mesh) => {
-      mesh.updateMatrixWorld();
-      const { fine, rest } = mesh.userData;
-      fine.computeBoundingBox();
-      return {
-        mesh,
-        light: fine.index === null || fine.index.count < 6000,
-        box: fine.boundingBox.clone().expandByScalar(-0.002),
-        inverse: rest.clone().invert(),
-      };
-    });
-    const caster = new THREE.Raycaster(),
-      local = new THREE.Ray();
-    const hidden = (from, to) => {
-      const way = to.clone().sub(from),
-        far = way.length() - 0.01;
-      caster.set(from, way.normalize());
-      caster.far = far;
-      return boxes.some(({ mesh, light, box: own, inverse }) => {
-        const hit = local
-          .copy(caster.ray)
-          .applyMatrix4(inverse)
-          .intersectBox(own, new THREE.Vector3());
-        if (!hit || hit.distanceTo(local.origin) > far) return false;
-        return light
-          ? caster.intersectObject(mesh).length > 0
-          : !own.containsPoint(to.clone().applyMatrix4(inverse));
-      });
-    };
-    const along = path.at(-1).clone().sub(path[0]).normalize();
-    let best = null;
-    for (const up of [0.3, 0.62, 1.0])
-      for (let k = 0; k < 16; ++k) {
-        const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 8;
-        const direction = new THREE.Vector3(
-            Math.cos(turn) * Math.cos(up),
-            Math.sin(turn) * Math.cos(up),
-            Math.sin(up),
-          ),
-          from = target.clone().addScaledVector(direction, 1.6 * radius);
-        let score =
-          3 * Math.sqrt(1 - along.dot(direction) ** 2) +
-          (up === 0.62 ? 1 : 0) -
-          0.05 * Math.min(k, 16 - k);
-        for (const [point, worth] of marks) score += hidden(from, point) ? 0 : worth;
-        if (best === null || score > best.score) best = { score, direction };
-      }
-    return best.direction;
-  }
   /**
    * 'best', 'fit' (from where it is seen now), 'front', 'side', 'top': arm and path into the
    * picture.
    */
   look(from) {
-    const subject = this.subject(),
-      ball = subject.box.getBoundingSphere(new THREE.Sphere());
+    const shown = subject(this.data, this.parts);
     const direction = {
       front: () => new THREE.Vector3(1, 0, 0.001),
       side: () => new THREE.Vector3(0, -1, 0.001),
       top: () => new THREE.Vector3(-0.001, 0, 1),
-      fit: () => this.camera.position.clone().sub(this.orbit.target).normalize(),
-      best: () => this.bestDirection(subject),
+      fit: () => this.camera.position.clone().sub(this.orbit.target),
+      best: () => bestDirection(shown),
     }[from]();
-    const half = Math.atan(
-      Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect),
-    );
-    this.camera.position
-      .copy(ball.center)
-      .addScaledVector(direction, Math.max(0.3, (0.88 * ball.radius) / Math.sin(half)));
-    this.orbit.target.copy(ball.center);
+    this.orbit.target.copy(fit(this.camera, shown.points, direction));
     this.orbit.update();
     this.dirty = true;
   }

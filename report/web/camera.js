@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From where the work is seen, and how near the camera may stand.
+import { Box3, Matrix4, Vector3 } from 'three';
+import { displacements, vector } from './kinematics.js';
+import { cornersOf, Occluder, Sight } from './sight.js';
+
+const kRoom = 1.06; // of the picture about what it must show
+
+/**
+ * The joints at which a page opens: past the end of every path, or at the row that comes nearest to
+ * something, or at the first row; null where there are none.
+ */
+function openingJoints({ rows, cut }) {
+  if (cut) return cut.q;
+  const known = rows.filter(({ clearance_mm }) => clearance_mm !== undefined),
+    nearest = known.reduce((a, b) => (b.clearance_mm < a.clearance_mm ? b : a), known[0]);
+  return (nearest ?? rows[0])?.q ?? null;
+}
+
+/**
+ * What a picture is to show: { points: corners of the bodies that move, at both ends of the path
+ * and where the page opens, and the path itself; marks: [point, worth, body] that should be seen,
+ * of which a point within a body may name it; bodies: as of Sight }. parts: of View.
+ */
+export function subject(data, parts) {
+  const { rows, chain, tool_path } = data,
+    path = tool_path.map(vector),
+    open = openingJoints(data),
+    still = new Matrix4();
+  const poses = (q) => {
+    const g = q ? displacements(chain, q) : null;
+    return parts.map(({ body, rest }) =>
+      (g ? g[body.group] : still).clone().multiply(rest),
+    );
+  };
+  const points = [...path];
+  for (const q of [open, rows[0]?.q, rows.at(-1)?.q])
+    if (q)
+      poses(q).forEach((pose, k) => {
+        const { body, coarse } = parts[k];
+        coarse.computeBoundingBox();
+        if (body.group > 0) points.push(...cornersOf(coarse.boundingBox, pose));
+      });
+  const bodies = poses(open).map((pose, k) => {
+    parts[k].occluder ??= new Occluder(parts[k].coarse);
+    return { occluder: parts[k].occluder, pose };
+  });
+  const moving = bodies.map((_, k) => k).filter((k) => parts[k].body.group > 0);
+  const row = rows.find(({ q, nearest }) => q === open && nearest),
+    near = row ? [vector(row.nearest)] : data.cut?.line ? [vector(data.cut.line.points)] : [];
+  const marks = [
+    ...Array.from({ length: path.length ? 16 : 0 }, (_, k) => [
+      path[Math.round((k / 15) * (path.length - 1))],
+      2,
+    ]),
+    ...near.map((point) => [point, 6]),
+    ...moving.map((k) => [
+      bodies[k].occluder.box.getCenter(new Vector3()).applyMatrix4(bodies[k].pose),
+      8 / moving.length,
+      k,
+    ]),
+  ];
+  return { points, marks, bodies, path };
+}
+
+/**
+ * The direction to the camera from which most of the path, of the arm and of the place that is
+ * nearest to something is seen past all bodies, the arm's own among them, where the page opens.
+ */
+export function bestDirection({ points, marks, bodies, path }) {
+  const box = new Box3().setFromPoints(points),
+    target = box.getCenter(new Vector3()),
+    radius = box.getSize(new Vector3()).length(),
+    sight = new Sight(bodies),
+    along = path.length > 1 ? path.at(-1).clone().sub(path[0]).normalize() : new Vector3();
+  let best = null;
+  for (const up of [0.12, 0.3, 0.62, 1.0])
+    for (let k = 0; k < 24; ++k) {
+      const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 12;
+      const direction = new Vector3(
+          Math.cos(turn) * Math.cos(up),
+          Math.sin(turn) * Math.cos(up),
+          Math.sin(up),
+        ),
+        from = target.clone().addScaledVector(direction, 1.6 * radius);
+      let score =
+        3 * Math.sqrt(1 - along.dot(direction) ** 2) +
+        (up === 0.62 ? 1 : up === 0.12 ? -1 : 0) -
+        0.035 * Math.min(k, 24 - k);
+      for (const [point, worth, own] of marks)
+        score += sight.hides(from, point, own) ? 0 : worth;
+      if (best === null || score > best.score) best = { score, direction };
+    }
+  return best.direction;
+}
+
+/**
+ * Places a camera so that it sees all points as large as its picture allows, looking against
+ * `direction`. Returns the point at which it looks, at the depth of the middle of the points.
+ */
+export function fit(camera, points, direction) {
+  const back = direction.clone().normalize(),
+    right = new Vector3().crossVectors(camera.up, back);
+  if (right.lengthSq() < 1e-12) right.set(0, 1, 0);
+  right.normalize();
+  const up = new Vector3().crossVectors(back, right),
+    slope = Math.tan((camera.fov * Math.PI) / 360) / kRoom;
+  // A point at x to the right and z before the middle is seen where x <= slope (d - z): of each
+  // side the point that needs most decides.
+  const most = (axis, tangent) => {
+    let plus = -Infinity,
+      minus = -Infinity;
+    for (const point of points) {
+      const x = point.dot(axis),
+        z = tangent * point.dot(back);
+      plus = Math.max(plus, x + z);
+      minus = Math.max(minus, z - x);
+    }
+    return { middle: (plus - minus) / 2, away: (plus + minus) / 2 / tangent };
+  };
+  const across = most(right, slope * camera.aspect),
+    high = most(up, slope),
+    depth = points.reduce((sum, point) => sum + point.dot(back), 0) / points.length,
+    away = Math.max(across.away, high.away, depth + 0.3);
+  const target = right
+    .clone()
+    .multiplyScalar(across.middle)
+    .addScaledVector(up, high.middle)
+    .addScaledVector(back, depth);
+  camera.position.copy(target).addScaledVector(back, away - depth);
+  return target;
+}
