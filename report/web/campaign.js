@@ -2,9 +2,10 @@
 // The overview of a campaign: what its rows say together, and each row with the way to plan it
 // again.
 import { distribution, histogram, offsets, places, reasons } from './charts.js';
-import { enders, legend, SOLVED } from './ended.js';
+import { enders, legend } from './ended.js';
 import { savers } from './figure.js';
 import { $, data, number, style, table, themes, whenResized } from './page.js';
+import { SOLVED } from './palette.js';
 import { EpisodeTable } from './episodes.js';
 
 const { rows, coordinates } = data;

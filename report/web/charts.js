@@ -2,7 +2,7 @@
 // The drawings of a campaign's overview. Each returns an SVG element; row: an episode. A click on
 // one of its marks picks the episode.
 import * as Plot from '@observablehq/plot';
-import { FAILED, SOLVED } from './ended.js';
+import { FAILED, SOLVED } from './palette.js';
 
 function frame(width, height, colours, more) {
   return {

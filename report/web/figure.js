@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Figures for papers: several drawings in one SVG file, or in a PNG file made from it.
+import { kLight } from './palette.js';
+
 const kSvg = 'http://www.w3.org/2000/svg';
 
-/** Colours of a drawing: those of the page, or black on white. */
-export const PAPER = {
-  ink: '#000',
-  soft: '#444',
-  accent: '#0072b2',
-  unseen: '#dcdcdc',
-  nothing: '#fff',
-};
+/** Colours of a drawing on white paper. */
+export const PAPER = { ink: '#000', soft: '#444', accent: '#0072b2', ...kLight };
 
 /** drawings: SVG elements with width and height, set below each other. A new element. */
 export function sheet(drawings) {

@@ -2,6 +2,7 @@
 // What the search knows of the lattice: the cells of the (s, phi) map, decoded.
 import { bytes } from './bytes.js';
 import { number } from './page.js';
+import { kKnown, kObjects } from './palette.js';
 
 // States in the order of report/lattice_map.hpp.
 export const [NO_IK, SINGULAR, LIMIT, UNSEEN, FREE, BLOCKED] = [0, 1, 2, 3, 4, 5];
@@ -10,12 +11,6 @@ const kState = 7,
   kCertified = 64,
   kPosed = 128,
   kUnknown = 65535;
-// After Okabe & Ito's palette, told apart by all kinds of colour vision: one hue for limits, one
-// for each object in the way.
-const LIMITS = '#a6d3ef',
-  SELF = '#6a4c93',
-  OBJECTS = ['#d55e00', '#e6b800', '#8c2d04', '#f39a6b', '#7a6000', '#c23b22'];
-
 /** An angle less its whole turns. */
 export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 
@@ -104,15 +99,17 @@ export class Cells {
       return this.states[k] & kCertified ? 'free, proved by a certificate' : 'free, found by FCL';
     return { [NO_IK]: this.nothing, [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
   }
-  colour(k, { nothing, unseen }) {
+  /** colours: those of a theme (palette.js) for what was not asked about. */
+  colour(k, { nothing, unseen, limit }) {
     const state = this.state(k);
-    if (state === LIMIT) return LIMITS;
     if (state === BLOCKED)
       return this.object(k) === null
-        ? SELF
-        : OBJECTS[this.objects.indexOf(this.object(k)) % OBJECTS.length];
-    if (state === FREE) return this.states[k] & kCertified ? '#7ed0b4' : '#00795a';
-    return { [NO_IK]: nothing, [SINGULAR]: '#cc79a7', [UNSEEN]: unseen }[state];
+        ? kKnown.self
+        : kObjects[this.objects.indexOf(this.object(k)) % kObjects.length];
+    if (state === FREE) return this.states[k] & kCertified ? kKnown.proved : kKnown.found;
+    return { [NO_IK]: nothing, [SINGULAR]: kKnown.singular, [LIMIT]: limit, [UNSEEN]: unseen }[
+      state
+    ];
   }
   /** The object that blocks a cell; null where the robot is in its own way. */
   object(k) {
@@ -125,19 +122,41 @@ export class Cells {
     if (state === BLOCKED) return `blocked by ${this.object(k) ?? 'the robot itself'}`;
     return this.meaning(k);
   }
+  /** What tells cells of one colour apart: the joint, or the body that is blocked. */
+  detail(k) {
+    const state = this.state(k);
+    if (state === LIMIT) return this.jointNames[this.causes[k]];
+    if (state !== BLOCKED) return null;
+    return this.blockers[this.causes[k]].filter((name) => name !== this.object(k)).join(' - ');
+  }
   /** Cells of equal state and cause mean the same. */
   kind(k) {
     return ((this.states[k] & ~(kPosed | kAgain)) << 8) | this.causes[k];
   }
-  /** [meaning, colour] of what is there, the most telling first. */
+  /**
+   * { meaning, colour, hatched, details: of what lies within } of what is there, the most telling
+   * first.
+   */
   legend(colours) {
     const kinds = new Map();
     for (let k = 0; k < this.states.length; ++k)
       if (!kinds.has(this.kind(k))) kinds.set(this.kind(k), k);
-    const entries = [...kinds.values()]
-      .sort((a, b) => this.state(b) - this.state(a))
-      .map((k) => [this.group(k), this.colour(k, colours)]);
-    return [...new Map(entries)];
+    const entries = new Map();
+    for (const k of [...kinds.values()].sort((a, b) => this.state(b) - this.state(a))) {
+      const meaning = this.group(k),
+        detail = this.detail(k);
+      if (!entries.has(meaning))
+        entries.set(meaning, {
+          meaning,
+          colour: this.colour(k, colours),
+          hatched: this.state(k) === LIMIT,
+          details: [],
+        });
+      if (detail && !entries.get(meaning).details.includes(detail))
+        entries.get(meaning).details.push(detail);
+    }
+    for (const { details } of entries.values()) details.sort();
+    return [...entries.values()];
   }
 }
 

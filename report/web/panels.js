@@ -5,12 +5,40 @@ import * as Plot from '@observablehq/plot';
 import { ticks } from 'd3';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
-import { wrapped } from './map.js';
-import { style } from './page.js';
+import { LIMIT, wrapped } from './map.js';
+import { isDark, style } from './page.js';
+import { kDark, kLight, lineBetween } from './palette.js';
 
 const kDegrees = 180 / Math.PI,
-  kLimit = 2,
-  kBlocked = 5;
+  kSvg = 'http://www.w3.org/2000/svg',
+  kMostDetails = 4; // named in the legend of one colour
+
+/** An element of SVG. */
+function element(name, attributes) {
+  const made = document.createElementNS(kSvg, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}
+let patterns = 0;
+/** A pattern of slanted lines, and what fills an area with it. */
+function hatching(colour) {
+  const id = `hatch-${++patterns}`,
+    pattern = element('pattern', {
+      id,
+      width: 5,
+      height: 5,
+      patternUnits: 'userSpaceOnUse',
+      patternTransform: 'rotate(45)',
+    });
+  pattern.append(element('rect', { width: 1.2, height: 5, fill: colour }));
+  return { pattern, fill: `url(#${id})` };
+}
+/** An entry of the legend in words. */
+const words = ({ meaning, details }) =>
+  details.length < 2 && meaning !== 'joint limit'
+    ? meaning
+    : `${meaning}: ${details.slice(0, kMostDetails).join(', ')}` +
+      (details.length > kMostDetails ? `, ${details.length - kMostDetails} more` : '');
 
 /**
  * [place in cells, degrees] of an axis of the coordinate: quarters of a turn, or round values
@@ -153,7 +181,8 @@ export class Panels {
               width - frame.marginLeft - frame.marginRight,
               height - frame.marginTop - frame.marginBottom,
             ),
-        (_, { x, y }) => this.walls(panel.index, x, y),
+        (_, { x, y }) => this.hatched(panel.index, x, y, colours),
+        (_, { x, y }) => this.walls(panel.index, x, y, colours),
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
         cut === null
           ? null
@@ -172,7 +201,7 @@ export class Panels {
         }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 4.5 }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.8 }),
-        Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#cc79a7', stroke: '#fff' }),
+        Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#000', stroke: '#fff' }),
         rows.length === 1 && !Number.isNaN(this.height(panel, rows[0]))
           ? Plot.dot(rows, {
               x: 'layer',
@@ -228,7 +257,7 @@ export class Panels {
   }
   /** Cells alike, side by side along s, as one rectangle. */
   runs(panel, colours) {
-    const { cells } = this,
+    const { cells, edge } = this,
       runs = [];
     for (let row = 0; row < cells.rows; ++row)
       for (let column = 0, end; column < cells.columns; column = end) {
@@ -240,7 +269,6 @@ export class Panels {
           ++end;
         const fill = cells.colour(k, colours);
         if (fill === colours.nothing) continue;
-        const edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
         runs.push({
           fill,
           x1: edge(column, cells.layers_each, cells.layers),
@@ -251,42 +279,67 @@ export class Panels {
       }
     return runs;
   }
-  /**
-   * Lines between cells that have the same colour but another cause: limits of two joints, two
-   * bodies before one object.
-   */
-  walls(panel, x, y) {
-    const { cells } = this,
-      edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
-    const parts = (k, other) =>
-      cells.state(k) === cells.state(other) &&
-      (cells.state(k) === kLimit || cells.state(k) === kBlocked) &&
-      cells.causes[k] !== cells.causes[other];
+  /** Where a cell's edge is, in layers or angles. */
+  edge(cell, each, most) {
+    return Math.min(cell * each, most) - 0.5;
+  }
+  /** Hatching over the cells beyond a joint limit. */
+  hatched(panel, x, y, colours) {
+    const { cells, edge } = this,
+      { pattern, fill } = hatching(colours.hatch),
+      group = element('g', {});
     let d = '';
+    for (let row = 0; row < cells.rows; ++row)
+      for (let column = 0, end; column < cells.columns; column = end) {
+        const is = (c) => cells.state(cells.index(panel, c, row)) === LIMIT;
+        for (end = column + 1; end < cells.columns && is(end) === is(column); ) ++end;
+        if (!is(column)) continue;
+        const at = (c) => x(edge(c, cells.layers_each, cells.layers)).toFixed(1),
+          up = (r) => y(edge(r, cells.angles_each, cells.angles)).toFixed(1);
+        d += `M${at(column)},${up(row)}H${at(end)}V${up(row + 1)}H${at(column)}Z`;
+      }
+    if (d) group.append(pattern, element('path', { d, fill }));
+    return group;
+  }
+  /**
+   * Lines between cells of little contrast, and between cells that have the same colour but another
+   * cause: limits of two joints, two bodies before one object.
+   */
+  walls(panel, x, y, colours) {
+    const { cells, edge } = this,
+      lines = new Map(),
+      known = new Map();
+    /** The colour of the line between two cells, or null. */
+    const line = (k, other) => {
+      const [a, b] = [cells.kind(k), cells.kind(other)];
+      if (a === b) return null;
+      const key = a * 65536 + b;
+      if (!known.has(key)) {
+        const limits = [k, other].filter((cell) => cells.state(cell) === LIMIT).length,
+          [one, two] = [k, other].map((cell) => cells.colour(cell, colours));
+        // Hatching parts a limit from all else.
+        known.set(key, limits === 1 ? null : lineBetween(one, two));
+      }
+      return known.get(key);
+    };
+    const add = (colour, d) => lines.set(colour, (lines.get(colour) ?? '') + d);
+    const at = (c) => x(edge(c, cells.layers_each, cells.layers)).toFixed(1),
+      up = (r) => y(edge(r, cells.angles_each, cells.angles)).toFixed(1);
     for (let column = 0; column < cells.columns; ++column)
       for (let row = 0; row < cells.rows; ++row) {
         const k = cells.index(panel, column, row),
-          left = x(edge(column, cells.layers_each, cells.layers)).toFixed(1),
-          low = y(edge(row, cells.angles_each, cells.angles)).toFixed(1);
-        if (column && parts(k, cells.index(panel, column - 1, row)))
-          d += `M${left},${low}V${y(edge(row + 1, cells.angles_each, cells.angles)).toFixed(1)}`;
-        if (row && parts(k, cells.index(panel, column, row - 1)))
-          d += `M${left},${low}H${x(edge(column + 1, cells.layers_each, cells.layers)).toFixed(1)}`;
+          left = column && line(k, cells.index(panel, column - 1, row)),
+          below = row && line(k, cells.index(panel, column, row - 1));
+        if (left) add(left, `M${at(column)},${up(row)}V${up(row + 1)}`);
+        if (below) add(below, `M${at(column)},${up(row)}H${at(column + 1)}`);
       }
-    const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-    for (const [name, value] of Object.entries({
-      d,
-      fill: 'none',
-      stroke: '#3b4652',
-      'stroke-opacity': 0.45,
-      'stroke-width': 0.7,
-    }))
-      path.setAttribute(name, value);
-    return path;
+    const group = element('g', { fill: 'none', 'stroke-width': 0.8 });
+    for (const [stroke, d] of lines) group.append(element('path', { d, stroke }));
+    return group;
   }
   /** Everything anew: at the start, and when the theme or the width changes. */
   paint() {
-    const colours = { soft: style('--soft'), unseen: style('--unseen'), nothing: style('--void') };
+    const colours = { soft: style('--soft'), ...(isDark() ? kDark : kLight) };
     for (const panel of this.panels) {
       const drawing = this.drawing(
         panel,
@@ -299,11 +352,13 @@ export class Panels {
     }
     const legend = document.getElementById('legend');
     legend.replaceChildren(
-      ...this.cells.legend(colours).map(([meaning, colour]) => {
+      ...this.cells.legend(colours).map((one) => {
         const entry = document.createElement('span'),
           swatch = document.createElement('i');
-        swatch.style.background = colour;
-        entry.append(swatch, meaning);
+        swatch.style.background = one.hatched
+          ? `repeating-linear-gradient(-45deg, ${one.colour} 0 3px, ${colours.hatch} 3px 4px)`
+          : one.colour;
+        entry.append(swatch, words(one));
         return entry;
       }),
     );
@@ -328,32 +383,26 @@ export class Panels {
   /** The map as one drawing for papers. */
   figure() {
     const drawings = this.panels.map((panel) => this.drawing(panel, 640, 240, PAPER, true));
-    const legend = Plot.plot({
+    return sheet([...drawings, this.legendDrawing()]);
+  }
+  legendDrawing() {
+    const entries = this.cells.legend(PAPER),
+      { pattern, fill } = hatching(PAPER.hatch),
+      box = { x1: 0.045, x2: 0.065, y1: (_, k) => k + 0.15, y2: (_, k) => k + 0.75 };
+    return Plot.plot({
       width: 640,
-      height: 18 * this.cells.legend(PAPER).length + 12,
+      height: 18 * entries.length + 12,
       margin: 6,
       axis: null,
       style: { color: PAPER.ink, background: 'none', fontSize: '11px' },
       x: { domain: [0, 1] },
-      y: { domain: [this.cells.legend(PAPER).length, 0] },
+      y: { domain: [entries.length, 0] },
       marks: [
-        Plot.rect(this.cells.legend(PAPER), {
-          x1: 0.045,
-          x2: 0.065,
-          y1: (_, k) => k + 0.15,
-          y2: (_, k) => k + 0.75,
-          fill: ([, colour]) => colour,
-          stroke: '#999',
-          strokeWidth: 0.5,
-        }),
-        Plot.text(this.cells.legend(PAPER), {
-          x: 0.08,
-          y: (_, k) => k + 0.45,
-          text: ([meaning]) => meaning,
-          textAnchor: 'start',
-        }),
+        () => pattern,
+        Plot.rect(entries, { ...box, fill: 'colour', stroke: '#999', strokeWidth: 0.5 }),
+        Plot.rect(entries, { ...box, fill: ({ hatched }) => (hatched ? fill : 'none') }),
+        Plot.text(entries, { x: 0.08, y: (_, k) => k + 0.45, text: words, textAnchor: 'start' }),
       ],
     });
-    return sheet([...drawings, legend]);
   }
 }

@@ -2,9 +2,10 @@
 // Placements of the part, the path or the robot: a map by verdict, by what ends the paths, by
 // quality; each placement with its command.
 import * as Plot from '@observablehq/plot';
-import { enders, FAILED, legend, SOLVED } from './ended.js';
+import { enders, legend } from './ended.js';
 import { savers } from './figure.js';
-import { $, data, number, style, table, themes, whenResized } from './page.js';
+import { $, data, isDark, number, style, table, themes, whenResized } from './page.js';
+import { FAILED, kDark, kLight, rampColour, SOLVED } from './palette.js';
 import { Placed } from './placed.js';
 
 const kBest = 20;
@@ -89,22 +90,9 @@ function shade() {
     of: (r) => (r[key] === null ? null : sign > 0 ? share(r[key]) : 1 - share(r[key])),
   };
 }
-const kRamp = [
-  [0, 45, 110],
-  [90, 96, 110],
-  [143, 139, 120],
-  [203, 186, 105],
-  [253, 231, 55],
-];
-function ramp(t) {
-  const at = t * (kRamp.length - 1),
-    k = Math.min(kRamp.length - 2, Math.floor(at));
-  const mixed = kRamp[k].map((c, j) => Math.round(c + (at - k) * (kRamp[k + 1][j] - c)));
-  return `rgb(${mixed.join(',')})`;
-}
 function colours() {
   const by = $('colour').value,
-    unseen = style('--unseen');
+    { unseen } = isDark() ? kDark : kLight;
   if (by === 'verdict')
     return {
       of: (row) => (row.solved ? SOLVED : FAILED),
@@ -125,11 +113,11 @@ function colours() {
     [, sign, scale, unit, words] = kQualities[by],
     text = (v) => `${number(scale * v, 4)}${unit}`;
   return {
-    of: (row) => (row.solved && of(row) !== null ? ramp(of(row)) : unseen),
+    of: (row) => (row.solved && of(row) !== null ? rampColour(of(row)) : unseen),
     legend: [
-      [ramp(0), `${words} ${text(sign > 0 ? low : high)}`],
-      [ramp(0.5), '…'],
-      [ramp(1), text(sign > 0 ? high : low)],
+      [rampColour(0), `${words} ${text(sign > 0 ? low : high)}`],
+      [rampColour(0.5), '…'],
+      [rampColour(1), text(sign > 0 ? high : low)],
       [unseen, `no path (${rows.length - solved.length})`],
     ],
   };

@@ -4,9 +4,9 @@ import * as Plot from '@observablehq/plot';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
 import { number, style, tell } from './page.js';
+import { FAILED } from './palette.js';
 
-const kBound = '#d55e00',
-  kHeight = 112;
+const kHeight = 112;
 
 export class Plots {
   /**
@@ -81,7 +81,7 @@ export class Plots {
       },
       marks: [
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.35 }),
-        Plot.ruleY(bounds, { stroke: kBound, strokeDasharray: '6 4' }),
+        Plot.ruleY(bounds, { stroke: FAILED, strokeDasharray: '6 4' }),
         dot
           ? Plot.dot(known, { x: 'k', y: 'v', fill: colours.accent })
           : all.map((line, i) =>

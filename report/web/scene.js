@@ -6,30 +6,13 @@ import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { bestDirection, fit, subject } from './camera.js';
 import { displacements, matrix, toolPose, vector } from './kinematics.js';
 import { $, isDark } from './page.js';
+import { kBodies, ramp } from './palette.js';
 import { Quality } from './quality.js';
 import { geometry } from './shapes.js';
 import { surface } from './surface.js';
 
-const kFine = 24,
+const kFine = 24, // corners of a circle
   kCoarse = 10;
-
-/**
- * From blue (0) over grey to yellow (1): told apart by all kinds of colour vision. After cividis.
- */
-export function ramp(t) {
-  const stops = [
-    [0, 45, 110],
-    [90, 96, 110],
-    [143, 139, 120],
-    [203, 186, 105],
-    [253, 231, 55],
-  ];
-  const x = Math.min(0.9999, Math.max(0, t)) * 4,
-    k = Math.floor(x),
-    f = x - k;
-  return stops[k].map((v, c) => (v + f * (stops[k + 1][c] - v)) / 255);
-}
-
 const kDash = 0.012; // m, of a move between strokes, with the gap behind it
 const toolPoint = (chain, q) => new THREE.Vector3().setFromMatrixPosition(toolPose(chain, q));
 function rodBetween(from, to) {
@@ -60,16 +43,12 @@ class View {
         coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
       return { body, fine, coarse, rest: matrix(body.pose) };
     });
-    this.materials = {
-      robot: surface(0xf0a830),
-      tool: surface(0x59636f),
-      scene: surface(0x93a3b3, { twoSided: true }),
-      fixed: surface(0xb4b9bf),
-      near: surface(0xe58fc0),
-      'near scene': surface(0xc3a3bf, { twoSided: true }),
-      hit: surface(0xd11f1f),
-      'hit scene': surface(0xd9705f, { twoSided: true }),
-    };
+    this.materials = Object.fromEntries(
+      Object.entries(kBodies).map(([kind, colour]) => [
+        kind,
+        surface(colour, { twoSided: kind.includes('scene') }),
+      ]),
+    );
     this.arm = this.parts.map((part) => {
       const mesh = new THREE.Mesh(part.fine, this.materials[kindOf(part.body)]);
       mesh.matrixAutoUpdate = false;
@@ -173,8 +152,8 @@ class View {
     const { rows, chain } = this.data;
     if (rows.length < 2) return;
     for (const [row, colour] of [
-      [rows[0], 0x0072b2],
-      [rows.at(-1), 0x009e73],
+      [rows[0], kBodies.start],
+      [rows.at(-1), kBodies.end],
     ]) {
       const g = displacements(chain, row.q);
       const bodies = this.parts

@@ -54,7 +54,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.equal((await fills(page)).length, rows.length);
   await page.selectOption('#colour', 'verdict');
   assert.deepEqual(
-    (await fills(page)).map((fill) => fill === '#00795a'),
+    (await fills(page)).map((fill) => fill === '#0f8064'),
     rows.map((row) => row[status] === 'solved'),
   );
   await page.selectOption('#colour', 'end');
