@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
 namespace swivel::detail {
-
-// Okabe & Ito's palette, told apart by all kinds of colour vision; shades for joints and for
-// bodies.
-inline constexpr std::array<const char*, kDof> kJointColour{
-    "#cfe8f7", "#b3daf2", "#97cced", "#7bbee8", "#5fb0e2", "#4a9bd0", "#3a83b5"};
-inline constexpr std::array<const char*, 6> kBlockerColour{"#d55e00", "#a34700", "#e69f00",
-                                                           "#8c2d04", "#f0902f", "#5e2400"};
 
 inline std::string escaped(const std::string& text) {
   std::string result;
@@ -40,6 +31,19 @@ class Drawing {
     print("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"", x, y, width,
           height);
     body_ += fill + "\"/>\n";
+  }
+  /// Draws slanted lines over a rectangle. `colour`: of the lines.
+  void hatch(double x, double y, double width, double height, const std::string& colour) {
+    std::size_t k = 0;
+    while (k < hatches_.size() && hatches_[k] != colour) ++k;
+    if (k == hatches_.size()) hatches_.push_back(colour);
+    rectangle(x, y, width, height, "url(#hatch-" + colour.substr(1) + ")");
+  }
+  /// Draws a path of SVG, such as "M0,0H10", without a fill.
+  void path(const std::string& d, const std::string& stroke, double width) {
+    body_ += "<path fill=\"none\" stroke=\"" + stroke + "\"";
+    print(" stroke-width=\"%.1f\" d=\"", width);
+    body_ += d + "\"/>\n";
   }
   void frame(double x, double y, double width, double height) {
     print(
@@ -71,7 +75,13 @@ class Drawing {
         "font-family=\"sans-serif\" font-size=\"11\">\n<style>rect { shape-rendering: crispEdges "
         "}</style>\n",
         width, height, width, height);
-    return head + body_ + "</svg>\n";
+    std::string patterns;
+    for (const std::string& colour : hatches_)
+      patterns += "<pattern id=\"hatch-" + colour.substr(1) +
+                  "\" width=\"5\" height=\"5\" patternUnits=\"userSpaceOnUse\" "
+                  "patternTransform=\"rotate(45)\"><rect width=\"1.2\" height=\"5\" fill=\"" +
+                  colour + "\"/></pattern>\n";
+    return head + patterns + body_ + "</svg>\n";
   }
 
  private:
@@ -80,6 +90,7 @@ class Drawing {
     body_ += formatted(format, values...);
   }
   std::string body_;
+  std::vector<std::string> hatches_;  ///< colours of the patterns that are used
 };
 
 inline std::string number(double value) {

@@ -152,6 +152,14 @@ std::string LatticeMap::blocker_name(const Node& node) const {
   return a + " - " + b;
 }
 
+int LatticeMap::blocking_object(const Node& node) const {
+  const auto& [a, b] = blockers[node.cause];
+  for (const std::string& name : {a, b})
+    if (const auto at = std::find(objects.begin(), objects.end(), name); at != objects.end())
+      return static_cast<int>(at - objects.begin());
+  return -1;
+}
+
 std::string LatticeMap::solution_name(int solution) const {
   if (shows_rolls(solution)) return "roll of the tool, where the path is";
   const int branch = solution / windings;
@@ -216,6 +224,9 @@ class MapMaker {
       lay_out_arcs();
     if (map_.grid()) map_.step = kTwoPi / map_.angles;
     map_.joint_names = lattice_.chain().joint_names;
+    for (const SceneObject& object : view.problem.scene)
+      if (std::find(map_.objects.begin(), map_.objects.end(), object.name) == map_.objects.end())
+        map_.objects.push_back(object.name);
     for (const int slot : view.path)
       map_.path.push_back(map_cell(map_, lattice_, static_cast<int>(map_.path.size()), slot));
     map_.complete = full || view.verdicts == nullptr;

@@ -7,9 +7,34 @@
 #include <utility>
 #include <vector>
 
+#include "palette.hpp"
 #include "swivel/report/lattice_map.hpp"
 
 namespace swivel::detail {
+
+/// Returns the colour of a node, "#rrggbb": one hue for each object that blocks.
+[[nodiscard]] inline std::string colour_of_node(const LatticeMap& map,
+                                                const LatticeMap::Node& node) {
+  switch (node.state) {
+    case NodeState::kNoIk:
+      return palette::kNothing;
+    case NodeState::kSingular:
+      return palette::kSingular;
+    case NodeState::kJointLimit:
+      return palette::kLimit;
+    case NodeState::kNotLookedAt:
+      return palette::kUnseen;
+    case NodeState::kFree:
+      return node.proved ? palette::kProved : palette::kFound;
+    case NodeState::kBlocked: {
+      const int object = map.blocking_object(node);
+      return object < 0
+                 ? palette::kSelf
+                 : palette::kObjects[static_cast<std::size_t>(object) % palette::kObjects.size()];
+    }
+  }
+  return palette::kNothing;
+}
 
 /// Divides a panel into cells, each standing for layers_each x angles_each nodes (fewer at the
 /// ends).
@@ -63,12 +88,45 @@ class MapLegend {
     seen_.insert(
         {-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.proved});
   }
-  /// Returns the states that were seen, each with its meaning, the most important first.
+  /// Nodes of one colour: what they have in common, and the joints or bodies that tell them apart.
+  struct Group {
+    LatticeMap::Node node;
+    std::string meaning;
+    std::vector<std::string> details;
+    /// Returns the group in words, with its details where there are several, or where it is that of
+    /// limits.
+    [[nodiscard]] std::string words() const {
+      constexpr std::size_t kMost = 4;
+      if (details.empty() || (details.size() == 1 && node.state != NodeState::kJointLimit))
+        return meaning;
+      std::string text = meaning;
+      for (std::size_t k = 0; k < std::min(kMost, details.size()); ++k)
+        text += (k == 0 ? ": " : ", ") + details[k];
+      return details.size() > kMost ? text + ", " + std::to_string(details.size() - kMost) + " more"
+                                    : text;
+    }
+  };
+  /// Returns the groups that were seen, the most important first.
+  [[nodiscard]] std::vector<Group> groups() const {
+    std::vector<Group> groups;
+    for (const auto& [node, text] : entries()) {
+      const std::string common = meaning(node), own = detail(node);
+      auto at = std::find_if(groups.begin(), groups.end(),
+                             [&](const Group& group) { return group.meaning == common; });
+      if (at == groups.end()) at = groups.insert(at, {node, common, {}});
+      std::vector<std::string>& details = at->details;
+      if (!own.empty() && std::find(details.begin(), details.end(), own) == details.end())
+        details.insert(std::lower_bound(details.begin(), details.end(), own), own);
+    }
+    return groups;
+  }
+  /// Returns the states and causes that were seen, each in words, the most important first.
   [[nodiscard]] std::vector<std::pair<LatticeMap::Node, std::string>> entries() const {
     std::vector<std::pair<LatticeMap::Node, std::string>> result;
     for (const auto& [state, cause, proved] : seen_) {
       const LatticeMap::Node node{static_cast<NodeState>(-state), cause, proved};
-      result.emplace_back(node, meaning(node));
+      const std::string own = detail(node);
+      result.emplace_back(node, own.empty() ? meaning(node) : meaning(node) + ": " + own);
     }
     return result;
   }
@@ -79,6 +137,7 @@ class MapLegend {
   }
 
  private:
+  /// Returns what nodes of one colour have in common.
   [[nodiscard]] std::string meaning(const LatticeMap::Node& node) const {
     switch (node.state) {
       case NodeState::kNoIk:
@@ -86,15 +145,27 @@ class MapLegend {
       case NodeState::kSingular:
         return "singular";
       case NodeState::kJointLimit:
-        return "limit of " + map_.joint_names[node.cause];
+        return "joint limit";
       case NodeState::kNotLookedAt:
-        return "not looked at: its clearance did not matter";
+        return "not looked at";
       case NodeState::kFree:
         return node.proved ? "free, proved by a certificate" : "free, found by FCL";
-      case NodeState::kBlocked:
-        return "blocked by " + map_.blocker_name(node);
+      case NodeState::kBlocked: {
+        const int object = map_.blocking_object(node);
+        return "blocked by " + (object < 0 ? std::string("the robot itself")
+                                           : map_.objects[static_cast<std::size_t>(object)]);
+      }
     }
     return "?";
+  }
+  /// Returns what tells nodes of one colour apart: the joint, or the body that is blocked.
+  [[nodiscard]] std::string detail(const LatticeMap::Node& node) const {
+    if (node.state == NodeState::kJointLimit) return map_.joint_names[node.cause];
+    if (node.state != NodeState::kBlocked) return "";
+    const auto& [a, b] = map_.blockers[node.cause];
+    const int object = map_.blocking_object(node);
+    if (object < 0) return a + " - " + b;
+    return a == map_.objects[static_cast<std::size_t>(object)] ? b : a;
   }
 
   const LatticeMap& map_;

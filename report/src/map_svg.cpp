@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "drawing.hpp"
 #include "map_cells.hpp"
@@ -12,41 +13,25 @@ using namespace detail;
 
 namespace {
 
-/// Returns the colour of a node as SVG writes it.
-std::string colour_of(const LatticeMap::Node& node) {
-  switch (node.state) {
-    case NodeState::kNoIk:
-      return "#ffffff";
-    case NodeState::kSingular:
-      return "#cc79a7";
-    case NodeState::kJointLimit:
-      return kJointColour[node.cause];
-    case NodeState::kNotLookedAt:
-      return "#dcdcdc";
-    case NodeState::kFree:
-      return node.proved ? "#7ed0b4" : "#00795a";
-    case NodeState::kBlocked:
-      return kBlockerColour[node.cause % kBlockerColour.size()];
-  }
-  return "#ffffff";
-}
-
 /// Returns the marks of the coordinate: where they are, in cells from the lower edge of a panel,
-/// and what they say, in rad.
+/// and what they say, in degrees.
 std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
+  constexpr double kDegree = kPi / 180;
+  const auto name = [](double value) { return formatted("%.4g", value / kDegree + 0.0); };
+  std::vector<std::pair<double, std::string>> marks;
   if (map.closed) {
-    const double quarter = map.angles / 4.0;
-    return {
-        {0, "-π"}, {quarter, "-π/2"}, {2 * quarter, "0"}, {3 * quarter, "π/2"}, {4 * quarter, "π"}};
+    for (int k = 0; k <= 4; ++k) marks.emplace_back(k * map.angles / 4.0, name(k * kPi / 2 - kPi));
+    return marks;
   }
   const double high = map.low + (map.angles - 1) * map.step;
-  if (map.angles == 1) return {{0.5, number(map.value(0))}};
-  double each = 1;
-  for (const double candidate : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002})
-    if ((high - map.low) / each < 3) each = candidate;
-  std::vector<std::pair<double, std::string>> marks;
-  for (double k = std::ceil(map.low / each); k * each <= high; ++k)
-    marks.emplace_back((k * each - map.low) / map.step + 0.5, number(wrap_angle(k * each)));
+  if (map.angles == 1) return {{0.5, name(map.value(0))}};
+  double each = 45;
+  for (const double candidate : {20, 10, 5, 2, 1})
+    if ((high - map.low) / kDegree / each < 3) each = candidate;
+  for (double k = std::ceil(map.low / kDegree / each); k * each * kDegree <= high; ++k) {
+    const double at = k * each * kDegree;
+    marks.emplace_back((at - map.low) / map.step + 0.5, name(wrap_angle(at)));
+  }
   return marks;
 }
 
@@ -65,7 +50,9 @@ class MapDrawing {
         kTop + static_cast<double>(solutions_.size()) * (kPanelHeight + kGap) + height_of_legend,
         "#ffffff");
     for (const int solution : solutions_) {
-      draw_cells(solution);
+      const std::vector<LatticeMap::Node> nodes = nodes_of(solution);
+      draw_cells(nodes);
+      draw_lines(nodes);
       draw_path(solution);
       draw_axes(solution);
       top_ += kPanelHeight + kGap;
@@ -89,27 +76,79 @@ class MapDrawing {
   /// Returns true if some cell stands for more than one node.
   [[nodiscard]] bool merges_nodes() const { return cells_.layers_each * cells_.angles_each > 1; }
 
+  /// Returns the nodes that the cells of a panel show, by row and column.
+  [[nodiscard]] std::vector<LatticeMap::Node> nodes_of(int solution) const {
+    std::vector<LatticeMap::Node> nodes;
+    for (int row = 0; row < cells_.rows; ++row)
+      for (int column = 0; column < cells_.columns; ++column)
+        nodes.push_back(cells_.node(solution, column, row));
+    return nodes;
+  }
+  /// Left edge of a column, and lower edge of a row.
+  [[nodiscard]] double left_of(int column) const { return x_of(column * cells_.layers_each - 0.5); }
+  [[nodiscard]] double low_of(int row) const {
+    return y_of(std::min(map_.angles, row * cells_.angles_each));
+  }
+
   /// Draws the cells of a panel and notes their states for the legend. Equal neighbours in a row
   /// become one rectangle.
-  void draw_cells(int solution) {
+  void draw_cells(const std::vector<LatticeMap::Node>& nodes) {
     for (int row = 0; row < cells_.rows; ++row) {
-      const double low = row * cells_.angles_each,
-                   high = std::min(map_.angles, (row + 1) * cells_.angles_each);
-      for (int column = 0; column < cells_.columns;) {
-        const LatticeMap::Node node = cells_.node(solution, column, row);
+      const auto first = nodes.begin() + row * cells_.columns, last = first + cells_.columns;
+      for (auto begin = first, end = begin; begin != last; begin = end) {
+        const LatticeMap::Node node = *begin;
         seen_.see(node);
-        int end = column + 1;
-        for (; end < cells_.columns; ++end) {
-          const LatticeMap::Node other = cells_.node(solution, end, row);
-          if (other != node) break;
-        }
-        const double from = x_of(column * cells_.layers_each - 0.5),
-                     to = x_of(end * cells_.layers_each - 0.5);
-        if (node.state != NodeState::kNoIk)
-          drawing_.rectangle(from, y_of(high), to - from, y_of(low) - y_of(high), colour_of(node));
-        column = end;
+        end = std::find_if(begin, last, [&](const auto& other) { return other != node; });
+        if (node.state == NodeState::kNoIk) continue;
+        const double x = left_of(static_cast<int>(begin - first)), y = low_of(row + 1),
+                     width = left_of(static_cast<int>(end - first)) - x, height = low_of(row) - y;
+        drawing_.rectangle(x, y, width, height, colour_of_node(map_, node));
+        if (node.state == NodeState::kJointLimit)
+          drawing_.hatch(x, y, width, height, palette::kHatch);
       }
     }
+  }
+
+  /// Returns the colour of the line between two cells, or null: where their contrast is low, or
+  /// where one colour has two causes. Hatching parts a limit from all else.
+  [[nodiscard]] const char* line(const LatticeMap::Node& one, const LatticeMap::Node& other) const {
+    if (one == other) return nullptr;
+    if ((one.state == NodeState::kJointLimit) != (other.state == NodeState::kJointLimit))
+      return nullptr;
+    return line_between(colour_of_node(map_, one), colour_of_node(map_, other));
+  }
+  /// Draws the lines between the cells of a panel, each as long as it goes straight on.
+  void draw_lines(const std::vector<LatticeMap::Node>& nodes) {
+    std::map<std::string, std::string> paths;
+    std::map<std::uint64_t, const char*> known;
+    const auto key = [](const LatticeMap::Node& node) {
+      return static_cast<std::uint64_t>(node.state) << 9 | node.cause << 1 | node.proved;
+    };
+    const auto between = [&](std::size_t a, std::size_t b) {
+      const auto [at, fresh] = known.emplace(key(nodes[a]) << 20 | key(nodes[b]), nullptr);
+      if (fresh) at->second = line(nodes[a], nodes[b]);
+      return at->second;
+    };
+    const auto columns = static_cast<std::size_t>(cells_.columns);
+    for (int row = 1; row < cells_.rows; ++row)
+      for (int column = 0, end = 0; column < cells_.columns; column = end) {
+        const auto at = [&](int c) { return static_cast<std::size_t>(row) * columns + c; };
+        const char* const stroke = between(at(column), at(column) - columns);
+        for (end = column + 1;
+             end < cells_.columns && between(at(end), at(end) - columns) == stroke;)
+          ++end;
+        if (stroke != nullptr)
+          paths[stroke] += formatted("M%.1f,%.1fH%.1f", left_of(column), low_of(row), left_of(end));
+      }
+    for (int column = 1; column < cells_.columns; ++column)
+      for (int row = 0, end = 0; row < cells_.rows; row = end) {
+        const auto at = [&](int r) { return static_cast<std::size_t>(r) * columns + column; };
+        const char* const stroke = between(at(row), at(row) - 1);
+        for (end = row + 1; end < cells_.rows && between(at(end), at(end) - 1) == stroke;) ++end;
+        if (stroke != nullptr)
+          paths[stroke] += formatted("M%.1f,%.1fV%.1f", left_of(column), low_of(row), low_of(end));
+      }
+    for (const auto& [stroke, d] : paths) drawing_.path(d, stroke, 0.7);
   }
 
   /// Draws a stretch of the path, black with a white rim; nothing for fewer than two points.
@@ -151,22 +190,24 @@ class MapDrawing {
     drawing_.text(kLeft, top_ - 7, "start", map_.solution_name(solution));
     for (const auto& [angle, name] : marks(map_))
       drawing_.text(kLeft - 6, y_of(angle) + 4, "end", name);
-    drawing_.text(14, top_ + kPanelHeight / 2, "middle", map_.letter(solution));
+    drawing_.text(kLeft - 6, top_ - 7, "end", map_.letter(solution) + std::string(", deg"));
     for (int k = 0; k <= 5; ++k) {
       const double layer = (map_.layers - 1) * k / 5.0;
       drawing_.text(x_of(layer), top_ + kPanelHeight + 15, "middle",
                     number(map_.s[static_cast<std::size_t>(layer + 0.5)]));
     }
-    drawing_.text(kLeft + kPanelWidth / 2, top_ + kPanelHeight + 29, "middle", "s (m)");
+    drawing_.text(kLeft + kPanelWidth, top_ + kPanelHeight + 29, "end", "s, m");
   }
 
   void draw_legend() {
     if (!map_.path.empty()) explain("#000000", seen_.path_meaning() + "; dots: change of branch");
-    for (const auto& [node, meaning] : seen_.entries()) explain(colour_of(node), meaning);
+    for (const MapLegend::Group& group : seen_.groups())
+      explain(colour_of_node(map_, group.node), group.words(),
+              group.node.state == NodeState::kJointLimit);
     if (!map_.grid())
       remark(map_.letter(solutions_.empty() ? 0 : solutions_.front()) + std::string(": ") +
              map_.coordinate_name() +
-             ", rad. Between two nodes of an arc of solutions the nearer one is shown" +
+             ", deg. Between two nodes of an arc of solutions the nearer one is shown" +
              (merges_nodes() ? ", of several a blocked one first, then a free one." : "."));
     else if (merges_nodes())
       remark("A cell stands for up to " + std::to_string(cells_.layers_each) + " x " +
@@ -174,8 +215,9 @@ class MapDrawing {
              " nodes and shows a blocked one first, then a free one.");
   }
   /// Adds a line to the legend that explains a colour.
-  void explain(const std::string& colour, const std::string& meaning) {
+  void explain(const std::string& colour, const std::string& meaning, bool hatched = false) {
     drawing_.rectangle(kLeft, top_ - 10, 14, 12, colour);
+    if (hatched) drawing_.hatch(kLeft, top_ - 10, 14, 12, palette::kHatch);
     drawing_.frame(kLeft, top_ - 10, 14, 12);
     drawing_.text(kLeft + 22, top_, "start", meaning);
     top_ += 18;

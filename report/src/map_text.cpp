@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <map>
 
 #include "map_cells.hpp"
 #include "swivel/core/messages/bounds.hpp"
@@ -10,72 +11,76 @@ using namespace detail;
 
 namespace {
 
-struct Look {
-  char symbol;
-  int background;  // ANSI 256 colour
-};
-
-constexpr int kLightBlue = 153, kGrey = 252, kGreen = 72, kPaleGreen = 115, kOrange = 208,
-              kMauve = 176;
-
-Look look_of(const LatticeMap::Node& node) {
+/// Returns the letter that stands for a node where there are no colours.
+char symbol_of(const LatticeMap::Node& node) {
   switch (node.state) {
     case NodeState::kNoIk:
-      return {' ', 231};
+      return ' ';
     case NodeState::kSingular:
-      return {'s', kMauve};
+      return 's';
     case NodeState::kJointLimit:
-      return {static_cast<char>('1' + node.cause), kLightBlue};
+      return static_cast<char>('1' + node.cause);
     case NodeState::kNotLookedAt:
-      return {'.', kGrey};
+      return '.';
     case NodeState::kFree:
-      return node.proved ? Look{'+', kPaleGreen} : Look{'o', kGreen};
+      return node.proved ? '+' : 'o';
     case NodeState::kBlocked:
-      return {static_cast<char>(node.cause < 26 ? 'a' + node.cause : '#'), kOrange};
+      return static_cast<char>(node.cause < 26 ? 'a' + node.cause : '#');
   }
-  return {'?', 231};
+  return '?';
 }
 
-void put(std::string& text, const Look& look, bool coloured) {
-  if (coloured) {
-    text += "\x1b[48;5;" + std::to_string(look.background) + ";38;5;16m" + look.symbol + "\x1b[0m";
-  } else {
-    text += look.symbol;
+/// Writes symbols on the colours of the map's nodes.
+class MapText {
+ public:
+  MapText(const LatticeMap& map, bool coloured) : map_(map), coloured_(coloured) {}
+  /// Returns a node's symbol.
+  std::string node(const LatticeMap::Node& node) {
+    if (!coloured_) return {symbol_of(node)};
+    const std::string colour = colour_of_node(map_, node);
+    const auto known = ansi_.find(colour);
+    const AnsiColour ansi =
+        known != ansi_.end() ? known->second : ansi_[colour] = ansi_colour(colour);
+    return on_colour(ansi, {symbol_of(node)});
   }
-}
+  /// Returns the symbol of the path.
+  [[nodiscard]] std::string path() const { return coloured_ ? on_colour({231, 16}, "*") : "*"; }
+
+ private:
+  const LatticeMap& map_;
+  const bool coloured_;
+  std::map<std::string, AnsiColour> ansi_;
+};
 
 }  // namespace
 
 std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   constexpr int kMargin = 8, kRows = 24;
+  constexpr double kDegrees = 180 / kPi;
   const MapCells cells(map, std::max(10, columns - kMargin), kRows);
   std::string text;
   MapLegend seen(map);
+  MapText symbols(map, coloured);
   for (const int solution : map.inhabited_solutions()) {
     text += map.solution_name(solution) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
       const double value = map.value(row * cells.angles_each);
-      text += row % 4 == 0 ? formatted("%6.2f  ", value) : std::string(kMargin, ' ');
+      text += row % 4 == 0 ? formatted("%6.1f  ", value * kDegrees) : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
         const LatticeMap::Node node = cells.node(solution, column, row);
         seen.see(node);
-        Look look = look_of(node);
-        if (cells.on_path(solution, column, row)) look = {'*', 231};
-        put(text, look, coloured);
+        text += cells.on_path(solution, column, row) ? symbols.path() : symbols.node(node);
       }
       text += '\n';
     }
     text += std::string(kMargin, ' ') + formatted("s = 0 to %.3f m", map.s.back()) + "\n\n";
   }
-  const auto legend = [&](const Look& look, const std::string& meaning) {
-    put(text, look, coloured);
-    text += " " + printable(meaning) + "\n";
-  };
-  if (!map.path.empty()) legend({'*', 231}, seen.path_meaning());
-  for (const auto& [node, meaning] : seen.entries()) legend(look_of(node), meaning);
+  if (!map.path.empty()) text += symbols.path() + " " + seen.path_meaning() + "\n";
+  for (const auto& [node, meaning] : seen.entries())
+    text += symbols.node(node) + " " + printable(meaning) + "\n";
   const std::string name = map.coordinate_name();
   const std::string rows =
-      "Rows are " + name + "s" + (map.turns ? ", in the last panel rolls, rad. " : ", rad. ");
+      "Rows are " + name + "s" + (map.turns ? ", in the last panel rolls, deg. " : ", deg. ");
   if (!map.grid())
     text += rows + "Between two nodes of an arc of solutions the nearer one is shown" +
             (cells.layers_each * cells.angles_each > 1

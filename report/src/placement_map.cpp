@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drawing.hpp"
+#include "palette.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
@@ -32,9 +33,14 @@ std::string value_text(PlacementCriterion criterion, double merit) {
   return formatted(format, scale * merit);
 }
 
-/// Returns the unit of an axis: m for a shift, rad for a turn.
+/// Returns the unit of an axis: m for a shift, degrees for a turn.
 const char* unit_of(const PlacementAxis& axis) {
-  return axis.coordinate < 3 ? "m" : "rad";
+  return axis.coordinate < 3 ? "m" : "deg";
+}
+
+/// Returns place `k` of an axis in its unit.
+double value_at(const PlacementAxis& axis, int k) {
+  return axis.at(k) * (axis.coordinate < 3 ? 1 : 180 / kPi);
 }
 
 /// Returns the words for what the shades mean: the first criterion, from its least to its best
@@ -49,13 +55,7 @@ std::string title_of(const PlacementMap& map) {
          value_text(criterion, map.most);
 }
 
-/// The shades of placements that have a path, from the least to the most merit.
-constexpr std::array<const char*, 10> kShade{"#dff3eb", "#c3e8da", "#a6dcc8", "#89cfb5", "#6cc1a2",
-                                             "#4fb28e", "#34a17a", "#1c8e66", "#0b7953", "#005c3c"};
-constexpr std::array<int, 10> kAnsiShade{194, 157, 121, 120, 84, 78, 72, 35, 29, 22};
-const char* const kNothing = "#ffffff";
-
-/// Returns the number of the shade of a row that has a path, 0 to 9.
+/// Returns the number of the shade of a row that has a path, from 0, the least merit, to 9.
 int step_of(const PlacementMap& map, const PlacementRow& row) {
   return std::min(9, static_cast<int>(10 * map.shade(row)));
 }
@@ -64,6 +64,27 @@ int step_of(const PlacementMap& map, const PlacementRow& row) {
 std::size_t end_of(const PlacementMap& map, const PlacementRow& row) {
   return static_cast<std::size_t>(std::find(map.ends.begin(), map.ends.end(), ended_by(row)) -
                                   map.ends.begin());
+}
+
+/// Returns a colour, "#rrggbb", for each of map.ends: bodies, limits of joints and the rest have
+/// palettes of their own, whose last colour those share that are beyond it.
+std::vector<std::string> colours_of_ends(const PlacementMap& map) {
+  std::size_t bodies = 0, limits = 0, others = 0;
+  std::vector<std::string> colours;
+  const auto next = [](const auto& palette, std::size_t& used) {
+    return palette[std::min(used++, palette.size() - 1)];
+  };
+  for (const std::string& end : map.ends) {
+    const auto row = std::find_if(map.shown.begin(), map.shown.end(), [&](const auto& one) {
+      return one.status != PlanStatus::kSolved && ended_by(one) == end;
+    });
+    const std::string& cause = row->cause;
+    colours.emplace_back(cause == "pair" || cause == "contact" || cause == "transition"
+                             ? next(palette::kObjects, bodies)
+                         : cause == "limit" ? next(palette::kLimits, limits)
+                                            : next(palette::kOthers, others));
+  }
+  return colours;
 }
 
 }  // namespace
@@ -122,11 +143,6 @@ double PlacementMap::shade(const PlacementRow& row) const {
 
 namespace {
 
-/// Returns true if the row's path was ended by bodies that came too near or touched.
-bool ended_by_bodies(const PlacementRow& row) {
-  return row.cause == "pair" || row.cause == "contact" || row.cause == "transition";
-}
-
 /// Returns true if some place of the map was not planned.
 bool has_unplanned(const PlacementMap& map) {
   return std::find(map.at.begin(), map.at.end(), -1) != map.at.end();
@@ -156,29 +172,28 @@ const PlacementRow* best_in(const PlacementMap& map, const TextCell& cell, int l
   return best;
 }
 
-/// Returns the letter that stands for a row, coloured or not; '.' for none.
-std::string letter_of(const PlacementMap& map, const PlacementRow* row, bool coloured) {
-  char letter = '.';
-  int background = 231;
-  if (row && row->status == PlanStatus::kSolved) {
-    const int step = step_of(map, *row);
-    letter = static_cast<char>('0' + step);
-    background = kAnsiShade[static_cast<std::size_t>(step)];
-  } else if (row) {
-    const std::size_t end = end_of(map, *row);
-    letter = end < 26 ? static_cast<char>('a' + end) : '#';
-    background = ended_by_bodies(*row) ? 208 : 153;
-  }
-  if (!coloured) return {letter};
-  return "\x1b[48;5;" + std::to_string(background) + ";38;5;16m" + letter + "\x1b[0m";
+/// Returns the letter that stands for a row; '.' for none.
+char letter_of(const PlacementMap& map, const PlacementRow* row) {
+  if (row == nullptr) return '.';
+  if (row->status == PlanStatus::kSolved) return static_cast<char>('0' + step_of(map, *row));
+  const std::size_t end = end_of(map, *row);
+  return end < 26 ? static_cast<char>('a' + end) : '#';
+}
+
+/// Returns the colour of a row; `ends`: as of colours_of_ends().
+std::string colour_of(const PlacementMap& map, const PlacementRow* row,
+                      const std::vector<std::string>& ends) {
+  if (row == nullptr) return palette::kNothing;
+  return row->status == PlanStatus::kSolved ? ramp_colour(step_of(map, *row) / 9.0)
+                                            : ends[end_of(map, *row)];
 }
 
 /// Returns the lines below the map in text: its axes, then what its letters mean.
 std::string text_legend(const PlacementMap& map, const TextCell& cell, int margin) {
   const std::string indent(static_cast<std::size_t>(margin), ' ');
   std::string text = indent + kCoordinates[static_cast<std::size_t>(map.across.coordinate)];
-  text += formatted(" %.4g to %.4g %s to the right, ", map.across.at(0),
-                    map.across.at(map.across.count - 1), unit_of(map.across)) +
+  text += formatted(" %.4g to %.4g %s to the right, ", value_at(map.across, 0),
+                    value_at(map.across, map.across.count - 1), unit_of(map.across)) +
           std::string(kCoordinates[static_cast<std::size_t>(map.up.coordinate)]) + " (" +
           unit_of(map.up) + ") upwards";
   if (cell.across * cell.up > 1)
@@ -204,26 +219,21 @@ std::string to_text(const PlacementMap& map, int columns, bool coloured) {
   const int width = std::max(10, columns - kMargin);
   const TextCell cell{(map.across.count + width - 1) / width,
                       (map.up.count + kMostRows - 1) / kMostRows};
+  const std::vector<std::string> ends = colours_of_ends(map);
   std::string text;
   for (int bottom = (map.up.count - 1) / cell.up * cell.up; bottom >= 0; bottom -= cell.up) {
-    text += formatted("%8.4g  ", map.up.at(bottom));
-    for (int left = 0; left < map.across.count; left += cell.across)
-      text += letter_of(map, best_in(map, cell, left, bottom), coloured);
+    text += formatted("%8.4g  ", value_at(map.up, bottom));
+    for (int left = 0; left < map.across.count; left += cell.across) {
+      const PlacementRow* const row = best_in(map, cell, left, bottom);
+      const std::string letter(1, letter_of(map, row));
+      text += coloured ? on_colour(ansi_colour(colour_of(map, row, ends)), letter) : letter;
+    }
     text += '\n';
   }
   return text + text_legend(map, cell, kMargin);
 }
 
 namespace {
-
-/// Returns the colour of a row in the drawing.
-std::string colour_of(const PlacementMap& map, const PlacementRow& row) {
-  if (row.status == PlanStatus::kSolved) return kShade[static_cast<std::size_t>(step_of(map, row))];
-  const std::size_t end = end_of(map, row);
-  return ended_by_bodies(row)   ? kBlockerColour[end % kBlockerColour.size()]
-         : row.cause == "limit" ? kJointColour[end % kJointColour.size()]
-                                : "#b9b9c6";
-}
 
 /// Returns the places of an axis that get a mark: at most six, evenly spread.
 std::vector<int> marked_places(const PlacementAxis& axis) {
@@ -248,7 +258,7 @@ class PlacementDrawing {
   std::string document() {
     const double width = std::max(460.0, kLeft + wide_ + kRight), below = kTop + high_ + 52,
                  height = below + 18.0 * static_cast<double>(map_.ends.size() + 3);
-    drawing_.rectangle(0, 0, width, height, kNothing);
+    drawing_.rectangle(0, 0, width, height, palette::kNothing);
     draw_cells();
     draw_axes();
     draw_legend(below);
@@ -257,23 +267,28 @@ class PlacementDrawing {
 
  private:
   static constexpr double kLeft = 64, kTop = 16, kMost = 620, kRight = 24;
+  static constexpr int kSteps = 10;  ///< of the scale
 
-  /// Draws the cells. Equal neighbours in a row become one rectangle.
+  /// Draws the cells. Equal neighbours in a row become one rectangle; where there is no path, it is
+  /// hatched.
   void draw_cells() {
-    const auto colour_at = [&](int i, int j) {
-      const PlacementRow* const row = row_at(map_, i, j);
-      return row ? colour_of(map_, *row) : std::string();
-    };
     for (int j = 0; j < map_.up.count; ++j)
       for (int i = 0; i < map_.across.count;) {
-        const std::string fill = colour_at(i, j);
+        const PlacementRow* const row = row_at(map_, i, j);
         int end = i + 1;
-        while (end < map_.across.count && colour_at(end, j) == fill) ++end;
-        if (!fill.empty())
-          drawing_.rectangle(kLeft + cell_ * i, kTop + high_ - cell_ * (j + 1), cell_ * (end - i),
-                             cell_, fill);
+        while (end < map_.across.count &&
+               letter_of(map_, row_at(map_, end, j)) == letter_of(map_, row))
+          ++end;
+        if (row != nullptr)
+          draw_area(kLeft + cell_ * i, kTop + high_ - cell_ * (j + 1), cell_ * (end - i), cell_,
+                    colour_of(map_, row, ends_), row->status != PlanStatus::kSolved);
         i = end;
       }
+  }
+  void draw_area(double x, double y, double width, double height, const std::string& colour,
+                 bool hatched) {
+    drawing_.rectangle(x, y, width, height, colour);
+    if (hatched) drawing_.hatch(x, y, width, height, line_between(colour, colour));
   }
 
   /// Draws the frame, the marks and the names of the axes.
@@ -281,9 +296,10 @@ class PlacementDrawing {
     drawing_.frame(kLeft, kTop, wide_, high_);
     for (const int k : marked_places(map_.across))
       drawing_.text(kLeft + cell_ * (k + 0.5), kTop + high_ + 15, "middle",
-                    number(map_.across.at(k)));
+                    number(value_at(map_.across, k)));
     for (const int k : marked_places(map_.up))
-      drawing_.text(kLeft - 6, kTop + high_ - cell_ * (k + 0.5) + 4, "end", number(map_.up.at(k)));
+      drawing_.text(kLeft - 6, kTop + high_ - cell_ * (k + 0.5) + 4, "end",
+                    number(value_at(map_.up, k)));
     drawing_.text(
         kLeft + wide_ / 2, kTop + high_ + 31, "middle",
         name_of(map_.across) +
@@ -293,23 +309,19 @@ class PlacementDrawing {
 
   /// Draws the scale of shades and what the other colours mean, from `top` downwards.
   void draw_legend(double top) {
-    for (std::size_t k = 0; k < kShade.size(); ++k)
-      drawing_.rectangle(kLeft + 14.0 * static_cast<double>(k), top - 10, 14, 12, kShade[k]);
-    drawing_.frame(kLeft, top - 10, 14.0 * kShade.size(), 12);
-    drawing_.text(kLeft + 14.0 * kShade.size() + 8, top, "start", title_of(map_));
-    const auto explain = [&](const std::string& fill, const std::string& meaning) {
+    for (int k = 0; k < kSteps; ++k)
+      drawing_.rectangle(kLeft + 14 * k, top - 10, 14, 12, ramp_colour(k / (kSteps - 1.0)));
+    drawing_.frame(kLeft, top - 10, 14 * kSteps, 12);
+    drawing_.text(kLeft + 14 * kSteps + 8, top, "start", title_of(map_));
+    const auto explain = [&](const std::string& fill, const std::string& meaning, bool hatched) {
       top += 18;
-      drawing_.rectangle(kLeft, top - 10, 14, 12, fill);
+      draw_area(kLeft, top - 10, 14, 12, fill, hatched);
       drawing_.frame(kLeft, top - 10, 14, 12);
       drawing_.text(kLeft + 22, top, "start", meaning);
     };
-    for (const std::string& end : map_.ends) {
-      const auto row = std::find_if(map_.shown.begin(), map_.shown.end(), [&](const auto& r) {
-        return r.status != PlanStatus::kSolved && ended_by(r) == end;
-      });
-      explain(colour_of(map_, *row), "no path: " + end);
-    }
-    if (has_unplanned(map_)) explain(kNothing, "not planned");
+    for (std::size_t k = 0; k < ends_.size(); ++k)
+      explain(ends_[k], "no path: " + map_.ends[k], true);
+    if (has_unplanned(map_)) explain(palette::kNothing, "not planned", false);
   }
 
   const PlacementMap& map_;
@@ -317,6 +329,7 @@ class PlacementDrawing {
   const double cell_ =
       std::max(1.0, std::min(24.0, std::floor(kMost / std::max(map_.across.count, map_.up.count))));
   const double wide_ = cell_ * map_.across.count, high_ = cell_ * map_.up.count;
+  const std::vector<std::string> ends_ = colours_of_ends(map_);  ///< colours
   Drawing drawing_;
 };
 

@@ -275,7 +275,7 @@ void check_layer_of_arcs(ArcMap& arcs, int layer) {
 void check_words_of_arcs(const LatticeMap& map) {
   const std::string text = to_text(map, 80, false), svg = to_svg(map),
                     words = map.coordinate_name();
-  EXPECT_NE(text.find("Rows are " + words + "s, rad."), std::string::npos);
+  EXPECT_NE(text.find("Rows are " + words + "s, deg."), std::string::npos);
   EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
   EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
   const auto solutions = map.inhabited_solutions();

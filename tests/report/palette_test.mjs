@@ -92,5 +92,24 @@ for (const ground of [kLight, kDark])
 const css = readFileSync(join(web, 'page.css'), 'utf8');
 for (const colour of [kKnown.found, kKnown.proved, kObjects[0], ...palette.kRamp])
   assert.ok(css.includes(colour), `${colour} in page.css`);
+const header = readFileSync(join(root, 'report/src/palette.hpp'), 'utf8');
+/** The colours of a constant there. */
+const drawn = (name) =>
+  header.match(new RegExp(`${name}[ {][^;]*;`))[0].match(/#[0-9a-f]{6}/g);
+for (const [name, colours] of Object.entries({
+  kNothing: [kLight.nothing],
+  kUnseen: [kLight.unseen],
+  kLimit: [kLight.limit],
+  kHatch: [kLight.hatch],
+  kProved: [kKnown.proved],
+  kFound: [kKnown.found],
+  kSingular: [kKnown.singular],
+  kSelf: [kKnown.self],
+  kObjects,
+  kLimits,
+  kOthers,
+  kRamp: palette.kRamp,
+}))
+  assert.deepEqual(drawn(name), colours, `${name} of palette.hpp`);
 console.log(`${pairs} pairs of colours, the nearest two ${least.toFixed(1)} apart`);
 assert.ok(pairs > 300);

@@ -53,6 +53,7 @@ struct LatticeMap {
   std::vector<int> slots;   ///< of each of `nodes`: whose it is, -1: none; empty of a grid
   std::vector<std::pair<std::string, std::string>>
       blockers;  ///< two bodies each, in the order of their names
+  std::vector<std::string> objects;  ///< of the scene, in its order, each once
   std::array<std::string, kDof> joint_names;
   std::vector<int> path;  ///< one cell in each layer, IK solution * angles + angle: the answer, or
                           ///< a way to the furthest layer reached
@@ -92,6 +93,9 @@ struct LatticeMap {
   [[nodiscard]] std::vector<int> inhabited_solutions() const;
   /// Returns what blocks a blocked node, in words.
   [[nodiscard]] std::string blocker_name(const Node& node) const;
+  /// Returns the object of the scene that blocks a blocked node, as an index into `objects`; -1
+  /// where the robot is in its own way.
+  [[nodiscard]] int blocking_object(const Node& node) const;
   /// Names an IK solution: "shoulder +, wrist -, elbow +", with the winding where there are
   /// several.
   [[nodiscard]] std::string solution_name(int solution) const;
@@ -112,8 +116,8 @@ struct LatticeMap {
 /// planner was eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// Draws the map as text, one panel per inhabited IK solution: s to the right, the coordinate from
-/// its largest value at the top, the path on it. A cell stands for as many nodes as it takes to fit
+/// Draws the map as text, one panel per inhabited IK solution: s to the right, the coordinate in
+/// degrees from its largest value at the top, the path on it. A cell stands for as many nodes as it takes to fit
 /// into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 
