@@ -13,7 +13,6 @@ import {
   cellBeside,
   cellWords,
   indexAt,
-  jointWords,
   offPath,
   placeWords,
   rowOf,
@@ -21,6 +20,7 @@ import {
   shades,
   valueAt,
 } from './poses.js';
+import { tellPose } from './readout.js';
 import { startView } from './scene.js';
 import { alongRows, overTime } from './series.js';
 import { Strip } from './strip.js';
@@ -219,13 +219,7 @@ function present() {
   told = performance.now();
   if (pose.part !== undefined && list.strokeOf(pose.part) !== stroke)
     open(list.strokeOf(pose.part));
-  $('readout').textContent = [
-    whereWords(pose),
-    ...jointWords(chain, pose.q, pose.off ? 1 : 2),
-    pose.note,
-  ]
-    .filter((line) => line)
-    .join('\n');
+  tellPose($('readout'), chain, whereWords(pose), pose, pose.off ? 1 : 2);
   const { maps, plots } = strokes[stroke],
     inMap = pose.off || pose.stroke === stroke;
   maps?.draw(inMap ? pose : null);
@@ -303,7 +297,10 @@ strokes.forEach((one, k) => $('stroke').append(new Option(strokeName(one, k), k)
 $('stroke').addEventListener('change', ({ target }) => toStroke(Number(target.value)));
 $('path-colour').addEventListener('change', colourPaths);
 $('blocked').addEventListener('click', showCut);
-viewOptions(() => view);
+viewOptions(
+  () => view,
+  () => window.swivel.joints,
+);
 const stepBy = (by) => parts.length && to(list.markOf(Math.round(list.placeOf(cursor)) + by));
 const partBy = (by) => {
   const part = list.partAt(list.placeOf(cursor)) + by;

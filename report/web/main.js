@@ -10,7 +10,6 @@ import {
   cellBeside,
   cellWords,
   indexAt,
-  jointWords,
   offPath,
   placeWords,
   poseAt,
@@ -20,6 +19,7 @@ import {
   stepsOf,
   valueAt,
 } from './poses.js';
+import { tellPose } from './readout.js';
 import { startView } from './scene.js';
 import { alongRows, overTime } from './series.js';
 import { summary, verdict } from './summary.js';
@@ -148,11 +148,7 @@ function present() {
   if (player.playing && performance.now() - told < 60) return;
   told = performance.now();
   const digits = pose.off ? 1 : 2;
-  $('readout').textContent = [
-    placeWords(pose, data.map.letter, 4),
-    ...jointWords(chain, pose.q, digits),
-    pose.note,
-  ].join('\n');
+  tellPose($('readout'), chain, placeWords(pose, data.map.letter, 4), pose, digits);
   panels.draw(pose);
   plots.draw(pose.row, pose);
 }
@@ -198,7 +194,10 @@ $('slider').addEventListener('input', (event) => {
   go(Number(event.target.value));
 });
 $('path-colour').addEventListener('change', colourPath);
-viewOptions(() => view);
+viewOptions(
+  () => view,
+  () => window.swivel.joints,
+);
 const to = (k) => {
   pause();
   go(k);

@@ -8,14 +8,28 @@ export const isDark = () => document.documentElement.dataset.theme === 'dark';
 export const style = (name) =>
   getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** Follows the system at first; the button and the key t change it. */
+/**
+ * Follows the system at first; the button and the key t change it. On paper all is light, and as
+ * wide as a sheet (class paper): `changed` draws it anew, before printing and after.
+ */
 export function themes(changed) {
+  const page = document.documentElement;
   const set = (dark) => {
-    document.documentElement.dataset.theme = dark ? 'dark' : 'light';
+    page.dataset.theme = dark ? 'dark' : 'light';
     changed();
   };
   const turn = () => set(!isDark());
   $('theme').addEventListener('click', turn);
+  let before = false;
+  addEventListener('beforeprint', () => {
+    before = isDark();
+    page.classList.add('paper');
+    set(false);
+  });
+  addEventListener('afterprint', () => {
+    page.classList.remove('paper');
+    set(before);
+  });
   set(matchMedia('(prefers-color-scheme: dark)').matches);
   return turn;
 }

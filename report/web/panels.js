@@ -337,6 +337,20 @@ export class Panels {
     for (const [stroke, d] of lines) group.append(element('path', { d, stroke }));
     return group;
   }
+  /** How much of a panel is what, in words. */
+  share({ index }) {
+    const { cells } = this,
+      count = new Map();
+    for (let column = 0; column < cells.columns; ++column)
+      for (let row = 0; row < cells.rows; ++row) {
+        const group = cells.group(cells.index(index, column, row));
+        count.set(group, (count.get(group) ?? 0) + 1);
+      }
+    return [...count]
+      .sort((a, b) => b[1] - a[1])
+      .map(([group, n]) => `${((100 * n) / (cells.columns * cells.rows)).toFixed(0)} % ${group}`)
+      .join(', ');
+  }
   /** Everything anew: at the start, and when the theme or the width changes. */
   paint() {
     const colours = { soft: style('--soft'), ...(isDark() ? kDark : kLight) };
@@ -349,6 +363,8 @@ export class Panels {
       );
       Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
       panel.chart.replaceChildren(drawing);
+      panel.chart.setAttribute('role', 'img');
+      panel.chart.setAttribute('aria-label', `Map of ${panel.name}: ${this.share(panel)}`);
     }
     const legend = document.getElementById('legend');
     legend.replaceChildren(

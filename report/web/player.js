@@ -32,10 +32,14 @@ export class Player {
   }
 }
 
-/** actions: of each key, called with how many steps are meant: one, with shift ten. */
+/**
+ * actions: of each key, called with how many steps are meant: one, with shift ten. They are those of
+ * what moves the arm (view, map and slider) while it has the focus; elsewhere keys scroll the page.
+ */
 export function keys(actions) {
   addEventListener('keydown', (event) => {
     if (
+      !event.target.closest?.('#view, #map, #controls') ||
       event.target.matches(event.key === ' ' ? 'select, button, [type=checkbox]' : 'select') ||
       event.ctrlKey ||
       event.altKey ||
@@ -56,7 +60,14 @@ export const viewKeys = (view) => ({
   2: () => view()?.look('side'),
   3: () => view()?.look('top'),
 });
-export function viewOptions(view) {
+/** view: as of viewKeys; joints: returns those that are shown. */
+export function viewOptions(view, joints) {
+  $('trail').addEventListener('change', ({ target }) => view()?.showTrail(target.checked));
+  $('copy-joints').addEventListener('click', ({ target }) => {
+    navigator.clipboard?.writeText(`[${joints().join(', ')}]`);
+    target.textContent = 'Copied';
+    setTimeout(() => (target.textContent = 'Copy joints'), 1200);
+  });
   $('ghosts').addEventListener('change', ({ target }) => {
     if (!view()) return;
     view().ghosts.visible = target.checked;

@@ -96,6 +96,14 @@ export class Plots {
       ],
     });
   }
+  /** A plot in words. */
+  name({ title, unit, values, lines, bold }) {
+    const known = (lines ? lines[bold].values : values).filter((v) => v !== null);
+    return known.length
+      ? `${title}, ${unit}, along ${this.axis}: ${text(Math.min(...known))} to ` +
+          text(Math.max(...known))
+      : `${title}, ${unit}`;
+  }
   /** Everything anew: at the start, and when the theme or the width changes. */
   paint() {
     const colours = { soft: style('--soft'), accent: style('--accent') };
@@ -103,6 +111,8 @@ export class Plots {
     for (const plot of this.plots) {
       const drawing = this.drawing(plot, width, kHeight, colours);
       Object.assign(plot, { x: drawing.scale('x'), y: drawing.scale('y') });
+      plot.chart.setAttribute('role', 'img');
+      plot.chart.setAttribute('aria-label', this.name(plot));
       plot.chart.replaceChildren(drawing);
     }
     this.draw(this.cursor === undefined ? 0 : this.cursor, this.pose);

@@ -3,6 +3,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
+import { BodyList, entryOf, kindOf } from './bodylist.js';
 import { bestDirection, fit, subject } from './camera.js';
 import { displacements, matrix, toolPose, vector } from './kinematics.js';
 import { $, isDark } from './page.js';
@@ -13,6 +14,7 @@ import { surface } from './surface.js';
 
 const kFine = 24, // corners of a circle
   kCoarse = 10;
+const kTrail = 7; // poses
 const kDash = 0.012; // m, of a move between strokes, with the gap behind it
 const toolPoint = (chain, q) => new THREE.Vector3().setFromMatrixPosition(toolPose(chain, q));
 function rodBetween(from, to) {
@@ -23,9 +25,6 @@ function rodBetween(from, to) {
     .applyQuaternion(new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), way))
     .translate(...from.clone().lerp(to, 0.5));
 }
-
-/** What stands still of the robot is told apart from what moves. */
-const kindOf = (body) => (body.kind !== 'scene' && body.group === 0 ? 'fixed' : body.kind);
 
 class View {
   /** gap: an element that is kept beside the line between the nearest bodies. */
@@ -43,17 +42,22 @@ class View {
         coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
       return { body, fine, coarse, rest: matrix(body.pose) };
     });
-    this.materials = Object.fromEntries(
-      Object.entries(kBodies).map(([kind, colour]) => [
-        kind,
-        surface(colour, { twoSided: kind.includes('scene') }),
-      ]),
-    );
+    const materials = (settings) =>
+      Object.fromEntries(
+        Object.entries(kBodies).map(([kind, colour]) => [
+          kind,
+          surface(colour, { twoSided: kind.includes('scene'), ...settings }),
+        ]),
+      );
+    this.materials = materials({});
+    this.faded = materials({ opacity: 0.1, rim: 0.25 });
+    this.looks = new Map(); // of bodies that are not just shown: 'faded' or 'hidden', by legend
     this.arm = this.parts.map((part) => {
-      const mesh = new THREE.Mesh(part.fine, this.materials[kindOf(part.body)]);
+      const mesh = new THREE.Mesh(part.fine);
       mesh.matrixAutoUpdate = false;
       mesh.matrix.copy(part.rest);
       mesh.userData = part;
+      this.dress(mesh, kindOf(part.body));
       this.scene.add(mesh);
       return mesh;
     });
@@ -77,7 +81,8 @@ class View {
       this.parts
         .filter(({ body }) => body.kind === 'scene')
         .forEach(({ rest }, k) => rest.copy(matrix(data.poses[k])));
-    this.shown?.traverse(({ geometry }) => geometry?.dispose());
+    // Ghosts share the shapes of the arm.
+    this.shown?.traverse(({ geometry, userData }) => userData.g ?? geometry?.dispose());
     this.shown?.removeFromParent();
     for (const { label } of this.names ?? []) label.remove();
     this.shown = new THREE.Group();
@@ -145,34 +150,52 @@ class View {
     grid.rotation.x = Math.PI / 2;
     this.scene.add(grid);
   }
-  /** The poses at start and end, one body each, that do not hide what moves. */
+  /** The arm at start and end, as outlines that do not hide what moves. */
   addGhosts() {
     this.ghosts = Object.assign(new THREE.Group(), { visible: this.ghosts?.visible ?? true });
     this.shown.add(this.ghosts);
-    const { rows, chain } = this.data;
+    const { rows } = this.data;
     if (rows.length < 2) return;
     for (const [row, colour] of [
       [rows[0], kBodies.start],
       [rows.at(-1), kBodies.end],
-    ]) {
-      const g = displacements(chain, row.q);
-      const bodies = this.parts
-        .filter(({ body }) => body.group > 0)
-        .map(({ body, coarse, rest }) =>
-          coarse.clone().applyMatrix4(g[body.group].clone().multiply(rest)),
-        );
-      this.ghosts.add(
-        new THREE.Mesh(
-          mergeGeometries(bodies),
-          surface(colour, {
-            opacity: 0.2,
-            polygonOffset: true,
-            polygonOffsetFactor: 1,
-            polygonOffsetUnits: 1,
-          }),
-        ),
+    ])
+      this.ghosts.add(...this.ghost(row.q, surface(colour, { opacity: 0.06, rim: 0.5 })));
+    if (this.trail) this.showTrail(true);
+  }
+  /** The bodies that move, at joints q. */
+  ghost(q, material) {
+    const g = displacements(this.data.chain, q);
+    return this.parts
+      .filter(({ body }) => body.group > 0)
+      .map(({ body, coarse, rest }) => {
+        const mesh = new THREE.Mesh(coarse, material);
+        mesh.matrixAutoUpdate = false;
+        mesh.matrix.multiplyMatrices(g[body.group], rest);
+        mesh.userData = { group: body.group, g: g[body.group] };
+        return mesh;
+      });
+  }
+  /** Ghosts that stand where the arm stands would only tint it. */
+  hideGhostsOfArm(g) {
+    const same = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < (k < 12 ? 0.03 : 0.008));
+    for (const mesh of [...this.ghosts.children, ...(this.trail?.children ?? [])])
+      mesh.visible = !same(mesh.userData.g.elements, g[mesh.userData.group].elements);
+  }
+  /** The arm at kTrail places between start and end. */
+  showTrail(on) {
+    this.trail?.removeFromParent();
+    this.trail = null;
+    this.dirty = true;
+    const { rows } = this.data;
+    if (!on || rows.length < 3) return;
+    this.trail = new THREE.Group();
+    const material = surface(kBodies.robot, { opacity: 0.02, rim: 0.3 });
+    for (let k = 1; k <= kTrail; ++k)
+      this.trail.add(
+        ...this.ghost(rows[Math.round((k * (rows.length - 1)) / (kTrail + 1))].q, material),
       );
-    }
+    this.shown.add(this.trail);
   }
   /** Where the tool goes: on the path, or on the paths of several strokes with moves between. */
   addPath() {
@@ -328,14 +351,16 @@ class View {
    */
   pose(q, pair, line = null, hit = false) {
     const g = displacements(this.data.chain, q);
+    this.told = { pair, text: line?.text };
     for (const mesh of this.arm) {
       const { body, rest } = mesh.userData;
       mesh.matrix.multiplyMatrices(g[body.group], rest);
       const kind = pair?.includes(body.name)
         ? (hit ? 'hit' : 'near') + (body.kind === 'scene' ? ' scene' : '')
         : kindOf(body);
-      mesh.material = this.materials[kind];
+      this.dress(mesh, kind);
     }
+    this.hideGhostsOfArm(g);
     this.tool.matrix.copy(toolPose(this.data.chain, q, g));
     this.nearest.visible = line !== null;
     this.gap.hidden = line === null;
@@ -351,6 +376,32 @@ class View {
       this.gap.textContent = line.text;
     }
     this.dirty = true;
+  }
+  /** A body in the colours of its kind, as its entry in the legend says. */
+  dress(mesh, kind) {
+    const look = this.looks.get(entryOf(mesh.userData.body));
+    mesh.visible = look !== 'hidden';
+    mesh.material = (look === 'faded' ? this.faded : this.materials)[kind];
+    mesh.userData.kind = kind;
+  }
+  /** entry: as of entryOf(); look: 'shown', 'faded' or 'hidden'. */
+  setLook(entry, look) {
+    if (look === 'shown') this.looks.delete(entry);
+    else this.looks.set(entry, look);
+    for (const mesh of this.arm) this.dress(mesh, mesh.userData.kind ?? kindOf(mesh.userData.body));
+    this.dirty = true;
+  }
+  /** The body under a place of the picture, in pixels, and the point: { body, point }, or null. */
+  pick(x, y) {
+    const { width, height } = this.size,
+      caster = new THREE.Raycaster();
+    caster.setFromCamera(
+      new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height),
+      this.camera,
+    );
+    this.scene.updateMatrixWorld();
+    const [hit] = caster.intersectObjects(this.arm.filter(({ visible }) => visible));
+    return hit ? { body: hit.object.userData.body, point: hit.point } : null;
   }
   /**
    * values: one in 0..1 for each layer of a path, or NaN where nothing is known; path: its number,
@@ -399,6 +450,34 @@ class View {
     for (const { label, at } of this.names) this.place(label, at, 0, 0);
     return true;
   }
+  /** The picture as it is shown, with the labels: a canvas. */
+  picture() {
+    const { canvas, scene, camera } = this,
+      scale = canvas.width / this.size.width,
+      result = document.createElement('canvas'),
+      pen = result.getContext('2d');
+    this.renderer.render(scene, camera);
+    Object.assign(result, { width: canvas.width, height: canvas.height });
+    pen.drawImage(canvas, 0, 0);
+    pen.scale(scale, scale);
+    pen.textBaseline = 'middle';
+    // They may be hidden on paper, where this picture has them.
+    const named = !canvas.closest('.nameless'),
+      labels = [
+        ...this.names.map(({ label }) => label).filter((one) => named || one.className !== 'name'),
+        ...(this.gap.hidden ? [] : [this.gap]),
+      ];
+    for (const label of labels) {
+      const { color, backgroundColor, font } = getComputedStyle(label),
+        [left, top] = label.style.transform.match(/-?[\d.]+/g)?.map(Number) ?? [-99, -99];
+      Object.assign(pen, { font, fillStyle: backgroundColor });
+      pen.fillRect(left, top, pen.measureText(label.textContent).width + 8, 17);
+      pen.fillStyle = color;
+      pen.fillText(label.textContent, left + 4, top + 9);
+    }
+    this.dirty = true;
+    return result;
+  }
   /** An element beside a point of the scene. */
   place(element, point, right, down) {
     const at = point.clone().project(this.camera),
@@ -428,6 +507,9 @@ export function startView(sceneOf, begin, step) {
       window.swivel.frames = -1;
       return;
     }
+    window.swivel.view = view;
+    view.legend = new BodyList($('bodies'), view);
+    keepForPaper(view);
     begin(view);
     const frame = (now) => {
       const playing = step(now);
@@ -438,4 +520,13 @@ export function startView(sceneOf, begin, step) {
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(() => setTimeout(start));
+}
+
+/** Prints the picture of the moment with its labels: a canvas keeps none. */
+function keepForPaper(view) {
+  addEventListener('beforeprint', () => {
+    $('kept').src = view.picture().toDataURL();
+    $('kept').hidden = false;
+  });
+  addEventListener('afterprint', () => ($('kept').hidden = true));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plan in words and numbers.
 import { $, number, table } from './page.js';
+import { kNear } from './readout.js';
 
 /**
  * The answer in one line; what it names along the path are buttons that go there. jump: called with
@@ -22,10 +23,11 @@ export function verdict(host, { result, chain, map }, jump) {
       .map(({ joint, position, unit }) => `${named(joint)} at ${number(position)} ${unit}`)
       .join(', ');
   const margin = (k, q) => Math.min(q[k] - chain.joints[k].lower, chain.joints[k].upper - q[k]);
-  const say = (text, s, off) => {
+  const say = (text, s, off, near = false) => {
     if (host.childNodes.length) host.append(' · ');
     if (s === undefined || s === null) return host.append(text);
     const button = document.createElement('button');
+    button.classList.toggle('near', near);
     Object.assign(button, { textContent: `${text} at s ${s.toFixed(3)}`, title: 'Go there' });
     button.addEventListener('click', () => jump(s, off));
     host.append(button);
@@ -85,11 +87,15 @@ export function verdict(host, { result, chain, map }, jump) {
         (_, k) => k !== contact.row,
       );
     if (limit)
-      say(`${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`, limit.s, ({ q }) =>
-        margin(
-          chain.joints.findIndex(({ name }) => name === limit.joint),
-          q,
-        ),
+      say(
+        `${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`,
+        limit.s,
+        ({ q }) =>
+          margin(
+            chain.joints.findIndex(({ name }) => name === limit.joint),
+            q,
+          ),
+        limit.margin_deg < kNear,
       );
     if (error)
       say(

@@ -7,28 +7,32 @@ const vertexShader = `
 in vec3 position, normal, color;
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform vec3 cameraPosition, tint;
-uniform float twoSided, lit;
-out vec3 shade;
+uniform float twoSided, lit, opacity, rim;
+out vec4 shade;
 void main() {
   vec4 at = modelMatrix * vec4(position, 1.0);
   vec3 n = mat3(modelMatrix) * normal;
   if (twoSided > 0.5 && dot(n, cameraPosition - at.xyz) < 0.0) n = -n;
   float light = 0.66 + 0.14 * n.z + 0.34 * max(0.0, dot(n, vec3(-0.324, -0.487, 0.811)));
-  shade = (tint + color) * mix(1.0, light, lit);
+  float across = abs(dot(n, normalize(cameraPosition - at.xyz)));
+  shade = vec4((tint + color) * mix(1.0, light, lit), opacity + rim * pow(1.0 - across, 3.0));
   gl_Position = projectionMatrix * viewMatrix * at;
 }`;
 const fragmentShader = `
 precision mediump float;
-in vec3 shade;
-uniform float opacity;
+in vec4 shade;
 out vec4 colour;
-void main() { colour = vec4(shade, opacity); }`;
+void main() { colour = shade; }`;
 
 /**
  * A colour for the whole body, or null for the geometry's own. No texture, no shadow; rigid poses
- * only.
+ * only. rim: how much less a body is seen through where it turns away from the camera, which draws
+ * the outlines of round bodies.
  */
-export function surface(colour, { opacity = 1, twoSided = false, lit = true, ...settings } = {}) {
+export function surface(
+  colour,
+  { opacity = 1, rim = 0, twoSided = false, lit = true, ...settings } = {},
+) {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader,
@@ -38,6 +42,7 @@ export function surface(colour, { opacity = 1, twoSided = false, lit = true, ...
         value: colour === null ? [0, 0, 0] : new Color(colour).convertLinearToSRGB().toArray(),
       },
       opacity: { value: opacity },
+      rim: { value: rim },
       twoSided: { value: twoSided ? 1 : 0 },
       lit: { value: lit ? 1 : 0 },
     },

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The legend of the view in three dimensions: each colour, and bodies to fade or hide.
+import { tell } from './page.js';
+import { kBodies } from './palette.js';
+
+/** What stands still of the robot is told apart from what moves. */
+export const kindOf = (body) => (body.kind !== 'scene' && body.group === 0 ? 'fixed' : body.kind);
+/** The entry of the legend that a body belongs to: an object of the scene has its own. */
+export const entryOf = (body) => (body.kind === 'scene' ? `scene ${body.name}` : kindOf(body));
+
+const kNames = { robot: 'arm', tool: 'tool', fixed: 'base of the robot' },
+  kLooks = ['shown', 'faded', 'hidden'],
+  kMarks = { shown: '●', faded: '◐', hidden: '○' },
+  kClick = 4; // pixels that a click may move
+
+export class BodyList {
+  /** view: a View, whose looks the entries change. */
+  constructor(host, view) {
+    Object.assign(this, { host, view });
+    const entries = new Map();
+    for (const { body } of view.parts) entries.set(entryOf(body), body);
+    const order = ['robot', 'tool', 'fixed'];
+    const rank = (entry) => (order.indexOf(entry) + order.length + 1) % (order.length + 1);
+    this.buttons = [...entries]
+      .sort(([a], [b]) => rank(a) - rank(b))
+      .map(([entry, body]) => this.button(entry, body));
+    host.replaceChildren(...this.buttons, ...this.colours());
+    this.listen();
+  }
+  button(entry, body) {
+    const button = document.createElement('button'),
+      name = kNames[entry] ?? body.name;
+    let look = 0;
+    const paint = () => {
+      const swatch = this.swatch(kBodies[body.kind === 'scene' ? 'scene' : entry]);
+      button.replaceChildren(swatch, name, Object.assign(document.createElement('b'), {
+        textContent: kMarks[kLooks[look]],
+      }));
+      button.title = `${kLooks[look]}: press for ${kLooks[(look + 1) % kLooks.length]}`;
+      button.setAttribute('aria-label', `${name}: ${button.title}`);
+    };
+    button.addEventListener('click', () => {
+      look = (look + 1) % kLooks.length;
+      this.view.setLook(entry, kLooks[look]);
+      paint();
+    });
+    paint();
+    return button;
+  }
+  swatch(colour, className = '') {
+    const swatch = Object.assign(document.createElement('i'), { className });
+    swatch.style.setProperty('--colour', colour);
+    return swatch;
+  }
+  /** What colours mean that no body has for itself. */
+  colours() {
+    const { rows, cut, moves, paths } = this.view.data;
+    return [
+      [rows.some(({ pair }) => pair), kBodies.near, '', 'nearest to each other'],
+      [cut?.pair, kBodies.hit, '', 'too near each other'],
+      [rows.length > 1, kBodies.start, 'outline', paths ? 'at the begin' : 'at the start'],
+      [rows.length > 1, kBodies.end, 'outline', 'at the end'],
+      [moves?.length, '#8453c6', 'dashes', 'transitions'],
+    ]
+      .filter(([is]) => is)
+      .map(([, colour, className, text]) => {
+        const entry = document.createElement('span');
+        entry.append(this.swatch(colour, className), text);
+        return entry;
+      });
+  }
+  /** A click on a body says what it is. */
+  listen() {
+    const { canvas } = this.view;
+    let from = null;
+    canvas.addEventListener('pointerdown', ({ clientX, clientY }) => {
+      from = [clientX, clientY];
+      tell(null);
+    });
+    canvas.addEventListener('pointerup', (event) => {
+      if (!from || Math.hypot(event.clientX - from[0], event.clientY - from[1]) > kClick) return;
+      const { left, top } = canvas.getBoundingClientRect(),
+        hit = this.view.pick(event.clientX - left, event.clientY - top);
+      tell(hit && this.words(hit), event);
+    });
+    canvas.addEventListener('pointerleave', () => tell(null));
+  }
+  words({ body, point }) {
+    const { pair, text } = this.view.told ?? {},
+      kind = kNames[kindOf(body)],
+      lines = [kind && kind !== body.name ? `${body.name} (${kind})` : body.name];
+    if (pair?.includes(body.name)) {
+      const other = pair.find((name) => name !== body.name) ?? body.name;
+      lines.push(text ? `${text} from ${other}` : `nearest to ${other}`);
+    }
+    lines.push(`point ${point.toArray().map((v) => v.toFixed(3)).join(', ')} m`);
+    return lines.join('\n');
+  }
+}

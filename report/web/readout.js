@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of the pose that is shown, with a gauge for each joint's range.
+import { kDegrees } from './poses.js';
+
+export const kNear = 1; // degrees from a limit: a joint is told apart
+
+function line(className, ...parts) {
+  const element = Object.assign(document.createElement('div'), { className });
+  element.append(...parts, '\n');
+  return element;
+}
+const span = (text) => Object.assign(document.createElement('span'), { textContent: text });
+
+/** A joint, its angle and where it is between its limits. */
+function jointLine({ name, lower, upper }, angle, digits) {
+  const bounded = lower !== null && upper !== null,
+    room = bounded ? kDegrees * Math.min(angle - lower, upper - angle) : Infinity;
+  const element = line(
+    room < kNear ? 'joint near' : 'joint',
+    span(name),
+    '  ',
+    span(`${(angle * kDegrees).toFixed(digits)}°`),
+  );
+  if (bounded) {
+    const share = Math.min(1, Math.max(0, (angle - lower) / (upper - lower)));
+    element.style.setProperty('--at', `${(100 * share).toFixed(1)}%`);
+    element.classList.add('bounded');
+    element.title =
+      `${(lower * kDegrees).toFixed(0)}° to ${(upper * kDegrees).toFixed(0)}°, ` +
+      `${room.toFixed(room < 10 ? 1 : 0)}° from the nearer`;
+  }
+  return element;
+}
+
+/** where: words for the place of the pose; digits: of the angles, after the point. */
+export function tellPose(host, chain, where, { q, note }, digits) {
+  host.replaceChildren(
+    ...(where ? [line('where', where)] : []),
+    ...chain.joints.map((joint, k) => jointLine(joint, q[k], digits)),
+    ...(note ? [Object.assign(document.createElement('div'), { textContent: note })] : []),
+  );
+}
