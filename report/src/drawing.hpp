@@ -79,7 +79,8 @@ class Drawing {
     for (const std::string& colour : hatches_)
       patterns += "<pattern id=\"hatch-" + colour.substr(1) +
                   "\" width=\"5\" height=\"5\" patternUnits=\"userSpaceOnUse\" "
-                  "patternTransform=\"rotate(45)\"><rect width=\"1.2\" height=\"5\" fill=\"" +
+                  "patternTransform=\"rotate(45)\"><path d=\"M0.6,0V5\" stroke-width=\"1.2\" "
+                  "stroke=\"" +
                   colour + "\"/></pattern>\n";
     return head + patterns + body_ + "</svg>\n";
   }

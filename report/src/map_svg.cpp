@@ -35,6 +35,25 @@ std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
   return marks;
 }
 
+/// Returns the marks along the path: the layer, not always whole, at which s (m, of each layer) has
+/// a round value, and that value.
+std::vector<std::pair<double, std::string>> marks_along(const std::vector<double>& s) {
+  constexpr double kMost = 6, kSlack = 1e-9;
+  const double span = s.back() - s.front(), decade = std::pow(10, std::floor(std::log10(span)));
+  if (!(span > 0)) return {{0, number(s.front())}};
+  double each = decade;
+  for (const double candidate : {0.5, 0.2, 0.1})
+    if (span / (candidate * decade) <= kMost) each = candidate * decade;
+  std::vector<std::pair<double, std::string>> marks;
+  for (double k = std::ceil(s.front() / each - kSlack); k * each <= s.back() + kSlack; ++k) {
+    const auto next = std::lower_bound(s.begin(), s.end(), k * each - kSlack);
+    auto layer = static_cast<double>(next - s.begin());
+    if (next != s.begin() && *next > *(next - 1)) layer -= (*next - k * each) / (*next - next[-1]);
+    marks.emplace_back(layer, formatted("%.4g", k * each + 0.0));
+  }
+  return marks;
+}
+
 /// Draws a lattice map from top to bottom: a panel per inhabited IK solution, then the legend.
 class MapDrawing {
  public:
@@ -191,11 +210,8 @@ class MapDrawing {
     for (const auto& [angle, name] : marks(map_))
       drawing_.text(kLeft - 6, y_of(angle) + 4, "end", name);
     drawing_.text(kLeft - 6, top_ - 7, "end", map_.letter(solution) + std::string(", deg"));
-    for (int k = 0; k <= 5; ++k) {
-      const double layer = (map_.layers - 1) * k / 5.0;
-      drawing_.text(x_of(layer), top_ + kPanelHeight + 15, "middle",
-                    number(map_.s[static_cast<std::size_t>(layer + 0.5)]));
-    }
+    for (const auto& [layer, name] : marks_along(map_.s))
+      drawing_.text(x_of(layer), top_ + kPanelHeight + 15, "middle", name);
     drawing_.text(kLeft + kPanelWidth, top_ + kPanelHeight + 29, "end", "s, m");
   }
 

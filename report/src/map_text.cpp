@@ -56,7 +56,6 @@ class MapText {
 
 std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   constexpr int kMargin = 8, kRows = 24;
-  constexpr double kDegrees = 180 / kPi;
   const MapCells cells(map, std::max(10, columns - kMargin), kRows);
   std::string text;
   MapLegend seen(map);
@@ -65,7 +64,7 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
     text += map.solution_name(solution) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
       const double value = map.value(row * cells.angles_each);
-      text += row % 4 == 0 ? formatted("%6.1f  ", value * kDegrees) : std::string(kMargin, ' ');
+      text += row % 4 == 0 ? formatted("%6.1f  ", value * 180 / kPi) : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
         const LatticeMap::Node node = cells.node(solution, column, row);
         seen.see(node);

@@ -2,9 +2,7 @@
 // A job in words and numbers.
 import { strokeName } from './joblist.js';
 import { $, number, table } from './page.js';
-import { words } from './summary.js';
-
-const kOpen = 2; // warnings; more are folded
+import { warn, words } from './summary.js';
 
 /** The answer in one line, and warnings. go: shows a stroke, its number, at s, m. */
 export function verdict({ answer, result, strokes }, go) {
@@ -26,20 +24,7 @@ export function verdict({ answer, result, strokes }, go) {
     button.addEventListener('click', () => go(near.k, s));
     host.append(' · ', button);
   }
-  const warnings = [...(result.warnings ?? []), ...(result.motion?.warnings ?? [])];
-  // What is said of the job need not be said of each stroke.
-  const again = (text) => warnings.some((other) => other !== text && text.endsWith(`: ${other}`));
-  const lines = warnings
-    .filter((warning) => !again(warning))
-    .map((warning) =>
-      Object.assign(document.createElement('p'), { className: 'warning', textContent: warning }),
-    );
-  if (lines.length <= kOpen) return host.after(...lines);
-  const fold = Object.assign(document.createElement('details'), { className: 'warnings' }),
-    title = document.createElement('summary');
-  title.textContent = `${lines.length} warnings`;
-  fold.append(title, ...lines);
-  host.after(fold);
+  warn(host, result);
 }
 
 const kColumns = [

@@ -7,7 +7,7 @@ import { kNear } from './readout.js';
  * The answer in one line; what it names along the path are buttons that go there. jump: called with
  * s, m, and with what is least at the row that is meant, of several at that s.
  */
-export function verdict(host, { result, chain, map }, jump) {
+export function verdict(host, { answer, result, chain, map }, jump) {
   const helps = result.advice?.filter(({ outcome }) => outcome === 'solved') ?? [];
   const {
       clearance,
@@ -34,19 +34,11 @@ export function verdict(host, { result, chain, map }, jump) {
   };
   host.classList.add(result.status === 'solved' ? 'solved' : 'failed');
   if (result.status !== 'solved') {
-    const claim =
-      {
-        every_resolution: 'No path at any resolution',
-        exact_tool: 'No path for a tool that follows exactly',
-      }[d?.holds] ?? 'No path at this resolution';
-    const none = claim + (held.length ? ` with ${heldAt((joint) => `${joint} held`)}` : '');
-    say(
-      !d || d.reached_layer === null
-        ? `${none}: the first layer has no valid node${d?.reason ? ` (${d.reason})` : ''}.`
-        : `${none}: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ` +
-            `${number(d.reached_s)} m), ` +
-            `${d.cause ? `where ${d.reason} stops it` : `why is ${d.reason}`}.`,
-    );
+    // As the terminal has it: its first line is the verdict, the next may say what else stands in
+    // the way.
+    const [first, second] = answer.split('\n');
+    say(`${first[0].toUpperCase()}${first.slice(1)}.`);
+    if (/^ {2}(without|no single)/.test(second ?? '')) say(second.trim());
     if (d?.unreachable)
       say(
         'no joints within their limits reach ' +
@@ -110,12 +102,26 @@ export function verdict(host, { result, chain, map }, jump) {
       say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s, (_, k) => -k);
     if (held.length) say(`held: ${heldAt((joint) => joint)}`);
   }
-  for (const warning of result.warnings ?? []) {
-    const line = document.createElement('p');
-    line.className = 'warning';
-    line.textContent = warning;
-    host.after(line);
-  }
+  warn(host, result);
+}
+
+const kOpen = 2; // warnings; more are folded
+/** The warnings of the answer and of its motion, below a line of the page. */
+export function warn(host, result) {
+  const warnings = [...(result.warnings ?? []), ...(result.motion?.warnings ?? [])];
+  // What is said of the job need not be said of each stroke.
+  const again = (text) => warnings.some((other) => other !== text && text.endsWith(`: ${other}`));
+  const lines = warnings
+    .filter((warning) => !again(warning))
+    .map((warning) =>
+      Object.assign(document.createElement('p'), { className: 'warning', textContent: warning }),
+    );
+  if (lines.length <= kOpen) return host.after(...lines);
+  const fold = Object.assign(document.createElement('details'), { className: 'warnings' }),
+    title = document.createElement('summary');
+  title.textContent = `${lines.length} warnings`;
+  fold.append(title, ...lines);
+  host.after(fold);
 }
 
 export const words = (object) =>
@@ -123,7 +129,8 @@ export const words = (object) =>
     .filter(([, v]) => typeof v !== 'object')
     .map(([key, v]) => [key.replaceAll('_', ' '), typeof v === 'number' ? number(v) : String(v)]);
 
-export function summary({ result, settings }) {
+export function summary({ answer, result, settings }) {
+  if (result.status !== 'solved') $('answer').textContent = answer.trimEnd();
   const add = (caption, entries) => table($('tables'), caption, entries);
   const removed = result.diagnosis?.removed,
     empty = result.diagnosis?.empty_layers ?? [];

@@ -101,6 +101,7 @@ export async function withBrowser({ packages, shots }, test) {
   };
   const shoot = async (page, name, options) => {
     if (!shots) return;
+    await page.evaluate(() => document.activeElement?.blur()); // no ring about what has the focus
     await page.waitForTimeout(800); // at rest the arm is drawn with more pixels
     await page.screenshot({ path: join(shots, name), ...options });
   };
@@ -121,6 +122,12 @@ export async function until(page, holds, argument) {
     assert.ok(Date.now() < end, `not within 30 s: ${holds}`);
     await new Promise((resolve) => setTimeout(resolve, 10));
   }
+}
+
+/** Presses a key while what moves the arm has the focus. */
+export async function press(page, key) {
+  await page.locator('#scene:visible, #slider').first().focus();
+  await page.keyboard.press(key);
 }
 
 /** What a click on the page's button saves. */

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { assertFits, until, withBrowser } from './browser.mjs';
+import { assertFits, press, until, withBrowser } from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
 const wide = { width: 1280, height: 800 },
@@ -127,8 +127,8 @@ async function checkMaps(page, sections, { data }) {
   await begins(3);
   await page.locator('#strokes tbody tr').nth(2).click();
   await begins(2);
-  await page.keyboard.press('n');
-  await page.keyboard.press('n');
+  await press(page, 'n');
+  await press(page, 'n');
   await begins(3);
 }
 /** In the middle of each transition joints are halfway, on the slider without times. */
@@ -250,7 +250,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       assert.match(await small.page.textContent('#readout'), on ? /process on/ : /process off/);
   }
   assert.ok(await small.page.isVisible('#motion-section'));
-  await small.page.keyboard.press('Home');
+  await press(small.page, 'Home');
   await small.page.locator('#play').click();
   await until(small.page, () => Number(document.getElementById('slider').value) > 0.1);
   await small.page.locator('#play').click();

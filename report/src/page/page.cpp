@@ -46,6 +46,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   const Json data = {
       {"problem", name},
       {"which", words.which},
+      {"answer", words.answer},
       {"result", result},
       {"settings", settings_json(problem, lattice)},
       {"chain", chain_json(lattice.chain())},

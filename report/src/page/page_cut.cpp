@@ -167,6 +167,18 @@ struct Obstruction {
   Json pair = nullptr, line = nullptr;
 };
 
+/// Returns the words that say how far a joint would be beyond its limit; "" if that is not the
+/// cause, or not known.
+std::string limit_words(const PathEnd& end) {
+  const Json& cause = end.diagnosis["cause"];
+  if (!cause.is_object() || cause["cause"] != "limit" || !cause["by"].is_number() ||
+      !cause["limit"].is_number() || cause["unit"] != "rad")
+    return "";
+  constexpr double kDegrees = 180 / kPi;
+  return formatted(", %.3g° beyond %.2f°", cause["by"].get<double>() * kDegrees,
+                   cause["limit"].get<double>() * kDegrees);
+}
+
 /// Returns the words that say which joint would step too far to the node with joints `q`; "" if
 /// that is not the cause.
 std::string joint_step_words(const PathEnd& end, const Config& q) {
@@ -201,8 +213,9 @@ Obstruction obstruction(const PathEnd& end, const LatticeMap::Node& node, const 
                 pair[1].get<std::string>(),
             pair};
   }
-  if (map.path.empty()) return {"no valid pose here: " + end.reason()};
-  return {"the next pose cannot be moved to: " + end.reason() + joint_step_words(end, q)};
+  if (map.path.empty()) return {"no valid pose here: " + end.reason() + limit_words(end)};
+  return {"the next pose cannot be moved to: " + end.reason() + limit_words(end) +
+          joint_step_words(end, q)};
 }
 
 }  // namespace
