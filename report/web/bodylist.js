@@ -16,7 +16,7 @@ const kNames = { robot: 'arm', tool: 'tool', fixed: 'base of the robot' },
 export class BodyList {
   /** view: a View, whose looks the entries change. */
   constructor(host, view) {
-    Object.assign(this, { host, view });
+    Object.assign(this, { host, view, setters: new Map() });
     const entries = new Map();
     for (const { body } of view.parts) entries.set(entryOf(body), body);
     const order = ['robot', 'tool', 'fixed'];
@@ -39,13 +39,19 @@ export class BodyList {
       button.title = `${kLooks[look]}: press for ${kLooks[(look + 1) % kLooks.length]}`;
       button.setAttribute('aria-label', `${name}: ${button.title}`);
     };
-    button.addEventListener('click', () => {
-      look = (look + 1) % kLooks.length;
+    const set = (next) => {
+      look = next;
       this.view.setLook(entry, kLooks[look]);
       paint();
-    });
+    };
+    button.addEventListener('click', () => set((look + 1) % kLooks.length));
+    this.setters.set(entry, set);
     paint();
     return button;
+  }
+  /** look: 'shown', 'faded' or 'hidden'; entry: as of entryOf(), of bodies that may not be there. */
+  set(entry, look) {
+    this.setters.get(entry)?.(kLooks.indexOf(look));
   }
   swatch(colour, className = '') {
     const swatch = Object.assign(document.createElement('i'), { className });

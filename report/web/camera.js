@@ -4,6 +4,10 @@ import { Box3, Matrix4, Vector3 } from 'three';
 import { displacements, vector } from './kinematics.js';
 import { cornersOf, Occluder, Sight } from './sight.js';
 
+// Turns of the camera about the vertical, in steps of 15 degrees from nearly ahead of -y: all, or
+// those from which x is to the right and y away, as in a map that lies on the floor.
+const kAllRound = Array.from({ length: 24 }, (_, k) => k),
+  kSouth = [21, 22, 23, 0, 1, 2, 3, 4];
 const kRoom = 1.06; // of the picture about what it must show
 
 /**
@@ -60,14 +64,14 @@ export function subject(data, parts) {
       k,
     ]),
   ];
-  return { points, marks, bodies, path };
+  return { points, marks, bodies, path, turns: data.floor ? kSouth : kAllRound };
 }
 
 /**
  * The direction to the camera from which most of the path, of the arm and of the place that is
  * nearest to something is seen past all bodies, the arm's own among them, where the page opens.
  */
-export function bestDirection({ points, marks, bodies, path }) {
+export function bestDirection({ points, marks, bodies, path, turns }) {
   const box = new Box3().setFromPoints(points),
     target = box.getCenter(new Vector3()),
     radius = box.getSize(new Vector3()).length(),
@@ -75,7 +79,7 @@ export function bestDirection({ points, marks, bodies, path }) {
     along = path.length > 1 ? path.at(-1).clone().sub(path[0]).normalize() : new Vector3();
   let best = null;
   for (const up of [0.12, 0.3, 0.62, 1.0])
-    for (let k = 0; k < 24; ++k) {
+    for (const k of turns) {
       const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 12;
       const direction = new Vector3(
           Math.cos(turn) * Math.cos(up),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What ended the paths of placements or episodes, and its colour: objects and bodies in oranges,
 // limits of joints in blues, the rest in greys.
-import { kLimits, kObjects, kOthers } from './palette.js';
+import { hatchedBy } from './hatching.js';
+import { kLimits, kObjects, kOthers, lineBetween } from './palette.js';
 
 const kPalettes = [kObjects, kLimits, kOthers];
 
@@ -28,13 +29,15 @@ export function enders(rows) {
   return new Map(ordered.map((ender) => [ender.by, ender]));
 }
 
-/** items: [colour, text]. */
+/** items: [colour, text, whether it is hatched: no path]. */
 export function legend(host, items) {
   host.replaceChildren(
-    ...items.map(([colour, text]) => {
+    ...items.map(([colour, text, hatched]) => {
       const item = document.createElement('span'),
         swatch = document.createElement('i');
-      swatch.style.background = colour;
+      swatch.style.background = hatched
+        ? hatchedBy(colour, lineBetween(colour, colour))
+        : colour;
       item.append(swatch, text);
       return item;
     }),

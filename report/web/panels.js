@@ -5,34 +5,14 @@ import * as Plot from '@observablehq/plot';
 import { ticks } from 'd3';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
+import { element, hatching, hatchedBy } from './hatching.js';
 import { LIMIT, wrapped } from './map.js';
 import { isDark, style } from './page.js';
 import { kDark, kLight, lineBetween } from './palette.js';
 
 const kDegrees = 180 / Math.PI,
-  kSvg = 'http://www.w3.org/2000/svg',
   kMostDetails = 4; // named in the legend of one colour
 
-/** An element of SVG. */
-function element(name, attributes) {
-  const made = document.createElementNS(kSvg, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  return made;
-}
-let patterns = 0;
-/** A pattern of slanted lines, and what fills an area with it. */
-function hatching(colour) {
-  const id = `hatch-${++patterns}`,
-    pattern = element('pattern', {
-      id,
-      width: 5,
-      height: 5,
-      patternUnits: 'userSpaceOnUse',
-      patternTransform: 'rotate(45)',
-    });
-  pattern.append(element('rect', { width: 1.2, height: 5, fill: colour }));
-  return { pattern, fill: `url(#${id})` };
-}
 /** An entry of the legend in words. */
 const words = ({ meaning, details }) =>
   details.length < 2 && meaning !== 'joint limit'
@@ -372,7 +352,7 @@ export class Panels {
         const entry = document.createElement('span'),
           swatch = document.createElement('i');
         swatch.style.background = one.hatched
-          ? `repeating-linear-gradient(-45deg, ${one.colour} 0 3px, ${colours.hatch} 3px 4px)`
+          ? hatchedBy(one.colour, colours.hatch)
           : one.colour;
         entry.append(swatch, words(one));
         return entry;

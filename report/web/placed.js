@@ -38,8 +38,12 @@ export class Placed {
   begin(view) {
     this.view = view;
     view.colourPath([NaN]);
-    if (this.squares) this.lay(this.squares);
+    if (this.squares) {
+      this.lay(this.squares);
+      view.look('best');
+    }
     this.go(this.cursor);
+    this.fade();
   }
   /** Shows the plan of one of its placements, from the beginning. */
   open(cell, offset) {
@@ -51,7 +55,7 @@ export class Placed {
       q: [...joints.subarray(k * this.chain.joints.length, (k + 1) * this.chain.joints.length)],
     }));
     const tool_path = rows.map(({ q }) => toolPose(this.chain, q).elements.slice(12, 15));
-    this.shown = { ...data.scene, rows, tool_path, poses: plan.poses };
+    this.shown = { ...data.scene, rows, tool_path, poses: plan.poses, floor: true };
     Object.assign(this, { plan, offset, cursor: 0 });
     window.swivel.cell = cell;
     $('slider').max = rows.length - 1;
@@ -61,12 +65,26 @@ export class Placed {
     this.pause();
     this.go(0);
   }
+  /**
+   * A placement is picked: its place is marked on the floor, and where the plan that is shown is
+   * another's, the arm is faded.
+   */
+  pick(cell, offset) {
+    Object.assign(this, { marked: offset });
+    this.isOther = cell !== this.plan.cell;
+    if (this.squares) this.lay(this.squares);
+    this.fade();
+  }
+  fade() {
+    for (const kind of ['robot', 'tool'])
+      this.view?.legend.set(kind, this.isOther ? 'faded' : 'shown');
+  }
   /** The floor: squares as of View.lay, by offsets. */
   lay(squares) {
     this.squares = squares;
     if (!this.view) return;
     const [x, y] = data.scene.origin,
-      { offset } = this;
+      offset = this.marked ?? this.offset;
     this.view.lay(
       squares.map((square) => ({ ...square, x: x + square.x, y: y + square.y })),
       this.plan.still_frame,

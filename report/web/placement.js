@@ -4,16 +4,19 @@
 import * as Plot from '@observablehq/plot';
 import { enders, legend } from './ended.js';
 import { savers } from './figure.js';
-import { $, data, isDark, number, style, table, themes, whenResized } from './page.js';
-import { FAILED, kDark, kLight, rampColour, SOLVED } from './palette.js';
+import { element, hatching } from './hatching.js';
+import { $, data, number, style, table, themes, whenResized } from './page.js';
+import { FAILED, lineBetween, rampColour, SOLVED } from './palette.js';
 import { Placed } from './placed.js';
 
-const kBest = 20;
+const kBest = 20,
+  kAround = 270, // pixels above and below the map
+  kDegrees = 180 / Math.PI;
 // Of each quality: the column, whether more is better, its scale to the unit shown, words.
 const kQualities = {
   cost: ['cost', -1, 1, '', 'cost'],
   clearance: ['clearance_margin', 1, 1e3, ' mm', 'clearance beyond what must be kept'],
-  margin: ['joint_margin', 1, 180 / Math.PI, '°', 'distance from a joint limit'],
+  margin: ['joint_margin', 1, kDegrees, '°', 'distance from a joint limit'],
   speed: ['tool_speed', 1, 1, ' m/s', 'top speed of the tool'],
 };
 const { axes, columns } = data;
@@ -92,33 +95,34 @@ function shade() {
 }
 function colours() {
   const by = $('colour').value,
-    { unseen } = isDark() ? kDark : kLight;
+    ends = [...ended.values()].map(({ colour, by: who, count }) => [
+      colour,
+      `no path: ${who} (${count})`,
+      true,
+    ]);
   if (by === 'verdict')
     return {
       of: (row) => (row.solved ? SOLVED : FAILED),
       legend: [
         [SOLVED, `a path (${solved.length})`],
-        [FAILED, `no path at this resolution (${rows.length - solved.length})`],
+        [FAILED, `no path at this resolution (${rows.length - solved.length})`, true],
       ],
     };
   if (by === 'end')
     return {
       of: (row) => (row.solved ? SOLVED : colourOfEnd[row.end]),
-      legend: [
-        [SOLVED, `a path (${solved.length})`],
-        ...[...ended.values()].map(({ colour, by, count }) => [colour, `${by} (${count})`]),
-      ],
+      legend: [[SOLVED, `a path (${solved.length})`], ...ends],
     };
   const { low, high, of } = shade(),
     [, sign, scale, unit, words] = kQualities[by],
     text = (v) => `${number(scale * v, 4)}${unit}`;
   return {
-    of: (row) => (row.solved && of(row) !== null ? rampColour(of(row)) : unseen),
+    of: (row) => (row.solved ? rampColour(of(row) ?? 0) : colourOfEnd[row.end]),
     legend: [
       [rampColour(0), `${words} ${text(sign > 0 ? low : high)}`],
       [rampColour(0.5), '…'],
       [rampColour(1), text(sign > 0 ? high : low)],
-      [unseen, `no path (${rows.length - solved.length})`],
+      ...ends,
     ],
   };
 }
@@ -134,10 +138,15 @@ function shown(x, y) {
   }
   return [...places.values()];
 }
+const turns = (name) => !/^[xyz]$/.test(name);
+/** Coordinates are shown in m and degrees. */
+const shownAt = (row, name) => (turns(name) ? kDegrees : 1) * row.offset[name];
 const axisOf = (name) => axes.find((a) => a.name === name);
+/** The values of an axis as they are shown. */
+const valuesOf = (name) => axisOf(name).values.map((v) => (turns(name) ? kDegrees : 1) * v);
 /** Half a step, so that cells touch. */
 function half(name) {
-  const { values } = axisOf(name);
+  const values = valuesOf(name);
   return values.length > 1 ? (values.at(-1) - values[0]) / (values.length - 1) / 2 : 0.5;
 }
 /** The map of x and y as the floor of the view. */
@@ -154,6 +163,42 @@ function layFloor() {
     })),
   );
 }
+/**
+ * Hatching over the cells without a path, and lines between those that different things ended, where
+ * their contrast is low. x, y: names of the coordinates; of: the colour of a row.
+ */
+function unsolvedCells(x, y, flat, of, scales) {
+  const group = element('g', { 'pointer-events': 'none' }),
+    at = (row, name) => (name === y && flat ? 0 : shownAt(row, name)),
+    places = new Map(drawn.map((row) => [`${row[x]},${flat ? 0 : row[y]}`, row])),
+    paths = new Map();
+  const add = (kind, colour, d) => {
+    const key = `${kind} ${colour}`;
+    paths.set(key, (paths.get(key) ?? '') + d);
+  };
+  for (const row of drawn.filter(({ solved: has }) => !has)) {
+    const [hx, hy] = [half(x), flat ? 0.5 : half(y)],
+      [left, right] = [-hx, hx].map((h) => scales.x(at(row, x) + h).toFixed(1)),
+      [low, high] = [-hy, hy].map((h) => scales.y(at(row, y) + h).toFixed(1));
+    add('hatch', lineBetween(of(row), of(row)), `M${left},${low}H${right}V${high}H${left}Z`);
+    const line = (column, level) => {
+      const other = places.get(`${column},${level}`);
+      return other && !other.solved && of(other) !== of(row) && lineBetween(of(row), of(other));
+    };
+    const level = flat ? 0 : row[y],
+      beside = line(row[x] + 1, level),
+      above = line(row[x], level + 1);
+    if (beside) add('line', beside, `M${right},${low}V${high}`);
+    if (above) add('line', above, `M${left},${high}H${right}`);
+  }
+  for (const [key, d] of paths) {
+    const [kind, colour] = key.split(' '),
+      { pattern, fill } = hatching(colour);
+    if (kind === 'hatch') group.append(pattern, element('path', { d, fill }));
+    else group.append(element('path', { d, fill: 'none', stroke: colour, 'stroke-width': 1.2 }));
+  }
+  return group;
+}
 let drawn = [];
 function draw(width, ink) {
   const x = $('across').value,
@@ -161,18 +206,18 @@ function draw(width, ink) {
     y = $('up').value,
     { of } = colours();
   drawn = shown(x, y);
-  const unit = (name) => `${name}, ${/^[xyz]$/.test(name) ? 'm' : 'rad'}`;
+  const unit = (name) => `${name}, ${turns(name) ? 'deg' : 'm'}`;
   const hx = half(x),
     hy = flat ? 0.5 : half(y),
-    at = (row) => (flat ? 0 : row.offset[y]);
+    at = (row) => (flat ? 0 : shownAt(row, y));
   const range = (name) => {
-    const { values } = axisOf(name);
+    const values = valuesOf(name);
     return [values[0] - half(name), values.at(-1) + half(name)];
   };
   const height = flat
     ? 120
     : Math.min(
-        640,
+        Math.max(280, innerHeight - kAround),
         Math.max(
           240,
           Math.round(
@@ -180,20 +225,24 @@ function draw(width, ink) {
           ) || 240,
         ),
       );
+  const chosen = (row) => (row.solved ? of(row) : 'none');
   const marks = data.sample
     ? [
         Plot.dot(drawn, {
-          x: (row) => row.offset[x],
+          x: (row) => shownAt(row, x),
           y: at,
           r: Math.max(2, Math.min(6, 200 / Math.sqrt(rows.length + 1))),
-          fill: of,
+          fill: chosen,
+          stroke: of,
+          strokeWidth: 1.5,
+          pointerEvents: 'all',
           className: 'cells',
         }),
       ]
     : [
         Plot.rect(drawn, {
-          x1: (row) => row.offset[x] - hx,
-          x2: (row) => row.offset[x] + hx,
+          x1: (row) => shownAt(row, x) - hx,
+          x2: (row) => shownAt(row, x) + hx,
           y1: (row) => at(row) - hy,
           y2: (row) => at(row) + hy,
           fill: of,
@@ -201,11 +250,12 @@ function draw(width, ink) {
           className: 'cells',
           shapeRendering: 'crispEdges',
         }),
+        (_, scales) => unsolvedCells(x, y, flat, of, scales),
       ];
   if (picked && drawn.includes(picked))
     marks.push(
       Plot.dot([picked], {
-        x: (row) => row.offset[x],
+        x: (row) => shownAt(row, x),
         y: at,
         r: 6,
         stroke: '#fff',
@@ -213,7 +263,7 @@ function draw(width, ink) {
         pointerEvents: 'none',
       }),
       Plot.dot([picked], {
-        x: (row) => row.offset[x],
+        x: (row) => shownAt(row, x),
         y: at,
         r: 6,
         stroke: '#000',
@@ -247,7 +297,7 @@ function pick(row) {
   table($('facts'), `Placement ${row.cell}`, [
     ...offsets.map(([name, value]) => [
       name,
-      `${number(value, 8)} ${/^[xyz]$/.test(name) ? 'm' : 'rad'}`,
+      turns(name) ? `${number(value * kDegrees, 6)}°` : `${number(value, 8)} m`,
     ]),
     ['verdict', row.solved ? 'solved' : 'no path at this resolution'],
     ...(row.solved
@@ -255,7 +305,7 @@ function pick(row) {
           ['cost', text(row.cost, 1, '', 6)],
           ['clearance', text(row.clearance, 1e3, ' mm')],
           ['more than must be kept by', text(row.clearance_margin, 1e3, ' mm')],
-          ['from a joint limit', text(row.joint_margin, 180 / Math.PI, '°')],
+          ['from a joint limit', text(row.joint_margin, kDegrees, '°')],
           ['top speed of the tool', text(row.tool_speed, 1, ' m/s')],
         ]
       : [
@@ -275,17 +325,24 @@ function pick(row) {
   paintMap();
   for (const line of $('best').querySelectorAll('tbody tr'))
     line.classList.toggle('marked', Number(line.dataset.cell) === row.cell);
-  if (placed?.has(row.cell) && window.swivel.cell !== row.cell) placed.open(row.cell, row.offset);
-  $('readout').textContent = placed
-    ? `the plan of placement ${window.swivel.cell}` +
-      `${window.swivel.cell === row.cell ? '' : `; that of ${row.cell} is opened by its command`}`
-    : '';
+  if (!placed) return;
+  if (placed.has(row.cell) && window.swivel.cell !== row.cell) placed.open(row.cell, row.offset);
+  placed.pick(row.cell, row.offset);
+  $('readout').textContent =
+    (row.solved
+      ? ''
+      : `placement ${row.cell} has no path: ${data.ends[row.end].reason}` +
+        `${row.failed_s === null ? '' : `, at s ${number(row.failed_s)} m`}\nfaded: `) +
+    `the plan of placement ${window.swivel.cell}` +
+    (row.solved && window.swivel.cell !== row.cell
+      ? `; that of ${row.cell} is opened by its command`
+      : '');
 }
 $('copy').addEventListener('click', () => navigator.clipboard?.writeText($('command').textContent));
 
 const head = $('best').querySelector('thead tr');
 for (const name of [
-  ...axes.map((axis) => axis.name),
+  ...axes.map(({ name }) => `${name}, ${turns(name) ? '°' : 'm'}`),
   'cost',
   'clearance, mm',
   'joint limit, °',
@@ -309,10 +366,10 @@ function listBest() {
         line.dataset.cell = row.cell;
         line.title = placed?.has(row.cell) ? 'shows its plan' : '';
         for (const value of [
-          ...axes.map(({ name }) => number(row.offset[name], 6)),
+          ...axes.map(({ name }) => number(shownAt(row, name), 6)),
           number(row.cost, 6),
           number(row.clearance === null ? null : 1e3 * row.clearance),
-          number(row.joint_margin === null ? null : (180 / Math.PI) * row.joint_margin, 3),
+          number(row.joint_margin === null ? null : kDegrees * row.joint_margin, 3),
           number(row.tool_speed, 3),
         ])
           line.insertCell().textContent = value;
@@ -322,6 +379,31 @@ function listBest() {
       }),
     );
 }
+/** The placement beside the picked one, by steps to the right and up. */
+function pickBeside(right, up) {
+  const x = $('across').value,
+    y = $('up').value;
+  if (!picked) return;
+  const way = (row) => {
+    const [dx, dy] = [row[x] - picked[x], row[y] - picked[y]],
+      on = right * dx + up * dy;
+    return on > 0 ? on + 4 * Math.abs(right * dy + up * dx) : Infinity;
+  };
+  const sampled = (row) => {
+    const [dx, dy] = [shownAt(row, x) - shownAt(picked, x), shownAt(row, y) - shownAt(picked, y)],
+      on = right * dx + up * dy;
+    return on > 0 ? on + 4 * Math.abs(right * dy + up * dx) : Infinity;
+  };
+  const far = data.sample ? sampled : way,
+    best = drawn.reduce((a, b) => (far(b) < far(a) ? b : a), picked);
+  if (far(best) < Infinity) pick(best);
+}
+const kArrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+$('map').querySelector('.chart').addEventListener('keydown', (event) => {
+  if (!kArrows[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  pickBeside(...kArrows[event.key]);
+});
 function paintMap() {
   const host = $('map').querySelector('.chart'),
     drawing = draw(host.clientWidth, style('--soft'));

@@ -10,6 +10,7 @@ import { $, isDark } from './page.js';
 import { kBodies, ramp } from './palette.js';
 import { Quality } from './quality.js';
 import { geometry } from './shapes.js';
+import { cornersOf } from './sight.js';
 import { surface } from './surface.js';
 
 const kFine = 24, // corners of a circle
@@ -132,6 +133,8 @@ class View {
     this.floor.matrix.copy(matrix(frame));
     this.floor.matrix.elements[14] = Math.min(0, this.lowest()) + 0.002;
     this.scene.add(this.floor);
+    const box = new THREE.Box3().setFromBufferAttribute(shape.attributes.position);
+    this.floorCorners = squares.length ? cornersOf(box, this.floor.matrix) : [];
     this.dirty = true;
   }
   /** z of the lowest point of the scene. */
@@ -334,6 +337,7 @@ class View {
    */
   look(from) {
     const shown = subject(this.data, this.parts);
+    shown.points.push(...(this.floorCorners ?? []));
     const direction = {
       front: () => new THREE.Vector3(1, 0, 0.001),
       side: () => new THREE.Vector3(0, -1, 0.001),

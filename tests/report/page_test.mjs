@@ -275,7 +275,126 @@ async function checkHover(page, data) {
   await checkAgrees(page, data);
 }
 
+/**
+ * The shares of the path's points that are in the picture with no body before them, and with none
+ * of the arm's.
+ */
+const seenOfPath = (page, points) =>
+  page.evaluate((all) => {
+    const { view } = window.swivel,
+      { camera, size } = view,
+      before = all.map((point) => {
+        const at = camera.position.clone().set(...point),
+          away = at.distanceTo(camera.position),
+          { x, y } = at.project(camera),
+          hit = view.pick(((x + 1) / 2) * size.width, ((1 - y) / 2) * size.height);
+        if (Math.max(Math.abs(x), Math.abs(y)) > 1) return 'arm';
+        if (!hit || hit.point.distanceTo(camera.position) > away - 0.015) return 'nothing';
+        return hit.body.group > 0 ? 'arm' : 'scene';
+      });
+    const share = (wanted) => before.filter(wanted).length / all.length;
+    return [share((one) => one === 'nothing'), share((one) => one !== 'arm')];
+  }, points);
+/** Numbers, options and legend stand beside the picture. */
+async function checkNothingOver(page) {
+  const scene = await page.locator('#scene').boundingBox();
+  for (const id of ['readout', 'view-options', 'bodies']) {
+    const box = await page.locator(`#${id}`).boundingBox();
+    assert.ok(
+      box.x >= scene.x + scene.width - 1 || box.y >= scene.y + scene.height - 1,
+      `#${id} covers the arm: ${JSON.stringify([box, scene])}`,
+    );
+  }
+}
+/** On paper all is light, the arm is a picture, and afterwards all is as before. */
+async function checkPrint(page) {
+  const before = await dark(page);
+  const printed = await page.evaluate(() => {
+    dispatchEvent(new Event('beforeprint'));
+    const kept = document.getElementById('kept');
+    return kept.decode().then(() => {
+      const canvas = document.createElement('canvas'),
+        pen = canvas.getContext('2d'),
+        chart = document.querySelector('#map .chart svg');
+      [canvas.width, canvas.height] = [200, 150];
+      pen.drawImage(kept, 0, 0, 200, 150);
+      const { data } = pen.getImageData(0, 0, 200, 150);
+      return {
+        colours: new Set(new Uint32Array(data.buffer)).size,
+        nights: new Uint32Array(data.buffer).filter((pixel) => pixel === 0xff27201a).length,
+        theme: document.documentElement.dataset.theme,
+        width: chart.getBoundingClientRect().width,
+      };
+    });
+  });
+  assert.ok(printed.colours > 200, `${printed.colours} colours in the picture`);
+  assert.equal(printed.nights, 0, 'pixels of the ground of the dark theme');
+  assert.equal(printed.theme, 'light');
+  assert.ok(printed.width <= 700);
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  assert.equal(await dark(page), before);
+  assert.ok(await page.isVisible('#scene'));
+  assert.equal((await page.pdf({ format: 'A4' })).subarray(0, 4).toString(), '%PDF');
+}
+/** Where nothing of the arm has the focus, keys scroll. */
+async function checkKeysScroll(page) {
+  const at = await page.inputValue('#slider');
+  await page.evaluate(() => (document.activeElement?.blur(), scrollTo(0, 0)));
+  await page.keyboard.press('End');
+  await until(page, () => scrollY > 100);
+  assert.equal(await page.inputValue('#slider'), at);
+  await page.waitForTimeout(500); // the page scrolls on for a while
+  await page.locator('#scene:visible, #slider').first().focus();
+  const scrolled = await page.evaluate(() => scrollY);
+  await page.keyboard.press('End');
+  assert.equal(await page.inputValue('#slider'), await page.getAttribute('#slider', 'max'));
+  await page.waitForTimeout(200);
+  assert.equal(await page.evaluate(() => scrollY), scrolled);
+  await page.evaluate(() => scrollTo(0, 0));
+}
+/** Charts have names; entries of the legend fade and hide bodies. */
+async function checkLegend(page) {
+  const names = await page.$$eval('.chart', (all) => all.map((one) => one.ariaLabel));
+  assert.ok(names.length > 10 && names.every((name) => name?.length > 10), names.join('; '));
+  const looks = () =>
+    page.evaluate(() => {
+      const [first] = window.swivel.view.arm.filter(({ userData }) => userData.body.group > 0);
+      return [first.visible, first.material.transparent];
+    });
+  const arm = page.locator('#bodies button').filter({ hasText: /^arm/ });
+  assert.deepEqual(await looks(), [true, false]);
+  await arm.click();
+  assert.deepEqual(await looks(), [true, true]);
+  await arm.click();
+  assert.equal((await looks())[0], false);
+  await arm.click();
+  assert.deepEqual(await looks(), [true, false]);
+}
+
 await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
+  // The first picture shows the work, past the arm itself.
+  for (const name of some([
+    'kr6_weld_pipe',
+    'iiwa14_bench',
+    'ur5e_deburr_edge',
+    'panda_weld_seam',
+  ])) {
+    const { html, data } = planned(folder, name, '--ds', '0.01');
+    for (const viewport of [wide, phone]) {
+      const { page, close } = await open(html, { viewport, colorScheme: 'light' });
+      await drawn(page);
+      const [seen, past] = await seenOfPath(page, data.tool_path);
+      console.log(
+        `${name}: ${(100 * seen).toFixed(0)} % of the path is seen at first, ` +
+          `${(100 * past).toFixed(0)} % past the arm`,
+      );
+      // Of a path around a pipe the pipe hides nearly half.
+      assert.ok(seen >= 0.5 && past >= 0.8);
+      await checkNothingOver(page);
+      await close();
+    }
+  }
+
   for (const name of [...some(['a', 'b']), 'c']) {
     const { html, rows, data, status, bytes } = plan(folder, name);
     assert.equal(status, 0);
@@ -315,6 +434,9 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     await slide(page, Math.floor(rows.length / 2));
     await checkHover(page, data);
     await checkExports(page, name, data.map.panels.length);
+    await checkLegend(page);
+    await checkKeysScroll(page);
+    await checkPrint(page);
     await press(page, 't');
     assert.equal(await dark(page), name !== 'b');
     const opening = await firstPicture(page);

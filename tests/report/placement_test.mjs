@@ -126,10 +126,33 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   }
   const last = await page.evaluate(() => window.swivel.cell);
   await page.locator('.cells rect').nth(rows.indexOf(failed)).dispatchEvent('click');
-  assert.equal(
-    await page.textContent('#readout'),
-    `the plan of placement ${last}; that of ${failed[cell]} is opened by its command`,
-  );
+  // Of one without a path it is said what ends the paths; the arm of another plan is faded.
+  const told = await page.textContent('#readout');
+  assert.ok(told.startsWith(`placement ${failed[cell]} has no path: `), told);
+  assert.ok(told.endsWith(`faded: the plan of placement ${last}`), told);
+  const isFaded = () =>
+    page.evaluate(() => {
+      const { arm } = window.swivel.view;
+      return arm.find(({ userData }) => userData.body.group > 0).material.transparent;
+    });
+  assert.equal(await isFaded(), true);
+  // The arrows pick the placement beside it.
+  await page.locator('#map .chart').focus();
+  const number = async () => Number((await page.textContent('#facts')).match(/^Placement (\d+)/)[1]);
+  await page.locator('.cells rect').nth(rows.indexOf(best)).dispatchEvent('click');
+  assert.equal(await isFaded(), false);
+  await page.keyboard.press('ArrowLeft');
+  const beside = await number(),
+    moved = rows.find((row) => Number(row[cell]) === beside);
+  assert.ok(Math.abs(Number(best[x]) - 0.01 - Number(moved[x])) < 1e-9 && moved[y] === best[y]);
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await number(), Number(best[cell]));
+  // In every colouring places without a path are hatched, and their causes named.
+  for (const colour of ['verdict', 'end', 'cost']) {
+    await page.selectOption('#colour', colour);
+    assert.ok((await page.locator('#map path[fill^="url("]').count()) > 0, colour);
+    assert.ok((await page.locator('#legend span').filter({ hasText: 'no path' }).count()) > 0);
+  }
   const svg = await saved(page, page.locator('#map h2 button').filter({ hasText: 'SVG' }));
   assert.equal(svg.name, 'experiment_c_placements.svg');
   assert.ok((await elements(page, svg.bytes.toString())).rect >= rows.length);
