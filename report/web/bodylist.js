@@ -3,8 +3,8 @@
 import { tell } from './page.js';
 import { kBodies } from './palette.js';
 
-/** What stands still of the robot is told apart from what moves. */
-export const kindOf = (body) => (body.kind !== 'scene' && body.group === 0 ? 'fixed' : body.kind);
+/** What stands on the ground of the robot is told apart from what moves. */
+export const kindOf = (body) => (body.stands ? 'fixed' : body.kind);
 /** The entry of the legend that a body belongs to: an object of the scene has its own. */
 export const entryOf = (body) => (body.kind === 'scene' ? `scene ${body.name}` : kindOf(body));
 
@@ -99,7 +99,8 @@ export class BodyList {
       const other = pair.find((name) => name !== body.name) ?? body.name;
       lines.push(text ? `${text} from ${other}` : `nearest to ${other}`);
     }
-    lines.push(`point ${point.toArray().map((v) => v.toFixed(3)).join(', ')} m`);
+    const inBase = point.clone().applyMatrix4(this.view.world.matrix.clone().invert());
+    lines.push(`point ${inBase.toArray().map((v) => v.toFixed(3)).join(', ')} m`);
     return lines.join('\n');
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From where the work is seen, and how near the camera may stand.
-import { Box3, Matrix4, Vector3 } from 'three';
-import { displacements, vector } from './kinematics.js';
+import { Box3, Vector3 } from 'three';
+import { displacements, standing, vector } from './kinematics.js';
 import { cornersOf, Occluder, Sight } from './sight.js';
 
 // Turns of the camera about the vertical, in steps of 15 degrees from nearly ahead of -y: all, or
@@ -23,41 +23,46 @@ function openingJoints({ rows, cut }) {
 
 /**
  * What a picture is to show: { points: corners of the bodies that move, at both ends of the path
- * and where the page opens, and the path itself; marks: [point, worth, body] that should be seen,
+ * and where the page opens, and the path itself, in the frame of what stands on the ground; marks: [point, worth, body] that should be seen,
  * of which a point within a body may name it; bodies: as of Sight }. parts: of View.
  */
 export function subject(data, parts) {
   const { rows, chain, tool_path } = data,
-    path = tool_path.map(vector),
     open = openingJoints(data),
-    still = new Matrix4();
+    zero = chain.joints.map(() => 0);
   const poses = (q) => {
-    const g = q ? displacements(chain, q) : null;
+    const g = displacements(chain, q ?? zero),
+      frame = standing(data, g);
     return parts.map(({ body, rest }) =>
-      (g ? g[body.group] : still).clone().multiply(rest),
+      frame.clone().multiply(g[body.group]).multiply(rest),
     );
   };
+  const frame = standing(data, displacements(chain, open ?? zero)),
+    path = tool_path.map((point) => vector(point).applyMatrix4(frame));
   const points = [...path];
   for (const q of [open, rows[0]?.q, rows.at(-1)?.q])
     if (q)
       poses(q).forEach((pose, k) => {
         const { body, coarse } = parts[k];
         coarse.computeBoundingBox();
-        if (body.group > 0) points.push(...cornersOf(coarse.boundingBox, pose));
+        if (body.kind !== 'scene' && !body.stands) points.push(...cornersOf(coarse.boundingBox, pose));
       });
   const bodies = poses(open).map((pose, k) => {
     parts[k].occluder ??= new Occluder(parts[k].coarse);
     return { occluder: parts[k].occluder, pose };
   });
-  const moving = bodies.map((_, k) => k).filter((k) => parts[k].body.group > 0);
+  const moving = bodies.map((_, k) => k).filter((k) => {
+    const { body } = parts[k];
+    return body.kind !== 'scene' && !body.stands;
+  });
   const row = rows.find(({ q, nearest }) => q === open && nearest),
-    near = row ? [vector(row.nearest)] : data.cut?.line ? [vector(data.cut.line.points)] : [];
+    near = row ? [row.nearest] : data.cut?.line ? [data.cut.line.points] : [];
   const marks = [
     ...Array.from({ length: path.length ? 16 : 0 }, (_, k) => [
       path[Math.round((k / 15) * (path.length - 1))],
       2,
     ]),
-    ...near.map((point) => [point, 6]),
+    ...near.map((point) => [vector(point).applyMatrix4(frame), 6]),
     ...moving.map((k) => [
       bodies[k].occluder.box.getCenter(new Vector3()).applyMatrix4(bodies[k].pose),
       8 / moving.length,

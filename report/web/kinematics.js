@@ -30,6 +30,13 @@ export function displacements(chain, q) {
   return g;
 }
 
+/**
+ * From the base frame to that of the link which stands on the ground: the same frame, but where that
+ * link moves against the base, as with the part in the hand. g: displacements at the joints.
+ */
+export const standing = ({ ground }, g) =>
+  ground ? g[ground.group].clone().multiply(matrix(ground.pose)).invert() : new Matrix4();
+
 /** The pose of the tool; g: displacements(chain, q), where they are known. */
 export const toolPose = (chain, q, g = displacements(chain, q)) =>
   g[chain.joints.length].clone().multiply(matrix(chain.home));

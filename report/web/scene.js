@@ -5,7 +5,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { BodyList, entryOf, kindOf } from './bodylist.js';
 import { bestDirection, fit, subject } from './camera.js';
-import { displacements, matrix, toolPose, vector } from './kinematics.js';
+import { displacements, matrix, standing, toolPose, vector } from './kinematics.js';
 import { $, isDark } from './page.js';
 import { kBodies, ramp } from './palette.js';
 import { Quality } from './quality.js';
@@ -27,6 +27,10 @@ function rodBetween(from, to) {
     .translate(...from.clone().lerp(to, 0.5));
 }
 
+/** Whether a body of the robot stands on the ground. */
+const stands = ({ kind, group }, ground) =>
+  ground ? kind === 'robot' && group === ground.group : kind !== 'scene' && group === 0;
+
 class View {
   /** gap: an element that is kept beside the line between the nearest bodies. */
   constructor(canvas, gap, data) {
@@ -38,7 +42,11 @@ class View {
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.02, 50);
     this.camera.up.set(0, 0, 1);
     this.addGrid();
-    this.parts = data.bodies.map((body) => {
+    // All but the grid and ghosts is in the base frame.
+    this.world = Object.assign(new THREE.Group(), { matrixAutoUpdate: false });
+    this.scene.add(this.world);
+    this.parts = data.bodies.map((one) => {
+      const body = { ...one, stands: stands(one, data.ground) };
       const fine = geometry(body, data.meshes, kFine),
         coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
       return { body, fine, coarse, rest: matrix(body.pose) };
@@ -59,7 +67,7 @@ class View {
       mesh.matrix.copy(part.rest);
       mesh.userData = part;
       this.dress(mesh, kindOf(part.body));
-      this.scene.add(mesh);
+      this.world.add(mesh);
       return mesh;
     });
     this.addNearest();
@@ -84,10 +92,10 @@ class View {
         .forEach(({ rest }, k) => rest.copy(matrix(data.poses[k])));
     // Ghosts share the shapes of the arm.
     this.shown?.traverse(({ geometry, userData }) => userData.g ?? geometry?.dispose());
-    this.shown?.removeFromParent();
+    for (const one of [this.shown, this.ghosts, this.trail]) one?.removeFromParent();
     for (const { label } of this.names ?? []) label.remove();
     this.shown = new THREE.Group();
-    this.scene.add(this.shown);
+    this.world.add(this.shown);
     this.addGhosts();
     this.addPath();
     this.addNames();
@@ -132,7 +140,7 @@ class View {
     this.floor.matrixAutoUpdate = false;
     this.floor.matrix.copy(matrix(frame));
     this.floor.matrix.elements[14] = Math.min(0, this.lowest()) + 0.002;
-    this.scene.add(this.floor);
+    this.world.add(this.floor);
     const box = new THREE.Box3().setFromBufferAttribute(shape.attributes.position);
     this.floorCorners = squares.length ? cornersOf(box, this.floor.matrix) : [];
     this.dirty = true;
@@ -156,7 +164,7 @@ class View {
   /** The arm at start and end, as outlines that do not hide what moves. */
   addGhosts() {
     this.ghosts = Object.assign(new THREE.Group(), { visible: this.ghosts?.visible ?? true });
-    this.shown.add(this.ghosts);
+    this.scene.add(this.ghosts);
     const { rows } = this.data;
     if (rows.length < 2) return;
     for (const [row, colour] of [
@@ -168,14 +176,16 @@ class View {
   }
   /** The bodies that move, at joints q. */
   ghost(q, material) {
-    const g = displacements(this.data.chain, q);
+    const g = displacements(this.data.chain, q),
+      frame = standing(this.data, g);
     return this.parts
-      .filter(({ body }) => body.group > 0)
+      .filter(({ body }) => body.kind !== 'scene' && !body.stands)
       .map(({ body, coarse, rest }) => {
-        const mesh = new THREE.Mesh(coarse, material);
+        const mesh = new THREE.Mesh(coarse, material),
+          moved = frame.clone().multiply(g[body.group]);
         mesh.matrixAutoUpdate = false;
-        mesh.matrix.multiplyMatrices(g[body.group], rest);
-        mesh.userData = { group: body.group, g: g[body.group] };
+        mesh.matrix.multiplyMatrices(moved, rest);
+        mesh.userData = { group: body.group, g: moved };
         return mesh;
       });
   }
@@ -183,7 +193,10 @@ class View {
   hideGhostsOfArm(g) {
     const same = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < (k < 12 ? 0.03 : 0.008));
     for (const mesh of [...this.ghosts.children, ...(this.trail?.children ?? [])])
-      mesh.visible = !same(mesh.userData.g.elements, g[mesh.userData.group].elements);
+      mesh.visible = !same(
+        mesh.userData.g.elements,
+        this.world.matrix.clone().multiply(g[mesh.userData.group]).elements,
+      );
   }
   /** The arm at kTrail places between start and end. */
   showTrail(on) {
@@ -198,7 +211,7 @@ class View {
       this.trail.add(
         ...this.ghost(rows[Math.round((k * (rows.length - 1)) / (kTrail + 1))].q, material),
       );
-    this.shown.add(this.trail);
+    this.scene.add(this.trail);
   }
   /** Where the tool goes: on the path, or on the paths of several strokes with moves between. */
   addPath() {
@@ -286,7 +299,7 @@ class View {
       ),
     );
     this.nearest.visible = false;
-    this.scene.add(this.nearest);
+    this.world.add(this.nearest);
   }
   /** The tool's frame: x red, y green, z blue. */
   addTool() {
@@ -305,7 +318,7 @@ class View {
       this.tool.add(rod);
     }
     this.tool.matrixAutoUpdate = false;
-    this.scene.add(this.tool);
+    this.world.add(this.tool);
   }
   /** The names of the scene's objects, beside them, and the numbers of strokes. */
   addNames() {
@@ -356,6 +369,7 @@ class View {
   pose(q, pair, line = null, hit = false) {
     const g = displacements(this.data.chain, q);
     this.told = { pair, text: line?.text };
+    this.world.matrix.copy(standing(this.data, g));
     for (const mesh of this.arm) {
       const { body, rest } = mesh.userData;
       mesh.matrix.multiplyMatrices(g[body.group], rest);
@@ -373,7 +387,10 @@ class View {
         from = vector(line.points.slice(0, 3)),
         to = vector(line.points.slice(3));
       rod.position.lerpVectors(from, to, 0.5);
-      rod.lookAt(to);
+      rod.quaternion.setFromUnitVectors(
+        new THREE.Vector3(0, 0, 1),
+        to.clone().sub(from).normalize(),
+      );
       rod.scale.z = Math.max(1e-6, from.distanceTo(to));
       dots[0].position.copy(from);
       dots[1].position.copy(to);
@@ -395,7 +412,8 @@ class View {
     for (const mesh of this.arm) this.dress(mesh, mesh.userData.kind ?? kindOf(mesh.userData.body));
     this.dirty = true;
   }
-  /** The body under a place of the picture, in pixels, and the point: { body, point }, or null. */
+  /** The body under a place of the picture, in pixels, and the point in the frame of what stands on
+   * the ground: { body, point }, or null. */
   pick(x, y) {
     const { width, height } = this.size,
       caster = new THREE.Raycaster();
@@ -482,9 +500,9 @@ class View {
     this.dirty = true;
     return result;
   }
-  /** An element beside a point of the scene. */
+  /** An element beside a point of the base frame. */
   place(element, point, right, down) {
-    const at = point.clone().project(this.camera),
+    const at = point.clone().applyMatrix4(this.world.matrix).project(this.camera),
       { width, height } = this.size;
     const x = ((at.x + 1) / 2) * width + right,
       y = ((1 - at.y) / 2) * height + down;

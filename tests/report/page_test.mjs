@@ -395,6 +395,34 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     }
   }
 
+  // With the part in the hand the robot's base stands, and the part moves.
+  {
+    const { html, data } = planned(folder, 'iiwa14_deburr_in_hand', '--ds', '0.02');
+    const { page, close } = await open(html, { viewport: wide, colorScheme: 'light' });
+    await drawn(page);
+    const poses = () =>
+      page.evaluate(() => {
+        const { arm, scene } = window.swivel.view;
+        scene.updateMatrixWorld();
+        const of = (wanted) => [...arm.find(wanted).matrixWorld.elements];
+        return {
+          base: of(({ userData }) => userData.body.stands),
+          spindle: of(({ userData }) => userData.body.name === 'spindle'),
+          plate: of(({ userData }) => userData.body.name === 'plate'),
+        };
+      });
+    await slide(page, 0);
+    const first = await poses();
+    await slide(page, data.rows.length - 1);
+    const last = await poses(),
+      most = (name) => Math.max(...first[name].map((v, k) => Math.abs(v - last[name][k])));
+    assert.ok(most('base') < 1e-9 && most('spindle') < 1e-9 && most('plate') > 0.05);
+    // The spindle points upwards from where the file has it in the base's frame.
+    assert.ok(Math.hypot(last.spindle[12] - 0.5, last.spindle[13] - 0.1, last.spindle[14] - 0.22) < 1e-6);
+    assert.equal(await page.locator('#bodies').getByText('base of the robot').count(), 1);
+    await close();
+  }
+
   for (const name of [...some(['a', 'b']), 'c']) {
     const { html, rows, data, status, bytes } = plan(folder, name);
     assert.equal(status, 0);

@@ -25,6 +25,7 @@ class JobPage {
         result_(planned.result),
         runs_(planned.view.runs),
         motion_(planned.motion),
+        robot_(planned.robot),
         chain_(planned.robot.arm().chain),
         world_(runs_.empty() ? planned.robot.world() : runs_.front().world),
         budget_(budget),
@@ -45,6 +46,7 @@ class JobPage {
             {"answer", words.answer},
             {"result", std::move(json_)},
             {"chain", chain_json(chain_)},
+            {"ground", ground_json(*job_.model, robot_.arm())},
             {"bodies", std::move(bodies.bodies)},
             {"meshes", std::move(bodies.meshes)},
             {"home", home()},
@@ -166,6 +168,7 @@ class JobPage {
   const JobResult& result_;
   const std::vector<PlanView>& runs_;
   const JobMotion* motion_;
+  const PreparedRobot& robot_;
   const Chain& chain_;
   const World& world_;
   const Budget& budget_;

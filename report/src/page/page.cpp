@@ -6,6 +6,7 @@
 #include "page/page_parts.hpp"
 #include "page/page_template.hpp"
 #include "swivel/core/motion/time_path.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 
@@ -50,6 +51,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"result", result},
       {"settings", settings_json(problem, lattice)},
       {"chain", chain_json(lattice.chain())},
+      {"ground", ground_json(*problem.model, view.robot.arm())},
       {"bodies", std::move(bodies.bodies)},
       {"meshes", std::move(bodies.meshes)},
       {"tool_path", tool_path_json(lattice.path_of_rows())},

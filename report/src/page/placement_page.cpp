@@ -64,6 +64,7 @@ Json scene_json(const PlacementScene& scene) {
                      {"still_frame", pose_json(still_frame(scene.thing, plan.cell.offset))}});
   }
   return {{"chain", chain_json(scene.robot->arm().chain)},
+          {"ground", ground_json(*scene.problem->model, scene.robot->arm())},
           {"bodies", std::move(bodies.bodies)},
           {"meshes", std::move(bodies.meshes)},
           {"origin", vector_json(origin_of(*scene.problem, scene.thing))},

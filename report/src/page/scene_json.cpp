@@ -54,6 +54,12 @@ Json chain_json(const Chain& chain) {
           {"home", pose_json(chain.home)}};
 }
 
+Json ground_json(const RobotModel& robot, const ArmModel& arm) {
+  const LinkPlacement& root = arm.links[static_cast<std::size_t>(robot.root_link)];
+  if (root.group == 0) return nullptr;
+  return {{"group", root.group}, {"pose", pose_json(root.pose)}};
+}
+
 Bodies::Bodies(const World& world, const std::vector<SceneObject>& scene) {
   for (const RobotBody& body : world.bodies())
     add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);

@@ -32,6 +32,11 @@ template <class T>
 /// Writes the chain as the page's forward kinematics needs it (core/kinematics/chain/arm.hpp).
 [[nodiscard]] Json chain_json(const Chain& chain);
 
+/// Writes where the root of the robot's tree is, the link that stands on the ground: the group of
+/// the chain that moves it, and its pose at q = 0 in the base frame. Null where it does not move
+/// against the base, as it does where the part is in the hand.
+[[nodiscard]] Json ground_json(const RobotModel& robot, const ArmModel& arm);
+
 /// Bodies of the robot, what it carries, and the scene in its order. Meshes are written once,
 /// however many bodies share one.
 class Bodies {
