@@ -8,7 +8,8 @@ import { cornersOf, Occluder, Sight } from './sight.js';
 // those from which x is to the right and y away, as in a map that lies on the floor.
 const kAllRound = Array.from({ length: 24 }, (_, k) => k),
   kSouth = [21, 22, 23, 0, 1, 2, 3, 4];
-const kRoom = 1.06; // of the picture about what it must show
+const kLong = 12, // worth of seeing the path in its whole extent
+  kRoom = 1.06; // of the picture about what it must show
 
 /**
  * The joints at which a page opens: past the end of every path, or at the row that comes nearest to
@@ -73,6 +74,27 @@ export function subject(data, parts) {
 }
 
 /**
+ * How far the points of a path spread in a picture taken from a direction: the sum of the lengths
+ * of the axes of their distribution. 0 for a straight path that is seen end-on.
+ */
+function spread(points, direction) {
+  const right = new Vector3(-direction.y, direction.x, 0).normalize(),
+    up = new Vector3().crossVectors(direction, right);
+  let [x, y, xx, xy, yy] = [0, 0, 0, 0, 0];
+  for (const point of points) {
+    const [a, b] = [point.dot(right), point.dot(up)];
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+    yy += b * b;
+  }
+  const n = points.length || 1,
+    [sx, sy, sxy] = [xx / n - (x / n) ** 2, yy / n - (y / n) ** 2, xy / n - (x * y) / n ** 2];
+  return Math.sqrt(Math.max(0, sx + sy + 2 * Math.sqrt(Math.max(0, sx * sy - sxy * sxy))));
+}
+
+/**
  * The direction to the camera from which most of the path, of the arm and of the place that is
  * nearest to something is seen past all bodies, the arm's own among them, where the page opens.
  */
@@ -81,25 +103,28 @@ export function bestDirection({ points, marks, bodies, path, turns }) {
     target = box.getCenter(new Vector3()),
     radius = box.getSize(new Vector3()).length(),
     sight = new Sight(bodies),
-    along = path.length > 1 ? path.at(-1).clone().sub(path[0]).normalize() : new Vector3();
-  let best = null;
+    candidates = [];
   for (const up of [0.12, 0.3, 0.62, 1.0])
     for (const k of turns) {
       const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 12;
       const direction = new Vector3(
-          Math.cos(turn) * Math.cos(up),
-          Math.sin(turn) * Math.cos(up),
-          Math.sin(up),
-        ),
-        from = target.clone().addScaledVector(direction, 1.6 * radius);
-      let score =
-        3 * Math.sqrt(1 - along.dot(direction) ** 2) +
-        (up === 0.62 ? 1 : up === 0.12 ? -1 : 0) -
-        0.035 * Math.min(k, 24 - k);
-      for (const [point, worth, own] of marks)
-        score += sight.hides(from, point, own) ? 0 : worth;
-      if (best === null || score > best.score) best = { score, direction };
+        Math.cos(turn) * Math.cos(up),
+        Math.sin(turn) * Math.cos(up),
+        Math.sin(up),
+      );
+      candidates.push({ up, k, direction, wide: spread(path, direction) });
     }
+  const widest = Math.max(1e-6, ...candidates.map(({ wide }) => wide));
+  let best = null;
+  for (const { up, k, direction, wide } of candidates) {
+    const from = target.clone().addScaledVector(direction, 1.6 * radius);
+    let score =
+      (kLong * wide) / widest +
+      (up === 0.62 ? 1 : up === 0.12 ? -1 : 0) -
+      0.035 * Math.min(k, 24 - k);
+    for (const [point, worth, own] of marks) score += sight.hides(from, point, own) ? 0 : worth;
+    if (best === null || score > best.score) best = { score, direction };
+  }
   return best.direction;
 }
 

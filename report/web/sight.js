@@ -2,8 +2,8 @@
 // What hides a point from where the camera might stand.
 import { Box3, Ray, Vector3 } from 'three';
 
-const kFew = 1500, // triangles that are asked one by one
-  kCells = 32; // along the longest edge of a grid in place of more
+const kFew = 6000, // triangles that are asked one by one
+  kCells = 64; // along the longest edge of a grid in place of more
 
 /**
  * A body that may stand in the way of a line of sight. A heavy mesh is replaced by the cells of a
@@ -19,6 +19,7 @@ export class Occluder {
     this.corners = (index?.count ?? position.count) - ((index?.count ?? position.count) % 3);
     this.corner = (k, into) => into.fromBufferAttribute(position, index ? index.getX(k) : k);
     if (this.corners > 3 * kFew) this.fillGrid();
+    else this.listTriangles();
   }
   fillGrid() {
     const size = this.box.getSize(new Vector3());
@@ -54,17 +55,44 @@ export class Occluder {
     if (from > far) return false;
     return this.grid ? this.marches(ray, from, far) : this.isHit(ray, far);
   }
-  isHit(ray, far) {
-    const [a, b, c, at] = Array.from({ length: 4 }, () => new Vector3());
+  /** Of each triangle a corner and the two edges from it, nine numbers. */
+  listTriangles() {
+    const [a, b, c] = Array.from({ length: 3 }, () => new Vector3());
+    this.triangles = new Float64Array(3 * this.corners);
     for (let k = 0; k < this.corners; k += 3) {
-      const hit = ray.intersectTriangle(
-        this.corner(k, a),
-        this.corner(k + 1, b),
-        this.corner(k + 2, c),
-        false,
-        at,
-      );
-      if (hit && hit.distanceTo(ray.origin) < far) return true;
+      this.corner(k, a);
+      this.corner(k + 1, b).sub(a);
+      this.corner(k + 2, c).sub(a);
+      this.triangles.set([...a, ...b, ...c], 3 * k);
+    }
+  }
+  /** Moeller and Trumbore's intersection with any of the triangles. */
+  isHit({ origin: o, direction: d }, far) {
+    const t = this.triangles;
+    for (let k = 0; k < t.length; k += 9) {
+      const bx = t[k + 3],
+        by = t[k + 4],
+        bz = t[k + 5],
+        cx = t[k + 6],
+        cy = t[k + 7],
+        cz = t[k + 8],
+        px = d.y * cz - d.z * cy,
+        py = d.z * cx - d.x * cz,
+        pz = d.x * cy - d.y * cx,
+        det = bx * px + by * py + bz * pz;
+      if (Math.abs(det) < 1e-14) continue;
+      const ox = o.x - t[k],
+        oy = o.y - t[k + 1],
+        oz = o.z - t[k + 2],
+        u = (ox * px + oy * py + oz * pz) / det;
+      if (u < 0 || u > 1) continue;
+      const qx = oy * bz - oz * by,
+        qy = oz * bx - ox * bz,
+        qz = ox * by - oy * bx,
+        v = (d.x * qx + d.y * qy + d.z * qz) / det;
+      if (v < 0 || u + v > 1) continue;
+      const way = (cx * qx + cy * qy + cz * qz) / det;
+      if (way > 0 && way < far) return true;
     }
     return false;
   }
