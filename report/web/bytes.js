@@ -6,3 +6,31 @@ export function bytes(text) {
   for (let k = 0; k < raw.length; ++k) result[k] = raw.charCodeAt(k);
   return result.buffer;
 }
+
+/** The numbers that a base64 text of varints stands for (src/page/scene_json.cpp). */
+export function varints(text) {
+  const raw = new Uint8Array(bytes(text)),
+    result = [];
+  for (let k = 0; k < raw.length; ) {
+    let value = 0,
+      scale = 1;
+    for (; raw[k] & 128; ++k, scale *= 128) value += (raw[k] & 127) * scale;
+    result.push(value + raw[k++] * scale);
+  }
+  return result;
+}
+/** Triangles of a mesh: { points: x, y, z of each, m; corners: numbers of points }. */
+export function triangles({ grain, points, corners }) {
+  const steps = varints(points),
+    at = [0, 0, 0];
+  const places = Float32Array.from(steps, (step, k) => {
+    at[k % 3] += step % 2 ? -(step + 1) / 2 : step / 2;
+    return grain * at[k % 3];
+  });
+  let next = 0;
+  const numbers = Uint32Array.from(varints(corners), (below) => {
+    if (below === 0) ++next;
+    return below === 0 ? next - 1 : next - below;
+  });
+  return { points: places, corners: numbers };
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The shapes of bodies.
 import * as THREE from 'three';
-import { bytes } from './bytes.js';
+import { triangles } from './bytes.js';
 
 /** around: corners of a circle. */
 export function geometry(body, meshes, around) {
@@ -19,17 +19,11 @@ export function geometry(body, meshes, around) {
     shape = new THREE.CapsuleGeometry(body.capsule[0], body.capsule[1], around >> 2, around);
   else {
     shape = new THREE.BufferGeometry();
-    shape.setAttribute(
-      'position',
-      new THREE.BufferAttribute(new Float32Array(bytes(meshes[body.mesh].vertices)), 3),
-    );
-    shape.setIndex(
-      new THREE.BufferAttribute(new Uint32Array(bytes(meshes[body.mesh].triangles)), 1),
-    );
+    const { points, corners } = triangles(meshes[body.mesh]);
+    shape.setAttribute('position', new THREE.BufferAttribute(points, 3));
+    shape.setIndex(new THREE.BufferAttribute(corners, 1));
     shape = shape.toNonIndexed();
     shape.computeVertexNormals();
-    // All geometries alike, so that they can be merged.
-    shape.setIndex([...Array(shape.attributes.position.count).keys()]);
   }
   shape.deleteAttribute('uv');
   // three.js turns about y, swivel about z.

@@ -6,6 +6,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { triangles } from '../../report/web/bytes.js';
 import { assertFits, elements, press, saved, some, until, withBrowser } from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
@@ -393,6 +394,29 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       await checkNothingOver(page);
       await close();
     }
+  }
+
+  // A mesh of the page is that of its file, triangle by triangle.
+  {
+    const { data, bytes } = plan(folder, 'c', '--ds', '0.05', '--dphi', '0.3'),
+      stl = readFileSync(join(problems, '../meshes/door_2k.stl')),
+      { points, corners } = triangles(data.meshes[0]);
+    assert.equal(data.meshes.length, 1);
+    const count = stl.readUInt32LE(80);
+    assert.equal(corners.length, 3 * count);
+    let furthest = 0;
+    for (let k = 0; k < 3 * count; ++k)
+      for (let axis = 0; axis < 3; ++axis) {
+        const at = 84 + 50 * Math.floor(k / 3) + 12 + 12 * (k % 3) + 4 * axis;
+        furthest = Math.max(
+          furthest,
+          Math.abs(stl.readFloatLE(at) - points[3 * corners[k] + axis]),
+        );
+      }
+    assert.ok(count > 1000 && furthest < 6e-6, `${count} triangles, ${furthest} m off`);
+    const size = JSON.stringify(data.meshes).length;
+    console.log(`${count} triangles in ${size} of ${bytes} bytes`);
+    assert.ok(size < 20 * count);
   }
 
   // With the part in the hand the robot's base stands, and the part moves.

@@ -2,6 +2,8 @@
 #include "page/scene_json.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <variant>
 
 namespace swivel::detail {
@@ -79,17 +81,48 @@ void Bodies::add(const std::string& name, const char* kind, int group, const Sha
   bodies.push_back(std::move(body));
 }
 
+namespace {
+
+/// Appends a number in groups of seven bits, the lowest first; a group that others follow has its
+/// eighth bit set.
+void append_varint(std::vector<unsigned char>& bytes, std::uint64_t value) {
+  for (; value > 127; value >>= 7) bytes.push_back(static_cast<unsigned char>(value | 128));
+  bytes.push_back(static_cast<unsigned char>(value));
+}
+
+/// Writes a mesh for drawing. Corners are rounded to 10 um; they are numbered in the order in which
+/// triangles use them, equal ones alike. `points`: of each the differences from the one before, x,
+/// y, z, with their signs in the lowest bits. `corners`: of each corner of the triangles how far
+/// its number is below the next that is not used yet. Both are base 64 of varints.
+Json mesh_json(const TriangleMesh& mesh) {
+  constexpr double kGrain = 1e-5;  // m
+  std::vector<unsigned char> points, corners;
+  std::map<std::array<std::int64_t, 3>, std::uint64_t> numbers;
+  std::array<std::int64_t, 3> before{};
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle) {
+      const Vector3d& v = mesh.vertices[static_cast<std::size_t>(corner)];
+      std::array<std::int64_t, 3> at{};
+      for (int k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)] = std::llround(v[k] / kGrain);
+      const std::uint64_t next = numbers.size();
+      const auto [known, is_new] = numbers.emplace(at, next);
+      append_varint(corners, next - known->second);
+      if (!is_new) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int64_t step = at[k] - before[k];
+        append_varint(points, step < 0 ? ~(static_cast<std::uint64_t>(step) << 1)
+                                       : static_cast<std::uint64_t>(step) << 1);
+      }
+      before = at;
+    }
+  return {{"grain", kGrain}, {"points", base64(points)}, {"corners", base64(corners)}};
+}
+
+}  // namespace
+
 std::size_t Bodies::index_of(const TriangleMesh& mesh) {
   const auto [at, fresh] = index_.emplace(&mesh, index_.size());
-  if (fresh) {
-    std::vector<float> points;
-    for (const Vector3d& v : mesh.vertices)
-      for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(v[k]));
-    std::vector<std::uint32_t> corners;
-    for (const auto& triangle : mesh.triangles)
-      for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
-    meshes.push_back({{"vertices", base64(points)}, {"triangles", base64(corners)}});
-  }
+  if (fresh) meshes.push_back(mesh_json(mesh));
   return at->second;
 }
 
