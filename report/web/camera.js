@@ -49,7 +49,7 @@ export function subject(data, parts) {
         if (body.kind !== 'scene' && !body.stands) points.push(...cornersOf(coarse.boundingBox, pose));
       });
   const bodies = poses(open).map((pose, k) => {
-    parts[k].occluder ??= new Occluder(parts[k].coarse);
+    parts[k].occluder ??= new Occluder(parts[k].coarse, parts[k].off);
     return { occluder: parts[k].occluder, pose };
   });
   const moving = bodies.map((_, k) => k).filter((k) => {

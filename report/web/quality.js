@@ -4,6 +4,7 @@
 // from the name of the graphics card.
 const kRestMs = 400,
   kFrames = 8,
+  kLongMs = 400, // that few slow frames take
   kSlow = 1000 / 32,
   kFast = 1000 / 55,
   kLeast = 0.5;
@@ -27,17 +28,19 @@ export class Quality {
     if (moves) {
       this.ratio = this.moving;
       // The first frame after a change of size, and after a rest, says nothing.
-      if (old !== this.ratio || now - this.moved > 100) this.times = [];
+      if (old !== this.ratio || !this.moves) this.times = [];
       else this.times.push(ms);
       this.moved = now;
-      if (this.times.length > kFrames) this.adapt();
+      const passed = this.times.reduce((sum, time) => sum + time, 0);
+      if (this.times.length > kFrames || (this.times.length > 2 && passed > kLongMs)) this.adapt();
     } else if (now - this.moved > kRestMs) {
       this.ratio = this.best;
     }
+    this.moves = moves;
     return this.ratio !== old;
   }
   adapt() {
-    const median = [...this.times].sort((a, b) => a - b)[kFrames >> 1];
+    const median = [...this.times].sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];
     if (median > kSlow) this.ratio = this.moving = Math.max(kLeast, this.moving / Math.SQRT2);
     else if (median < kFast && this.moving < this.best && !this.limit)

@@ -9,7 +9,7 @@ import { displacements, matrix, standing, toolPose, vector } from './kinematics.
 import { $, isDark } from './page.js';
 import { kBodies, ramp } from './palette.js';
 import { Quality } from './quality.js';
-import { geometry } from './shapes.js';
+import { geometry, thinned } from './shapes.js';
 import { cornersOf } from './sight.js';
 import { surface } from './surface.js';
 
@@ -48,8 +48,11 @@ class View {
     this.parts = data.bodies.map((one) => {
       const body = { ...one, stands: stands(one, data.ground) };
       const fine = geometry(body, data.meshes, kFine),
-        coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
-      return { body, fine, coarse, rest: matrix(body.pose) };
+        { shape: coarse, off } =
+          body.mesh === undefined
+            ? { shape: geometry(body, data.meshes, kCoarse), off: 0 }
+            : thinned(fine);
+      return { body, fine, coarse, off, rest: matrix(body.pose) };
     });
     const materials = (settings) =>
       Object.fromEntries(
