@@ -4,10 +4,14 @@ import { Box3, Vector3 } from 'three';
 import { displacements, standing, vector } from './kinematics.js';
 import { cornersOf, Occluder, Sight } from './sight.js';
 
-// Turns of the camera about the vertical, in steps of 15 degrees from nearly ahead of -y: all, or
-// those from which x is to the right and y away, as in a map that lies on the floor.
-const kAllRound = Array.from({ length: 24 }, (_, k) => k),
-  kSouth = [21, 22, 23, 0, 1, 2, 3, 4];
+// Where the camera may stand: turns about the vertical, in steps of 15 degrees from nearly ahead of
+// -y, and angles above the ground, rad; above a map that lies on the floor only where x is to the
+// right and y away, as in the map.
+const kAllRound = {
+    turns: Array.from({ length: 24 }, (_, k) => k),
+    heights: [0.12, 0.3, 0.62, 1.0],
+  },
+  kAbove = { turns: [21, 22, 23, 0, 1, 2, 3, 4], heights: [0.62, 1.0] };
 const kLong = 12, // worth of seeing the path in its whole extent
   kRoom = 1.06; // of the picture about what it must show
 
@@ -70,7 +74,7 @@ export function subject(data, parts) {
       k,
     ]),
   ];
-  return { points, marks, bodies, path, turns: data.floor ? kSouth : kAllRound };
+  return { points, marks, bodies, path, ...(data.floor ? kAbove : kAllRound) };
 }
 
 /**
@@ -98,13 +102,13 @@ function spread(points, direction) {
  * The direction to the camera from which most of the path, of the arm and of the place that is
  * nearest to something is seen past all bodies, the arm's own among them, where the page opens.
  */
-export function bestDirection({ points, marks, bodies, path, turns }) {
+export function bestDirection({ points, marks, bodies, path, turns, heights }) {
   const box = new Box3().setFromPoints(points),
     target = box.getCenter(new Vector3()),
     radius = box.getSize(new Vector3()).length(),
     sight = new Sight(bodies),
     candidates = [];
-  for (const up of [0.12, 0.3, 0.62, 1.0])
+  for (const up of heights)
     for (const k of turns) {
       const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 12;
       const direction = new Vector3(

@@ -36,7 +36,9 @@ function choose(row) {
   table($('facts'), `Episode ${row.episode} of seed ${data.seed}`, [
     ...coordinates.map((name, k) => [
       name,
-      `${number(row.offsets[k], 6)} ${/\.[xyz]$/.test(name) ? 'm' : 'rad'}`,
+      /\.[xyz]$/.test(name)
+        ? `${number(row.offsets[k], 6)} m`
+        : `${number((row.offsets[k] * 180) / Math.PI, 6)}°`,
     ]),
     ['verdict', row.status],
     ['cost', number(row.cost)],

@@ -137,7 +137,9 @@ export function places(rows, ended, width, colours) {
  * path are drawn last.
  */
 export function offsets(rows, coordinates, across, up, ended, width, colours) {
-  const label = (k) => `${coordinates[k]}, ${/\.[xyz]$/.test(coordinates[k]) ? 'm' : 'rad'}`,
+  const isShift = (k) => /\.[xyz]$/.test(coordinates[k]),
+    label = (k) => `${coordinates[k]}, ${isShift(k) ? 'm' : 'deg'}`,
+    shown = (row, k) => row.offsets[k] * (isShift(k) ? 1 : 180 / Math.PI),
     flat = up === across;
   return Plot.plot(
     frame(width, flat ? 120 : Math.min(420, width), colours, {
@@ -147,8 +149,8 @@ export function offsets(rows, coordinates, across, up, ended, width, colours) {
         Plot.dot(
           [...rows].sort((a, b) => (a.by !== '') - (b.by !== '')),
           {
-            x: (row) => row.offsets[across],
-            y: (row) => (flat ? 0 : row.offsets[up]),
+            x: (row) => shown(row, across),
+            y: (row) => (flat ? 0 : shown(row, up)),
             r: Math.max(2, Math.min(4.5, 120 / Math.sqrt(rows.length))),
             fill: ({ by }) => ended.get(by)?.colour ?? SOLVED,
             className: 'pick',

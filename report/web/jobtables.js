@@ -2,7 +2,7 @@
 // A job in words and numbers.
 import { strokeName } from './joblist.js';
 import { $, number, table } from './page.js';
-import { warn, words } from './summary.js';
+import { separator, warn, words } from './summary.js';
 
 /** The answer in one line, and warnings. go: shows a stroke, its number, at s, m. */
 export function verdict({ answer, result, strokes }, go) {
@@ -22,7 +22,7 @@ export function verdict({ answer, result, strokes }, go) {
       `${bodies.join(' – ')} on ${strokeName(strokes[near.k], near.k)} at s ${s.toFixed(3)}`;
     button.title = 'Go there';
     button.addEventListener('click', () => go(near.k, s));
-    host.append(' · ', button);
+    host.append(separator(), button);
   }
   warn(host, result);
 }

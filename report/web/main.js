@@ -44,7 +44,9 @@ let view = null,
   hovered = null,
   time = 0,
   turned = null,
-  told = 0;
+  told = 0,
+  begun = false,
+  noting = 0;
 /** For those who test the page: joints and line shown now, pictures drawn. */
 window.swivel = { joints: null, frames: 0, line: null };
 
@@ -159,6 +161,7 @@ function draw({ q, pair, line, hit }) {
 /** To row k, not always whole. */
 function go(k) {
   if (!rows.length) return;
+  noteAddress();
   cursor = Math.min(last, Math.max(0, k));
   if (timed && Math.abs(layerAt(time) - cursor) > 1e-9)
     time = momentOf(indexAt(motion.layers, cursor));
@@ -251,6 +254,18 @@ function showCut() {
 }
 $('blocked').hidden = !cut;
 $('blocked').addEventListener('click', showCut);
+/** The address names the place once the cursor rests, so that it opens there again. */
+function noteAddress() {
+  clearTimeout(noting);
+  if (begun)
+    noting = setTimeout(() => {
+      const s = valueAt(
+        rows.map((row) => row.s),
+        cursor,
+      );
+      history.replaceState(null, '', `#s=${s.toFixed(4)}`);
+    }, 400);
+}
 // Where the address says so (#s=0.34), else at the pose that is nearest to something.
 function openAtAddress() {
   const s = Number(new URLSearchParams(location.hash.slice(1)).get('s') ?? NaN);
@@ -272,6 +287,7 @@ if (!openAtAddress()) {
   else if (solved && begin) begin.click();
   else go(solved ? 0 : last);
 }
+begun = true; // what is shown from now on is the user's choice
 addEventListener('hashchange', openAtAddress);
 
 startView(

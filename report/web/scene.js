@@ -353,7 +353,10 @@ class View {
    */
   look(from) {
     const shown = subject(this.data, this.parts);
-    shown.points.push(...(this.floorCorners ?? []));
+    for (const corner of this.floorCorners ?? []) {
+      shown.points.push(corner);
+      shown.marks.push([corner, 2]);
+    }
     const direction = {
       front: () => new THREE.Vector3(1, 0, 0.001),
       side: () => new THREE.Vector3(0, -1, 0.001),

@@ -24,7 +24,7 @@ export function verdict(host, { answer, result, chain, map }, jump) {
       .join(', ');
   const margin = (k, q) => Math.min(q[k] - chain.joints[k].lower, chain.joints[k].upper - q[k]);
   const say = (text, s, off, near = false) => {
-    if (host.childNodes.length) host.append(' · ');
+    if (host.childNodes.length) host.append(separator());
     if (s === undefined || s === null) return host.append(text);
     const button = document.createElement('button');
     button.classList.toggle('near', near);
@@ -105,6 +105,10 @@ export function verdict(host, { answer, result, chain, map }, jump) {
   warn(host, result);
 }
 
+/** What stands between the parts of an answer that is one line. */
+export const separator = () =>
+  Object.assign(document.createElement('span'), { className: 'separator', textContent: ' · ' });
+
 const kOpen = 2; // warnings; more are folded
 /** The warnings of the answer and of its motion, below a line of the page. */
 export function warn(host, result) {
@@ -124,14 +128,41 @@ export function warn(host, result) {
   host.after(fold);
 }
 
+/** Units of keys whose numbers have one; angles are told in degrees. */
+const kUnits = {
+  ds: 'm',
+  dphi: '°',
+  dalpha: '°',
+  droll: '°',
+  knot: 'm',
+  joint_step: '°',
+  clearance_mm: 'mm',
+  duration: 's',
+  ideal: 's',
+  at_s: 'm',
+  speed: 'm/s',
+  turn_speed: '°/s',
+  rate: 'Hz',
+  chord: 'm',
+  bend: '°/m²',
+  bend_before: '°/m²',
+};
+/** [name, value with its unit] of the numbers, texts and switches of an object that are there. */
 export const words = (object) =>
   Object.entries(object ?? {})
     .filter(([, v]) => typeof v !== 'object')
-    .map(([key, v]) => [key.replaceAll('_', ' '), typeof v === 'number' ? number(v) : String(v)]);
+    .map(([key, v]) => {
+      const unit = kUnits[key] ?? '',
+        name = key.replace(/_mm$/, '').replaceAll('_', ' ');
+      if (typeof v === 'boolean') return [name, v ? 'yes' : 'no'];
+      if (typeof v !== 'number') return [name, v];
+      const value = number(unit.startsWith('°') ? (v * 180) / Math.PI : v);
+      return [name, `${value}${unit.startsWith('°') || !unit ? '' : ' '}${unit}`];
+    });
 
 export function summary({ answer, result, settings }) {
   if (result.status !== 'solved') $('answer').textContent = answer.trimEnd();
-  const add = (caption, entries) => table($('tables'), caption, entries);
+  const add = (caption, entries) => entries.length && table($('tables'), caption, entries);
   const removed = result.diagnosis?.removed,
     empty = result.diagnosis?.empty_layers ?? [];
   // Each was planned: what it says of itself is what came out.

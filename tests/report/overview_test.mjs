@@ -103,7 +103,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     1 + subjects.size,
   );
   await page.selectOption('#up', { label: 'door.yaw' });
-  assert.match(await page.textContent('#offsets svg'), /door\.yaw, rad/);
+  assert.match(await page.textContent('#offsets svg'), /door\.yaw, deg/);
   await page.selectOption('#up', { label: 'door.y' });
   assert.match(await page.textContent('#facts'), /door\.x/);
 
