@@ -33,9 +33,13 @@ export class BodyList {
     let look = 0;
     const paint = () => {
       const swatch = this.swatch(kBodies[body.kind === 'scene' ? 'scene' : entry]);
-      button.replaceChildren(swatch, name, Object.assign(document.createElement('b'), {
-        textContent: kMarks[kLooks[look]],
-      }));
+      button.replaceChildren(
+        swatch,
+        name,
+        Object.assign(document.createElement('b'), {
+          textContent: kMarks[kLooks[look]],
+        }),
+      );
       button.title = `${kLooks[look]}: press for ${kLooks[(look + 1) % kLooks.length]}`;
       button.setAttribute('aria-label', `${name}: ${button.title}`);
     };
@@ -49,7 +53,7 @@ export class BodyList {
     paint();
     return button;
   }
-  /** look: 'shown', 'faded' or 'hidden'; entry: as of entryOf(), of bodies that may not be there. */
+  /** look: 'shown', 'faded' or 'hidden'; entry: as of entryOf(), of bodies or of none. */
   set(entry, look) {
     this.setters.get(entry)?.(kLooks.indexOf(look));
   }
@@ -100,7 +104,12 @@ export class BodyList {
       lines.push(text ? `${text} from ${other}` : `nearest to ${other}`);
     }
     const inBase = point.clone().applyMatrix4(this.view.world.matrix.clone().invert());
-    lines.push(`point ${inBase.toArray().map((v) => v.toFixed(3)).join(', ')} m`);
+    lines.push(
+      `point ${inBase
+        .toArray()
+        .map((v) => v.toFixed(3))
+        .join(', ')} m`,
+    );
     return lines.join('\n');
   }
 }

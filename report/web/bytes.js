@@ -11,7 +11,7 @@ export function bytes(text) {
 export function varints(text) {
   const raw = new Uint8Array(bytes(text)),
     result = [];
-  for (let k = 0; k < raw.length; ) {
+  for (let k = 0; k < raw.length;) {
     let value = 0,
       scale = 1;
     for (; raw[k] & 128; ++k, scale *= 128) value += (raw[k] & 127) * scale;

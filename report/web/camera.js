@@ -28,8 +28,9 @@ function openingJoints({ rows, cut }) {
 
 /**
  * What a picture is to show: { points: corners of the bodies that move, at both ends of the path
- * and where the page opens, and the path itself, in the frame of what stands on the ground; marks: [point, worth, body] that should be seen,
- * of which a point within a body may name it; bodies: as of Sight }. parts: of View.
+ * and where the page opens, and the path itself; marks: [point, worth, body] that should be seen,
+ * of which a point within a body names it; path; bodies: as of Sight; turns, heights: where the
+ * camera may stand }, in the frame of what stands on the ground. parts: of View.
  */
 export function subject(data, parts) {
   const { rows, chain, tool_path } = data,
@@ -38,9 +39,7 @@ export function subject(data, parts) {
   const poses = (q) => {
     const g = displacements(chain, q ?? zero),
       frame = standing(data, g);
-    return parts.map(({ body, rest }) =>
-      frame.clone().multiply(g[body.group]).multiply(rest),
-    );
+    return parts.map(({ body, rest }) => frame.clone().multiply(g[body.group]).multiply(rest));
   };
   const frame = standing(data, displacements(chain, open ?? zero)),
     path = tool_path.map((point) => vector(point).applyMatrix4(frame));
@@ -50,16 +49,19 @@ export function subject(data, parts) {
       poses(q).forEach((pose, k) => {
         const { body, coarse } = parts[k];
         coarse.computeBoundingBox();
-        if (body.kind !== 'scene' && !body.stands) points.push(...cornersOf(coarse.boundingBox, pose));
+        if (body.kind !== 'scene' && !body.stands)
+          points.push(...cornersOf(coarse.boundingBox, pose));
       });
   const bodies = poses(open).map((pose, k) => {
     parts[k].occluder ??= new Occluder(parts[k].coarse, parts[k].off);
     return { occluder: parts[k].occluder, pose };
   });
-  const moving = bodies.map((_, k) => k).filter((k) => {
-    const { body } = parts[k];
-    return body.kind !== 'scene' && !body.stands;
-  });
+  const moving = bodies
+    .map((_, k) => k)
+    .filter((k) => {
+      const { body } = parts[k];
+      return body.kind !== 'scene' && !body.stands;
+    });
   const row = rows.find(({ q, nearest }) => q === open && nearest),
     near = row ? [row.nearest] : data.cut?.line ? [data.cut.line.points] : [];
   const marks = [

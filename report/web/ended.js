@@ -35,9 +35,7 @@ export function legend(host, items) {
     ...items.map(([colour, text, hatched]) => {
       const item = document.createElement('span'),
         swatch = document.createElement('i');
-      swatch.style.background = hatched
-        ? hatchedBy(colour, lineBetween(colour, colour))
-        : colour;
+      swatch.style.background = hatched ? hatchedBy(colour, lineBetween(colour, colour)) : colour;
       item.append(swatch, text);
       return item;
     }),

@@ -274,10 +274,12 @@ function paint() {
 /** What the view shows of the job. */
 function sceneOf() {
   const begin = ({ rows, tool_path }) =>
-    tool_path[Math.max(
-      0,
-      rows.findIndex(({ process }) => process),
-    )];
+    tool_path[
+      Math.max(
+        0,
+        rows.findIndex(({ process }) => process),
+      )
+    ];
   return {
     ...data,
     rows: list.rows,

@@ -38,8 +38,7 @@ const kColumns = [
   ['clearance, mm', ({ run }) => number(clearanceOf(run))],
   ['tool off its path, mm', ({ run }) => number(run?.summary?.tool_path_error?.max_mm, 3)],
 ];
-const clearanceOf = (run) =>
-  run?.summary?.clearance ? 1e3 * run.summary.clearance.value : null;
+const clearanceOf = (run) => (run?.summary?.clearance ? 1e3 * run.summary.clearance.value : null);
 
 /** The table of strokes; pick: called with the number of one. Returns its lines. */
 export function strokeTable(list, failed, pick) {

@@ -31,8 +31,8 @@ export function displacements(chain, q) {
 }
 
 /**
- * From the base frame to that of the link which stands on the ground: the same frame, but where that
- * link moves against the base, as with the part in the hand. g: displacements at the joints.
+ * From the base frame to that of the link which stands on the ground: the same frame, but where
+ * that link moves against the base, as with the part in the hand. g: displacements at the joints.
  */
 export const standing = ({ ground }, g) =>
   ground ? g[ground.group].clone().multiply(matrix(ground.pose)).invert() : new Matrix4();

@@ -172,9 +172,7 @@ export function mapNote(cells, lattice, { beside, ended }) {
   const unseen = cells.count((state) => state === UNSEEN),
     known = cells.count((state) => state === FREE || state === BLOCKED);
   const several = cells.layers_each * cells.angles_each > 1;
-  const upwards = turns(cells)
-    ? 'arm angle φ or roll ρ'
-    : `${cells.coordinate} ${cells.letter}`;
+  const upwards = turns(cells) ? 'arm angle φ or roll ρ' : `${cells.coordinate} ${cells.letter}`;
   return (
     `s to the right, ${upwards} upwards. ` +
     (cells.arcs

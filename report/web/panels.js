@@ -272,7 +272,7 @@ export class Panels {
     for (let row = 0; row < cells.rows; ++row)
       for (let column = 0, end; column < cells.columns; column = end) {
         const is = (c) => cells.state(cells.index(panel, c, row)) === LIMIT;
-        for (end = column + 1; end < cells.columns && is(end) === is(column); ) ++end;
+        for (end = column + 1; end < cells.columns && is(end) === is(column);) ++end;
         if (!is(column)) continue;
         const at = (c) => x(edge(c, cells.layers_each, cells.layers)).toFixed(1),
           up = (r) => y(edge(r, cells.angles_each, cells.angles)).toFixed(1);
@@ -351,9 +351,7 @@ export class Panels {
       ...this.cells.legend(colours).map((one) => {
         const entry = document.createElement('span'),
           swatch = document.createElement('i');
-        swatch.style.background = one.hatched
-          ? hatchedBy(one.colour, colours.hatch)
-          : one.colour;
+        swatch.style.background = one.hatched ? hatchedBy(one.colour, colours.hatch) : one.colour;
         entry.append(swatch, words(one));
         return entry;
       }),

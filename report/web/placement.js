@@ -164,8 +164,8 @@ function layFloor() {
   );
 }
 /**
- * Hatching over the cells without a path, and lines between those that different things ended, where
- * their contrast is low. x, y: names of the coordinates; of: the colour of a row.
+ * Hatching over the cells without a path, and lines between those that different things ended,
+ * where their contrast is low. x, y: names of the coordinates; of: the colour of a row.
  */
 function unsolvedCells(x, y, flat, of, scales) {
   const group = element('g', { 'pointer-events': 'none' }),
@@ -399,11 +399,13 @@ function pickBeside(right, up) {
   if (far(best) < Infinity) pick(best);
 }
 const kArrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-$('map').querySelector('.chart').addEventListener('keydown', (event) => {
-  if (!kArrows[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
-  event.preventDefault();
-  pickBeside(...kArrows[event.key]);
-});
+$('map')
+  .querySelector('.chart')
+  .addEventListener('keydown', (event) => {
+    if (!kArrows[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    pickBeside(...kArrows[event.key]);
+  });
 function paintMap() {
   const host = $('map').querySelector('.chart'),
     drawing = draw(host.clientWidth, style('--soft'));

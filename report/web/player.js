@@ -33,8 +33,9 @@ export class Player {
 }
 
 /**
- * actions: of each key, called with how many steps are meant: one, with shift ten. They are those of
- * what moves the arm (view, map and slider) while it has the focus; elsewhere keys scroll the page.
+ * actions: of each key, called with how many steps are meant: one, with shift ten. They are those
+ * of what moves the arm (view, map and slider) while it has the focus; elsewhere keys scroll the
+ * page.
  */
 export function keys(actions) {
   addEventListener('keydown', (event) => {

@@ -423,10 +423,7 @@ class View {
   pick(x, y) {
     const { width, height } = this.size,
       caster = new THREE.Raycaster();
-    caster.setFromCamera(
-      new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height),
-      this.camera,
-    );
+    caster.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
     this.scene.updateMatrixWorld();
     const [hit] = caster.intersectObjects(this.arm.filter(({ visible }) => visible));
     return hit ? { body: hit.object.userData.body, point: hit.point } : null;

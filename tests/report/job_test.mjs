@@ -290,13 +290,13 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
 
   // Home is barred: strokes and the arm at home, no maps.
   const ball = '  - {name: ball, sphere: {radius: 0.1}, xyz: [0.55, 0.45, 1.0]}\n',
-    home = planned(folder, doorJob(folder, 'home', (line) => /stroke_0/.test(line), ball));
+    home = planned(
+      folder,
+      doorJob(folder, 'home', (line) => /stroke_0/.test(line), ball),
+    );
   assert.equal(home.status, 1);
   const stuck = await open(home.html, { viewport: wide });
-  assert.match(
-    await stuck.page.textContent('#verdict'),
-    /^no job: at home .* - ball come nearer/,
-  );
+  assert.match(await stuck.page.textContent('#verdict'), /^no job: at home .* - ball come nearer/);
   assert.deepEqual((await shown(stuck.page)).joints, home.data.home.q);
   for (const id of ['map-section', 'controls', 'plots-section', 'motion-section'])
     assert.ok(!(await stuck.page.isVisible(`#${id}`)), id);

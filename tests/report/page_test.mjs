@@ -442,7 +442,9 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       most = (name) => Math.max(...first[name].map((v, k) => Math.abs(v - last[name][k])));
     assert.ok(most('base') < 1e-9 && most('spindle') < 1e-9 && most('plate') > 0.05);
     // The spindle points upwards from where the file has it in the base's frame.
-    assert.ok(Math.hypot(last.spindle[12] - 0.5, last.spindle[13] - 0.1, last.spindle[14] - 0.22) < 1e-6);
+    assert.ok(
+      Math.hypot(last.spindle[12] - 0.5, last.spindle[13] - 0.1, last.spindle[14] - 0.22) < 1e-6,
+    );
     assert.equal(await page.locator('#bodies').getByText('base of the robot').count(), 1);
     await close();
   }
@@ -677,7 +679,11 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   // Where there is no path: the furthest layer, why, and the pose past it. By the joints, by a
   // body, and in the first layer.
   for (const [name, reason, reached, ...options] of [
-    ['a_start', /^the next pose cannot be moved to: joint arm_left_joint_5_r, [\d.]+° beyond 179\.34°$/, true],
+    [
+      'a_start',
+      /^the next pose cannot be moved to: joint arm_left_joint_5_r, [\d.]+° beyond 179\.34°$/,
+      true,
+    ],
     ...some([
       ['5_r', 'the next pose is', true, '258'],
       ['6_b', 'a pose of the first layer,', false, '33'],

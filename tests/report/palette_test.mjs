@@ -94,8 +94,7 @@ for (const colour of [kKnown.found, kKnown.proved, kObjects[0], ...palette.kRamp
   assert.ok(css.includes(colour), `${colour} in page.css`);
 const header = readFileSync(join(root, 'report/src/palette.hpp'), 'utf8');
 /** The colours of a constant there. */
-const drawn = (name) =>
-  header.match(new RegExp(`${name}[ {][^;]*;`))[0].match(/#[0-9a-f]{6}/g);
+const drawn = (name) => header.match(new RegExp(`${name}[ {][^;]*;`))[0].match(/#[0-9a-f]{6}/g);
 for (const [name, colours] of Object.entries({
   kNothing: [kLight.nothing],
   kUnseen: [kLight.unseen],

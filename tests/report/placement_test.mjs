@@ -138,7 +138,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.equal(await isFaded(), true);
   // The arrows pick the placement beside it.
   await page.locator('#map .chart').focus();
-  const number = async () => Number((await page.textContent('#facts')).match(/^Placement (\d+)/)[1]);
+  const number = async () =>
+    Number((await page.textContent('#facts')).match(/^Placement (\d+)/)[1]);
   await page.locator('.cells rect').nth(rows.indexOf(best)).dispatchEvent('click');
   assert.equal(await isFaded(), false);
   await page.keyboard.press('ArrowLeft');

@@ -52,7 +52,7 @@ struct LatticeMap {
   std::vector<Node> nodes;  ///< [layer][panel][angle], panel = branch * windings + winding
   std::vector<int> slots;   ///< of each of `nodes`: whose it is, -1: none; empty of a grid
   std::vector<std::pair<std::string, std::string>>
-      blockers;  ///< two bodies each, in the order of their names
+      blockers;                      ///< two bodies each, in the order of their names
   std::vector<std::string> objects;  ///< of the scene, in its order, each once
   std::array<std::string, kDof> joint_names;
   std::vector<int> path;  ///< one cell in each layer, IK solution * angles + angle: the answer, or
@@ -116,9 +116,10 @@ struct LatticeMap {
 /// planner was eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// Draws the map as text, one panel per inhabited IK solution: s to the right, the coordinate in
-/// degrees from its largest value at the top, the path on it. A cell stands for as many nodes as it takes to fit
-/// into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
+/// Draws the map as text, one panel per inhabited IK solution: s to the right, the coordinate
+/// in degrees from its largest value at the top, the path on it. A cell stands for as many
+/// nodes as it takes to fit into `columns`, and shows the most important (NodeState).
+/// `coloured`: ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 
 /// Draws the map as SVG for papers, with axes and a legend.
