@@ -418,6 +418,7 @@ class CauseKind:
 
 class Change:
     FREE_START: ClassVar[Change]
+    FREE_END: ClassVar[Change]
     FREE_ROLL: ClassVar[Change]
     FINER: ClassVar[Change]
     CLEARANCE: ClassVar[Change]

@@ -129,9 +129,11 @@ const char* LatticeMap::letter(int panel) const {
 }
 
 const char* LatticeMap::emptiness() const {
-  if (!grid()) return "no solution: out of reach, beyond a joint limit, or beside the given start";
-  return turns ? "no node: out of reach, beside the given start, or turned further than allowed"
-               : "no node: out of reach, or beside the given start";
+  if (!grid())
+    return "no solution: out of reach, beyond a joint limit, or beside a given start or end";
+  return turns
+             ? "no node: out of reach, beside a given start or end, or turned further than allowed"
+             : "no node: out of reach, or beside a given start or end";
 }
 
 std::vector<int> LatticeMap::inhabited_solutions() const {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "answer_order.hpp"
+#include "given_end.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/search/path_first.hpp"
@@ -98,6 +99,7 @@ Problem random_problem(const TestRobot& robot, const Chain& chain, Random& rando
   if (random.coin(0.2))
     problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
   if (random.coin(0.3)) problem.start = q0;
+  if (random.coin(0.3)) end_at(problem, chain, q1);
   return problem;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cost_to_go/grid/grid_cost_to_go.hpp"
+#include "given_end.hpp"
 #include "robots.hpp"
 #include "swivel/graph/lattice_graph/implicit_lattice.hpp"
 #include "window.hpp"
@@ -237,6 +238,7 @@ Problem five_steps(const TestRobot& robot, const Chain& chain, Random& random) {
                         .dalpha = 10};
   problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
   if (random.coin()) problem.start = q0;
+  if (random.coin(0.3)) end_at(problem, chain, q1);
   return problem;
 }
 
@@ -346,6 +348,7 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
       problem.limits.arm_slope = 0.7 / problem.resolution.ds;
       problem.limits.joint_step = 0.8;
       if (random.coin()) problem.start = q0;
+      if (random.coin(0.3)) end_at(problem, arm.chain, q1);
       problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);

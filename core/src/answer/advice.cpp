@@ -52,6 +52,8 @@ const char* to_string(Advice::Change change) {
   switch (change) {
     case Advice::Change::kFreeStart:
       return "free_start";
+    case Advice::Change::kFreeEnd:
+      return "free_end";
     case Advice::Change::kFreeRoll:
       return "free_roll";
     case Advice::Change::kFiner:
@@ -95,6 +97,8 @@ std::string words(const Advice& advice) {
   switch (advice.change) {
     case Advice::Change::kFreeStart:
       return "a free start";
+    case Advice::Change::kFreeEnd:
+      return "a free end";
     case Advice::Change::kFreeRoll:
       return "a tool free to turn about its axis (path.roll)";
     case Advice::Change::kFiner:

@@ -68,6 +68,8 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
       path_(&path),
       limits_(problem.limits),
       cost_(problem.cost),
+      starts_given_(problem.start.has_value()),
+      end_(path.ends_early() ? std::nullopt : problem.end),
       fit_error_(fit_error) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (std::size_t k = 0; k < kDof; ++k) {
@@ -311,7 +313,18 @@ std::vector<Config> Lattice::path_joints(const std::vector<int>& slots) const {
     const Config q = *exact_config(static_cast<int>(rows.size()), slot);
     rows.push_back(rows.empty() ? q : Config(rows.back() + delta(rows.back(), q)));
   }
+  if (static_cast<int>(rows.size()) == layers()) turn_to_end(rows);
   return rows;
+}
+
+void Lattice::turn_to_end(std::vector<Config>& rows) const {
+  constexpr double kRounding = 1e-9;  // rad
+  if (!end_) return;
+  for (int j = 0; j < kDof; ++j) {
+    const double turns = std::round(((*end_)[j] - rows.back()[j]) / kTwoPi) * kTwoPi;
+    for (Config& q : rows) q[j] += starts_given_ ? 0 : turns;
+    if (std::abs((*end_)[j] - rows.back()[j]) < kRounding) rows.back()[j] = (*end_)[j];
+  }
 }
 
 std::vector<TrajectoryRow> Lattice::path_rows(const std::vector<int>& slots) const {

@@ -30,6 +30,8 @@ void validate(const Stroke& stroke) {
   const std::string name = "stroke '" + stroke.name + "': ";
   if (stroke.start || stroke.start_at)
     throw InvalidArgument(name + "start: allowed is the home of the job");
+  if (stroke.end && stroke.reversible)
+    throw InvalidArgument(name + "end: allowed in strokes that are not reversible");
   if (!stroke.rolls.empty()) throw InvalidArgument(name + "rolls: allowed are none");
   if (!stroke.steps.empty()) throw InvalidArgument(name + "steps: allowed are none");
   if (!stroke.approach.allFinite() || !stroke.retract.allFinite())

@@ -284,6 +284,19 @@ void validate_path(const Field& root, const Problem& problem) {
   }
 }
 
+/// Throws for a start or an end that is not finite, and for a place or a tolerance of the start
+/// that makes no sense.
+void validate_postures(const Field& root, const Problem& problem) {
+  if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
+  if (problem.end) numbers(root("end"), *problem.end, Range::kFinite);
+  if (problem.start_at && !problem.start)
+    fail(root("start_at"), "is given without a start", "a number beside a start");
+  number(root("start_at"), problem.start_at, Range::kNonNegative);
+  number(root("start_tolerance"), problem.start_tolerance, Range::kPositive);
+  if (problem.start_tolerance > kMostStartTolerance)
+    fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");
+}
+
 void validate_numbers(const Field& root, const Problem& problem) {
   constexpr auto kPositive = Range::kPositive, kNonNegative = Range::kNonNegative;
   const Field resolution = root("resolution");
@@ -326,13 +339,7 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(refine("smoothing"), problem.refinement.smoothing, kNonNegative);
   number(refine("joint_margin"), problem.refinement.joint_margin, kNonNegative);
   number(refine("singular_margin"), problem.refinement.singular_margin, kNonNegative);
-  if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
-  if (problem.start_at && !problem.start)
-    fail(root("start_at"), "is given without a start", "a number beside a start");
-  number(root("start_at"), problem.start_at, kNonNegative);
-  number(root("start_tolerance"), problem.start_tolerance, kPositive);
-  if (problem.start_tolerance > kMostStartTolerance)
-    fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");
+  validate_postures(root, problem);
   for (std::size_t k = 0; k < kDof; ++k) {
     const double weight = problem.cost.weights[k];
     if (weight_allowed(weight)) continue;

@@ -35,7 +35,6 @@ class Finder {
       : lattice_(view.lattice),
         verdicts_(verdicts),
         budget_(budget),
-        started_(view.problem.start.has_value()),
         witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()),
                    DistanceProofs::kOn, check, budget) {}
 
@@ -47,8 +46,7 @@ class Finder {
     certificate.first_layer = last_without_way_on();
     Nodes nodes = nodes_of(certificate.first_layer);
     std::vector<char> all(nodes.at.size(), 1);
-    if (started_ && certificate.first_layer == 0)  // the other slots have no node
-      for (std::size_t slot = 0; slot < all.size(); ++slot) all[slot] = nodes.at[slot] != nullptr;
+    leave_out_missing(certificate.first_layer, nodes, all);
     std::vector<char> reached(nodes.at.size(), 0);
     for (int slot = 0; slot < static_cast<int>(reached.size()); ++slot)
       reached[index(slot)] = has_row(certificate.first_layer, slot, nodes);
@@ -81,6 +79,13 @@ class Finder {
       nodes.removed[index(node.slot)] = verdicts_.node(layer, node.slot) == Verdict::kRemoved;
     }
     return nodes;
+  }
+
+  /// Clears the flags, by slot, of the slots without a node in a layer of a given start or end: no
+  /// witness is needed for postures that are not the given one.
+  void leave_out_missing(int layer, const Nodes& nodes, std::vector<char>& flags) const {
+    for (std::size_t slot = 0; lattice_.is_given(layer) && slot < flags.size(); ++slot)
+      if (nodes.at[slot] == nullptr) flags[slot] = 0;
   }
 
   /// Returns true if a slot has a node that was not removed and has an exact configuration, which
@@ -257,6 +262,7 @@ class Finder {
                                                      std::vector<char>& reached) {
     Nodes ahead = nodes_of(layer + 1);
     Step step = step_from(layer, nodes, reached, ahead);
+    leave_out_missing(layer + 1, ahead, step.met);
     InfeasibilityCertificate::Layer found = layer_of(layer + 1, ahead, step.reached, step.met);
     add_removed_edges(layer, step, found);
     nodes = std::move(ahead);
@@ -274,7 +280,6 @@ class Finder {
   const Lattice& lattice_;
   const Verdicts& verdicts_;
   const Budget& budget_;
-  bool started_;
   Witnesses witnesses_;
 };
 

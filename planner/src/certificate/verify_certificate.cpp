@@ -26,12 +26,11 @@ std::string number(int k) {
 
 class Verifier {
  public:
-  Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule, bool started,
+  Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule,
            const InfeasibilityCertificate& certificate, CertificateCheck& result,
            const std::shared_ptr<StateCheck>& check, const Budget& budget)
       : lattice_(lattice),
         certificate_(certificate),
-        started_(started),
         result_(result),
         budget_(budget),
         witnesses_(lattice, world, rule, DistanceProofs::kOff, check, budget) {}
@@ -122,7 +121,7 @@ class Verifier {
   void every_node_is_told(const Layer& layer) const {
     for (std::size_t slot = 0; slot < layer.state.size(); ++slot)
       if (layer.state[slot] == State::kUntold &&
-          !(started_ && layer.layer == 0 && layer.at[slot] == nullptr))
+          !(lattice_.is_given(layer.layer) && layer.at[slot] == nullptr))
         refuse(layer.layer, static_cast<int>(slot),
                "of the first layer is neither reached nor removed");
   }
@@ -154,7 +153,10 @@ class Verifier {
       for (const Lattice::SlotRun& run : runs)
         for (int b = run.first; b < run.last; ++b) {
           if (to.state[index(b)] != State::kUntold) continue;
-          if (to.at[index(b)] == nullptr) refuse(to.layer, b, "has no node, and no witness why");
+          if (to.at[index(b)] == nullptr) {
+            if (lattice_.is_given(to.layer)) continue;  // another posture than the given one
+            refuse(to.layer, b, "has no node, and no witness why");
+          }
           if (lattice_.step_allowed(from.layer, lattice_.delta(a.q, to.at[index(b)]->q)))
             edge_is_removed(from.layer, a.slot, b, removed, asked);
         }
@@ -190,7 +192,6 @@ class Verifier {
 
   const Lattice& lattice_;
   const InfeasibilityCertificate& certificate_;
-  bool started_;
   CertificateCheck& result_;
   const Budget& budget_;
   Witnesses witnesses_;
@@ -238,8 +239,7 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& p
       if (!lattice) throw Refused{"windings: are of arms that are planned on arcs"};
     }
     const World world(robot.world(), problem, budget);
-    Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(),
-             certificate, result, check, budget)
+    Verifier(*lattice, world, world.edge_rule(robot.radii()), certificate, result, check, budget)
         .run();
     result.s = {lattice->path().layer(certificate.first_layer).s,
                 lattice->path()

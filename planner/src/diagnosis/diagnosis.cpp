@@ -278,9 +278,10 @@ class Inspector {
     return worst;
   }
 
-  /// Counts the causes of the layer's slots without a node: reach, singularity and joint limits.
-  /// blocked() must have listed the layer's nodes.
+  /// Counts the causes of the layer's slots without a node: reach, singularity and joint limits;
+  /// none in a layer of a given end. blocked() must have listed the layer's nodes.
   void add_missing(int layer, Counts& causes) {
+    if (lattice_.is_given(layer)) return;
     auto node = nodes_.begin();
     for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
       if (node != nodes_.end() && node->slot == slot) {
@@ -490,7 +491,7 @@ class Diagnoser {
       diagnosis_.cause = *empty_;
     }
     // No node is listed that continues the path.
-    if (!diagnosis_.without_it && deepest_ >= 0 &&
+    if (!diagnosis_.without_it && deepest_ >= 0 && !lattice_.is_given(next_) &&
         lattice_.neighbour_along_path(deepest_, path_.back(), 1) < 0)
       if (const auto limit =
               inspector_.limit_ahead(deepest_, *lattice_.exact_config(deepest_, path_.back())))

@@ -28,12 +28,20 @@ void note_off_limits(const Lattice& lattice, const Config& q, Lattice::Joints& o
   }
 }
 
+/// Notes the bounded joints that are in another turn at `q` than at `wanted`.
+void note_other_turn(const Lattice& lattice, const Config& q, const Config& wanted,
+                     Lattice::Joints& off) {
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    if (is_bounded_circle(lattice, j)) off[j] = off[j] || std::abs(q[i] - wanted[i]) > kPi;
+  }
+}
+
 }  // namespace
 
-Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice,
-                     const std::optional<Config>& home) {
+Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice, const Job& job) {
   Lattice::Joints off{};
-  std::optional<Config> end = home;
+  std::optional<Config> end = job.home;
   for (JobPart& part : parts) {
     if (part.rows.empty()) {  // the run itself leaves the limits, whatever its turn
       for (std::size_t j = 0; j < kDof; ++j) off[j] = is_bounded_circle(lattice, j);
@@ -50,12 +58,11 @@ Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice,
       note_off_limits(lattice, row.q, off);
     }
     end = last;
+    if (!part.run) continue;
+    if (const auto& given = job.strokes[part.run->stroke].end)
+      note_other_turn(lattice, last, *given, off);
   }
-  if (!home) return off;
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    if (is_bounded_circle(lattice, j)) off[j] = off[j] || std::abs((*end)[i] - (*home)[i]) > kPi;
-  }
+  if (job.home) note_other_turn(lattice, *end, *job.home, off);
   return off;
 }
 

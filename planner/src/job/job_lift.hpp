@@ -5,14 +5,16 @@
 
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/problem/job.hpp"
 
 namespace swivel {
 
 /// Adds whole turns to the joints of a job's parts, so that each part begins where the one before
 /// ends and no joint jumps: of joints that the lattice treats as circles, and of continuous ones.
 /// A job begins at `home`, if given, else where its first run does. Returns which bounded joints
-/// then leave their limits, or do not come back to `home`; the parts mean nothing if there are any.
+/// then leave their limits, do not come back to `home`, or are not at the given end of a stroke
+/// (Stroke::end); the parts mean nothing if there are any.
 [[nodiscard]] Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice,
-                                   const std::optional<Config>& home);
+                                   const Job& job);
 
 }  // namespace swivel

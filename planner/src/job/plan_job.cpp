@@ -245,7 +245,7 @@ class JobPlan {
       paths_.resize(runs_.size());
       if (outcome.paths.empty()) return;
       std::vector<JobPart> parts = parts_of(outcome, transitions);
-      const Lattice::Joints off = lift(parts, *runs_.front()->lattice, job_.home);
+      const Lattice::Joints off = lift(parts, *runs_.front()->lattice, job_);
       if (off == Lattice::Joints{}) {
         result_.status = outcome.decided ? PlanStatus::kSolved : stopped_status();
         result_.parts = std::move(parts);

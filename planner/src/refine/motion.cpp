@@ -140,7 +140,7 @@ class Bisection {
 /// and the waypoints' windows: where it leaves them, the rolls beside are moved by as much, again
 /// and again. In a window no wider than the spline's own bends it may stay outside a little.
 std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
-                                     const std::vector<TrajectoryRow>& rows) {
+                                     const std::vector<TrajectoryRow>& rows, bool ends_given) {
   constexpr int kMost = 40;
   constexpr double kFurther = 1.2;  // so that it ends
   std::vector<double> rolls = rolls_of(rows);
@@ -167,9 +167,9 @@ std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
       inside = false;
       for (const int layer : {i, i + 1}) {
         double& roll = rolls[static_cast<std::size_t>(layer)];
-        if (layer > 0)
-          roll = into(path.layer(layer).window,
-                      roll + kFurther * outside);  // the first may be a start's
+        const bool given = layer == 0 || (ends_given && layer + 1 == path.size());
+        if (!given)  // the first may be a start's
+          roll = into(path.layer(layer).window, roll + kFurther * outside);
       }
     }
     if (inside) break;
@@ -369,7 +369,8 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
     Problem turned = problem;
     turned.rolls = rolls_for_motion(*robot.arm().chain.free_roll,
-                                    problem_path(problem, robot.arm().chain, budget), rows);
+                                    problem_path(problem, robot.arm().chain, budget), rows,
+                                    problem.end.has_value());
     return time_rows(robot, turned, rows, asked, between_layers, budget);
   }
   require_positive(asked);

@@ -227,19 +227,35 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
   return most;
 }
 
+/// Which rows of a path keep their joints, since the problem gives them.
+struct FixedRows {
+  bool first = false, last = false;
+  explicit FixedRows(const Problem& problem)
+      : first(problem.start.has_value()), last(problem.end.has_value()) {}
+  /// Returns whether row i of n keeps its joints.
+  [[nodiscard]] bool row(std::size_t i, std::size_t n) const {
+    return (first && i == 0) || (last && i + 1 == n);
+  }
+  /// Narrows the intervals of such rows to where they are.
+  void narrow(const std::vector<double>& x, std::vector<CoordinateBox>& boxes) const {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (row(i, x.size())) boxes[i] = {x[i], x[i]};
+  }
+};
+
 /// Refines one given path, whose nodes are valid, at one weight of smoothness.
 class PathRefiner {
  public:
   /// Whether the edges of the given path are known to be valid too.
   enum class Edges { kValid, kUnknown };
   PathRefiner(const Redundancy& redundancy, RefinementChecker& checker,
-              const std::vector<TrajectoryRow>& given, Edges edges, bool fixed_start,
+              const std::vector<TrajectoryRow>& given, Edges edges, const FixedRows& fixed,
               const Budget& budget)
       : checker_(&checker),
         given_(given),
         solver_(redundancy.solver(given_)),
         edges_(edges),
-        fixed_start_(fixed_start),
+        fixed_(fixed),
         redundancy_(&redundancy),
         jumps_(given.size()),
         budget_(budget) {
@@ -260,7 +276,7 @@ class PathRefiner {
       boxes[i] = {std::max(x[i] - kFarthest, std::min(x[i], range.low)),
                   std::min(x[i] + kFarthest, std::max(x[i], range.high))};
     }
-    if (fixed_start_) boxes[0] = {x[0], x[0]};
+    fixed_.narrow(x, boxes);
     std::vector<double> node_known(n, std::nan(""));
     std::vector<std::array<double, 2>> edge_known(n, {std::nan(""), std::nan("")});
     for (int round = 0; round < kRounds; ++round) {
@@ -357,7 +373,7 @@ class PathRefiner {
   std::vector<TrajectoryRow> given_;  // phi holds the coordinate
   std::unique_ptr<LayerSolver> solver_;
   Edges edges_;
-  bool fixed_start_;
+  FixedRows fixed_;
   const Redundancy* redundancy_;
   std::vector<bool> jumps_;  // by layer: the path jumps to it or from it
   Budget budget_;
@@ -365,7 +381,7 @@ class PathRefiner {
 
 /// Moves rows to the nearest nodes that keep the margins of refinement, or are at least valid;
 /// returns false if a row has neither nearby. Edges are not tested.
-bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixed_start,
+bool move_clear(const LayerSolver& solver, RefinementChecker& checker, const FixedRows& fixed,
                 std::vector<TrajectoryRow>& rows) {
   constexpr double kNearby = 0.1;  // rad
   constexpr int kSteps = 20;
@@ -383,9 +399,9 @@ bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixe
     return false;
   };
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool fixed = i == 0 && fixed_start;
     const int layer = static_cast<int>(i);
-    if (!fixed && (checker.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i])))
+    if (!fixed.row(i, rows.size()) &&
+        (checker.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i])))
       continue;
     if (!checker.bare_node(layer, rows[i].q)) return false;
   }
@@ -434,11 +450,15 @@ std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobo
       make_path_motion(robot.arm().chain, robot.arm_class(), path, found.trajectory);
   if (!motion->jumps().empty()) return std::nullopt;
   const Lattice& lattice = redundancy.lattice();
+  const bool ends_given = coarse.end.has_value();
   std::vector<TrajectoryRow> rows;
   for (int i = 0; i < lattice.layers(); ++i) {
     TrajectoryRow row;
     row.s = lattice.path().layer(i).s;
-    const auto q = i == 0 ? found.trajectory[0].q : motion->joints(lattice.path().layer(i).travel);
+    const auto q = i == 0 ? found.trajectory.front().q
+                   : ends_given && i + 1 == lattice.layers()
+                       ? found.trajectory.back().q
+                       : motion->joints(lattice.path().layer(i).travel);
     if (!q) return std::nullopt;
     row.q = *q;
     row.phi = redundancy.coordinate(i, *q);
@@ -450,7 +470,7 @@ std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobo
 
 /// Returns the cost of the smoothest path near the rows, obstacles aside.
 double cost_without_obstacles(const LayerSolver& solver, const Lattice& lattice,
-                              const SmoothObjective& objective, bool fixed_start,
+                              const SmoothObjective& objective, const FixedRows& fixed,
                               const std::vector<TrajectoryRow>& rows, const Budget& budget) {
   std::vector<double> x;
   std::vector<CoordinateBox> boxes;
@@ -458,7 +478,7 @@ double cost_without_obstacles(const LayerSolver& solver, const Lattice& lattice,
     x.push_back(row.phi);
     boxes.push_back({row.phi - kFarthest, row.phi + kFarthest});
   }
-  if (fixed_start) boxes[0] = {x[0], x[0]};
+  fixed.narrow(x, boxes);
   x = smooth_minimum(solver, objective, boxes, std::move(x), budget);
   std::vector<TrajectoryRow> best = rows;
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -486,11 +506,11 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   auto rows = rows_of_coarse_plan(robot, *coarse, redundancy, path, budget);
   if (!rows) return std::nullopt;
   const auto solver = redundancy.solver(*rows);
-  const bool fixed_start = problem.start.has_value();
-  if (cost_without_obstacles(*solver, redundancy.lattice(), objective, fixed_start, *rows,
-                             budget) >= to_beat)
+  const FixedRows fixed(problem);
+  if (cost_without_obstacles(*solver, redundancy.lattice(), objective, fixed, *rows, budget) >=
+      to_beat)
     return std::nullopt;
-  if (!move_clear(*solver, checker, fixed_start, *rows)) return std::nullopt;
+  if (!move_clear(*solver, checker, fixed, *rows)) return std::nullopt;
   return rows;
 }
 
@@ -519,7 +539,7 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot,
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
     PathRefiner refiner(redundancy, checker, from,
                         second ? PathRefiner::Edges::kUnknown : PathRefiner::Edges::kValid,
-                        problem.start.has_value(), budget);
+                        FixedRows(problem), budget);
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
     objective.jumps = redundancy.jumps(from);

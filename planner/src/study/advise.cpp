@@ -105,7 +105,7 @@ class Adviser {
     if (result_.status != PlanStatus::kInfeasible) return {};
     by_cause(result_.diagnosis.cause);
     for (const Cause& cause : result_.diagnosis.together) by_cause(cause);
-    if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+    free_given();
     free_roll();
     finer();
     for (const SceneObject& object : problem_.scene)
@@ -147,7 +147,7 @@ class Adviser {
       deepen(cause);
     else if (cause.kind == Cause::Kind::kPair)
       relax(Change::kClearance);
-    if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+    free_given();
     free_roll();
     for (const std::string& body : cause.bodies) {
       move(body);
@@ -163,7 +163,7 @@ class Adviser {
         by_contact(cause);
         break;
       case Cause::Kind::kLimit:
-        if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+        free_given();
         free_roll();
         finer();
         relax(Change::kJointMargin);
@@ -210,9 +210,14 @@ class Adviser {
     }
   }
 
+  /// Proposes to give no start, and no end.
+  void free_given() {
+    if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+    if (problem_.end) try_once({.change = Change::kFreeEnd});
+  }
   /// Proposes a free roll: what blocks the given rolls may not block others.
   void free_roll() {
-    if (problem_.roll && !problem_.roll->circle() && !problem_.start)
+    if (problem_.roll && !problem_.roll->circle() && !problem_.start && !problem_.end)
       try_once({.change = Change::kFreeRoll});
   }
   void finer() {
@@ -236,6 +241,9 @@ class Adviser {
     switch (advice.change) {
       case Change::kFreeStart:
         changed.start.reset();
+        break;
+      case Change::kFreeEnd:
+        changed.end.reset();
         break;
       case Change::kFreeRoll:
         changed.roll = Roll{};
@@ -377,7 +385,8 @@ class Adviser {
   }
 
   void move(const std::string& name) {
-    if (!is_object(name) || (problem_.start && name == problem_.path_frame)) return;
+    const bool given = problem_.start || problem_.end;  // which stay when the path moves
+    if (!is_object(name) || (given && name == problem_.path_frame)) return;
     propose({.change = Change::kMoveObject, .object = name}, &Adviser::plan_moved);
   }
 

@@ -138,7 +138,7 @@ class JobTrials {
                        std::any_of(result_.runs.begin(), result_.runs.end(), [&](const auto& run) {
                          return run.run.stroke == stroke && run.status == PlanStatus::kInfeasible;
                        });
-    if (free || (alone && of.approach == of.retract)) return;
+    if (free || of.end || (alone && of.approach == of.retract)) return;
     Job changed = job_;
     Stroke& turned = changed.strokes[stroke];
     std::reverse(turned.waypoints.begin(), turned.waypoints.end());
@@ -166,7 +166,9 @@ class JobTrials {
       JobAdvice advice{.change = change, .strokes = {}, .length = length};
       for (const std::size_t stroke : strokes) {
         if (change != JobAdvice::Change::kRetract) extend(changed.strokes[stroke].approach);
-        if (change != JobAdvice::Change::kApproach) extend(changed.strokes[stroke].retract);
+        // a given end stands where the retract ends
+        if (change != JobAdvice::Change::kApproach && !job_.strokes[stroke].end)
+          extend(changed.strokes[stroke].retract);
         if (change != JobAdvice::Change::kLines) advice.strokes.push_back(name(stroke));
       }
       if (!any) continue;

@@ -24,6 +24,7 @@
 #include "verify/answer_check.hpp"
 #include "verify/between_samples.hpp"
 #include "verify/check_rates.hpp"
+#include "verify/given_ends.hpp"
 #include "verify/path_following.hpp"
 
 namespace swivel {
@@ -155,9 +156,8 @@ class Check {
 
   CheckResult run() {
     if (rows_.size() < 2) fail("%zu row(s): at least two are needed", rows_.size());
-    if (problem_.start && !rows_.empty() &&
-        !((rows_[0].q - *problem_.start).lpNorm<Eigen::Infinity>() <= kPose))
-      fail("row 0: joints are not the given start");
+    if (!rows_.empty())
+      for (const std::string& line : faults_of_given_ends(problem_, chain_, rows_)) fail(line);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       options_.budget.poll();
       const bool is_sound = sound(k);

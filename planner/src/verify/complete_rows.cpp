@@ -19,6 +19,7 @@
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "verify/check_rates.hpp"
+#include "verify/given_ends.hpp"
 #include "verify/path_following.hpp"
 #include "verify/places_on_path.hpp"
 
@@ -391,7 +392,11 @@ std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem&
 std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot, const Problem& problem,
                                           const std::vector<TrajectoryRow>& rows,
                                           const Stated& stated, const Budget& budget) {
-  return completion_of(robot, problem, rows, stated, false, budget)->at_layers();
+  std::vector<TrajectoryRow> laid =
+      completion_of(robot, problem, rows, stated, false, budget)->at_layers();
+  const std::vector<std::string> faults = faults_of_given_ends(problem, robot.arm().chain, laid);
+  if (!faults.empty()) refuse("%s: allowed are rows of this problem", faults.front().c_str());
+  return laid;
 }
 
 }  // namespace swivel

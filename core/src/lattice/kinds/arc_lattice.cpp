@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "lattice/start.hpp"
+#include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -490,18 +490,33 @@ void add_at_asked_rolls(const Chain& chain, const Problem& problem, const SelfMo
   if (window.upper < limit.upper && window.upper > window.lower) add(window.upper);
 }
 
+/// Throws InputError unless the posture that the problem gives for an end of the path is within its
+/// limits and puts the tool there.
+void require_fits(PathEnd which, const Problem& problem, const Chain& chain, const ToolPath& path) {
+  validate_given(which, problem, chain, path);
+  if (chain.roll)
+    static_cast<void>(roll_of_given(which, problem, chain, path,
+                                    {chain.limit.back().lower, chain.limit.back().upper}));
+}
+
+/// Returns a given posture as the only node of its layer, in the winding that the lattice's nodes
+/// have.
+Point given_point(const SelfMotion& motion, const Config& q) {
+  Point point;
+  point.q = q;
+  static_cast<void>(motion.canonical(point.q));
+  return point;
+}
+
 }  // namespace
 
 ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method,
                                      const ToolPath& path, const Problem& problem,
                                      const Budget& budget) {
   const TraceSpan span("arcs");
-  if (problem.start) {
-    validate_start(problem, chain, path);
-    if (chain.roll)
-      static_cast<void>(roll_of_start(problem, chain, path,
-                                      {chain.limit.back().lower, chain.limit.back().upper}));
-  }
+  if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
+  const bool ends_given = problem.end && !path.ends_early();
+  if (ends_given) require_fits(PathEnd::kLast, problem, chain, path);
   const SelfMotion motion(chain, method, problem.limits.joint_margin,
                           weights_of(chain, problem.cost));
   // Nodes drift with the tool as the cost would have it.
@@ -514,6 +529,10 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   Before before;
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
+    if (i + 1 == path.size() && ends_given) {  // the end is the only node, and continues none
+      result.points.push_back({given_point(motion, *problem.end)});
+      break;
+    }
     const PathLayer& here = path.layer(i);
     ArcsOfLayer found = arcs_of(motion, method, here.tool, before, least);
     Layer layer(motion, here.tool, problem.resolution.arc);
@@ -536,9 +555,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     const int slots = static_cast<int>(layer.points.size());
     if (i == 0 && problem.start) {
       // The start is the only node of layer 0; the others are transported as if there were none.
-      Point start;
-      start.q = *problem.start;
-      (void)motion.canonical(start.q);  // its winding
+      const Point start = given_point(motion, *problem.start);
       nodes.push_back(start.q);
       slot_of.push_back(slots);
       before = {std::move(nodes), std::move(slot_of), slots, true};
@@ -618,6 +635,7 @@ ArcLattice::Rows ArcLattice::followed(const std::vector<int>& slots) const {
     for (Config& q : rows) q += turns;
     rows.front() = *problem_.start;
   }
+  if (static_cast<int>(rows.size()) == layers()) turn_to_end(rows);
   return rows;
 }
 
@@ -632,8 +650,11 @@ ArcLattice::Fit ArcLattice::fit(std::size_t j, const Rows& rows) const {
                upper = chain().limit[j].upper - limits().joint_margin;
   const auto keeps = [&](double turn) { return least + turn >= lower && most + turn <= upper; };
   Fit fit;
-  if (problem_.start) {
-    if (keeps(0)) fit = {0.0, true};
+  const bool ends = end_ && static_cast<int>(rows.size()) == layers();
+  if (problem_.start || ends) {
+    const bool turned =
+        ends && !chain().limit[j].wide() && std::abs(rows.back()[at] - (*end_)[at]) > kPi;
+    if (keeps(0) && !turned) fit = {0.0, true};
     return fit;
   }
   double turns = std::ceil((lower - rows[0][at]) / kTwoPi),
@@ -691,8 +712,8 @@ std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
     std::vector<std::size_t> first;  // image of each slot
     for (int slot = 0; slot < slots(i); ++slot) {
       std::vector<Config> images{point(i, slot).q};
-      if (i == 0 && problem_.start) images[0] = *problem_.start;
-      for (std::size_t j = 0; j < kDof && !(i == 0 && problem_.start); ++j) {
+      if (given(i)) images[0] = *given(i);
+      for (std::size_t j = 0; j < kDof && !given(i); ++j) {
         if (!joints[j] || !circles()[j]) continue;
         const auto at = static_cast<Eigen::Index>(j);
         std::vector<Config> more;

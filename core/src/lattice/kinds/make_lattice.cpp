@@ -43,7 +43,7 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                          const Problem& problem) {
   // If the roll has a cost, turning joint 7 may be cheaper than resting it.
-  if (!arm.srs || problem.start || !problem.rolls.empty() || problem.cost.roll > 0 ||
+  if (!arm.srs || problem.start || problem.end || !problem.rolls.empty() || problem.cost.roll > 0 ||
       !turns_about_last_joint(chain))
     return std::nullopt;
   const JointLimit& limit = chain.limit.back();

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "kinematics/srs/exact_chain_turned.hpp"
-#include "lattice/start.hpp"
+#include "lattice/given_posture.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -120,7 +120,8 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   circle_ = range.circle();
   windows_of_roll_ = problem.waypoints.front().roll.has_value();
   double nominal = circle_ ? 0 : std::clamp(0.0, range.lower, range.upper);
-  if (problem.start) nominal = start_roll_ = roll_of_start(problem, chain, path, range);
+  place_given(problem, budget);
+  if (const Given* const first = start_ ? start_.get() : last_.get()) nominal = first->roll;
   if (last_joint_)
     value_of_ = rank_ = {0}, values_ = {0};
   else
@@ -128,6 +129,7 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
 
   Problem of_nodes = problem;
   of_nodes.start.reset();
+  of_nodes.end.reset();
   for (const int value : value_of_) {
     budget.poll();
     std::vector<double> rolls = rolls_along(value);
@@ -135,12 +137,6 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
     std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
     turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm,
                                                of_nodes, budget, std::move(planes), last_joint_));
-  }
-  if (problem.start) {
-    start_path_ = std::make_unique<const ToolPath>(knot_path_->with_rolls(
-        std::vector<double>(static_cast<std::size_t>(layers()), start_roll_)));
-    start_ = std::make_unique<const SrsLattice>(chain, arm, *start_path_, problem, budget,
-                                                planes_at(arm, planes_, knots_, *start_path_));
   }
   width_ = at_roll(0).width();
   require_memory(static_cast<double>(rolls()) * width_, nodes(), problem.source);
@@ -151,6 +147,23 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
     widest_ = std::max(widest_, window.phi);
   }
   find_near(problem);
+}
+
+void RollLattice::place_given(const Problem& problem, const Budget& budget) {
+  const auto place = [&](PathEnd which, Problem only) {
+    const double roll = roll_of_given(which, problem, *chain_, *whole_, *chain_->free_roll);
+    ToolPath turned =
+        knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
+    std::vector<ArmPlane> planes = planes_at(*arm_, planes_, knots_, turned);
+    return std::make_unique<const Given>(roll, std::move(turned), *chain_, *arm_, only, budget,
+                                         std::move(planes));
+  };
+  Problem only = problem;
+  only.end.reset();
+  if (problem.start) start_ = place(PathEnd::kFirst, only);
+  only.end = end_;
+  only.start.reset();
+  if (end_) last_ = place(PathEnd::kLast, only);
 }
 
 /// Returns the travel from the knot at which a step starts to that at which it ends, m.
@@ -168,8 +181,8 @@ void RollLattice::find_near(const Problem& problem) {
     const double reach = limits_.roll_slope * way(step);
     const int cells = static_cast<int>(std::min<double>(most, std::floor(reach / droll + 1e-9)));
     turns = turns || cells > 0;
-    // A start may stand turned as no other node does.
-    const bool alike = !windows_of_roll_;
+    // The end may stand turned as no other node does. A start stands turned as rank 0.
+    const bool to_end = step + 2 == layers() && last_, alike = !windows_of_roll_ && !to_end;
     if (alike && of_cells[static_cast<std::size_t>(cells)] >= 0) {
       windows_[static_cast<std::size_t>(step)].near = of_cells[static_cast<std::size_t>(cells)];
       continue;
@@ -184,14 +197,16 @@ void RollLattice::find_near(const Problem& problem) {
       lists.before[static_cast<std::size_t>(b)].push_back(a);
     };
     for (int rank = 0; rank < values; ++rank)
-      if (alike) {
+      if (to_end) {
+        if (may_end_from(rank)) join(rank, 0);
+      } else if (alike) {
         for (int by = -cells; by <= cells; ++by) {
           const int value = value_of_[static_cast<std::size_t>(rank)] + by;
           if (circle_ || (value >= 0 && value < values))
             join(rank, rank_[static_cast<std::size_t>((value + values) % values)]);
         }
       } else {
-        const double from = step == 0 && start_ ? start_roll_ : roll_of_rank(step, rank);
+        const double from = step == 0 && start_ ? start_->roll : roll_of_rank(step, rank);
         for (int other = 0; other < values; ++other)
           if (std::abs(roll_of_rank(step + 1, other) - from) <= reach + 1e-9) join(rank, other);
       }
@@ -205,6 +220,24 @@ void RollLattice::find_near(const Problem& problem) {
         droll / problem.resolution.knot);
     throw InputError(problem.source, text);
   }
+}
+
+bool RollLattice::may_end_from(int rank) const {
+  const int step = layers() - 2;
+  const double turn = last_->roll - (step == 0 && start_ ? start_->roll : roll_of_rank(step, rank));
+  return std::abs(circle_ ? wrap_angle(turn) : turn) <= limits_.roll_slope * way(step) + 1e-9;
+}
+
+int RollLattice::rank_beside(int layer) const {
+  if (layer == 0 && start_) return 0;
+  int nearest = 0;
+  const auto away = [&](int rank) {
+    const double turn = roll_of_rank(layer - 1, rank) - last_->roll;
+    return std::abs(circle_ ? wrap_angle(turn) : turn);
+  };
+  for (int rank = 1; rank < rolls(); ++rank)
+    if (away(rank) < away(nearest)) nearest = rank;
+  return nearest;
 }
 
 std::vector<double> RollLattice::rolls_along(int value) const {
@@ -257,13 +290,14 @@ void RollLattice::choose_rolls(double nominal, double droll) {
 }
 
 std::int64_t RollLattice::nodes() const {
-  return static_cast<std::int64_t>(layers() - 1) * rolls() * width_ + slots(0);
+  return static_cast<std::int64_t>(layers() - 2) * rolls() * width_ + slots(0) +
+         slots(layers() - 1);
 }
 
 void RollLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   out.clear();
-  if (layer == 0 && start_) {
-    if (const auto q = node(0, 0)) out.push_back({0, *q});
+  if (given(layer)) {
+    if (const auto q = node(layer, 0)) out.push_back({0, *q});
     return;
   }
   std::vector<Node> nodes;
@@ -274,7 +308,7 @@ void RollLattice::layer_nodes(int layer, std::vector<Node>& out) const {
 }
 
 std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
-  if (layer == 0 && start_) return start_->out_of_reach(0);
+  if (const Given* const only = given(layer)) return only->lattice.out_of_reach(layer);
   std::optional<Reach> nearest;
   for (int rank = 0; rank < rolls(); ++rank) {
     const auto reach = at_roll(rank).out_of_reach(layer);
@@ -287,12 +321,12 @@ std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
 }
 
 int RollLattice::neighbour_in_redundancy(int layer, int slot, int by) const {
-  if (layer == 0 && start_) return -1;
+  if (given(layer)) return -1;
   return slot_of(slot / width_, at_roll(0).neighbour_in_redundancy(layer, slot % width_, by));
 }
 
 int RollLattice::neighbour_in_roll(int layer, int slot, int by) const {
-  if (layer == 0 && start_) return -1;
+  if (given(layer)) return -1;
   const int values = rolls(), value = value_of_[static_cast<std::size_t>(slot / width_)] + by;
   if (!circle_ && (value < 0 || value >= values)) return -1;
   return slot_of(rank_[static_cast<std::size_t>((value + values) % values)], slot % width_);
@@ -300,14 +334,15 @@ int RollLattice::neighbour_in_roll(int layer, int slot, int by) const {
 
 int RollLattice::neighbour_along_path(int layer, int slot, int by) const {
   if (layer + by < 0 || layer + by >= layers()) return -1;
-  if (start_ && layer == 0) return slot_of(0, inner(0, 0));
-  if (start_ && layer + by == 0) return in_window(0, 0, slot) ? 0 : -1;
+  if (given(layer + by))
+    return (by < 0 ? in_window(layer - 1, 0, slot) : in_window(layer, slot, 0)) ? 0 : -1;
+  if (given(layer)) return slot_of(rank_beside(layer), inner(layer, 0));
   return slot;
 }
 
 void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
                                              std::vector<int>& out) const {
-  if (is_approximate() || (layer == 0 && start_)) {
+  if (is_approximate() || given(layer)) {
     out.assign(1, slot);
     return;
   }
@@ -343,11 +378,10 @@ std::optional<Lattice::RollStep> RollLattice::roll_step(int layer, int a, const 
 bool RollLattice::in_arm_window(int layer, int a, int b) const {
   if (branch(layer, a) != branch(layer + 1, b)) return false;
   const int angles = at_roll(0).angles(), window = phi_window(layer),
-            to = at_roll(0).angle_of(b % width_);
+            to = at_roll(0).angle_of(inner(layer + 1, b));
   if (layer == 0 && start_) {
     const double cell = -kPi + kTwoPi * to / angles;
-    return std::abs(wrap_angle(cell - start_->phi(0, start_->start_slot()))) <=
-           window * kTwoPi / angles + 1e-9;
+    return std::abs(wrap_angle(cell - phi(0, 0))) <= window * kTwoPi / angles + 1e-9;
   }
   const int apart = std::abs(at_roll(0).angle_of(a % width_) - to);
   return std::min(apart, angles - apart) <= window;
@@ -355,11 +389,15 @@ bool RollLattice::in_arm_window(int layer, int a, int b) const {
 
 void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
   out.clear();
+  if (given(layer + 1)) {
+    if (in_window(layer, a, 0)) out.push_back({0, 1});
+    return;
+  }
   const int angles = at_roll(0).angles(), window = phi_window(layer),
             windings = at_roll(0).windings();
   int first = 0, count = std::min(2 * window + 1, angles);
   if (layer == 0 && start_) {
-    const double step = kTwoPi / angles, from = (start_->phi(0, start_->start_slot()) + kPi) / step;
+    const double step = kTwoPi / angles, from = (phi(0, 0) + kPi) / step;
     const auto low = static_cast<long long>(std::ceil(from - window - 1e-9 / step));
     const auto high = static_cast<long long>(std::floor(from + window + 1e-9 / step));
     first = static_cast<int>(((low % angles) + angles) % angles);
@@ -507,6 +545,11 @@ std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots)
     rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q,
                     roll_at(knots_[static_cast<std::size_t>(k)], q, roll(k, slot))});
   }
+  if (static_cast<int>(slots.size()) < layers()) return rows;
+  std::vector<Config> joints;
+  for (const TrajectoryRow& row : rows) joints.push_back(row.q);
+  turn_to_end(joints);
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].q = joints[k];
   return rows;
 }
 

@@ -9,7 +9,7 @@
 
 #include "kinematics/kernels/kernels.hpp"
 #include "kinematics/srs/exact_chain_turned.hpp"
-#include "lattice/start.hpp"
+#include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
@@ -55,6 +55,15 @@ std::uint64_t next_id() {
 
 std::string gigabytes(double bytes) {
   return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB";
+}
+
+/// Returns the highest value, rad, that the given postures have of a joint; `least` if that is
+/// more.
+double highest_of(const std::array<std::optional<Config>, 2>& given, Eigen::Index joint,
+                  double least) {
+  for (const std::optional<Config>& q : given)
+    if (q) least = std::max(least, (*q)[joint]);
+  return least;
 }
 
 /// Returns the number of windings of a node, given the images of each joint. Throws InputError
@@ -219,8 +228,8 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
       const double lower = limit.lower + limits_.joint_margin,
                    upper = limit.upper - limits_.joint_margin;
       const auto joint = static_cast<Eigen::Index>(j);
-      images_[j] = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower,
-                                  arm.fit_error[joint]);
+      const double highest = highest_of({problem.start, end_}, joint, lower);
+      images_[j] = images_between(lower, upper, highest, arm.fit_error[joint]);
     }
   }
   windings_ = count_windings(images_, chain, problem.source);
@@ -250,7 +259,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
       elbow_alive_.push_back(reachable && image_from(circle.q4, images.base) <= images.upper);
   }
 
-  if (problem.start) place_start(problem);
+  place_given(problem);
   if (!arm.exact) pose_error_model_.emplace(chain, arm);
   prepare_arcs();
   if (resolution.arcs) place_off_grid_nodes(budget);
@@ -284,7 +293,7 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
   return planes;
 }
 
-SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start,
+SrsLattice::Images SrsLattice::images_between(double lower, double upper, double highest,
                                               double fit_error) {
   const double whole = std::floor((upper - lower) / kTwoPi),
                rest = (upper - lower) - whole * kTwoPi;
@@ -297,18 +306,27 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
   images.base = lower - kLimitTolerance - std::min(fit_error, slack);
   images.upper = upper + kLimitTolerance + fit_error;
   // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the
-  // lower where the start is there.
-  if (start >= images.base + length) images.base = upper + kLimitTolerance - length;
+  // lower where a start or an end is there.
+  if (highest >= images.base + length) images.base = upper + kLimitTolerance - length;
   return images;
 }
 
-void SrsLattice::place_start(const Problem& problem) {
-  validate_start(problem, *chain_, *path_);
-  const Config& q = *problem.start;
-  Start start;
-  start.row = q;
-  start.phi = planes_[0].angle_of(arm_->elbow_axis(q));
-  start.node = arm_->exact ? q : fitted_start(q, start.phi).value_or(q);
+void SrsLattice::place_given(const Problem& problem) {
+  if (problem.start) {
+    validate_given(PathEnd::kFirst, problem, *chain_, *path_);
+    start_ = placed(0, *problem.start);
+  }
+  if (end_) {
+    validate_given(PathEnd::kLast, problem, *chain_, *path_);
+    last_ = placed(layers() - 1, *end_);
+  }
+}
+
+SrsLattice::Given SrsLattice::placed(int layer, const Config& q) const {
+  Given given;
+  given.row = q;
+  given.phi = plane(layer).angle_of(arm_->elbow_axis(q));
+  given.node = arm_->exact ? q : fitted(layer, q, given.phi).value_or(q);
   int winding = 0;
   for (int k = 0; k < kDof; ++k) {
     const Images& images = images_[static_cast<std::size_t>(k)];
@@ -318,14 +336,15 @@ void SrsLattice::place_start(const Problem& problem) {
                                        0, images.count - 1);
     winding = winding * images.count + image;
   }
-  const int nearest = wrapped_index(std::llround((start.phi + kPi) / kTwoPi * angles_), angles_);
-  start.slot = (arm_->branch(q) * windings_ + winding) * angles_ + nearest;
-  start_ = start;
+  const int nearest = wrapped_index(std::llround((given.phi + kPi) / kTwoPi * angles_), angles_);
+  given.slot = (arm_->branch(q) * windings_ + winding) * angles_ + nearest;
+  return given;
 }
 
-std::optional<Config> SrsLattice::fitted_start(const Config& q, double phi) const {
-  if (reach_[0] != ReachStatus::kReachable) return std::nullopt;
-  Config fitted = srs_ik(*arm_, circles_[0], phi, arm_->branch(q));
+std::optional<Config> SrsLattice::fitted(int layer, const Config& q, double phi) const {
+  const auto i = static_cast<std::size_t>(layer);
+  if (reach_[i] != ReachStatus::kReachable) return std::nullopt;
+  Config fitted = srs_ik(*arm_, circles_[i], phi, arm_->branch(q));
   if (singular(fitted)) return std::nullopt;
   for (int k = 0; k < kDof; ++k) {
     fitted[k] = q[k] + wrap_angle(fitted[k] - q[k]);
@@ -352,7 +371,7 @@ std::uint8_t SrsLattice::joints_outside(const Config& row) const {
 }
 
 double SrsLattice::phi(int layer, int slot) const {
-  if (layer == 0 && start_) return start_->phi;
+  if (const Given* const only = given(layer)) return only->phi;
   if (const OffGridNode* moved = find_off_grid(layer, slot)) return moved->phi;
   return cell_angle(slot);
 }
@@ -377,8 +396,7 @@ void LayerNodes::repeat(int elbow, int from, int to, int count) {
 
 std::optional<double> SrsLattice::elbow_angle(int layer, int elbow) const {
   const Images& images = images_[kElbowJoint];
-  if (images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) ||
-      !elbow_alive(layer, elbow))
+  if (images.count > 1 || continuous_[kElbowJoint] || is_given(layer) || !elbow_alive(layer, elbow))
     return std::nullopt;
   return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4,
                     images.base);
@@ -388,12 +406,12 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   const auto n = static_cast<std::size_t>(count);
   out.layer_ = layer;
   out.first_ = first;
-  const bool start = layer == 0 && start_;
+  const Given* const only = given(layer);
   const std::uint8_t moved =
       off_grid_.empty() ? std::uint8_t{0} : off_grid_branches_[static_cast<std::size_t>(layer)];
-  const LayerNodes::Layout layout{id_,   count, elbow_alive(layer, 0), elbow_alive(layer, 1),
-                                  start, moved};
-  if (layout == out.layout_ && !start) return;
+  const LayerNodes::Layout layout{
+      id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), only != nullptr, moved};
+  if (layout == out.layout_ && !only) return;
   out.layout_ = layout;
   out.count_ = count;
   out.arrays_ = {};
@@ -404,10 +422,10 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   const std::size_t free = allot(), never = allot();
   std::fill_n(out.data_.data() + free, n, 0.0);
   std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
-  if (start) {
+  if (only) {
     for (LayerNodes::Offsets& solution : out.offsets_)
       solution = {.q = {}, .mask = {never, free}, .alive = false};
-    return lay_out_start(out);
+    return lay_out_given(*only, out);
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
@@ -444,20 +462,20 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
                 out.arrays_[static_cast<std::size_t>(elbow_side_of(solution))][1]);
 }
 
-void SrsLattice::lay_out_start(LayerNodes& out) const {
-  const int solution = solution_of(start_->slot), n = out.count_;
+void SrsLattice::lay_out_given(const Given& given, LayerNodes& out) const {
+  const int solution = solution_of(given.slot), n = out.count_;
   LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
   offsets.alive = true;
   std::size_t used = 2 * static_cast<std::size_t>(n);
   for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
     offsets.q[j] = used;
-    std::fill_n(out.data_.data() + used, n, start_->node[static_cast<Eigen::Index>(j)]);
+    std::fill_n(out.data_.data() + used, n, given.node[static_cast<Eigen::Index>(j)]);
   }
   offsets.mask[0] = used;
   double* const mask = out.data_.data() + used;
   std::fill_n(mask, n, std::numeric_limits<double>::infinity());
-  if (fault(0, start_->slot).status != NodeStatus::kValid) return;
-  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_);
+  if (fault(out.layer_, given.slot).status != NodeStatus::kValid) return;
+  for (int k = wrapped_index(static_cast<long long>(angle_of(given.slot)) - out.first_, angles_);
        k < n; k += angles_)
     mask[k] = 0;
 }
@@ -479,7 +497,7 @@ TripleTask SrsLattice::triple_task(const ElbowCircle& circle, int triple) const 
 }
 
 void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
-  if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
+  if (!elbow_alive(out.layer_, elbow) || is_given(out.layer_)) return;
   const ElbowCircle& circle =
       circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
   const int first_solution = elbow ? kElbowBit * windings_ : 0;
@@ -559,8 +577,9 @@ void SrsLattice::copy_shared(int solution, int begin, int end, LayerNodes& out) 
 }
 
 std::optional<Config> SrsLattice::node(int layer, int slot) const {
-  if (layer == 0 && start_)
-    return fault(0, slot).status == NodeStatus::kValid ? std::optional(start_->node) : std::nullopt;
+  if (const Given* const only = given(layer))
+    return fault(layer, slot).status == NodeStatus::kValid ? std::optional(only->node)
+                                                           : std::nullopt;
   if (const OffGridNode* moved = find_off_grid(layer, slot)) return moved->q;
   const auto j = static_cast<std::size_t>(angle_of(slot));
   return solved(layer, slot, sine_[j], cosine_[j]);
@@ -610,7 +629,7 @@ std::optional<Config> SrsLattice::on_exact_chain(int layer, int slot, const Conf
 
 std::optional<Config> SrsLattice::exact_config(int layer, int slot, const Config& q) const {
   if (arm_->exact) return q;
-  if (layer == 0 && start_) return start_->row;
+  if (const Given* const only = given(layer)) return only->row;
   auto row = on_exact_chain(layer, slot, q);
   if (row && joints_outside(*row)) row.reset();
   return row;
@@ -618,18 +637,18 @@ std::optional<Config> SrsLattice::exact_config(int layer, int slot, const Config
 
 Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   NodeFault fault;
-  const bool given = layer == 0 && start_;
-  if (given && slot != start_->slot) return {NodeStatus::kNoIk};
-  if (given && !arm_->exact)
-    return {singular(start_->row) ? NodeStatus::kSingular : NodeStatus::kValid};
+  const Given* const only = given(layer);
+  if (only && slot != only->slot) return {NodeStatus::kNoIk};
+  if (only && !arm_->exact)
+    return {singular(only->row) ? NodeStatus::kSingular : NodeStatus::kValid};
   const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
   if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
   if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
-  Config q = given ? start_->row
-                   : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot),
-                            branch_of(slot));
+  Config q = only ? only->row
+                  : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot),
+                           branch_of(slot));
   if (singular(q)) return {NodeStatus::kSingular};
-  if (given) return fault;
+  if (only) return fault;
   if (last_joint_) q[kLastJoint] = *last_joint_;
   const int winding = solution_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
@@ -708,7 +727,7 @@ bool SrsLattice::all_below_manipulability(int layer, const Config& q) const {
   const double found = G.determinant(),
                allowed = limits().manipulability * limits().manipulability - kBand;
   if (!pose_error_model_ || !(found < allowed)) return found < allowed;
-  if (last_joint_ || (layer == 0 && start_) || found < kBand)
+  if (last_joint_ || is_given(layer) || found < kBand)
     return false;  // not known, or G's inverse is all rounding
   // No singular value s of J grows by more than `change` to the row, so their product, the
   // manipulability, grows by at most (1 + change * mean of 1 / s)^6. That mean is at most the root
@@ -720,15 +739,14 @@ bool SrsLattice::all_below_manipulability(int layer, const Config& q) const {
 
 PoseErrorBound SrsLattice::pose_error_of_node(int layer, int group, const Config& q) const {
   if (!pose_error_model_) return {};
-  return layer == 0 && start_ ? PoseErrorBound::unknown(pose_error_model_->about(group))
-                              : pose_error_model_->from_node(group, plane(layer).reach, q);
+  return is_given(layer) ? PoseErrorBound::unknown(pose_error_model_->about(group))
+                         : pose_error_model_->from_node(group, plane(layer).reach, q);
 }
 
 PoseErrorBound SrsLattice::pose_error_between(int layer, int group, const Config& q) const {
   if (!pose_error_model_) return {};
-  return layer == 0 && start_
-             ? PoseErrorBound::unknown(pose_error_model_->about(group))
-             : pose_error_model_->between_exact_configs(group, plane(layer).reach, q);
+  return is_given(layer) ? PoseErrorBound::unknown(pose_error_model_->about(group))
+                         : pose_error_model_->between_exact_configs(group, plane(layer).reach, q);
 }
 
 bool SrsLattice::may_change_elbow_side(int step_layer, int layer, int side, int other_layer,

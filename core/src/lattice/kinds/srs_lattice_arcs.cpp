@@ -83,7 +83,7 @@ void SrsLattice::arcs(int layer, int solution, std::vector<AngleArc>& out) const
 }
 
 bool SrsLattice::proved_unreachable(int layer) const {
-  if (!arm_->exact || (layer == 0 && start_)) return false;
+  if (!arm_->exact || is_given(layer)) return false;
   const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
   if (reach != ReachStatus::kReachable) return reach == ReachStatus::kOutOfReach;
   std::vector<AngleArc> found;
@@ -104,7 +104,7 @@ void SrsLattice::place_off_grid_nodes(const Budget& budget) {
   std::vector<AngleArc> arcs;
   for (int layer = 0; layer < layers(); ++layer) {
     if (layer % 64 == 0) budget.poll(Stage::kLattice, layer, layers());
-    for (int side = 0; side < kElbowSides && !(layer == 0 && start_); ++side) {
+    for (int side = 0; side < kElbowSides && !is_given(layer); ++side) {
       for (std::size_t triple = 0; triple < 2; ++triple) {
         of_triple[triple].resize(2 * triple_limits_[triple].size());
         known[triple].assign(of_triple[triple].size(), 0);

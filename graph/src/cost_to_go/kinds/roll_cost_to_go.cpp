@@ -55,7 +55,7 @@ void RollCostToGo::forget(int layer) {
 }
 
 Config RollCostToGo::config(int layer, int slot) {
-  if (begins(layer)) return *lattice_->node(0, 0);
+  if (lattice_->is_given(layer)) return *lattice_->node(layer, 0);
   const int inner = lattice_->inner(layer, slot);
   return nodes(layer, lattice_->rank_of(layer, slot))
       .config(inner / angles_, pad_ + inner % angles_);
@@ -95,19 +95,30 @@ void RollCostToGo::runs_of(const LayerNodes& nodes, int solution) {
   }
 }
 
-void RollCostToGo::relax(int step, int layer, int other, const Values& others, Values& out) {
-  out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
-  if (begins(layer)) {
-    if (lattice_->node(0, 0)) out[0] = relax_one(0, 0);
+template <class Visit>
+void RollCostToGo::each_beside_given(int step, int layer, int other, const Visit& visit) {
+  if (other < layer) {
+    std::vector<Lattice::SlotRun> runs;
+    lattice_->successors(step, 0, runs);
+    for (const Lattice::SlotRun& run : runs)
+      for (int b = run.first; b < run.last; ++b) visit(b);
     return;
   }
-  if (begins(other)) {
-    std::vector<Lattice::SlotRun> runs;
-    lattice_->successors(0, 0, runs);
-    for (const Lattice::SlotRun& run : runs)
-      for (int b = run.first; b < run.last; ++b)
-        if (others[0] != kUnreachable && lattice_->node(layer, b))
-          out[static_cast<std::size_t>(b)] = relax_one_forward(layer, b, others);
+  for (const int rank : lattice_->near(step, 0, false))
+    for (int inner = 0; inner < lattice_->width(); ++inner)
+      if (const int a = lattice_->slot_of(rank, inner); lattice_->in_window(step, a, 0)) visit(a);
+}
+
+void RollCostToGo::relax(int step, int layer, int other, const Values& others, Values& out) {
+  out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
+  const auto relax_alone = [&](int slot) {
+    if (lattice_->node(layer, slot))
+      out[static_cast<std::size_t>(slot)] =
+          other > layer ? relax_one(layer, slot) : relax_one_forward(layer, slot, others);
+  };
+  if (lattice_->is_given(layer)) return relax_alone(0);
+  if (lattice_->is_given(other)) {
+    if (others[0] != kUnreachable) each_beside_given(step, layer, other, relax_alone);
     return;
   }
   take_around(others);
@@ -152,16 +163,16 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
 template <class Worth, class Visit>
 void RollCostToGo::each_near(int step, int layer, int slot, int other, const Worth& worth,
                              const Visit& visit) {
-  if (begins(layer) || begins(other)) {  // the given start
-    std::vector<Lattice::SlotRun> runs;
-    if (begins(other)) {
-      if (worth(0) && lattice_->in_window(step, 0, slot)) visit(0, config(0, 0));
-      return;
-    }
-    lattice_->successors(step, slot, runs);
-    for (const Lattice::SlotRun& run : runs)
-      for (int b = run.first; b < run.last; ++b)
-        if (worth(b)) visit(b, config(other, b));
+  if (lattice_->is_given(other)) {
+    const bool joined =
+        other > layer ? lattice_->in_window(step, slot, 0) : lattice_->in_window(step, 0, slot);
+    if (joined && worth(0)) visit(0, config(other, 0));
+    return;
+  }
+  if (lattice_->is_given(layer)) {
+    each_beside_given(step, other, layer, [&](int b) {
+      if (worth(b)) visit(b, config(other, b));
+    });
     return;
   }
   const int window = lattice_->phi_window(step), windings = lattice_->at_roll(0).windings();
@@ -215,8 +226,8 @@ double RollCostToGo::relax_one_forward(int layer, int slot, const Values& before
 
 void RollCostToGo::begin(int layer, Values& out) {
   out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
-  if (begins(layer)) {
-    if (lattice_->node(0, 0)) out[0] = 0;
+  if (lattice_->is_given(layer)) {
+    if (lattice_->node(layer, 0)) out[0] = 0;
     return;
   }
   for (int rank = 0; rank < lattice_->rolls(); ++rank) {

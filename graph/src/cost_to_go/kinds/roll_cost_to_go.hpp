@@ -30,8 +30,7 @@ class RollCostToGo final : public LayerValues {
   // solving it again takes less than fresh pages
   void done_with(int layer) override { forget(layer); }
 
-  [[nodiscard]] bool begins(int layer) const { return layer == 0 && lattice_->has_start(); }
-  /// Returns the nodes of a layer that is not a given start, for one roll: arm angle j at entry
+  /// Returns the nodes of a layer that is no given start or end, for one roll: arm angle j at entry
   /// pad_ + j, and around the circle on both sides.
   const LayerNodes& nodes(int layer, int rank);
   void forget(int layer);
@@ -42,6 +41,10 @@ class RollCostToGo final : public LayerValues {
     std::vector<std::pair<int, int>> finite;
   };
   void runs_of(const LayerNodes& nodes, int solution);
+  /// Calls visit(slot) for the slots of `layer` that the window of `step` joins to the only node of
+  /// the neighbouring layer `other`, which is a given start or end.
+  template <class Visit>
+  void each_beside_given(int step, int layer, int other, const Visit& visit);
   void take_around(const Values& values);
   /// A node whose value has changed, and the value before.
   struct Change {
@@ -57,7 +60,8 @@ class RollCostToGo final : public LayerValues {
   /// to `changed`.
   void renew_nodes(int layer, const std::vector<int>& stale, std::vector<Change>& changed);
   /// Calls visit(slot b, its joints) for the nodes b of a neighbouring layer that a node may be
-  /// joined to, removed or not, whose worth(b) is true.
+  /// joined to, removed or not, whose worth(b) is true. worth() must be false for slots without a
+  /// node.
   template <class Worth, class Visit>
   void each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit);
 

@@ -89,7 +89,10 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     const bool reversed = run % 2 == 1, of_ends = part % 2 == 1;
     if (reversed && !job.strokes[run / 2].reversible) return;
     Problem problem = problem_of_run(job, {run / 2, reversed});
-    if (of_ends) std::reverse(problem.waypoints.begin(), problem.waypoints.end());
+    if (of_ends) {
+      std::reverse(problem.waypoints.begin(), problem.waypoints.end());
+      std::swap(problem.start, problem.end);
+    }
     double least = kNever;
     auto found = begins_of(robot, problem, most_nodes(runs), least, budget);
     (of_ends ? gates[run].ends : gates[run].begins) = std::move(found);

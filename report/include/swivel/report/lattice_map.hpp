@@ -17,7 +17,7 @@ class Lattice;
 /// What is known of a node of the (s, phi) lattice. The states are listed by importance, the least
 /// important first: a drawn cell that stands for several nodes shows the most important state.
 enum class NodeState : std::uint8_t {
-  kNoIk,         ///< out of reach; in layer 0 also: not the given start
+  kNoIk,         ///< out of reach; in the first and the last layer also: not the given posture
   kSingular,     ///< a singular pose, or less manipulability than asked for
   kJointLimit,   ///< cause: the joint, 0..6, the first that is outside
   kNotLookedAt,  ///< exists in closed form; the search had no reason to ask about its clearance

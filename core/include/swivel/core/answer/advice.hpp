@@ -12,6 +12,7 @@ namespace swivel {
 struct Advice {
   enum class Change {
     kFreeStart,       ///< no start is given
+    kFreeEnd,         ///< no end is given
     kFreeRoll,        ///< path.roll without bounds: the tool may be turned about its axis freely
     kFiner,           ///< half the steps of the lattice, and Resolution::arcs
     kClearance,       ///< limits.clearance, and self_clearance where that stands in the way

@@ -79,6 +79,11 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   };
   /// Replaces `out` by all nodes of a layer that exist, in the order of their slots.
   virtual void layer_nodes(int layer, std::vector<Node>& out) const = 0;
+  /// Returns whether a posture that the problem gives is the only node of a layer: its start in
+  /// layer 0, or its end in the last layer.
+  [[nodiscard]] bool is_given(int layer) const {
+    return (layer == 0 && starts_given_) || (layer == layers() - 1 && end_);
+  }
   /// Returns whether joints `q` keep limits().manipulability. Every other condition on a node is
   /// part of node() and exact_config().
   [[nodiscard]] bool manipulable(const Config& q) const;
@@ -296,6 +301,10 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
     return std::round(middle_weight_[j] *
                       std::abs(x - (chain_->limit[j].lower + chain_->limit[j].upper) / 2) * steps_);
   }
+  /// Turns the rows of a whole path that leads to a given end by whole turns of its joints, so that
+  /// the last row is that end; rows that begin at a given start stay. Joints of the last row that
+  /// equal the end's but for rounding become the end's.
+  void turn_to_end(std::vector<Config>& rows) const;
   /// Sets row_step_bound() of every step (one entry if all are alike), and step_bound() from it.
   void set_row_step_bounds(std::vector<Config> bounds);
   /// Returns whether the larger of the second-order estimates of step error at both ends of an edge
@@ -307,6 +316,8 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   Limits limits_;
   Cost cost_;
   std::array<bool, kDof> continuous_{};  // wide joints and joints treated as circles too
+  bool starts_given_ = false;            // the path begins at Problem::start
+  std::optional<Config> end_;            // Problem::end, unless the path ends early
 
  private:
   std::array<double, kDof> cost_scale_{};

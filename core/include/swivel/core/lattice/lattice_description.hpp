@@ -30,8 +30,8 @@ class LatticeDescription {
     double roll = 0;  ///< rad
   };
   /// Returns the place of a slot in the grid. A slot is rank * cells + cell, except in a layer that
-  /// is the given start alone, which may have one slot. A lattice without a grid returns {slot, 0,
-  /// 0}.
+  /// is a given start or end alone, which may have one slot. A lattice without a grid returns
+  /// {slot, 0, 0}.
   [[nodiscard]] virtual GridPlace grid_place(int layer, int slot) const {
     static_cast<void>(layer);
     return {slot, 0, 0};

@@ -10,7 +10,8 @@
 namespace swivel {
 
 /// One run of the tool on the workpiece, as a job has many of them: a task with a name. Its
-/// `start`, `start_at`, `rolls` and `steps` are unset.
+/// `start`, `start_at`, `rolls` and `steps` are unset. Its `end` is the posture in which the run
+/// ends, after the retract; a reversible stroke has none.
 struct Stroke : Task {
   std::string name;
   /// True: the tool may run from the last waypoint to the first.
@@ -83,8 +84,9 @@ struct ProcessWaypoints {
 [[nodiscard]] Limits limits_of_transitions(const Job& job);
 
 /// Throws InvalidArgument for a job that makes no sense whatever the robot: what validate(Problem)
-/// refuses of any of its runs, no strokes, names that are empty or taken, a start in a stroke, a
-/// home that is not finite, speeds that are not positive, feeds that are not one per waypoint.
+/// refuses of any of its runs, no strokes, names that are empty or taken, a start in a stroke, an
+/// end in a reversible one, a home that is not finite, speeds that are not positive, feeds that are
+/// not one per waypoint.
 void validate(const Job& job);
 
 }  // namespace swivel

@@ -195,6 +195,9 @@ struct Task {
   /// counts as on it; else the first layer takes the tool pose of the start, and the first step
   /// leads from there to the path's next layer.
   double start_tolerance = 1e-6;
+  /// Joint positions in which the path must end, rad: the tool is then at the last waypoint. A
+  /// joint without limits, or of over 64 turns, may end whole turns away if `start` is given too.
+  std::optional<Config> end;
   Cost cost;
   Refinement refinement;
   /// Into how many steps the way from each waypoint to the next is cut, instead of what the

@@ -87,7 +87,12 @@ class ToolPath {
   void begin_at(std::optional<double> start_at, const Pose& tool, double tolerance,
                 const std::string& source);
   /// Cuts off the layers after `layer`, which must not be layer 0.
-  void end_at(int layer) { layers_.resize(static_cast<std::size_t>(layer) + 1); }
+  void end_at(int layer) {
+    ends_early_ = ends_early_ || layer + 1 < size();
+    layers_.resize(static_cast<std::size_t>(layer) + 1);
+  }
+  /// Returns true if end_at() has cut off layers, so that the last layer is not the path's end.
+  [[nodiscard]] bool ends_early() const { return ends_early_; }
   /// Returns the poses of the layers that begin_at() has cut off: arm angles are carried along the
   /// whole path.
   [[nodiscard]] const std::vector<Pose>& before() const { return before_; }
@@ -154,6 +159,7 @@ class ToolPath {
   std::vector<Pose> before_;
   bool begins_on_layer_ = true;
   bool begins_aside_ = false;  // layer 0 is off the curve
+  bool ends_early_ = false;
   std::vector<Segment> segments_;
   std::vector<Place> waypoints_;  // without repeated ones
   std::vector<Corner> corners_;

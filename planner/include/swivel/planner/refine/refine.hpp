@@ -34,8 +34,8 @@ struct RefineOptions {
 /// given path, which is valid, and the optimum is sought again.
 ///
 /// The result is valid and never dearer by the problem's metric; otherwise it is the given path,
-/// with the reason. A given start stays. `rows` is a trajectory of this problem that plan() found.
-/// Throws InputError and InvalidArgument as plan() does, and Stopped.
+/// with the reason. A given start and a given end stay. `rows` is a trajectory of this problem that
+/// plan() found. Throws InputError and InvalidArgument as plan() does, and Stopped.
 [[nodiscard]] Refined refine(const PreparedRobot& robot, const Problem& problem,
                              const std::vector<TrajectoryRow>& rows,
                              const RefineOptions& options = {}, const Budget& budget = {});

@@ -88,7 +88,7 @@ struct CheckOptions {
 ///   joints' signs where they are further than 0.01 rad (0.05 on inexact arms) from a change. For
 ///   an arm whose last joint is the roll, phi is the roll (1e-3 rad).
 /// The first row is at the path's beginning and has the given start, if there is one; the last is
-/// at its end.
+/// at its end and has the given end, if there is one.
 ///
 /// From one row to the next, with joints moving straight:
 /// - the tool advances: rows at the same place fail;

@@ -46,7 +46,8 @@ struct Problem;
 /// least norm move the joints on the straight line between them onto the path's pose. Rows that all
 /// stand at layers are returned unchanged. Throws InvalidArgument, InputError and Stopped as
 /// complete_rows() does, and InputError for a row whose tool is further than 1e-6 m or rad from the
-/// path or that goes back, and for rows that do not reach from the path's beginning to its end.
+/// path or that goes back, for rows that do not reach from the path's beginning to its end, and for
+/// rows without the joints that the problem gives as its start or end.
 [[nodiscard]] std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot,
                                                         const Problem& problem,
                                                         const std::vector<TrajectoryRow>& rows,

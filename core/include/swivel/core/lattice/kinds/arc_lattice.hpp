@@ -27,8 +27,9 @@ namespace swivel {
 /// weighted norm, except images nearer than half of `resolution.arc` to a node kept before or to
 /// the end; gaps of more than 1.5 `resolution.arc` are filled evenly. A motion along which the arm
 /// drifts therefore meets nodes, which no grid of a coordinate ensures. The nodes depend on
-/// geometry, weights and limits of the joints alone; obstacles never change them. A bounded joint
-/// with a range of more than a turn is treated as a circle, and unwrap() finds its values.
+/// geometry, weights and limits of the joints alone; obstacles never change them. A given start or
+/// end takes the place of its layer's nodes. A bounded joint with a range of more than a turn is
+/// treated as a circle, and unwrap() finds its values.
 class ArcLattice final : public ExplicitLattice {
  public:
   /// Builds the nodes of every layer. `chain` and `path` must outlive the lattice. If `method` has
@@ -54,7 +55,8 @@ class ArcLattice final : public ExplicitLattice {
   using Rows = std::vector<Config>;
   /// Returns the rows of a path, with each circle turned as a whole so that all rows are inside its
   /// limits and the first one is as near to the middle of its range as possible, the lower of two
-  /// equally near. If no turn keeps the limits for some joints, returns those joints instead.
+  /// equally near, or so that the path begins at the given start, or ends at the given end. If no
+  /// turn keeps the limits and both for some joints, returns those joints instead.
   [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
   /// Returns the rows that unwrap() finds; empty if it finds none.
   [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
@@ -78,9 +80,15 @@ class ArcLattice final : public ExplicitLattice {
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
              const Problem& problem, Layers&& layers);
 
-  /// Returns the rows of a path, unwrapped without jumps from the first one, or from the given
-  /// start if there is one.
+  /// Returns the rows of a path, unwrapped without jumps from the first one, in the turn of the
+  /// given start if there is one, else in that of the given end if they lead there.
   [[nodiscard]] Rows followed(const std::vector<int>& slots) const;
+  /// Returns the posture that the problem gives for a layer; nothing if it gives none.
+  [[nodiscard]] const std::optional<Config>& given(int layer) const {
+    static const std::optional<Config> kNone;
+    if (layer == 0 && problem_.start) return problem_.start;
+    return layer == layers() - 1 ? end_ : kNone;
+  }
   struct Fit {
     // The turn, rad, by which all rows stay inside the limits, with the first as near to the middle
     // as possible.

@@ -24,7 +24,7 @@ struct ArmClass;
 /// of that joint: as far from its limits as possible. The other six joints alone then put the tool
 /// where it has to be, so that a path along which joint 7 moves costs no less than the same path
 /// with joint 7 at rest. Returns nothing for other arms and tools, and for a problem with a start,
-/// given rolls or a cost of the roll.
+/// an end, given rolls or a cost of the roll.
 [[nodiscard]] std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                                        const Problem& problem);
 

@@ -24,17 +24,18 @@ namespace swivel {
 /// Nodes of one roll are those of an SrsLattice for a tool turned by that roll. Their arm angles
 /// are measured from the path's carried plane, turned by the smallest rotation that takes the tool
 /// as the path has it to the turned tool. A slot is (rank of the roll, branch, winding, j). Rank 0
-/// is the roll nearest to none, or to that of a given start, so that among equally good paths the
-/// one that turns least wins. Edges lead to rolls and arm angles within roll_slope and arm_slope
-/// times the path length between the knots. Both are rounded down to whole cells, with at least one
-/// cell of arm angles; rolls are not rounded if waypoints have windows. Immutable once made.
+/// is the roll nearest to none, or to that of a given start (of a given end without a start), so
+/// that among equally good paths the one that turns least wins. Edges lead to rolls and arm angles
+/// within roll_slope and arm_slope times the path length between the knots. Both are rounded down
+/// to whole cells, with at least one cell of arm angles; rolls are not rounded if waypoints have
+/// windows, nor on the last step to a given end. Immutable once made.
 class RollLattice final : public Lattice {
  public:
   /// Returns the lattice of the whole path. `chain`, `arm` and `path` must outlive it.
   /// `last_joint`: where joint 7 rests, rad (last_joint_at_rest()); there is no roll to choose
   /// then, because joint 7 would only undo it. Throws InputError as SrsLattice does, and for a
-  /// start whose roll is outside the range, a roll_slope of less than a cell from knot to knot, and
-  /// limits.step_error; Stopped.
+  /// start or end whose roll is outside the range, a roll_slope of less than a cell from knot to
+  /// knot, and limits.step_error; Stopped.
   [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm,
                                                          const ToolPath& path,
                                                          const Problem& problem,
@@ -46,7 +47,8 @@ class RollLattice final : public Lattice {
   /// Returns the roll of a slot, rad. If waypoints have windows (Waypoint::roll), a rank stands for
   /// a fraction of each layer's window; otherwise it stands for one roll at all layers.
   [[nodiscard]] double roll(int layer, int slot) const {
-    return layer == 0 && start_ ? start_roll_ : roll_of_rank(layer, slot / width_);
+    const Given* const only = given(layer);
+    return only ? only->roll : roll_of_rank(layer, slot / width_);
   }
   [[nodiscard]] double roll_of_rank(int layer, int rank) const {
     return turned_[static_cast<std::size_t>(rank)]->rolls[static_cast<std::size_t>(layer)];
@@ -56,12 +58,11 @@ class RollLattice final : public Lattice {
   [[nodiscard]] const SrsLattice& at_roll(int rank) const {
     return turned_[static_cast<std::size_t>(rank)]->lattice;
   }
-  [[nodiscard]] int rank_of(int layer, int slot) const {
-    return layer == 0 && start_ ? 0 : slot / width_;
-  }
+  [[nodiscard]] int rank_of(int layer, int slot) const { return given(layer) ? 0 : slot / width_; }
   /// Returns the slot within the lattice at_roll(rank_of(layer, slot)).
   [[nodiscard]] int inner(int layer, int slot) const {
-    return layer == 0 && start_ ? start_->start_slot() : slot % width_;
+    const Given* const only = given(layer);
+    return only ? only->lattice.given_slot(layer) : slot % width_;
   }
   [[nodiscard]] int slot_of(int rank, int inner) const { return rank * width_ + inner; }
   /// Returns the number of slots of one roll.
@@ -80,10 +81,6 @@ class RollLattice final : public Lattice {
     return windows_[static_cast<std::size_t>(step)].phi;
   }
   [[nodiscard]] int widest_phi_window() const { return widest_; }
-  [[nodiscard]] bool has_start() const { return start_ != nullptr; }
-  /// Returns the lattice of the start; null without one. If there is a start, layer 0 has one slot,
-  /// whose node is that of this lattice's start_slot().
-  [[nodiscard]] const SrsLattice* start() const { return start_.get(); }
 
   [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
   /// Returns the layers of the whole path that are layers of the lattice.
@@ -100,9 +97,7 @@ class RollLattice final : public Lattice {
     return {inner(layer, slot), rank_of(layer, slot), roll(layer, slot)};
   }
 
-  [[nodiscard]] int slots(int layer) const override {
-    return layer == 0 && start_ ? 1 : rolls() * width_;
-  }
+  [[nodiscard]] int slots(int layer) const override { return given(layer) ? 1 : rolls() * width_; }
   [[nodiscard]] std::int64_t nodes() const override;
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override {
     return at(layer, slot).node(layer, inner(layer, slot));
@@ -169,13 +164,22 @@ class RollLattice final : public Lattice {
   static Knots knots_along(const ToolPath& path, const Resolution& resolution);
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
   [[nodiscard]] const SrsLattice& at(int layer, int slot) const {
-    return layer == 0 && start_ ? *start_ : at_roll(slot / width_);
+    const Given* const only = given(layer);
+    return only ? only->lattice : at_roll(slot / width_);
   }
+  /// Places the start and the end that the problem gives, each at the roll of its joints.
+  void place_given(const Problem& problem, const Budget& budget);
   void choose_rolls(double nominal, double droll);
   /// Returns the roll, rad, that an entry of values_ stands for at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
   [[nodiscard]] double way(int step) const;
   void find_near(const Problem& problem);
+  /// Returns whether limits.roll_slope lets the roll of the last step change from that of a rank to
+  /// that of the given end.
+  [[nodiscard]] bool may_end_from(int rank) const;
+  /// Returns the rank at which a node that a given start or end continues stands: 0 for the start,
+  /// and the one nearest to its roll for the end.
+  [[nodiscard]] int rank_beside(int layer) const;
   /// Calls `visit(i, row)` for the layers i of the whole path between those of an edge.
   template <class Visit>
   InterpolatedEdge walk(int layer, int a, const Config& qa, int b, const Config& qb,
@@ -199,6 +203,23 @@ class RollLattice final : public Lattice {
     ToolPath path;
     SrsLattice lattice;
   };
+  /// A posture that the problem gives for the first or the last layer: the tool stands turned by
+  /// `roll` (rad) along `path`, and `lattice` has the posture at that layer.
+  struct Given {
+    Given(double by, ToolPath turned, const Chain& chain, const SrsArm& arm, const Problem& problem,
+          const Budget& budget, std::vector<ArmPlane> planes)
+        : roll(by),
+          path(std::move(turned)),
+          lattice(chain, arm, path, problem, budget, std::move(planes)) {}
+    double roll;
+    ToolPath path;
+    SrsLattice lattice;
+  };
+  /// Returns the only node of a layer for which is_given() holds; null for other layers.
+  [[nodiscard]] const Given* given(int layer) const {
+    if (layer == 0 && start_) return start_.get();
+    return layer == layers() - 1 ? last_.get() : nullptr;
+  }
   struct Window {
     int phi = 1, near = 0;  // phi: cells; near: index into near_
   };
@@ -218,12 +239,10 @@ class RollLattice final : public Lattice {
   bool windows_of_roll_ = false;  // some waypoint has a window of rolls
   // Rolls in the order of their grid, rad; with windows, fractions of a window from 0 to 1.
   std::vector<double> values_;
-  double start_roll_ = 0;
   // The rank of each entry of values_, and the entry of each rank.
   std::vector<int> rank_, value_of_;
   std::vector<std::unique_ptr<Turned>> turned_;  // by rank
-  std::unique_ptr<const ToolPath> start_path_;
-  std::unique_ptr<const SrsLattice> start_;
+  std::unique_ptr<const Given> start_, last_;
   int width_ = 0, widest_ = 1;
   std::vector<Window> windows_;  // by step
   std::vector<Near> near_;

@@ -62,7 +62,7 @@ class LayerNodes {
   struct Layout {  // what the offsets depend on
     std::uint64_t lattice = 0;
     int count = 0;
-    bool elbow0 = false, elbow1 = false, start = false;
+    bool elbow0 = false, elbow1 = false, given = false;
     std::uint8_t moved = 0;  // bit b: branch b has arrays of its own
     bool operator==(const Layout&) const = default;
   };
@@ -89,9 +89,9 @@ class LayerNodes {
 /// Windings tell apart the images of a bounded joint, which are one angle plus whole turns. A joint
 /// has as many as its range has turns, a begun turn counted as one. A begun turn of up to 1e-3 rad,
 /// as in limits written 3.1416, is cut off at the upper end, or at the lower one if a given start
-/// lies in it. No pose is lost by that, but joints do not move through the part that was cut off. A
-/// joint with a range of over 64 turns is treated as continuous (JointLimit::wide): its angles
-/// begin in the turn about 0, or in the nearest turn that leaves 31 turns to both limits.
+/// or end lies in it. No pose is lost by that, but joints do not move through the part that was cut
+/// off. A joint with a range of over 64 turns is treated as continuous (JointLimit::wide): its
+/// angles begin in the turn about 0, or in the nearest turn that leaves 31 turns to both limits.
 ///
 /// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider
 /// by the arm's fit error. Newton's method finds exact configurations from them.
@@ -106,8 +106,9 @@ class SrsLattice final : public Lattice {
   /// Builds the lattice of `path`, which must outlive it, as must `chain` and `arm`. `planes`: the
   /// planes of the path's layers from which arm angles are measured; carried_planes() if empty.
   /// `last_joint`: where joint 7 rests, rad, for an arm whose tool turns freely about that joint's
-  /// axis, in a problem without a start. Throws InputError if the start does not fit, for more than
-  /// 1024 windings, and if the lattice is too large for the machine's memory; Stopped.
+  /// axis, in a problem without a start and an end. Throws InputError if start or end do not fit,
+  /// for more than 1024 windings, and if the lattice is too large for the machine's memory;
+  /// Stopped.
   SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
              const Budget& budget = {}, std::vector<ArmPlane> planes = {},
              std::optional<double> last_joint = {});
@@ -130,6 +131,8 @@ class SrsLattice final : public Lattice {
   /// Returns the slot that stands for the given start in layer 0: the start's IK solution at the
   /// grid angle nearest to its arm angle.
   [[nodiscard]] int start_slot() const { return start_->slot; }
+  /// Returns the slot that stands for a given start or end in a layer for which is_given() holds.
+  [[nodiscard]] int given_slot(int layer) const { return given(layer)->slot; }
 
   [[nodiscard]] LatticeInfo describe() const override;
   [[nodiscard]] int slots(int) const override { return width(); }
@@ -151,8 +154,8 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] double phi(int layer, int slot) const override;
   /// Returns by how much the arm angle may change along an edge, rad.
   [[nodiscard]] double most_turn() const {
-    // with off-grid nodes, both ends may be half a cell from the grid
-    return (window_ + (off_grid_.empty() ? 0 : 1)) * kTwoPi / angles_ + 1e-9;
+    // off-grid nodes, and a given end, may be half a cell from the grid
+    return (window_ + (off_grid_.empty() && !last_ ? 0 : 1)) * kTwoPi / angles_ + 1e-9;
   }
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
   [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
@@ -182,8 +185,8 @@ class SrsLattice final : public Lattice {
 
   // --- arcs
   /// Replaces `out` by the arcs of arm angles, rad, at which the joints of an IK solution are
-  /// within their limits. They are found in closed form, whether nodes are there or not. In layer 0
-  /// a given start counts as any other pose. For an arm that is not exactly S-R-S, the limits are
+  /// within their limits. They are found in closed form, whether nodes are there or not. A layer of
+  /// a given start or end counts as any other. For an arm that is not exactly S-R-S, the limits are
   /// narrowed by the fit error, so that the rows are within their limits as well.
   void arcs(int layer, int solution, std::vector<AngleArc>& out) const;
   /// The node of a cell that does not stand at the grid angle; phi is its arm angle, rad.
@@ -220,8 +223,8 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] bool alive(int layer) const { return alive(layer, 0) || alive(layer, 1); }
   /// Returns whether an elbow side can have nodes in a layer.
   [[nodiscard]] bool alive(int layer, int side) const {
-    return layer == 0 && start_ ? elbow_side_of(solution_of(start_->slot)) == side
-                                : elbow_alive(layer, side);
+    const Given* const only = given(layer);
+    return only ? elbow_side_of(solution_of(only->slot)) == side : elbow_alive(layer, side);
   }
   /// Returns false if no edge leads from elbow side `side` of `layer` to side `other` of the
   /// neighbouring layer `other_layer`. `step_layer`: the first layer of the step between them.
@@ -252,15 +255,23 @@ class SrsLattice final : public Lattice {
     double base = 0, upper = 0;
     int count = 1;
   };
-  static Images images_between(double lower, double upper, double start, double fit_error);
-  struct Start {
+  /// `highest`: the highest value, rad, that a given start or end has of the joint; `lower` if none
+  /// is given.
+  static Images images_between(double lower, double upper, double highest, double fit_error);
+  /// A posture that the problem gives for the first or the last layer, as that layer's only node.
+  struct Given {
     int slot = 0;
     double phi = 0;
-    // node: the fitted arm's solution at the start, or the given joints if it has none; row: the
+    // node: the fitted arm's solution at the posture, or the given joints if it has none; row: the
     // given joints
     Config node, row;
   };
-  void lay_out_start(LayerNodes& out) const;
+  /// Returns the only node of a layer for which is_given() holds; null for other layers.
+  [[nodiscard]] const Given* given(int layer) const {
+    if (layer == 0 && start_) return &*start_;
+    return layer == layers() - 1 && last_ ? &*last_ : nullptr;
+  }
+  void lay_out_given(const Given& given, LayerNodes& out) const;
   /// Copies the entries begin ... end - 1 that an IK solution with arrays of its own has in common
   /// with others.
   void copy_shared(int solution, int begin, int end, LayerNodes& out) const;
@@ -287,15 +298,18 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] TripleTask triple_task(const ElbowCircle& circle, int triple) const;
   [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
   /// Returns joint 4, rad, of a layer's nodes with a sign of the elbow; the arm angle does not
-  /// change it. Only for layers without a start.
+  /// change it. Nothing for a layer of a given start or end.
   [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
   [[nodiscard]] bool elbow_alive(int layer, int elbow) const {
     return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)];
   }
-  void place_start(const Problem& problem);
-  /// Returns the solution of the fitted arm at the start's arm angle and branch, at the images near
-  /// the start `q`; nothing if there is none near it.
-  [[nodiscard]] std::optional<Config> fitted_start(const Config& q, double phi) const;
+  /// Places the start and the end that the problem gives.
+  void place_given(const Problem& problem);
+  /// Returns the node of a layer whose posture `q` is given.
+  [[nodiscard]] Given placed(int layer, const Config& q) const;
+  /// Returns the solution of the fitted arm at the arm angle and the branch of a given posture `q`,
+  /// at the images near it; nothing if there is none near it.
+  [[nodiscard]] std::optional<Config> fitted(int layer, const Config& q, double phi) const;
   [[nodiscard]] bool singular(const Config& q) const;
   /// Returns a set of bits: bit k is set if joint k of a row is outside its limits.
   [[nodiscard]] std::uint8_t joints_outside(const Config& row) const;
@@ -318,7 +332,7 @@ class SrsLattice final : public Lattice {
   std::vector<ReachStatus> reach_;
   std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
   std::vector<std::uint8_t> elbow_alive_;  // [layer][elbow]: its angle lies within the limits
-  std::optional<Start> start_;
+  std::optional<Given> start_, last_;
   std::optional<PoseErrorModel> pose_error_model_;          // for an arm that is not exact
   std::array<std::vector<TripleLimits>, 2> triple_limits_;  // [triple][its winding]
   std::vector<OffGridNode> off_grid_;                       // also empty if resolution.arcs is off
