@@ -47,6 +47,47 @@ class WithFolder(unittest.TestCase):
         return done, out, json.loads(result.read_text()) if result.exists() else None
 
 
+class Ends(WithFolder):
+    """Paths that end in a given posture."""
+
+    def ending(self, joints, scene=""):
+        problem = self.folder / "ending.yaml"
+        text = (PROBLEMS / "experiment_a.yaml").read_text().replace("../", f"{DATA}/")
+        end = ", ".join(map(repr, joints))
+        problem.write_text(text.replace("path:\n", f"path:\n  end: {{joints: [{end}]}}\n") + scene)
+        return problem
+
+    def setUp(self):
+        super().setUp()
+        done, out, _ = self.plan(PROBLEMS / "experiment_a.yaml", "--ds", "0.02", "--dphi", "0.13")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.end = [float(x) for x in list(csv.reader(out.open()))[-1][3:10]]
+
+    def test_the_last_row_is_the_end(self):
+        problem = self.ending(self.end)
+        for options in ((), ("--planner", "eager_dp", "--ds", "0.02"), ("--refine",)):
+            done, out, _ = self.plan(problem, *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            last = [float(x) for x in list(csv.reader(out.open()))[-1][3:10]]
+            self.assertEqual(last, self.end)
+            self.assertEqual(run("check", problem, out).returncode, 0)
+        other = self.ending([self.end[0] + 2e-6, *self.end[1:]])
+        check = run("check", other, out)
+        self.assertEqual(check.returncode, 1, check.stdout)
+        self.assertIn("the last: joints are not the given end", check.stdout)
+        done = run("plan", self.ending([self.end[0] + 1e-3, *self.end[1:]]))
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+
+    def test_that_none_ends_there_is_told_and_proved(self):
+        ball = "scene: [{name: ball, sphere: 0.02, xyz: [0.62, 0.4, 0.9]}]\n"
+        problem, certificate = self.ending(self.end, ball), self.folder / "none.json"
+        done, _, result = self.plan(problem, "--certificate", certificate, "--advise", "2")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("free_end", [one["change"] for one in result["advice"]])
+        check = run("check", problem, "--certificate", certificate)
+        self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+
+
 class Certificates(WithFolder):
     """That there is no path: written by plan, verified by check."""
 
@@ -468,6 +509,16 @@ limits: {{clearance: 0.005}}
             "limits:",
             "start: {{joints: [0, 0, 0, 0, 0, 0, 0]}}\nlimits:",
             ["start.joints", "first pose"],
+        ),
+        (
+            "path:\n",
+            "path:\n  end: {{joints: [9, 0, 0, 0, 0, 0, 0]}}\n",
+            ["path.end.joints", "limits"],
+        ),
+        (
+            "path:\n",
+            "path:\n  end: {{joints: [0, 0, 0, 0, 0, 0, 0]}}\n",
+            ["path.end.joints", "not on the path", " mm and "],
         ),
         ("tip_link: arm_left_link_7_t", "tip_link: arm_left_link_3_e", ["seven"]),
         ("{{clearance: 0.005}}", "{{clearance: -1}}", ["clearance"]),

@@ -219,7 +219,7 @@ TEST(JobFile, WhatStrokesMayNotHave) {
   };
   const Case cases[] = {
       {"closed: true", {"strokes[0].closed: is not supported yet"}},
-      {"end: {joints: []}", {"strokes[0].end: is not supported yet"}},
+      {"end: {joints: []}", {"strokes[0].end: is of the path", "`path` of the stroke"}},
       {"lift: {allowed: true}", {"strokes[0].lift: is not supported yet"}},
       {"start: {joints: [0, 0, 0, 0, 0, 0, 0]}", {"strokes[0].start: is of problems", "`home`"}},
       {"reversable: true", {"strokes[0].reversable: unknown key", "'reversible'"}},
@@ -275,6 +275,13 @@ TEST(JobFile, WhatJobsMayNotHave) {
       {"strokes",
        "[{name: a, path: {file: weld.csv, closed: true}}]",
        {"strokes[0].path.closed: is not supported yet"}},
+      {"strokes",
+       "[{name: a, path: {file: weld.csv, end: {joints: [1, 2]}}}]",
+       {"strokes[0].path.end.joints: has 2 entries", "7 numbers"}},
+      {"strokes",
+       "[{name: a, reversible: true, path: {file: weld.csv, end: {joints: [0, 0, 0, 0, 0, 0, "
+       "0]}}}]",
+       {"strokes[0].path.end: is given of a stroke that may be reversed", "not `reversible`"}},
   };
   for (const Case& one : cases) {
     SCOPED_TRACE(std::string(one.key) + ": " + one.text);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "problem_support.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel::io::test {
 namespace {
@@ -23,6 +25,7 @@ TEST(ProblemFile, Defaults) {
   EXPECT_FALSE(problem.limits.self_clearance);
   EXPECT_FALSE(problem.start);
   EXPECT_FALSE(problem.start_at);
+  EXPECT_FALSE(problem.end);
   EXPECT_EQ(problem.start_tolerance, 1e-6);
   EXPECT_EQ(problem.cost.metric, CostMetric::kL2);
   EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() &&
@@ -206,7 +209,7 @@ Problem load_every_key(const ProblemFolder& folder) {
   - {name: door, mesh: box.stl, scale: [1, -1, 1], quat: [2, 0, 0, 0], allow: [grinder, link_7]})"},
       {"path",
        "{frame: door, waypoints: [{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963, 0]}, {xyz: [0, 0, "
-       "1], quat: [0.9995, 0, 0, 0]}]}"},
+       "1], quat: [0.9995, 0, 0, 0]}], end: {joints: [7, 6, 5, 4, 3, 2, 1]}}"},
       {"resolution", "{ds: 0.01, dphi: 0.2, dalpha: 0.3, arcs: true}"},
       {"limits",
        "{clearance: 0.01, self_clearance: 0.002, manipulability: 0.02, joint_margin: 0.03, "
@@ -269,11 +272,49 @@ TEST(ProblemFile, EveryKey) {
   EXPECT_EQ((*problem.start)[6], 7);
   EXPECT_EQ(problem.start_at, 0.25);
   EXPECT_EQ(problem.start_tolerance, 0.002);
+  ASSERT_TRUE(problem.end);
+  EXPECT_EQ((*problem.end)[0], 7);
   EXPECT_EQ(problem.cost.metric, CostMetric::kTime);
   EXPECT_EQ(problem.cost.weights[5], 6);
   ASSERT_EQ(problem.vary.size(), 2u);
   EXPECT_EQ(problem.vary[0].xyz, Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(problem.vary[1].rpy, Vector3d(0, 0, 1));
+}
+
+/// Returns the problem of data/problems/kr6_weld_pipe.yaml, an arm of six joints, with an end.
+Problem kr6_problem(const fs::path& folder, const std::string& joints) {
+  const std::string data = SWIVEL_DATA_DIR;
+  std::ostringstream read;
+  read << std::ifstream(fs::path(data) / "problems" / "kr6_weld_pipe.yaml").rdbuf();
+  std::string text = read.str();
+  for (std::size_t at = 0; (at = text.find("../", at)) != std::string::npos;)
+    text.replace(at, 2, data);
+  const std::string roll = "roll: free";
+  const std::size_t at = text.find(roll);
+  text.insert(at + roll.size(), "\n  end: {joints: [" + joints + "]}");
+  const fs::path file = folder / "kr6.yaml";
+  write_file(file, text);
+  return load_problem(file);
+}
+
+/// Of an arm of six joints the roll may be left out of an end: it is that of the last waypoint.
+TEST(ProblemFile, EndOfSixJoints) {
+  const ProblemFolder folder;
+  const fs::path place = folder.write({}).parent_path();
+  for (const char* six : {"0, -1.4, 1.5, 0, 0.6, 0", "0.4, -1.2, 1.3, 0.7, -0.9, 2"}) {
+    const Problem problem = kr6_problem(place, six);
+    ASSERT_TRUE(problem.end);
+    const Chain chain = build_arm(*problem.model, problem.base_link, problem.tip_link, {},
+                                  problem.tool, problem.roll)
+                            .chain;
+    Pose wanted = Pose::Identity();
+    wanted.linear() = waypoints_in_base(problem).back().orientation.toRotationMatrix();
+    EXPECT_NEAR(roll_between(wanted, chain.tool(*problem.end)), 0, 1e-9) << six;
+    const std::string seven = std::string(six) + ", 0.25";
+    EXPECT_EQ((*kr6_problem(place, seven).end)[6], 0.25);
+  }
+  const std::string message = input_error([&] { (void)kr6_problem(place, "0, -1.4, 1.5"); });
+  EXPECT_NE(message.find("path.end.joints: has 3 entries"), std::string::npos) << message;
 }
 
 TEST(ProblemFile, SectionsWithEverythingCommentedOut) {

@@ -159,8 +159,12 @@ class JobReader : ProblemReader {
       limits.push_back(*value);
     }
     require_in_scale(*model_, place.path, limits);
+    read_end(place.path, model_->chain);
     static_cast<Task&>(stroke) = std::move(static_cast<Task&>(problem_));
     if (const auto value = place.find("reversible")) stroke.reversible = value->boolean();
+    if (const auto end = place.path.section().find_filled("end"); end && stroke.reversible)
+      end->fail("is given of a stroke that may be reversed, and would begin there then",
+                "`end` in strokes that are not `reversible`");
     stroke.approach = offset(place, "approach");
     stroke.retract = offset(place, "retract");
     if (const auto value = place.find("process_speed")) stroke.process_speed = speed(*value);
@@ -205,12 +209,9 @@ class JobReader : ProblemReader {
   /// Returns the configuration of `home`. Of an arm of six joints six numbers are enough: the roll
   /// of the tool means nothing there.
   [[nodiscard]] Config home_of(const YamlValue& joints) const {
-    if (!(joints.is_sequence() && joints.items().size() == kDof - 1 && model_->chain.roll))
-      return Config::Map(joint_numbers(joints).data());
-    Config home = Config::Zero();
-    for (std::size_t k = 0; k + 1 < kDof; ++k)
-      home[static_cast<Eigen::Index>(k)] = joints.items()[k].number();
-    return home;
+    return leaves_out_roll(joints, model_->chain)
+               ? without_roll(joints)
+               : Config(Config::Map(joint_numbers(joints).data()));
   }
 
   /// Reads the keys of the job that are of no single stroke.

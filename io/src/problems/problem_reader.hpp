@@ -65,11 +65,20 @@ class ProblemReader {
   void read_cost();
   /// Reads `vary` of the file into `problem_`.
   void read_vary();
+  /// Reads `end` of a path, if it is there, into `problem_`, which must have the path's waypoints.
+  /// Of an arm of six joints six numbers are enough: the roll is that of the last waypoint.
+  void read_end(const YamlValue& path, const Chain& chain);
 
   [[nodiscard]] std::string link_name(const YamlValue& value) const;
   /// Returns one number for each joint of the arm, base to tip. An arm of six joints has a seventh
   /// number, for the roll of the tool.
   [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const;
+  /// Returns whether a list of joints leaves out the roll of an arm of six joints.
+  [[nodiscard]] static bool leaves_out_roll(const YamlValue& joints, const Chain& chain) {
+    return chain.roll && joints.is_sequence() && joints.items().size() == kDof - 1;
+  }
+  /// Returns the joints of such a list, with roll 0.
+  [[nodiscard]] static Config without_roll(const YamlValue& joints);
 
   /// Returns the arm. Throws InputError, at the key in the problem file, for values of `robot` that
   /// do not suit the robot's file.

@@ -19,6 +19,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problems/problem.hpp"
@@ -31,6 +32,25 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostBodies = 10'000;  // of objects in the scene, and of attached bodies
+
+/// Returns the joints of an arm of six joints with the roll, the seventh, at which the tool stands
+/// as a waypoint has it, in the turn nearest to the middle of the roll's range.
+Config with_roll_onto(const Waypoint& waypoint, const Chain& chain, Config q) {
+  const auto tool_at = [&](double roll) {
+    q[kDof - 1] = roll;
+    return chain.tool(q);
+  };
+  Pose wanted = Pose::Identity();
+  wanted.linear() = waypoint.orientation.normalized().toRotationMatrix();
+  const Pose unturned = tool_at(0);
+  const double away = roll_between(unturned, wanted);
+  const bool reversed = roll_between(unturned, tool_at(0.1)) < 0;
+  const JointLimit& limit = chain.limit.back();
+  const double middle = limit.continuous ? 0 : (limit.lower + limit.upper) / 2,
+               roll = reversed ? -away : away;
+  q[kDof - 1] = roll + kTwoPi * std::round((middle - roll) / kTwoPi);
+  return q;
+}
 
 Vector3d vector3_or_zero(const YamlSection& section, const std::string& key) {
   const auto value = section.find_filled(key);
@@ -101,6 +121,7 @@ Problem ProblemReader::read() {
   if (limits) require_arm_angle(model, *limits);
   if (const auto value = root_.find_filled("start")) read_start(*value);
   read_start_place();
+  read_end(path, model.chain);
   read_cost();
   read_vary();
   return std::move(problem_);
@@ -496,6 +517,22 @@ void ProblemReader::read_start_place() {
   problem_.start_tolerance = tolerance->number();
   if (problem_.start_tolerance > kMostStartTolerance)
     tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
+}
+
+Config ProblemReader::without_roll(const YamlValue& joints) {
+  Config q = Config::Zero();
+  for (std::size_t k = 0; k + 1 < kDof; ++k)
+    q[static_cast<Eigen::Index>(k)] = joints.items()[k].number();
+  return q;
+}
+
+void ProblemReader::read_end(const YamlValue& path, const Chain& chain) {
+  const auto end = path.section().find_filled("end");
+  if (!end) return;
+  const YamlValue joints = end->section().require("joints");
+  problem_.end = leaves_out_roll(joints, chain) ? with_roll_onto(waypoints_in_base(problem_).back(),
+                                                                 chain, without_roll(joints))
+                                                : Config(Config::Map(joint_numbers(joints).data()));
 }
 
 void ProblemReader::read_cost() {

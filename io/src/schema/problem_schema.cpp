@@ -136,9 +136,12 @@ Schema path() {
            "of arms of six joints and of "
            "S-R-S arms "
            "of seven"},
+          {"end", configuration(), "", in_words("Swivel chooses"),
+           "`{joints: [...]}`, seven numbers (rad), or six of an arm of six joints: the "
+           "configuration at the [end](#start-and-end) of the path"},
       },
       {{{"waypoints", "file"}, true}});
-  return refusing(std::move(keys), {not_yet("end"), not_yet("closed")});
+  return refusing(std::move(keys), {not_yet("closed")});
 }
 
 Schema scene() {
@@ -344,7 +347,7 @@ Schema strokes() {
   return list(refusing(std::move(stroke),
                        {not_yet("lift"),
                         not_yet("closed"),
-                        not_yet("end"),
+                        {"end", "is of the path", "this key in the `path` of the stroke"},
                         {"start", "is of problems with one path", "`home`, of a job as a whole"}}));
 }
 

@@ -334,26 +334,26 @@ Schema motion() {
 }
 
 Schema advice() {
-  return list(
-      section("advice",
-              {
-                  key("change", text(),
-                      "`free_start`, `free_roll` (no bounds of `path.roll`), `finer` (half the "
-                      "steps of the lattice), "
-                      "the name of a limit, `allow` (all depths that the object's `allow` gives, "
-                      "by one factor), "
-                      "`move_object`, `without_object`"),
-                  key("words", text(), "the change in a phrase"),
-                  key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
-                  key("from", or_null(number()), "of limits and `allow`: what it is"),
-                  key("to", or_null(number()), "of limits and `allow`: what was tried"),
-                  key("offset", or_null(numbers(3)),
-                      "of `move_object`, base frame; zeros where no way helps", "m"),
-                  key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
-                      "`further`: paths come further; `unknown`: no time left"),
-                  key("cost", or_null(number()), "of `solved`"),
-                  key("reached_s", or_null(number()), "how far paths come", "m"),
-              }));
+  return list(section(
+      "advice",
+      {
+          key("change", text(),
+              "`free_start`, `free_end`, `free_roll` (no bounds of `path.roll`), `finer` (half the "
+              "steps of the lattice), "
+              "the name of a limit, `allow` (all depths that the object's `allow` gives, "
+              "by one factor), "
+              "`move_object`, `without_object`"),
+          key("words", text(), "the change in a phrase"),
+          key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
+          key("from", or_null(number()), "of limits and `allow`: what it is"),
+          key("to", or_null(number()), "of limits and `allow`: what was tried"),
+          key("offset", or_null(numbers(3)),
+              "of `move_object`, base frame; zeros where no way helps", "m"),
+          key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
+              "`further`: paths come further; `unknown`: no time left"),
+          key("cost", or_null(number()), "of `solved`"),
+          key("reached_s", or_null(number()), "how far paths come", "m"),
+      }));
 }
 
 Schema certificate() {
