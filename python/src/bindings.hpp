@@ -34,6 +34,9 @@ struct Mesh {
 [[nodiscard]] Pose to_pose(py::handle source);
 [[nodiscard]] std::vector<Waypoint> to_waypoints(py::handle source);
 [[nodiscard]] py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints);
+/// Returns the joints of one posture, rad; nothing for None. Throws ValueError, with `name` as that
+/// of the argument, for another shape than (7,).
+[[nodiscard]] std::optional<Config> to_posture(py::handle joints, const char* name);
 /// Returns joints as a contiguous (n, 7) float64 array, rad; (7,) is read as one row. Throws
 /// ValueError, with `what` as the name of the argument, for other shapes.
 [[nodiscard]] py::array_t<double> to_joints(py::handle source, const char* what);

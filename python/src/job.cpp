@@ -87,7 +87,7 @@ void bind_stroke(py::module_& m) {
                        py::handle approach, py::handle retract, std::optional<double> process_speed,
                        std::optional<double> approach_speed, py::handle feed,
                        const std::optional<Limits>& limits,
-                       const std::optional<Resolution>& resolution) {
+                       const std::optional<Resolution>& resolution, py::handle end) {
              return Stroke{std::move(name),
                            std::move(waypoints),
                            std::move(frame),
@@ -99,19 +99,21 @@ void bind_stroke(py::module_& m) {
                            approach_speed,
                            to_feed(feed),
                            limits,
-                           resolution};
+                           resolution,
+                           to_posture(end, "end")};
            }),
            py::arg("name"), py::arg("waypoints"), py::kw_only(), py::arg("frame") = "",
            py::arg("smooth") = py::none(), py::arg("reversible") = false,
            py::arg("approach") = py::none(), py::arg("retract") = py::none(),
            py::arg("process_speed") = py::none(), py::arg("approach_speed") = py::none(),
            py::arg("feed") = py::none(), py::arg("limits") = py::none(),
-           py::arg("resolution") = py::none(),
+           py::arg("resolution") = py::none(), py::arg("end") = py::none(),
            "name: of its own among the strokes of the job. waypoints, frame, smooth: as of a Task. "
            "reversible: the tool may run from the last waypoint to the first. approach, retract: "
            "from where the tool comes and where it goes, on straight lines without turning: m "
            "against its z axis, or (3,), m in the tool frame there. process_speed, approach_speed: "
-           "m/s, on the stroke and on these lines. feed: (n,), m/s, from each waypoint on.")
+           "m/s, on the stroke and on these lines. feed: (n,), m/s, from each waypoint on. end: "
+           "(7,) joints to end in after the retract, rad; not of reversible strokes.")
       .def_readwrite("name", &Stroke::name)
       .def_readwrite("waypoints", &Stroke::waypoints,
                      "(n, 7): x y z (m) qw qx qy qz, in `frame`; with roll_min and roll_max (rad) "
@@ -142,6 +144,10 @@ void bind_stroke(py::module_& m) {
           "change it.")
       .def_readwrite("limits", &Stroke::limits, "Instead of those of the job, or None.")
       .def_readwrite("resolution", &Stroke::resolution, "Instead of that of the job, or None.")
+      .def_property(
+          "end", [](const Stroke& stroke) { return stroke.end; },
+          [](Stroke& stroke, py::handle end) { stroke.end = to_posture(end, "end"); },
+          "(7,) joints to end in after the retract, rad, or None. A copy; assign to change it.")
       .def(
           "__eq__", [](const Stroke& a, const Stroke& b) { return a == b; }, py::is_operator())
       .def("__repr__", [](const Stroke& stroke) { return "<Stroke " + stroke_words(stroke) + ">"; })
@@ -204,7 +210,7 @@ swivel::Job to_core(const Job& job) {
     made.approach = stroke.approach.value_or(job.approach);
     made.retract = stroke.retract.value_or(job.retract);
     made.process_speed = stroke.process_speed, made.approach_speed = stroke.approach_speed;
-    made.feed = std::move(stroke.feed);
+    made.feed = std::move(stroke.feed), made.end = stroke.end;
   }
   validate(core);
   return core;
@@ -226,7 +232,7 @@ Job from_core(swivel::Job core) {
         {std::move(stroke.name), std::move(stroke.waypoints), std::move(stroke.path_frame),
          stroke.smooth, stroke.reversible, stroke.approach, stroke.retract, stroke.process_speed,
          stroke.approach_speed, std::move(stroke.feed),
-         own_limits ? std::optional(stroke.limits) : std::nullopt, stroke.resolution});
+         own_limits ? std::optional(stroke.limits) : std::nullopt, stroke.resolution, stroke.end});
   }
   share(strokes, &Stroke::resolution, job.resolution);
   share(strokes, &Stroke::approach, job.approach);

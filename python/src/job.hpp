@@ -24,6 +24,7 @@ struct Stroke {
   std::vector<double> feed;
   std::optional<Limits> limits;
   std::optional<Resolution> resolution;
+  std::optional<Config> end;
   bool operator==(const Stroke&) const = default;
 };
 

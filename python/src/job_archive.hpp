@@ -102,9 +102,9 @@ namespace python {
 template <class A>
 void serialize(A& archive, Stroke& x) {
   auto& [name, waypoints, frame, smooth, reversible, approach, retract, process_speed,
-         approach_speed, feed, limits, resolution] = x;
+         approach_speed, feed, limits, resolution, end] = x;
   archive(name, waypoints, frame, smooth, reversible, approach, retract, process_speed,
-          approach_speed, feed, limits, resolution);
+          approach_speed, feed, limits, resolution, end);
 }
 /// Lists the members of a Job and of its base, which no structured binding takes apart together.
 template <class A>

@@ -127,14 +127,6 @@ Pose make_pose(const Vector3d& xyz, const std::optional<Vector3d>& rpy,
   return pose;
 }
 
-std::optional<Config> to_start(py::handle joints) {
-  if (joints.is_none()) return {};
-  const Array array = to_array(joints, "joints: (7,), rad");
-  if (array.ndim() != 1 || array.shape(0) != kDof)
-    throw py::value_error("start of shape " + shape_text(array) + ": allowed is (7,), rad");
-  return Config(Eigen::Map<const Config>(array.data()));
-}
-
 // --- robot
 
 void choose_links(Robot& robot, const std::optional<std::string>& base,
@@ -610,14 +602,15 @@ void bind_task(py::module_& m) {
   type.def(pickling<Task>());
   type.def(py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits,
                        const Resolution& resolution, py::handle start,
-                       std::optional<double> start_at, double start_tolerance, const Cost& cost,
-                       const std::optional<PathSmoothing>& smooth, const Refinement& refinement) {
+                       std::optional<double> start_at, double start_tolerance, py::handle end,
+                       const Cost& cost, const std::optional<PathSmoothing>& smooth,
+                       const Refinement& refinement) {
              Task task;
              task.waypoints = std::move(waypoints);
              task.path_frame = std::move(frame);
              task.limits = limits, task.resolution = resolution, task.cost = cost;
-             task.start = to_start(start), task.start_at = start_at,
-             task.start_tolerance = start_tolerance;
+             task.start = to_posture(start, "start"), task.start_at = start_at,
+             task.start_tolerance = start_tolerance, task.end = to_posture(end, "end");
              task.smooth = smooth, task.refinement = refinement;
              return task;
            }),
@@ -625,8 +618,8 @@ void bind_task(py::module_& m) {
            py::arg_v("limits", Limits(), "Limits()"),
            py::arg_v("resolution", Resolution(), "Resolution()"), py::arg("start") = py::none(),
            py::arg("start_at") = py::none(), py::arg("start_tolerance") = Task().start_tolerance,
-           py::arg_v("cost", Cost(), "Cost()"), py::arg("smooth") = py::none(),
-           py::arg_v("refinement", Refinement(), "Refinement()"),
+           py::arg("end") = py::none(), py::arg_v("cost", Cost(), "Cost()"),
+           py::arg("smooth") = py::none(), py::arg_v("refinement", Refinement(), "Refinement()"),
            "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or "
            "a list of either; or (n, 9) rows, "
            "with the least and the most roll there, rad. frame: the "
@@ -634,7 +627,7 @@ void bind_task(py::module_& m) {
            "link (also empty) or the name of a scene object. start: (7,) joints to begin with, "
            "rad. start_at: m along the path "
            "where\n"
-           "the start stands.")
+           "the start stands. end: (7,) joints to end in at the last waypoint, rad.")
       .def_readwrite("frame", &Task::path_frame,
                      "Base link (also empty) or the name of a scene object.")
       .def_readwrite("waypoints", &Task::waypoints,
@@ -645,10 +638,14 @@ void bind_task(py::module_& m) {
       .def_readwrite("limits", &Task::limits)
       .def_property(
           "start", [](const Task& task) { return task.start; },
-          [](Task& task, py::handle start) { task.start = to_start(start); },
+          [](Task& task, py::handle start) { task.start = to_posture(start, "start"); },
           "(7,) joints to begin with, rad, or None. A copy; assign to change it.")
       .def_readwrite("start_at", &Task::start_at, "m along the path, or None.")
       .def_readwrite("start_tolerance", &Task::start_tolerance, "m and rad.")
+      .def_property(
+          "end", [](const Task& task) { return task.end; },
+          [](Task& task, py::handle end) { task.end = to_posture(end, "end"); },
+          "(7,) joints to end in, rad, or None. A copy; assign to change it.")
       .def_readwrite("cost", &Task::cost)
       .def_readwrite("refinement", &Task::refinement)
       .def(
@@ -661,6 +658,15 @@ void bind_task(py::module_& m) {
 }
 
 }  // namespace
+
+std::optional<Config> to_posture(py::handle joints, const char* name) {
+  if (joints.is_none()) return {};
+  const Array array = to_array(joints, "joints: (7,), rad");
+  if (array.ndim() != 1 || array.shape(0) != kDof)
+    throw py::value_error(std::string(name) + " of shape " + shape_text(array) +
+                          ": allowed is (7,), rad");
+  return Config(Eigen::Map<const Config>(array.data()));
+}
 
 Waypoint to_waypoint(py::handle source, bool position_alone) {
   const char* const allowed =

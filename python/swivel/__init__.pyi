@@ -277,6 +277,10 @@ class Task:
     def start(self, joints: ArrayLike | None) -> None: ...
     start_at: float | None
     start_tolerance: float
+    @property
+    def end(self) -> _Array | None: ...
+    @end.setter
+    def end(self, joints: ArrayLike | None) -> None: ...
     cost: Cost
     refinement: Refinement
     def __init__(
@@ -289,6 +293,7 @@ class Task:
         start: ArrayLike | None = None,
         start_at: float | None = None,
         start_tolerance: float = ...,
+        end: ArrayLike | None = None,
         cost: Cost = ...,
         smooth: PathSmoothing | None = None,
         refinement: Refinement = ...,
@@ -851,6 +856,10 @@ class Stroke:
     def feed(self, feed: ArrayLike | None) -> None: ...
     limits: Limits | None
     resolution: Resolution | None
+    @property
+    def end(self) -> _Array | None: ...
+    @end.setter
+    def end(self, joints: ArrayLike | None) -> None: ...
     def __init__(
         self,
         name: str,
@@ -866,6 +875,7 @@ class Stroke:
         feed: ArrayLike | None = None,
         limits: Limits | None = None,
         resolution: Resolution | None = None,
+        end: ArrayLike | None = None,
     ) -> None: ...
 
 class Job(Robot):

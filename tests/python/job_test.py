@@ -146,6 +146,23 @@ class Jobs(unittest.TestCase):
         self.assertAlmostEqual(heights[1], 0.02 + along + 0.03)
         self.assertTrue(swivel.check_job(job, plan))
 
+    def test_a_stroke_ends_where_it_is_told(self):
+        job, told = small(), small()
+        job.resolution = swivel.Resolution(ds=0.05, dphi=0.13)
+        end = swivel.plan_job(job).parts[1].joints[-1]
+        told.strokes[0].end = end
+        plan = swivel.plan_job(told)
+        self.assertTrue(plan.solved, plan)
+        np.testing.assert_allclose(plan.parts[1].joints[-1], end, rtol=0, atol=1e-9)
+        self.assertTrue(swivel.check_job(told, plan))
+        self.assertEqual(pickle.loads(pickle.dumps(told)).strokes[0], told.strokes[0])
+        np.testing.assert_array_equal(told.strokes[0].end, end)
+        told.strokes[0].end = end + 1e-5
+        self.assertFalse(swivel.check_job(told, plan))
+        told.strokes[0].reversible = True
+        with self.assertRaisesRegex(ValueError, "end: allowed in strokes that are not reversible"):
+            swivel.plan_job(told)
+
     def test_files_are_read_whole(self):
         text = DOOR.read_text().replace("../", f"{DATA}/")
         text = text.replace("rapid:", "approach: 0.02\nrapid:")

@@ -329,6 +329,13 @@ class Memory(unittest.TestCase):
         start[0] = 5
         np.testing.assert_array_equal(problem.start, np.arange(7.0))
         problem.start = None
+        problem.end = np.arange(7)
+        end = problem.end
+        end[0] = 5
+        np.testing.assert_array_equal(problem.end, np.arange(7.0))
+        with self.assertRaisesRegex(ValueError, "end of shape"):
+            problem.end = np.arange(6)
+        problem.end = None
         limits = copy.copy(problem.limits)
         limits.clearance = 3
         self.assertEqual(problem.limits.clearance, 0.007)
