@@ -4,7 +4,7 @@
 import { distribution, histogram, offsets, places, reasons } from './charts.js';
 import { enders, legend } from './ended.js';
 import { savers } from './figure.js';
-import { $, data, number, style, table, themes, whenResized } from './page.js';
+import { $, data, number, show, style, table, themes, whenResized } from './page.js';
 import { SOLVED } from './palette.js';
 import { EpisodeTable } from './episodes.js';
 
@@ -132,7 +132,11 @@ function paint() {
       dot.addEventListener('click', () =>
         choose(rows.find((row) => row.episode === Number(dot.textContent.match(/\d+/)[0]))),
       );
-    host.replaceChildren(drawing);
+    show(
+      host,
+      drawing,
+      `${$(id).querySelector('h2').firstChild.textContent}, ${of.length} episodes`,
+    );
   }
 }
 themes(paint);

@@ -16,8 +16,7 @@ import {
   offPath,
   placeWords,
   rowOf,
-  shadeEnds,
-  shades,
+  shading,
   valueAt,
 } from './poses.js';
 import { tellPose } from './readout.js';
@@ -256,14 +255,19 @@ function step(now) {
 }
 
 function colourPaths() {
-  const byPhi = $('path-colour').value === 'phi',
+  const { ends, of } = shading(
+      $('path-colour').value,
+      chain,
+      strokes.flatMap(({ rows }) => rows),
+    ),
     [low, , high] = $('ramp').children;
-  [low.textContent, high.textContent] = shadeEnds(byPhi);
-  strokes.forEach(({ tool_path, rows }, k) => {
-    const values = tool_path.map(() => NaN);
-    shades(rows, byPhi).forEach((value, row) => (values[row] = value));
-    view?.colourPath(values, k);
-  });
+  [low.textContent, high.textContent] = ends;
+  strokes.forEach(({ tool_path, rows }, k) =>
+    view?.colourPath(
+      tool_path.map((_, row) => (rows[row] ? of(rows[row]) : NaN)),
+      k,
+    ),
+  );
 }
 function paint() {
   view?.paint();

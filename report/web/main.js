@@ -14,8 +14,7 @@ import {
   placeWords,
   poseAt,
   rowOf,
-  shadeEnds,
-  shades,
+  shading,
   stepsOf,
   valueAt,
 } from './poses.js';
@@ -218,13 +217,10 @@ keys({
 });
 
 function colourPath() {
-  const byPhi = $('path-colour').value === 'phi',
-    known = shades(rows, byPhi);
-  const [low, , high] = $('ramp').children;
-  [low.textContent, high.textContent] = shadeEnds(byPhi);
-  const values = data.tool_path.map(() => NaN);
-  known.forEach((value, k) => (values[k] = value));
-  view?.colourPath(values);
+  const { ends, of } = shading($('path-colour').value, chain, rows),
+    [low, , high] = $('ramp').children;
+  [low.textContent, high.textContent] = ends;
+  view?.colourPath(data.tool_path.map((_, k) => (rows[k] ? of(rows[k]) : NaN)));
 }
 function paint() {
   view?.paint();

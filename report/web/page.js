@@ -45,6 +45,14 @@ export function tell(text, event) {
   tip.style.top = `${Math.max(4, Math.min(event.clientY + 14, lowest))}px`;
 }
 
+/** Shows a drawing in its place, which is named as a whole. role: of the place. */
+export function show(host, drawing, name, role = 'img') {
+  drawing.setAttribute('aria-hidden', 'true');
+  host.setAttribute('role', role);
+  host.setAttribute('aria-label', name);
+  host.replaceChildren(drawing);
+}
+
 /** Calls back when the window's width has changed and come to rest. */
 export function whenResized(changed) {
   let width = innerWidth,

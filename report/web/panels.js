@@ -7,7 +7,7 @@ import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
 import { element, hatching, hatchedBy } from './hatching.js';
 import { LIMIT, wrapped } from './map.js';
-import { isDark, style } from './page.js';
+import { isDark, show, style } from './page.js';
 import { kDark, kLight, lineBetween } from './palette.js';
 
 const kDegrees = 180 / Math.PI,
@@ -342,9 +342,7 @@ export class Panels {
         colours,
       );
       Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
-      panel.chart.replaceChildren(drawing);
-      panel.chart.setAttribute('role', 'img');
-      panel.chart.setAttribute('aria-label', `Map of ${panel.name}: ${this.share(panel)}`);
+      show(panel.chart, drawing, `Map of ${panel.name}: ${this.share(panel)}`);
     }
     const legend = document.getElementById('legend');
     legend.replaceChildren(

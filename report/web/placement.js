@@ -5,11 +5,12 @@ import * as Plot from '@observablehq/plot';
 import { enders, legend } from './ended.js';
 import { savers } from './figure.js';
 import { element, hatching } from './hatching.js';
-import { $, data, number, style, table, themes, whenResized } from './page.js';
+import { $, data, number, show, style, table, themes, whenResized } from './page.js';
 import { FAILED, lineBetween, rampColour, SOLVED } from './palette.js';
 import { Placed } from './placed.js';
 
-const kBest = 20,
+const kMapName = 'Map of placements: the arrows pick one',
+  kBest = 20,
   kAround = 270, // pixels above and below the map
   kDegrees = 180 / Math.PI;
 // Of each quality: the column, whether more is better, its scale to the unit shown, words.
@@ -415,7 +416,7 @@ function paintMap() {
     ({ target }) =>
       target.closest('.cells') && drawn[target.__data__] && pick(drawn[target.__data__]),
   );
-  host.replaceChildren(drawing);
+  show(host, drawing, kMapName, 'application');
   legend($('legend'), colours().legend);
   $('map-note').textContent =
     varied.length > 2 && !data.sample

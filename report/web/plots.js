@@ -3,7 +3,7 @@
 import * as Plot from '@observablehq/plot';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
-import { number, style, tell } from './page.js';
+import { number, show, style, tell } from './page.js';
 import { FAILED } from './palette.js';
 
 const kHeight = 112;
@@ -111,9 +111,7 @@ export class Plots {
     for (const plot of this.plots) {
       const drawing = this.drawing(plot, width, kHeight, colours);
       Object.assign(plot, { x: drawing.scale('x'), y: drawing.scale('y') });
-      plot.chart.setAttribute('role', 'img');
-      plot.chart.setAttribute('aria-label', this.name(plot));
-      plot.chart.replaceChildren(drawing);
+      show(plot.chart, drawing, this.name(plot));
     }
     this.draw(this.cursor === undefined ? 0 : this.cursor, this.pose);
   }

@@ -137,15 +137,37 @@ export function cellBeside(cells, row, turned, by) {
   return null;
 }
 
-const kFarMm = 100; // clearances from here on look alike
-/** Of each row the share of its colour's ramp; NaN where nothing is known. */
-export const shades = (rows, byPhi) =>
-  rows.map((row) =>
-    byPhi
-      ? (wrapped(row.phi) + Math.PI) / (2 * Math.PI)
-      : row.clearance_mm === undefined
-        ? NaN
-        : row.clearance_mm / kFarMm,
+const kFarMm = 100, // clearances from here on look alike
+  kFarDegrees = 45; // and distances from a joint limit
+/** The least distance of a joint from one of its limits, degrees; Infinity where there are none. */
+export const marginOf = (chain, q) =>
+  kDegrees *
+  Math.min(
+    ...chain.joints.map(({ lower, upper }, k) =>
+      lower === null || upper === null ? Infinity : Math.min(q[k] - lower, upper - q[k]),
+    ),
   );
-/** What the ends of the ramp mean. */
-export const shadeEnds = (byPhi) => (byPhi ? ['−180°', '180°'] : ['0', `${kFarMm} mm`]);
+/**
+ * How a path is coloured by one of the kinds of the view's list. rows: of all paths. { ends: what
+ * the ends of the ramp mean; of: the share of a row, NaN where nothing is known }.
+ */
+export function shading(kind, chain, rows) {
+  if (kind === 'phi')
+    return {
+      ends: ['−180°', '180°'],
+      of: ({ phi }) => (wrapped(phi) + Math.PI) / (2 * Math.PI),
+    };
+  if (kind === 'margin')
+    return { ends: ['0', `${kFarDegrees}°`], of: ({ q }) => marginOf(chain, q) / kFarDegrees };
+  if (kind === 'manipulability') {
+    const most = Math.max(1e-12, ...rows.map(({ q }) => manipulability(chain, q)));
+    return {
+      ends: ['0', `${number(most, 2)} m³`],
+      of: ({ q }) => manipulability(chain, q) / most,
+    };
+  }
+  return {
+    ends: ['0', `${kFarMm} mm`],
+    of: ({ clearance_mm }) => (clearance_mm === undefined ? NaN : clearance_mm / kFarMm),
+  };
+}

@@ -101,7 +101,9 @@ export async function withBrowser({ packages, shots }, test) {
   };
   const shoot = async (page, name, options) => {
     if (!shots) return;
-    await page.evaluate(() => document.activeElement?.blur()); // no ring about what has the focus
+    // No ring about what has the focus, no line below what is hovered.
+    await page.evaluate(() => document.activeElement?.blur());
+    await page.mouse.move(1, 1);
     await page.waitForTimeout(800); // at rest the arm is drawn with more pixels
     await page.screenshot({ path: join(shots, name), ...options });
   };

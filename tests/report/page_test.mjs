@@ -362,6 +362,18 @@ async function checkLegend(page) {
       const [first] = window.swivel.view.arm.filter(({ userData }) => userData.body.group > 0);
       return [first.visible, first.material.transparent];
     });
+  const colours = new Set(),
+    ends = new Set();
+  for (const kind of ['clearance', 'phi', 'margin', 'manipulability']) {
+    await page.selectOption('#path-colour', kind);
+    colours.add(
+      await page.evaluate(() => window.swivel.view.lines[0].tube.attributes.color.array.join()),
+    );
+    ends.add(await page.textContent('#ramp'));
+  }
+  assert.equal(colours.size, 4);
+  assert.equal(ends.size, 4);
+  await page.selectOption('#path-colour', 'clearance');
   const arm = page.locator('#bodies button').filter({ hasText: /^arm/ });
   assert.deepEqual(await looks(), [true, false]);
   await arm.click();
