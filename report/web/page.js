@@ -24,6 +24,7 @@ export function themes(changed) {
   addEventListener('beforeprint', () => {
     before = isDark();
     page.classList.add('paper');
+    for (const folded of document.querySelectorAll('details')) folded.open = true;
     set(false);
   });
   addEventListener('afterprint', () => {

@@ -37,6 +37,8 @@ export function tellPose(host, chain, where, { q, note }, digits) {
   host.replaceChildren(
     ...(where ? [line('where', where)] : []),
     ...chain.joints.map((joint, k) => jointLine(joint, q[k], digits)),
-    ...(note ? [Object.assign(document.createElement('div'), { textContent: note })] : []),
+    ...(note
+      ? [Object.assign(document.createElement('div'), { className: 'note', textContent: note })]
+      : []),
   );
 }
