@@ -9,7 +9,12 @@ export function verdict({ answer, result, strokes }, go) {
   const host = $('verdict'),
     found = result.cost !== null;
   host.classList.add(found ? 'solved' : 'failed');
-  host.append(answer.split('\n')[0]);
+  host.append(
+    Object.assign(document.createElement('span'), {
+      className: 'part',
+      textContent: answer.split('\n')[0],
+    }),
+  );
   const near = strokes
     .map(({ run }, k) => ({ k, clearance: run?.summary?.clearance }))
     .filter(({ clearance }) => found && clearance)

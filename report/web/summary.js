@@ -25,7 +25,10 @@ export function verdict(host, { answer, result, chain, map }, jump) {
   const margin = (k, q) => Math.min(q[k] - chain.joints[k].lower, chain.joints[k].upper - q[k]);
   const say = (text, s, off, near = false) => {
     if (host.childNodes.length) host.append(separator());
-    if (s === undefined || s === null) return host.append(text);
+    if (s === undefined || s === null)
+      return host.append(
+        Object.assign(document.createElement('span'), { className: 'part', textContent: text }),
+      );
     const button = document.createElement('button');
     button.classList.toggle('near', near);
     Object.assign(button, { textContent: `${text} at s ${s.toFixed(3)}`, title: 'Go there' });

@@ -102,7 +102,7 @@ export async function withBrowser({ packages, shots }, test) {
   const shoot = async (page, name, options) => {
     if (!shots) return;
     // No ring about what has the focus, no line below what is hovered.
-    await page.evaluate(() => document.activeElement?.blur());
+    await page.evaluate(() => (document.activeElement?.blur(), scrollTo(0, 0)));
     await page.mouse.move(1, 1);
     await page.waitForTimeout(800); // at rest the arm is drawn with more pixels
     await page.screenshot({ path: join(shots, name), ...options });

@@ -780,7 +780,10 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       await checkHover(page, data);
       await page.setViewportSize(phone);
     }
-    if (reached) await shoot(page, name === 'c' ? 'report_blocked.png' : 'report_phone.png');
+    if (reached) {
+      await page.click('#blocked');
+      await shoot(page, name === 'c' ? 'report_blocked.png' : 'report_phone.png');
+    }
     // Nothing to play or plot.
     else
       assert.ok(!(await page.isVisible('#controls')) && !(await page.isVisible('#plots-section')));
