@@ -13,6 +13,7 @@
 #include <random>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "robots.hpp"
 #include "swivel/collision/world/world.hpp"
@@ -495,6 +496,56 @@ TEST_P(Maps, SvgIsWellFormedAndCoversEveryPanel) {
   for (const int label : lazy.map.inhabited_solutions())
     EXPECT_NE(svg.find(lazy.map.solution_name(label)), std::string::npos);
   EXPECT_LT(svg.size(), 2'000'000U);
+}
+
+/// What a colour stands for: a state, whether a free node is proved, the object that blocks.
+using ColourGroup = std::tuple<NodeState, bool, int>;
+
+/// Returns the groups of the cells in a map's panels.
+std::set<ColourGroup> colour_groups(const LatticeMap& map) {
+  std::set<ColourGroup> groups;
+  for (const int solution : map.inhabited_solutions())
+    for (int layer = 0; layer < map.layers; ++layer)
+      for (int angle = 0; angle < map.angles; ++angle) {
+        const LatticeMap::Node& node = map.at(layer, solution, angle);
+        groups.insert({node.state, node.state == NodeState::kFree && node.proved,
+                       node.state == NodeState::kBlocked ? map.blocking_object(node) : 0});
+      }
+  return groups;
+}
+
+/// Returns what follows `mark` in a text, up to `end`, each text once.
+std::set<std::string> all_after(const std::string& text, const std::string& mark, char end) {
+  std::set<std::string> found;
+  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
+    const std::size_t from = at + mark.size();
+    found.insert(text.substr(from, text.find(end, from) - from));
+  }
+  return found;
+}
+
+/// Each group has a colour of its own in drawing and terminal; limits alone are hatched.
+TEST_P(Maps, ColoursTellApartWhatEndsPaths) {
+  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false);
+  const LatticeMap& map = lazy.map;
+  std::set<ColourGroup> groups = colour_groups(map);
+  const bool has_limits = std::any_of(groups.begin(), groups.end(), [](const auto& group) {
+    return std::get<NodeState>(group) == NodeState::kJointLimit;
+  });
+  groups.insert({NodeState::kNoIk, false, 0});  // the ground
+  const std::string svg = to_svg(map);
+  std::set<std::string> fills = all_after(svg, " fill=\"", '"');
+  EXPECT_EQ(fills.erase("url(#hatch-1d5e8a)"), has_limits ? 1U : 0U);
+  fills.erase("none");
+  EXPECT_EQ(fills.erase("#000000"), map.path.empty() ? 0U : 1U);
+  EXPECT_EQ(fills.size(), groups.size()) << svg.substr(0, 200);
+  // A column a layer and a row an angle: every cell is shown.
+  const std::string text = to_text(map, map.layers + 8, true);
+  const std::set<std::string> grounds = all_after(text, "\x1b[48;5;", ';');
+  EXPECT_LE(grounds.size(), groups.size());
+  EXPECT_GE(grounds.size() + 2, groups.size());  // those that cells of a row of several hide
+  std::printf("%zu colours\n", groups.size());
+  EXPECT_GE(groups.size(), 3U);
 }
 
 TEST(Maps, RecordingChangesNothingOfThePlan) {
