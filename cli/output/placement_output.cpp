@@ -146,21 +146,27 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
   const std::vector<PlacementRow> best =
       best_placements(rows, criteria, std::max<std::size_t>(1, top));
   const PlacementGrid grid(request.axes());
-  if (outputs.wants("--report")) {
-    const std::string thing = request.placement.path   ? "the path"
-                              : request.placement.base ? "the robot"
-                                                       : request.placement.object;
-    outputs.write("--report",
-                  to_placement_page(rows,
-                                    {record.problem, thing, grid.axes(), request.sample.has_value(),
-                                     record.total, criteria, record.setting("planner"),
-                                     record.plan_command + request.placement.words({})},
-                                    scene));
-  }
   std::optional<PlacementMap> map;
   if (request.drawable()) {
     const std::vector<std::size_t> varied = request.varied_axes();
     map.emplace(grid, varied[0], varied[1], rows, criteria);
+  }
+  if (outputs.wants("--report")) {
+    const std::string thing = request.placement.path   ? "the path"
+                              : request.placement.base ? "the robot"
+                                                       : request.placement.object;
+    std::string answer = count_text(rows) + '\n';
+    if (!best.empty()) answer += std::string("the best by ") + to_string(criteria[0]) + ":\n";
+    for (const PlacementRow& row : best)
+      answer += "  " + figures(row) + ":\n    " + record.plan_command +
+                request.placement.words(row.offset) + '\n';
+    outputs.write("--report",
+                  to_placement_page(rows,
+                                    {record.problem, thing, grid.axes(), request.sample.has_value(),
+                                     record.total, criteria, record.setting("planner"),
+                                     record.plan_command + request.placement.words({}), answer,
+                                     map ? to_svg(*map) : ""},
+                                    scene));
   }
   if (map && outputs.wants("--svg")) outputs.write("--svg", to_svg(*map));
   outputs.stage();

@@ -109,6 +109,19 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
 
   await shoot(page, 'overview_c.png');
 
+  // Without JavaScript: how many have a path, and what ended the others.
+  const still = await open(html, {
+    viewport: { width: 390, height: 844 },
+    javaScriptEnabled: false,
+  });
+  const words = await still.page.textContent('noscript pre');
+  assert.ok(
+    words.includes(`${rows.length - failed.length} of ${rows.length} episodes have a path`),
+  );
+  assert.equal(words.match(/without one: /g).length, subjects.size);
+  assert.ok(!(await still.page.isVisible('main')));
+  await still.close();
+
   // Sorted by cost, both ways; episodes without a cost stay at the end.
   const costs = async () =>
     (await column(page, 2)).slice(0, rows.length - failed.length).map(Number);

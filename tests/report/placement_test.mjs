@@ -160,6 +160,18 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await page.click('#theme');
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
   await close();
+  // Without JavaScript: how many have a path, the best with its command, and the map.
+  const still = await open(html, {
+    viewport: { width: 390, height: 844 },
+    javaScriptEnabled: false,
+  });
+  const words = await still.page.textContent('noscript pre');
+  assert.ok(words.includes(`${solved.length} with a path, ${rows.length - solved.length} without`));
+  assert.ok(words.includes(`--x ${Number(best[x])}`));
+  assert.ok(await still.page.isVisible('noscript svg'));
+  assert.ok(!(await still.page.isVisible('main')));
+  await assertFits(still.page, 390);
+  await still.close();
   const narrow = await open(html, { viewport: { width: 390, height: 844 }, colorScheme: 'dark' });
   await assertFits(narrow.page, 390);
   await narrow.close();

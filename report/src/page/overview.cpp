@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/report/overview.hpp"
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -17,6 +18,22 @@ using Json = nlohmann::ordered_json;
 
 Json or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
+}
+
+/// Returns how many episodes have a path, and how many each reason ended, a line each.
+std::string answer_of(const std::vector<EpisodeRow>& rows) {
+  std::map<std::string, std::size_t> ended;
+  std::size_t solved = 0;
+  for (const EpisodeRow& row : rows)
+    if (row.status == PlanStatus::kSolved)
+      ++solved;
+    else
+      ++ended[ended_by(row.status, row.cause, row.by, row.reason)];
+  std::string text =
+      std::to_string(solved) + " of " + std::to_string(rows.size()) + " episodes have a path\n";
+  for (const auto& [by, count] : ended)
+    text += "  " + std::to_string(count) + " without one: " + by + '\n';
+  return text;
 }
 
 }  // namespace
@@ -45,7 +62,8 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                      {"plan_command", facts.plan_command},
                      {"coordinates", facts.coordinates},
                      {"rows", std::move(episodes)}};
-  return fill(overview_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return fill(overview_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+              {{"@@ANSWER@@", escaped_lines(facts.problem + "\n\n" + answer_of(rows))}});
 }
 
 }  // namespace swivel

@@ -122,7 +122,9 @@ std::string to_placement_page(const std::vector<PlacementRow>& rows, const Place
                      {"planner", facts.planner},  {"plan_command", facts.plan_command},
                      {"ends", std::move(ends)},   {"columns", std::move(columns)},
                      {"scene", scene_json(scene)}};
-  return fill(placement_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return fill(placement_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+              {{"@@ANSWER@@", escaped_lines(facts.problem + "\n\n" + facts.answer)},
+               {"@@MAP@@", facts.map}});
 }
 
 }  // namespace swivel

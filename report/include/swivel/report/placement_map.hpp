@@ -50,7 +50,9 @@ struct PlacementFacts {
   std::uint64_t asked = 0;  ///< placements of the whole grid or sample
   std::vector<PlacementCriterion> criteria;
   std::string planner,
-      plan_command;  ///< plans the problem with nothing moved, up to the words of the coordinates
+      plan_command;    ///< plans the problem with nothing moved, up to the words of the coordinates
+  std::string answer;  ///< shown where JavaScript is switched off: how many have a path, the best
+  std::string map;     ///< shown there as well: to_svg(); empty where there is no map
 };
 
 /// What the page's view in three dimensions shows: the best placements.
