@@ -264,6 +264,26 @@ std::vector<PlacementCell> cells_on_page(const std::vector<PlacementRow>& rows,
   return shown;
 }
 
+/// Returns how far paths go in those of the placements without a path that the page shows: all, or
+/// some that are spread evenly among them.
+std::vector<PlacedEnd> ends_on_page(PlacementPlanner& planner,
+                                    const std::vector<PlacementRow>& rows) {
+  constexpr std::size_t kShown = 40;
+  std::vector<PlacementCell> unsolved, shown;
+  for (const PlacementRow& row : rows)
+    if (row.status == PlanStatus::kInfeasible) unsolved.push_back({row.cell, row.offset});
+  const std::size_t count = std::min(kShown, unsolved.size());
+  for (std::size_t k = 0; k < count; ++k) shown.push_back(unsolved[k * unsolved.size() / count]);
+  std::vector<PlacedEnd> ends;
+  planner.plan_again(
+      shown, [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view) {
+        if (result.status != PlanStatus::kInfeasible) return;
+        if (auto end = placed_end(cell, view, io::to_json(result, {})))
+          ends.push_back(std::move(*end));
+      });
+  return ends;
+}
+
 /// Plans the placements of the command line, writes and prints them. Returns the exit code; that of
 /// a shard does not say whether a placement has a path, which all shards say together.
 int run(const PlaceArguments& arguments) {
@@ -298,7 +318,8 @@ int run(const PlaceArguments& arguments) {
   PlacementScene scene;
   if (outputs.wants("--report") && !placed.job)
     scene = {prepared.get(), &placed.problem, placed.thing,
-             planner.trajectories(cells_on_page(rows, asked.criteria))};
+             planner.trajectories(cells_on_page(rows, asked.criteria)),
+             ends_on_page(planner, rows)};
   show_placements(outputs, rows, arguments.request, record, arguments.top, rate, scene);
   const int code = placement_exit_code(rows);
   if (code == kInternalError) return code;

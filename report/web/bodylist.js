@@ -64,10 +64,10 @@ export class BodyList {
   }
   /** What colours mean that no body has for itself. */
   colours() {
-    const { rows, cut, moves, paths } = this.view.data;
+    const { rows, cut, moves, paths, plans } = this.view.data;
     return [
       [rows.some(({ pair }) => pair), kBodies.near, '', 'nearest to each other'],
-      [cut?.pair, kBodies.hit, '', 'too near each other'],
+      [cut?.pair || plans?.some(({ past }) => past?.pair), kBodies.hit, '', 'too near each other'],
       [rows.length > 1, kBodies.start, 'outline', paths ? 'at the begin' : 'at the start'],
       [rows.length > 1, kBodies.end, 'outline', 'at the end'],
       [moves?.length, '#8453c6', 'dashes', 'transitions'],

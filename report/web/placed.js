@@ -56,14 +56,15 @@ export class Placed {
     }));
     const tool_path = rows.map(({ q }) => toolPose(this.chain, q).elements.slice(12, 15));
     this.shown = { ...data.scene, rows, tool_path, poses: plan.poses, floor: true };
-    Object.assign(this, { plan, offset, cursor: 0 });
+    // One without a path is shown where paths end.
+    Object.assign(this, { plan, offset, cursor: 0, isPartial: plan.past !== undefined });
     window.swivel.cell = cell;
     $('slider').max = rows.length - 1;
     this.view?.show(this.shown);
     this.view?.colourPath([NaN]);
     if (this.squares) this.lay(this.squares);
     this.pause();
-    this.go(0);
+    this.go(this.isPartial ? rows.length - 1 : 0);
   }
   /**
    * A placement is picked: its place is marked on the floor, and where the plan that is shown is
@@ -101,7 +102,8 @@ export class Placed {
       b = rows[Math.min(i + 1, last)];
     const q = a.q.map((v, j) => v + f * (b.q[j] - v));
     window.swivel.joints = q;
-    this.view?.pose(q, null);
+    const past = this.isPartial && this.cursor === last ? this.plan.past : null;
+    this.view?.pose(q, past?.pair ?? null, past?.line ?? null, true);
     $('slider').value = this.cursor;
     $('where').textContent =
       `s ${(a.s + f * (b.s - a.s)).toFixed(3)} of ${rows[last].s.toFixed(3)} m`;

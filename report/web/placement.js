@@ -326,18 +326,30 @@ function pick(row) {
   paintMap();
   for (const line of $('best').querySelectorAll('tbody tr'))
     line.classList.toggle('marked', Number(line.dataset.cell) === row.cell);
-  if (!placed) return;
-  if (placed.has(row.cell) && window.swivel.cell !== row.cell) placed.open(row.cell, row.offset);
+  if (placed) showPlan(row);
+}
+/** The plan of a placement, or what there is instead. */
+function showPlan(row) {
+  const open = placed.has(row.cell)
+    ? row
+    : window.swivel.cell === null
+      ? rows.find(({ cell }) => placed.has(cell))
+      : null;
+  if (open && window.swivel.cell !== open.cell) placed.open(open.cell, open.offset);
   placed.pick(row.cell, row.offset);
-  $('readout').textContent =
-    (row.solved
-      ? ''
-      : `placement ${row.cell} has no path: ${data.ends[row.end].reason}` +
-        `${row.failed_s === null ? '' : `, at s ${number(row.failed_s)} m`}\nfaded: `) +
-    `the plan of placement ${window.swivel.cell}` +
-    (row.solved && window.swivel.cell !== row.cell
-      ? `; that of ${row.cell} is opened by its command`
-      : '');
+  const isShown = window.swivel.cell === row.cell,
+    what = placed.isPartial ? 'where paths end in' : 'the plan of';
+  const words = row.solved
+    ? [
+        `${what} placement ${window.swivel.cell}`,
+        isShown ? '' : `; that of ${row.cell} is opened by its command`,
+      ]
+    : [
+        `placement ${row.cell} has no path: ${data.ends[row.end].reason}`,
+        row.failed_s === null ? '' : `, at s ${number(row.failed_s)} m`,
+        isShown ? `\n${placed.plan.past.what}` : `\nfaded: ${what} placement ${window.swivel.cell}`,
+      ];
+  $('readout').textContent = words.join('');
 }
 $('copy').addEventListener('click', () => navigator.clipboard?.writeText($('command').textContent));
 

@@ -124,18 +124,48 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     }
     assert.equal(await page.textContent('#readout'), `the plan of placement ${chosen}`);
   }
-  const last = await page.evaluate(() => window.swivel.cell);
-  await page.locator('.cells rect').nth(rows.indexOf(failed)).dispatchEvent('click');
-  // Of one without a path it is said what ends the paths; the arm of another plan is faded.
-  const told = await page.textContent('#readout');
-  assert.ok(told.startsWith(`placement ${failed[cell]} has no path: `), told);
-  assert.ok(told.endsWith(`faded: the plan of placement ${last}`), told);
+  // Of one without a path it is said what ends the paths; the arm stands in the pose past their end,
+  // with the bodies that are in its way, or is faded where it is another's.
   const isFaded = () =>
     page.evaluate(() => {
       const { arm } = window.swivel.view;
       return arm.find(({ userData }) => userData.body.group > 0).material.transparent;
     });
-  assert.equal(await isFaded(), true);
+  const unsolved = rows.filter((row) => row[status] !== 'solved'),
+    partial = new Map();
+  for (const row of unsolved) {
+    await page.locator('.cells rect').nth(rows.indexOf(row)).dispatchEvent('click');
+    const told = await page.textContent('#readout'),
+      shown = await page.evaluate(() => window.swivel),
+      own = String(shown.cell) === row[cell];
+    assert.ok(told.startsWith(`placement ${row[cell]} has no path: `), told);
+    assert.match(told, own ? /\n(the next|a|no valid) (pose|way)/ : /\nfaded: /);
+    assert.equal(await isFaded(), !own);
+    if (own) partial.set(row, shown.joints);
+  }
+  assert.ok(partial.size >= 10, `${partial.size} of ${unsolved.length} show how far paths go`);
+  const [ended] = [...partial.keys()].filter((row) => row.at(-1).includes(' - post'));
+  await page.locator('.cells rect').nth(rows.indexOf(ended)).dispatchEvent('click');
+  assert.equal(
+    await page.evaluate(() => {
+      const { arm } = window.swivel.view;
+      return arm.filter(({ userData }) => userData.kind.startsWith('hit')).length;
+    }),
+    2,
+  );
+  // That pose is the one of the placement's own report.
+  execFileSync(
+    'sh',
+    [
+      '-c',
+      `'${swivel}' ${(await page.textContent('#command')).slice('swivel '.length)} --quiet || true`,
+    ],
+    { cwd: folder },
+  );
+  const own = readFileSync(join(folder, `placement_${ended[cell]}.html`), 'utf8'),
+    { cut } = JSON.parse(own.match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]);
+  partial.get(ended).forEach((q, j) => assert.ok(Math.abs(q - cut.q[j]) < 1e-6, `joint ${j}`));
+  assert.ok((await page.textContent('#readout')).endsWith(cut.what));
   // The arrows pick the placement beside it.
   await page.locator('#map .chart').focus();
   const number = async () =>

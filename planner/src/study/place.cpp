@@ -153,7 +153,8 @@ struct PlacementPlanner::Impl {
   }
   /// Plans a placement, and fills in its row. Returns false if it was stopped.
   virtual bool fill(PlacementRow& row, int worker) = 0;
-  virtual std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells) = 0;
+  using Found = std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>;
+  virtual void plan_again(const std::vector<PlacementCell>& cells, const Found& found) = 0;
 };
 
 struct PlacementPlanner::ProblemPlacements : Impl {
@@ -200,16 +201,14 @@ struct PlacementPlanner::ProblemPlacements : Impl {
     return true;
   }
 
-  std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells) override {
-    std::vector<PlacedPlan> plans;
+  void plan_again(const std::vector<PlacementCell>& cells, const Found& found) override {
     Planner& planner = workers.front().planner;
     for (const PlacementCell& cell : cells) {
       planner.set_problem(placed_problem(problem, thing, cell.offset));
-      PlanResult result = planner.plan(options_now());
-      if (result.status == PlanStatus::kSolved)
-        plans.push_back({cell, planner.problem().scene, std::move(result.trajectory)});
+      const PlanResult result = planner.plan(options_now());
+      if (result.status == PlanStatus::kSolved || result.status == PlanStatus::kInfeasible)
+        found(cell, result, planner.view());
     }
-    return plans;
   }
 };
 
@@ -262,9 +261,7 @@ struct PlacementPlanner::JobPlacements : Impl {
     }
   }
 
-  std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& /*cells*/) override {
-    return {};
-  }
+  void plan_again(const std::vector<PlacementCell>& /*cells*/, const Found& /*found*/) override {}
 };
 
 PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem,
@@ -282,7 +279,19 @@ bool PlacementPlanner::stopped() const {
 }
 
 std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<PlacementCell>& cells) {
-  return impl_->trajectories(cells);
+  std::vector<PlacedPlan> plans;
+  impl_->plan_again(cells,
+                    [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view) {
+                      if (result.status == PlanStatus::kSolved)
+                        plans.push_back({cell, view.problem.scene, result.trajectory});
+                    });
+  return plans;
+}
+
+void PlacementPlanner::plan_again(
+    const std::vector<PlacementCell>& cells,
+    const std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>& found) {
+  impl_->plan_again(cells, found);
 }
 
 std::vector<PlacementRow> PlacementPlanner::plan(

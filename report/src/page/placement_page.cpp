@@ -4,6 +4,7 @@
 #include <optional>
 #include <tuple>
 
+#include "page/page_parts.hpp"
 #include "page/page_template.hpp"
 #include "page/scene_json.hpp"
 #include "swivel/core/base/rpy.hpp"
@@ -45,23 +46,32 @@ Pose still_frame(const Movable& thing, const Offset& offset) {
   return moved.inverse();
 }
 
+/// Returns rows in a placement for drawing.
+Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows,
+               const std::vector<SceneObject>& scene, const Movable& thing) {
+  std::vector<float> s, joints;  // for drawing
+  for (const TrajectoryRow& row : rows) {
+    s.push_back(static_cast<float>(row.s));
+    for (const double q : row.q) joints.push_back(static_cast<float>(q));
+  }
+  Json poses = Json::array();
+  for (const SceneObject& object : scene) poses.push_back(pose_json(object.pose));
+  return {{"cell", cell.cell},
+          {"s", base64(s)},
+          {"joints", base64(joints)},
+          {"poses", std::move(poses)},
+          {"still_frame", pose_json(still_frame(thing, cell.offset))}};
+}
+
 Json scene_json(const PlacementScene& scene) {
-  if (scene.plans.empty()) return nullptr;
+  if (scene.plans.empty() && scene.ends.empty()) return nullptr;
   Bodies bodies(scene.robot->world(), scene.problem->scene);
   Json plans = Json::array();
-  for (const PlacedPlan& plan : scene.plans) {
-    std::vector<float> s, joints;  // for drawing
-    for (const TrajectoryRow& row : plan.trajectory) {
-      s.push_back(static_cast<float>(row.s));
-      for (const double q : row.q) joints.push_back(static_cast<float>(q));
-    }
-    Json poses = Json::array();
-    for (const SceneObject& object : plan.scene) poses.push_back(pose_json(object.pose));
-    plans.push_back({{"cell", plan.cell.cell},
-                     {"s", base64(s)},
-                     {"joints", base64(joints)},
-                     {"poses", std::move(poses)},
-                     {"still_frame", pose_json(still_frame(scene.thing, plan.cell.offset))}});
+  for (const PlacedPlan& plan : scene.plans)
+    plans.push_back(plan_json(plan.cell, plan.trajectory, plan.scene, scene.thing));
+  for (const PlacedEnd& end : scene.ends) {
+    plans.push_back(plan_json(end.cell, end.rows, end.scene, scene.thing));
+    plans.back()["past"] = Json::parse(end.past);
   }
   return {{"chain", chain_json(scene.robot->arm().chain)},
           {"ground", ground_json(*scene.problem->model, scene.robot->arm())},
@@ -72,6 +82,24 @@ Json scene_json(const PlacementScene& scene) {
 }
 
 }  // namespace
+
+std::optional<PlacedEnd> placed_end(const PlacementCell& cell, const PlanView& view,
+                                    const std::string& result_json, const Budget& budget) {
+  const Json result = Json::parse(result_json);
+  if (!result["diagnosis"].is_object()) return std::nullopt;
+  const LatticeMap map = make_map(view, false, budget);
+  PlacedEnd end{cell, view.problem.scene, rows_of(view.lattice, view.path), ""};
+  const std::vector<PageRow> rows = placed(view.lattice, map, end.rows, view.path);
+  const Json past = cut_json(map, view.lattice, view.world, view.path, rows, result["diagnosis"]);
+  if (past.is_null()) return std::nullopt;
+  TrajectoryRow last;
+  last.s = past["s"];
+  for (std::size_t k = 0; k < kDof; ++k) last.q[k] = past["q"][k];
+  end.rows.push_back(last);
+  end.past = Json{{"pair", past["pair"]}, {"line", past["line"]}, {"what", past["what"]}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
+  return end;
+}
 
 std::string to_placement_page(const std::vector<PlacementRow>& rows, const PlacementFacts& facts,
                               const PlacementScene& scene) {

@@ -215,6 +215,13 @@ void check_neighbours(const Problem& problem, const std::shared_ptr<const Prepar
   PlacementPlanner placements(robot, problem, thing, options);
   const std::vector<PlacementRow> rows = placements.plan(cells);
   const std::vector<PlacedPlan> plans = placements.trajectories(cells);
+  std::vector<PlanStatus> again_of;
+  placements.plan_again(cells,
+                        [&](const PlacementCell& cell, const PlanResult& result, const PlanView&) {
+                          EXPECT_EQ(cell.cell, cells[again_of.size()].cell) << what;
+                          again_of.push_back(result.status);
+                        });
+  ASSERT_EQ(again_of.size(), cells.size()) << what;
   ASSERT_EQ(rows.size(), cells.size()) << what;
   Planner planner(robot, problem);
   options.evidence.postures = true;
@@ -231,6 +238,7 @@ void check_neighbours(const Problem& problem, const std::shared_ptr<const Prepar
     counts.spared += 2 * again.counters.nodes_checked <= alone.counters.nodes_checked;
     ++counts.cells;
     ASSERT_EQ(rows[k].status, alone.status) << here;
+    ASSERT_EQ(again_of[k], alone.status) << here;
     ASSERT_EQ(again.status, alone.status) << here;
     counts.changed += before && *before != alone.status;
     before = alone.status;

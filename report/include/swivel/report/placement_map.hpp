@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,12 +56,27 @@ struct PlacementFacts {
   std::string map;     ///< shown there as well: to_svg(); empty where there is no map
 };
 
-/// What the page's view in three dimensions shows: the best placements.
+/// How far paths go in a placement that has none.
+struct PlacedEnd {
+  PlacementCell cell;
+  std::vector<SceneObject> scene;   ///< with the objects where they are in this placement
+  std::vector<TrajectoryRow> rows;  ///< valid ones, and behind them the pose that none can move to
+  std::string past;                 ///< JSON: what that pose is, and which bodies are in its way
+};
+/// Returns how far paths go in a placement without a path; nullopt where not even a pose that is
+/// not valid is known. `view`: of its plan; `result_json`: its result in the format of `--json`.
+/// Throws Stopped.
+[[nodiscard]] std::optional<PlacedEnd> placed_end(const PlacementCell& cell, const PlanView& view,
+                                                  const std::string& result_json,
+                                                  const Budget& budget = {});
+
+/// What the page's view in three dimensions shows.
 struct PlacementScene {
   const PreparedRobot* robot = nullptr;
   const Problem* problem = nullptr;  ///< with nothing moved
   Movable thing;
-  std::vector<PlacedPlan> plans;
+  std::vector<PlacedPlan> plans;  ///< of the best
+  std::vector<PlacedEnd> ends;    ///< of some that have no path
 };
 
 /// Returns one HTML file that needs nothing else: maps by verdict, by what ends the paths and by

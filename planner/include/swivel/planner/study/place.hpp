@@ -51,6 +51,11 @@ class PlacementPlanner {
   /// `cells`, without those that have no path or were not answered in time. Returns none for a job,
   /// of which plan_job() of placed_job() gives the parts of a cell.
   [[nodiscard]] std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells);
+  /// Plans the cells again and calls `found` after each that was answered, with its result and what
+  /// the plan found out, both valid during the call. Does nothing for a job.
+  void plan_again(
+      const std::vector<PlacementCell>& cells,
+      const std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>& found);
   /// Returns true if the time ran out or work was cancelled; rows may then be missing.
   [[nodiscard]] bool stopped() const;
 
