@@ -124,8 +124,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     }
     assert.equal(await page.textContent('#readout'), `the plan of placement ${chosen}`);
   }
-  // Of one without a path it is said what ends the paths; the arm stands in the pose past their end,
-  // with the bodies that are in its way, or is faded where it is another's.
+  // Of one without a path it is said what ends the paths; the arm stands in the pose past their
+  // end, with the bodies that are in its way, or is faded where it is another's.
   const isFaded = () =>
     page.evaluate(() => {
       const { arm } = window.swivel.view;
