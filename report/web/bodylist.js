@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The legend of the view in three dimensions: each colour, and bodies to fade or hide.
 import { tell } from './page.js';
-import { kBodies } from './palette.js';
+import { kBodies, kLines } from './palette.js';
 
 /** What stands on the ground of the robot is told apart from what moves. */
 export const kindOf = (body) => (body.stands ? 'fixed' : body.kind);
@@ -70,7 +70,7 @@ export class BodyList {
       [cut?.pair || plans?.some(({ past }) => past?.pair), kBodies.hit, '', 'too near each other'],
       [rows.length > 1, kBodies.start, 'outline', paths ? 'at the begin' : 'at the start'],
       [rows.length > 1, kBodies.end, 'outline', 'at the end'],
-      [moves?.length, '#8453c6', 'dashes', 'transitions'],
+      [moves?.length, kLines.moves, 'dashes', 'transitions'],
     ]
       .filter(([is]) => is)
       .map(([, colour, className, text]) => {

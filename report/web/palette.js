@@ -36,6 +36,9 @@ export const kBodies = {
   end: '#1aa17a',
 };
 
+/** Lines among the bodies: the tool's way between strokes, and what is nearest, or ends a path. */
+export const kLines = { moves: '#8c6eff', nearest: '#a02d41' };
+
 /** From little to much: after cividis, told apart by all kinds of colour vision. */
 export const kRamp = ['#002d6e', '#5a606e', '#8f8b78', '#cbba69', '#fde737'];
 /** Red, green and blue of a share of the ramp, 0 to 1 each. */

@@ -8,7 +8,7 @@ import { PAPER, sheet } from './figure.js';
 import { element, hatching, hatchedBy } from './hatching.js';
 import { LIMIT, wrapped } from './map.js';
 import { isDark, show, style } from './page.js';
-import { kDark, kLight, lineBetween } from './palette.js';
+import { kDark, kLight, kLines, lineBetween } from './palette.js';
 
 const kDegrees = 180 / Math.PI,
   kMostDetails = 4; // named in the legend of one colour
@@ -167,7 +167,7 @@ export class Panels {
         cut === null
           ? null
           : Plot.ruleX([cut.layer + 0.5], {
-              stroke: '#c2185b',
+              stroke: kLines.nearest,
               strokeWidth: 2,
               strokeDasharray: '5 3',
             }),

@@ -7,7 +7,7 @@ import { BodyList, entryOf, kindOf } from './bodylist.js';
 import { bestDirection, fit, subject } from './camera.js';
 import { displacements, matrix, standing, toolPose, vector } from './kinematics.js';
 import { $, isDark } from './page.js';
-import { kBodies, ramp } from './palette.js';
+import { kBodies, kLines, ramp } from './palette.js';
 import { Quality } from './quality.js';
 import { geometry, thinned } from './shapes.js';
 import { cornersOf } from './sight.js';
@@ -283,16 +283,19 @@ class View {
     if (!rods.length) return;
     const shape = mergeGeometries(rods);
     this.shown.add(
-      new THREE.Mesh(shape, surface(0x8453c6, { lit: false })),
+      new THREE.Mesh(shape, surface(kLines.moves, { lit: false })),
       Object.assign(
-        new THREE.Mesh(shape, surface(0x8453c6, { opacity: 0.3, lit: false, depthTest: false })),
+        new THREE.Mesh(
+          shape,
+          surface(kLines.moves, { opacity: 0.3, lit: false, depthTest: false }),
+        ),
         { renderOrder: 1 },
       ),
     );
   }
   /** The shortest line between two bodies, drawn over everything. */
   addNearest() {
-    const material = surface(0xc2185b, { lit: false, depthTest: false });
+    const material = surface(kLines.nearest, { lit: false, depthTest: false });
     const rod = new THREE.CylinderGeometry(0.0025, 0.0025, 1, 6).rotateX(Math.PI / 2),
       dot = new THREE.SphereGeometry(0.007, 10, 8);
     this.nearest = new THREE.Group();

@@ -12,7 +12,7 @@ const root = resolve(process.argv[2]),
   kApart = 10,
   kContrast = 3;
 const palette = await import(pathToFileURL(join(web, 'palette.js')));
-const { kBodies, kDark, kKnown, kLight, kLimits, kObjects, kOthers, lineBetween } = palette;
+const { kBodies, kDark, kKnown, kLight, kLimits, kLines, kObjects, kOthers, lineBetween } = palette;
 
 // Pairs of Sharma, Wu and Dalal, "The CIEDE2000 color-difference formula", table 1.
 for (const [one, other, expected] of [
@@ -60,7 +60,11 @@ for (const [theme, { hatch, ...ground }] of Object.entries({ light: kLight, dark
     nothing: ground.nothing,
     unseen: ground.unseen,
   });
-  assertApart(`bodies in the ${theme} theme`, { ...kBodies, ground: ground.nothing });
+  assertApart(`bodies in the ${theme} theme`, {
+    ...kBodies,
+    ...kLines,
+    ground: ground.nothing,
+  });
   // Between areas of little contrast is a line of enough contrast with both; limits are hatched.
   let lines = 0;
   for (const one of Object.values(map))
@@ -90,7 +94,14 @@ for (const ground of [kLight, kDark])
 
 // Style sheet, drawings and terminal have the same colours.
 const css = readFileSync(join(web, 'page.css'), 'utf8');
-for (const colour of [kKnown.found, kKnown.proved, kObjects[0], ...palette.kRamp])
+for (const colour of [
+  kKnown.found,
+  kKnown.proved,
+  kObjects[0],
+  kLines.moves,
+  kLines.nearest,
+  ...palette.kRamp,
+])
   assert.ok(css.includes(colour), `${colour} in page.css`);
 const header = readFileSync(join(root, 'report/src/palette.hpp'), 'utf8');
 /** The colours of a constant there. */
