@@ -11,13 +11,23 @@ function line(className, ...parts) {
 }
 const span = (text) => Object.assign(document.createElement('span'), { textContent: text });
 
-/** A joint, its angle and where it is between its limits. */
-function jointLine({ name, lower, upper }, angle, digits) {
+/** How many characters all names begin with. */
+function commonLength(names) {
+  let k = 0;
+  while (names.length > 1 && names[0][k] && names.every((name) => name[k] === names[0][k])) ++k;
+  return k;
+}
+/**
+ * A joint, its angle and where it is between its limits. common: how many characters of its name
+ * all joints share, which are left out where there is no room.
+ */
+function jointLine({ name, lower, upper }, angle, digits, common) {
   const bounded = lower !== null && upper !== null,
     room = bounded ? kDegrees * Math.min(angle - lower, upper - angle) : Infinity;
   const element = line(
     room < kNear ? 'joint near' : 'joint',
-    span(name),
+    span(name.slice(0, common)),
+    span(name.slice(common)),
     '  ',
     span(`${(angle * kDegrees).toFixed(digits)}°`),
   );
@@ -34,9 +44,10 @@ function jointLine({ name, lower, upper }, angle, digits) {
 
 /** where: words for the place of the pose; digits: of the angles, after the point. */
 export function tellPose(host, chain, where, { q, note }, digits) {
+  const common = commonLength(chain.joints.map(({ name }) => name));
   host.replaceChildren(
     ...(where ? [line('where', where)] : []),
-    ...chain.joints.map((joint, k) => jointLine(joint, q[k], digits)),
+    ...chain.joints.map((joint, k) => jointLine(joint, q[k], digits, common)),
     ...(note
       ? [Object.assign(document.createElement('div'), { className: 'note', textContent: note })]
       : []),
