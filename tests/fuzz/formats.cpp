@@ -10,8 +10,10 @@
 #include "robots.hpp"
 #include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/io/motions/motion.hpp"
+#include "swivel/io/problems/workcell.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
+#include "swivel/io/workcells/workcell_csv.hpp"
 
 namespace swivel::test {
 
@@ -220,12 +222,13 @@ std::function<void(const std::string&)> at(const TempFolder& folder, const char*
 /// Returns the readers of problems, robots and tool paths.
 std::vector<Reader> problem_readers(const TempFolder& folder) {
   std::vector<Reader> all;
-  all.push_back({"problem",
-                 {kProblem, data("problems/experiment_a_start.yaml"),
-                  data("problems/experiment_b.yaml"), kJob},
-                 kYamlWords,
-                 at(folder, "problems/p.yaml",
-                    [](const fs::path& file) { (void)io::load_problem_or_job(file); })});
+  all.push_back(
+      {"problem",
+       {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml"),
+        kJob, data("problems/sda10f_plate_workcell.yaml")},
+       kYamlWords,
+       at(folder, "problems/p.yaml",
+          [](const fs::path& file) { (void)io::load_problem_file(file); })});
   all.push_back(
       {"urdf",
        {io::test::arm_urdf(), data("robots/iiwa14.urdf")},
@@ -342,6 +345,22 @@ Reader job_reader(const TempFolder& folder) {
              [joints, job](const fs::path& path) { (void)io::load_job_rows(path, job, joints); })};
 }
 
+/// Returns the reader of the rows of two arms.
+Reader workcell_reader(const TempFolder& folder) {
+  const std::array<std::string, 2> names{"left", "right"};
+  const std::array<io::JointNames, 2> joints{io::JointNames{"a", "b", "c", "d", "e", "f", "g"},
+                                             io::JointNames{"h", "i", "j", "k", "l", "m", "n"}};
+  WorkcellResult result;
+  result.names = names;
+  for (std::size_t k = 0; k < 2; ++k) result.arms[k] = short_plan(joints[k]);
+  return {"workcell_rows",
+          {io::to_workcell_csv(result)},
+          {",", "\"", "\n", "1e9,", ",8,", ",0.5,", "branch_left"},
+          at(folder, "cell.csv", [names, joints](const fs::path& path) {
+            (void)io::load_workcell_csv(path, names, joints);
+          })};
+}
+
 /// Returns the reader of a campaign that was broken off, of 100 episodes with these settings.
 Reader campaign_reader(const TempFolder& folder, const io::RunSettings& settings) {
   {
@@ -445,6 +464,7 @@ std::vector<Reader> readers(const TempFolder& folder) {
   std::vector<Reader> all = problem_readers(folder);
   std::ranges::move(motion_readers(folder), std::back_inserter(all));
   all.push_back(job_reader(folder));
+  all.push_back(workcell_reader(folder));
   const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}},
                                  {{"arm.urdf", 0x0123456789abcdef}}};
   all.push_back(campaign_reader(folder, settings));

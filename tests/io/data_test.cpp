@@ -21,10 +21,13 @@ TEST(Data, EveryProblemLoads) {
     SCOPED_TRACE(entry.path().string());
     ++count;
     try {
-      if (!is_job(entry.path()))
-        EXPECT_GE(load_problem(entry.path()).waypoints.size(), 2u);
+      const auto file = load_problem_file(entry.path());
+      if (const auto* problem = std::get_if<Problem>(&file))
+        EXPECT_GE(problem->waypoints.size(), 2u);
+      else if (const auto* job = std::get_if<Job>(&file))
+        EXPECT_NO_THROW(validate(*job));
       else
-        EXPECT_NO_THROW(validate(load_job(entry.path())));
+        EXPECT_NO_THROW(validate(std::get<Workcell>(file)));
     } catch (const InputError& error) {
       ADD_FAILURE() << error.what();
     }

@@ -45,6 +45,38 @@ Json whole_job() {
   return job;
 }
 
+/// Two arms of a workcell, with every section.
+const Json& arms() {
+  static const Json kArms = [] {
+    Json both = Json::array();
+    for (const char* const name : {"left", "right"})
+      both.push_back({{"name", name},
+                      {"tip_link", "link_7"},
+                      {"tool", Json::object()},
+                      {"attached", {{{"name", std::string(name) + "_grip"}, {"sphere", 0.1}}}},
+                      {"path", strokes()[0]["path"]},
+                      {"start", {{"joints", {0, 0, 0, 0, 0, 0, 0}}}},
+                      {"limits", Json::object()}});
+    return both;
+  }();
+  return kArms;
+}
+
+/// Puts two arms into a problem in place of the path. Its robot has no hand then.
+void make_workcell(Json& problem) {
+  problem["arms"] = arms();
+  if (problem.contains("robot") && problem["robot"].is_object())
+    for (const char* const key : {"tip_link", "tool", "attached"}) problem["robot"].erase(key);
+}
+
+/// The problem with every section as a workcell.
+Json whole_workcell() {
+  Json cell = whole_problem();
+  for (const char* const key : {"path", "start"}) cell.erase(key);
+  make_workcell(cell);
+  return cell;
+}
+
 /// Makes the object, which is the problem itself or in it, one that may have the key: without keys
 /// that exclude it, with those that it needs.
 void make_room(Json& object, const Json& schema, const std::string& key) {
@@ -109,6 +141,7 @@ struct Walk {
         visit(place);
         if (kSections.contains(key)) place.problem[at][key] = kSections[key];
         if (key == "strokes") place.problem[at][key] = strokes();
+        if (key == "arms") make_workcell(place.problem);
         if (key == "path" && !place.problem[at].contains(key))
           place.problem[at][key] = strokes()[0]["path"];
         (*this)(place.problem, value, at / key);
@@ -129,6 +162,8 @@ std::string refusal(const ProblemFolder& folder, const Json& problem) {
   return input_error([&] {
     if (problem.contains("strokes"))
       (void)load_as_job(folder, problem);
+    else if (problem.contains("arms"))
+      (void)load_workcell(folder.folder().write("problems/problem.yaml", problem.dump()));
     else
       (void)load(folder, problem);
   });
@@ -218,7 +253,8 @@ TEST(ProblemSchema, RequiredKeys) {
       };
   remove(whole_problem(), schema, Json::json_pointer());
   remove(whole_job(), schema, Json::json_pointer());
-  EXPECT_GE(keys, 18);
+  remove(whole_workcell(), schema, Json::json_pointer());
+  EXPECT_GE(keys, 22);
 }
 
 /// Returns a problem or a job with all defaults that its keys have. Adds their number to `keys`.

@@ -21,8 +21,11 @@ class WorkcellReader : ProblemReader {
     for (const char* const other : {"start", "start_at", "start_tolerance"})
       if (const auto value = root_.find_filled(other))
         value->fail("is of problems with one path", "`start`, in one of the `arms`");
+    sections_ = arms.items();
+    if (sections_.size() != 2)
+      arms.fail("has " + std::to_string(sections_.size()) + " arms", "a list of two");
     read_robot_of_both();
-    list_arms(arms);
+    list_arms();
     read_scene();
     for (std::size_t k = 0; k < 2; ++k) read_arm(k);
     require_equal_lengths();
@@ -46,10 +49,7 @@ class WorkcellReader : ProblemReader {
 
   /// Reads names and hands of both arms. `problem_` has the attached bodies of both then, which the
   /// scene may allow to touch.
-  void list_arms(const YamlValue& arms) {
-    sections_ = arms.items();
-    if (sections_.size() != 2)
-      arms.fail("has " + std::to_string(sections_.size()) + " arms", "a list of two");
+  void list_arms() {
     for (std::size_t k = 0; k < 2; ++k) {
       const YamlSection section = sections_[k].section();
       WorkcellArm& arm = cell_.arms[k];
@@ -94,6 +94,11 @@ class WorkcellReader : ProblemReader {
     require_in_scale(model, path, limits);
     for (const YamlValue& value : limits) require_arm_angle(model, value);
     if (const auto start = section.find_filled("start")) read_start(*start);
+    if (const auto end = path.section().find_filled("end");
+        end && model.chain.roll && problem_.path_frame == cell_.arms[1 - k].name)
+      end->fail("is given for a follower of six joints, which is not supported yet",
+                "no such key here");
+    read_end(path, model.chain);
     static_cast<Robot&>(arm) = problem_;
     static_cast<Task&>(arm) = problem_;
     if (cell_.leader_of(k) >= 0 && k == 1 && cell_.leader_of(0) >= 0)
