@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/pairs/remembered_validity.hpp"
 
+#include <algorithm>
+
 namespace swivel {
 
 std::size_t RememberedValidity::EdgeHash::operator()(const Edge& edge) const {
@@ -133,7 +135,12 @@ void RememberedValidity::costs(std::span<const NodeQuestion> questions, std::spa
 
 void RememberedValidity::take(const Verdicts& verdicts) {
   for (int layer = 0; layer < lattice_->layers(); ++layer) {
-    const int slots = lattice_->slots(layer);
+    const Verdict* const known = verdicts.nodes(layer, 0);
+    // Most layers have nothing yet, of which a look at their bytes tells.
+    const bool any = verdicts.costs(layer) != nullptr ||
+                     std::any_of(known, known + lattice_->slots(layer),
+                                 [](Verdict verdict) { return verdict != Verdict::kUnknown; });
+    const int slots = any ? lattice_->slots(layer) : 0;
     for (int slot = 0; slot < slots; ++slot) {
       const Verdict verdict = verdicts.node(layer, slot);
       if (verdict != Verdict::kUnknown)
