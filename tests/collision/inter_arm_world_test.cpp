@@ -144,9 +144,29 @@ TEST(InterArmWorld, StancesAnswerAsPostures) {
       const bool expected =
           query.find_violating_pair({q[0][i], q[1][j]}, ClearanceRule::kNode).has_value();
       near += expected;
-      EXPECT_EQ(query.any_violates(a, i, b, j), expected);
+      EXPECT_EQ(query.any_violates(a, a.stance_of(i), b, b.stance_of(j)), expected);
     }
   EXPECT_GE(near, 10);
+}
+
+TEST(InterArmWorld, ConfigurationsWithEqualPosesShareAStance) {
+  Random random(seed("InterArmWorld.ConfigurationsWithEqualPosesShareAStance"));
+  const TwoArms two("sda10f");
+  InterArmWorld::Query query(*two.world);
+  std::vector<Config> q;
+  for (int k = 0; k < 20; ++k) {
+    Config joints = two.postures(random)[0];
+    q.push_back(joints);
+    joints[6] += 0.5;  // turns what is behind the last joint alone
+    q.push_back(joints);
+  }
+  const auto& names = two.world->body_names();
+  const auto number = [&](const char* name) {
+    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  EXPECT_EQ(query.stances(0, number("arm_left_link_3_e"), q).count(), 20u);
+  EXPECT_EQ(query.stances(0, number("left_tool"), q).count(), 40u);
+  EXPECT_EQ(query.stances(0, -1, q).count(), 40u);
 }
 
 TEST(InterArmWorld, MotionsThatAreFreeKeepTheirClearance) {

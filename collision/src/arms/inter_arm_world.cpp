@@ -2,7 +2,10 @@
 #include "swivel/collision/arms/inter_arm_world.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <random>
 
 #include "exact/depth.hpp"
@@ -22,6 +25,19 @@ namespace {
 
 /// Added to bounds, which are exact up to rounding, m.
 constexpr double kRounding = 1e-6;
+/// Bodies whose poses are equal when rounded to this (m, and entries of rotations) stand alike: no
+/// point of a body of up to 10 m differs by more than a tenth of kAlike.
+constexpr double kSamePose = 1e-8;
+/// What a pair must be nearer than it should, m, at one of several poses that are alike.
+constexpr double kAlike = 1e-6;
+
+/// The entries of poses, rounded to kSamePose.
+using RoundedPoses = std::vector<std::int64_t>;
+void add_rounded(const Pose& pose, RoundedPoses& rounded) {
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = 0; column < 4; ++column)
+      rounded.push_back(std::llround(pose(row, column) / kSamePose));
+}
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
@@ -43,6 +59,8 @@ struct InterArmWorld::Impl {
   std::vector<RobotPair> pairs;
   std::vector<RobotPair> kept;      // those that are not dropped
   std::vector<std::size_t> number;  // [a * bodies + b] of `kept`
+  /// Whether every pair keeps so much that stances may stand for several configurations.
+  bool merges = true;
   std::vector<std::string> warnings;
 
   Impl(const RobotModel& robot, const std::array<ArmInPair, 2>& arms,
@@ -115,7 +133,10 @@ struct InterArmWorld::Impl {
     for (const RobotPair& pair : pairs)
       if (!pair.dropped) kept.push_back(pair);
     number.resize(bodies.size() * bodies.size());
-    for (std::size_t k = 0; k < kept.size(); ++k) number[place_of(kept[k].pair)] = k;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      number[place_of(kept[k].pair)] = k;
+      merges = merges && kept[k].required.node > 2 * kAlike;
+    }
   }
 
   void warn_of_pairs(const Limits& limits) {
@@ -135,13 +156,21 @@ struct InterArmWorld::Stances::Impl {
     Pose pose;
     PlacedBound bound;
   };
-  int first = 0;       // body
-  std::size_t of = 1;  // bodies
-  std::vector<At> at;  // by configuration, then by body
-  [[nodiscard]] const At& where(std::size_t configuration, int body) const {
-    return at[configuration * of + static_cast<std::size_t>(body - first)];
+  int first = 0;                    // body
+  std::size_t of = 1;               // bodies
+  std::vector<At> at;               // by stance, then by body
+  std::vector<std::size_t> stance;  // by configuration
+  [[nodiscard]] const At& where(std::size_t of_stance, int body) const {
+    return at[of_stance * of + static_cast<std::size_t>(body - first)];
   }
 };
+
+std::size_t InterArmWorld::Stances::stance_of(std::size_t configuration) const {
+  return impl_->stance[configuration];
+}
+std::size_t InterArmWorld::Stances::count() const {
+  return impl_->at.size() / impl_->of;
+}
 
 InterArmWorld::Stances::Stances(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 InterArmWorld::Stances::Stances(Stances&&) noexcept = default;
@@ -343,14 +372,23 @@ InterArmWorld::Stances InterArmWorld::Query::stances(int arm, int body, std::spa
   found->first = body >= 0 ? body : static_cast<int>(begin - bodies.begin());
   found->of =
       body >= 0 ? 1 : at(static_cast<int>(std::count_if(bodies.begin(), bodies.end(), of_arm)));
-  found->at.reserve(q.size() * found->of);
+  std::map<RoundedPoses, std::size_t> known;
+  std::vector<Pose> poses(found->of);
   for (const Config& joints : q) {
     const std::vector<Pose> displaced = impl_->world->chains[at(arm)].all_displacements(joints);
+    RoundedPoses rounded;
     for (std::size_t k = 0; k < found->of; ++k) {
       const auto& one = bodies[at(found->first) + k];
-      const Pose pose = displaced[at(one.group)] * one.pose;
-      found->at.push_back({pose, place(one.shape.bound, pose)});
+      poses[k] = displaced[at(one.group)] * one.pose;
+      if (impl_->world->merges) add_rounded(poses[k], rounded);
     }
+    const std::size_t next = found->at.size() / found->of;
+    if (!impl_->world->merges) rounded.push_back(static_cast<std::int64_t>(next));
+    const auto [place_known, is_new] = known.emplace(std::move(rounded), next);
+    found->stance.push_back(place_known->second);
+    if (!is_new) continue;
+    for (std::size_t k = 0; k < found->of; ++k)
+      found->at.push_back({poses[k], place(bodies[at(found->first) + k].shape.bound, poses[k])});
   }
   return Stances(std::move(found));
 }
@@ -363,7 +401,9 @@ bool InterArmWorld::Query::violates(const BodyPair& pair, const Stances& a, std:
                          {&impl_->world->bodies[at(pair.b)].shape, &there.pose},
                          &here.bound,
                          &there.bound};
-  return impl_->below(two, impl_->world->kept[k].required.node, impl_->warm_start[k]);
+  const double required = impl_->world->kept[k].required.node;
+  return impl_->below(two, impl_->world->merges ? required - kAlike : required,
+                      impl_->warm_start[k]);
 }
 
 bool InterArmWorld::Query::any_violates(const Stances& a, std::size_t i, const Stances& b,

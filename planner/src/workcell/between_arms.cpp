@@ -31,8 +31,8 @@ struct LayerNodes {
   }
 };
 
-/// Grows a region of conflict about two nodes. `touch(i, j)` says whether node i of arm 0 and node
-/// j of arm 1 are too near; it depends on the two alone.
+/// Grows a region of conflict about two nodes. `touch(i, j)` says whether stance i of arm 0 and
+/// stance j of arm 1 are too near; it depends on the two alone.
 template <class Touch>
 class RegionGrowth {
  public:
@@ -43,7 +43,9 @@ class RegionGrowth {
   std::array<std::vector<int>, 2> grow(const std::array<int, 2>& conflict) {
     for (std::size_t arm = 0; arm < 2; ++arm) {
       ends_[arm] = {conflict[arm], conflict[arm]};
-      side_[arm] = {*nodes_[arm].find(conflict[arm])};
+      side_[arm].clear();
+      stances_[arm].clear();
+      add(arm, *nodes_[arm].find(conflict[arm]));
     }
     grow_along_redundancy();
     for (std::size_t arm = 0; arm < 2; ++arm) add_rest(arm);
@@ -70,29 +72,43 @@ class RegionGrowth {
     if (end < 0) return false;
     end = lattices_[arm]->neighbour_in_redundancy(layer_, end, by);
     const auto node = nodes_[arm].find(end);
-    if (!node || contains(arm, *node) || !touches_all(arm, *node)) {
+    if (!node || contains(arm, *node) || !touches_all(arm, stance(arm, *node))) {
       end = -1;  // this way is at its end
       return false;
     }
-    side_[arm].push_back(*node);
+    add(arm, *node);
     return true;
   }
   /// Adds all other nodes of an arm that touch all of the other arm's side.
   void add_rest(std::size_t arm) {
     std::vector<char> known(nodes_[arm].slots.size());
     for (const std::size_t node : side_[arm]) known[node] = 1;
-    for (std::size_t node = 0; node < known.size(); ++node)
-      if (!known[node] && touches_all(arm, node)) side_[arm].push_back(node);
+    std::vector<std::optional<bool>> touches(nodes_[arm].stances->count());
+    for (std::size_t node = 0; node < known.size(); ++node) {
+      if (known[node]) continue;
+      std::optional<bool>& all = touches[stance(arm, node)];
+      if (!all) all = touches_all(arm, stance(arm, node));
+      if (*all) add(arm, node);
+    }
+  }
+  [[nodiscard]] std::size_t stance(std::size_t arm, std::size_t node) const {
+    return nodes_[arm].stances->stance_of(node);
+  }
+  void add(std::size_t arm, std::size_t node) {
+    side_[arm].push_back(node);
+    const std::size_t own = stance(arm, node);
+    if (std::find(stances_[arm].begin(), stances_[arm].end(), own) == stances_[arm].end())
+      stances_[arm].push_back(own);
   }
   [[nodiscard]] bool contains(std::size_t arm, std::size_t node) const {
     return std::find(side_[arm].begin(), side_[arm].end(), node) != side_[arm].end();
   }
-  [[nodiscard]] bool touches_all(std::size_t arm, std::size_t node) const {
+  [[nodiscard]] bool touches_all(std::size_t arm, std::size_t own) const {
     budget_.poll();
-    const std::vector<std::size_t>& others = side_[1 - arm];
-    // The nodes that were added last are the furthest from the conflict.
+    const std::vector<std::size_t>& others = stances_[1 - arm];
+    // The stances that were added last are the furthest from the conflict.
     return std::all_of(others.rbegin(), others.rend(), [&](std::size_t other) {
-      return arm == 0 ? touch_(node, other) : touch_(other, node);
+      return arm == 0 ? touch_(own, other) : touch_(other, own);
     });
   }
 
@@ -101,8 +117,9 @@ class RegionGrowth {
   const std::array<LayerNodes, 2>& nodes_;
   const Touch& touch_;
   const Budget& budget_;
-  std::array<std::array<int, 2>, 2> ends_{};  // slots, by arm; -1: at the end
-  std::array<std::vector<std::size_t>, 2> side_;
+  std::array<std::array<int, 2>, 2> ends_{};         // slots, by arm; -1: at the end
+  std::array<std::vector<std::size_t>, 2> side_;     // nodes
+  std::array<std::vector<std::size_t>, 2> stances_;  // of these nodes, each once
 };
 
 }  // namespace

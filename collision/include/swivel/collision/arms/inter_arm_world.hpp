@@ -46,9 +46,14 @@ class InterArmWorld {
   /// Returns warnings about pairs that are dropped or keep less than others.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
 
-  /// Where bodies of one arm are at some of its configurations.
+  /// Where bodies of one arm are at some of its configurations. Configurations at which they stand
+  /// alike, to 1e-8 (m, and entries of rotations), share a stance.
   class Stances {
    public:
+    /// Returns the number of the stance of a configuration.
+    [[nodiscard]] std::size_t stance_of(std::size_t configuration) const;
+    /// Returns the number of stances.
+    [[nodiscard]] std::size_t count() const;
     Stances(Stances&&) noexcept;
     Stances& operator=(Stances&&) noexcept;
     ~Stances();
@@ -92,11 +97,13 @@ class InterArmWorld {
     /// Returns where bodies of one arm are at configurations `q`: `body` alone (an index of
     /// body_names()), or all bodies of the arm if it is -1.
     [[nodiscard]] Stances stances(int arm, int body, std::span<const Config> q);
-    /// Returns whether a pair is below what it keeps at layers, with its first body at entry i of
-    /// `a` and its second at entry j of `b`.
+    /// Returns whether a pair is below what it keeps at layers, at every configuration of its first
+    /// body's stance i of `a` and every one of its second body's stance j of `b`: below it by 1e-6
+    /// m where stances may stand for several configurations.
     [[nodiscard]] bool violates(const BodyPair& pair, const Stances& a, std::size_t i,
                                 const Stances& b, std::size_t j);
-    /// Returns whether any pair is below what it keeps at layers; `a` and `b` have all bodies.
+    /// Returns whether any pair is below what it keeps, as violates() does; `a` and `b` have all
+    /// bodies.
     [[nodiscard]] bool any_violates(const Stances& a, std::size_t i, const Stances& b,
                                     std::size_t j);
 
