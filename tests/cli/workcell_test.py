@@ -170,6 +170,8 @@ class Workcells(unittest.TestCase):
         self.refused(both, "attached twice")
         path = copy.deepcopy(cell()["arms"][0]["path"])
         self.refused(changed(0, path={**path, "frame": "nowhere"}), "unknown frame 'nowhere'")
+        smooth = {**path, "frame": "left", "smooth": {"position": 0.001}}
+        self.refused(changed(1, path=smooth), "is given for a follower")
         longer = copy.deepcopy(path)
         longer["waypoints"].append({"xyz": [0.72, 0.25, 1.2], "rpy": [0, 1.5707963, 0]})
         self.refused(changed(1, path=longer), "has 3 waypoints, and that of 'left' 2")

@@ -60,6 +60,8 @@ void validate(const Workcell& cell) {
               ": allowed is the same number for both arms, since they are at them at one time");
   for (std::size_t k = 0; k < 2; ++k) {
     const WorkcellArm& arm = cell.arms[k];
+    require(!arm.smooth || cell.leader_of(k) < 0,
+            "smooth: allowed for a follower is none: it keeps to the leader's curve");
     require(arm.rolls.empty() && arm.steps.empty(), "rolls, steps: allowed are none");
     for (const Waypoint& waypoint : arm.waypoints)
       require(!waypoint.roll,

@@ -99,6 +99,10 @@ class WorkcellReader : ProblemReader {
       end->fail("is given for a follower of six joints, which is not supported yet",
                 "no such key here");
     read_end(path, model.chain);
+    if (const auto smooth = path.section().find("smooth");
+        smooth && !smooth->is_null() && problem_.path_frame == cell_.arms[1 - k].name)
+      smooth->fail("is given for a follower, which is not supported yet",
+                   "no such key here: the follower keeps to the leader's curve");
     static_cast<Robot&>(arm) = problem_;
     static_cast<Task&>(arm) = problem_;
     if (cell_.leader_of(k) >= 0 && k == 1 && cell_.leader_of(0) >= 0)

@@ -138,7 +138,6 @@ void follow(Problem& leader, Problem& follower, const Budget& budget) {
     }
     for (std::size_t k = 0; k < steps.size(); ++k) steps[k] *= times[k];
   }
-  follower.smooth.reset();  // its path has the leader's curve already
   leader.steps = std::move(steps);
 }
 
