@@ -145,7 +145,7 @@ Drawn load_drawn(const CampaignArguments& arguments) {
     return read;
   }();
   if (Job* const job = std::get_if<Job>(&loaded)) {
-    require_planner_of_jobs(arguments.search);
+    require_planner_of("jobs", arguments.search);
     drawn.job = chosen_job(std::move(*job), arguments.search, {});
     drawn.problem = problem_of_run(*drawn.job, {0, false});
   } else {

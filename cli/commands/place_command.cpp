@@ -130,7 +130,7 @@ PlacedProblem load_problem(const PlaceArguments& arguments) {
   }();
   std::string source;
   if (Job* const job = std::get_if<Job>(&loaded)) {
-    require_planner_of_jobs(arguments.search);
+    require_planner_of("jobs", arguments.search);
     source = job->source;
     placed.job = chosen_job(std::move(*job), arguments.search, {});
     placed.problem = problem_of_run(*placed.job, {0, false});

@@ -328,13 +328,14 @@ ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
 
 /// Throws InputError for options that jobs do not have.
 void require_options_of_jobs(const PlanArguments& arguments) {
-  refuse_options_of_jobs(arguments.problem, {{arguments.refine, "--refine"},
-                                             {arguments.motion.chord.has_value(), "--chord"},
-                                             {!arguments.trace.empty(), "--trace"},
-                                             {arguments.map, "--map"},
-                                             {!arguments.map_svg.empty(), "--map-svg"},
-                                             {arguments.full_map, "--full-map"}});
-  require_planner_of_jobs(arguments.search);
+  refuse_options("jobs", arguments.problem,
+                 {{arguments.refine, "--refine"},
+                  {arguments.motion.chord.has_value(), "--chord"},
+                  {!arguments.trace.empty(), "--trace"},
+                  {arguments.map, "--map"},
+                  {!arguments.map_svg.empty(), "--map-svg"},
+                  {arguments.full_map, "--full-map"}});
+  require_planner_of("jobs", arguments.search);
 }
 
 /// Plans a job and writes and prints the answer, as plan_problem() does for one path.
@@ -377,27 +378,24 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                      std::optional<io::OutputFiles>& outputs) {
   const bool moved =
       arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
-  refuse_options_of_workcells(arguments.problem,
-                              {{arguments.refine, "--refine"},
-                               {arguments.motion.ask_for_job_motion(), "--speed, --rate"},
-                               {arguments.advise.has_value(), "--advise"},
-                               {!arguments.certificate.empty(), "--certificate"},
-                               {!arguments.report.empty(), "--report"},
-                               {!arguments.trace.empty(), "--trace"},
-                               {arguments.map, "--map"},
-                               {!arguments.map_svg.empty(), "--map-svg"},
-                               {arguments.full_map, "--full-map"},
-                               {moved, "--episode and placements"}});
+  refuse_options("workcells", arguments.problem,
+                 {{arguments.refine, "--refine"},
+                  {arguments.motion.ask_for_job_motion(), "--speed, --rate"},
+                  {arguments.advise.has_value(), "--advise"},
+                  {!arguments.certificate.empty(), "--certificate"},
+                  {!arguments.report.empty(), "--report"},
+                  {!arguments.trace.empty(), "--trace"},
+                  {arguments.map, "--map"},
+                  {!arguments.map_svg.empty(), "--map-svg"},
+                  {arguments.full_map, "--full-map"},
+                  {moved, "--episode and placements"}});
   require_table_name("--out", arguments.out, "the trajectory of a workcell", "a name like X.csv");
   WorkcellRequest request{.cell = std::get<Workcell>(std::move(file.what)),
                           .options = arguments.search.plan_options(),
                           .quiet = arguments.quiet,
                           .load_ms = file.load_ms};
   for (WorkcellArm& arm : request.cell.arms) arguments.search.apply(arm);
-  if (request.options.planner == PlannerKind::kEager ||
-      request.options.planner == PlannerKind::kEagerDp)
-    throw InputError("--planner: " + arguments.search.planner +
-                     " is not supported for workcells: allowed are lazy, parallel");
+  require_planner_of("workcells", arguments.search);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();

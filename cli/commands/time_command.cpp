@@ -44,8 +44,8 @@ std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& pr
 
 int run_on_job(const TimeArguments& arguments, const Job& job,
                std::optional<io::InputFiles>& noted) {
-  refuse_options_of_jobs(job.source, {{arguments.refine, "--refine"},
-                                      {arguments.motion.chord.has_value(), "--chord"}});
+  refuse_options("jobs", job.source,
+                 {{arguments.refine, "--refine"}, {arguments.motion.chord.has_value(), "--chord"}});
   JobTimeRequest request{.job = chosen_job(job, arguments.lattice, arguments.episode),
                          .timing = arguments.motion.job_timing(),
                          .trajectory = arguments.trajectory,

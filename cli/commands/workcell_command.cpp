@@ -51,14 +51,6 @@ void print_workcell(const WorkcellResult& result) {
 
 }  // namespace
 
-void refuse_options_of_workcells(const std::string& file,
-                                 const std::vector<std::pair<bool, const char*>>& options) {
-  for (const auto& [given, name] : options)
-    if (given)
-      throw InputError(std::string(name) + ": is not supported yet for workcells, as " + file +
-                       " is one: allowed are problems with one path");
-}
-
 int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel::cli {
-
-/// Throws InputError for the first of these options, by name, that is given (true): workcells do
-/// not take them. `file` is the workcell's problem file.
-void refuse_options_of_workcells(const std::string& file,
-                                 const std::vector<std::pair<bool, const char*>>& options);
 
 /// What `swivel plan` is asked to do with a workcell.
 struct WorkcellRequest {

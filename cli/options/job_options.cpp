@@ -5,19 +5,19 @@
 
 namespace swivel::cli {
 
-void refuse_options_of_jobs(const std::string& job_file,
-                            const std::vector<std::pair<bool, const char*>>& options) {
+void refuse_options(const std::string& kind, const std::string& file,
+                    const std::vector<std::pair<bool, const char*>>& options) {
   for (const auto& [given, name] : options)
     if (given)
-      throw InputError(std::string(name) + ": is not supported yet for jobs, as " + job_file +
+      throw InputError(std::string(name) + ": is not supported yet for " + kind + ", as " + file +
                        " is one: allowed are problems with one path");
 }
 
-void require_planner_of_jobs(const SearchOptions& search) {
+void require_planner_of(const std::string& kind, const SearchOptions& search) {
   const PlannerKind planner = search.plan_options().planner;
   if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
-    throw InputError("--planner: " + search.planner +
-                     " is not supported for jobs: allowed are lazy, parallel");
+    throw InputError("--planner: " + search.planner + " is not supported for " + kind +
+                     ": allowed are lazy, parallel");
 }
 
 Job chosen_job(Job job, const LatticeOptions& lattice, const EpisodeChoice& episode) {

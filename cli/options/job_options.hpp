@@ -10,13 +10,13 @@
 
 namespace swivel::cli {
 
-/// Throws InputError for the first of these options, by name, that is given (true): jobs do not
-/// take them. `job_file` is the job's problem file.
-void refuse_options_of_jobs(const std::string& job_file,
-                            const std::vector<std::pair<bool, const char*>>& options);
+/// Throws InputError for the first of these options, by name, that is given (true): only problems
+/// with one path take them. `kind` says what `file` is one of: "jobs" or "workcells".
+void refuse_options(const std::string& kind, const std::string& file,
+                    const std::vector<std::pair<bool, const char*>>& options);
 
-/// Throws InputError for a planner that jobs do not have.
-void require_planner_of_jobs(const SearchOptions& search);
+/// Throws InputError for a planner that only problems with one path have.
+void require_planner_of(const std::string& kind, const SearchOptions& search);
 
 /// Returns the job with the lattice, the episode and the placement that the command line chooses.
 /// Throws InputError.

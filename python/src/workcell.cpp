@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Workcells: two arms that work at one time.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <variant>
@@ -40,6 +41,14 @@ std::shared_ptr<const swivel::Workcell> to_core(const WorkcellOrFile& cell) {
       io::load_workcell(std::get<std::filesystem::path>(cell)));
 }
 
+/// Returns true if two scenes have objects of the same names at the same places.
+bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObject>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const SceneObject& x, const SceneObject& y) {
+                      return x.name == y.name && x.pose.matrix() == y.pose.matrix();
+                    });
+}
+
 /// Makes a workcell of two problems, whose scene is that of the first.
 Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::string, 2>>& touch) {
   if (arms.size() != 2)
@@ -57,6 +66,10 @@ Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::s
       cell->scene = problem.scene;
       cell->vary = problem.vary;
       cell->source = problem.source;
+    } else if (!problem.scene.empty() && !same_places(problem.scene, cell->scene)) {
+      throw py::value_error(
+          "arms: have different scenes: allowed is one scene, or none of the "
+          "second arm");
     }
     ++k;
   }
@@ -92,7 +105,7 @@ WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options) {
   return {std::make_shared<const WorkcellResult>(interruptible([&](const std::stop_token& stop) {
     options.stop = stop;
     const PreparedWorkcell prepared(*cell, Budget({}, nullptr, stop));
-    return plan_workcell(prepared, *cell, options);
+    return plan_workcell(prepared, options);
   }))};
 }
 

@@ -343,7 +343,7 @@ std::optional<BodyPair> InterArmWorld::Query::find_deepest_pair(const std::array
     const RobotPair& pair = impl_->world->kept[k];
     if (!impl_->below(k, pair.required.node)) continue;
     const Impl::Placed two = impl_->placed(pair.pair);
-    // Of bodies that touch, how deep they are; of others, minus their distance.
+    // The depth of two bodies that touch; minus the distance of two that do not.
     const bool touch = impl_->below(two, 0, impl_->warm_start[k]);
     const double deep = touch ? std::max(0.0, detail::depth(two.a, two.b).at_least)
                               : -impl_->test.clearance(two.a, two.b);

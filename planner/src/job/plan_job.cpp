@@ -12,10 +12,10 @@
 
 #include "job/job_lift.hpp"
 #include "job/order/order_estimate.hpp"
-#include "job/supported_options.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/stopwatch.hpp"
+#include "plan/supported_options.hpp"
 #include "refine/keeps_branch.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -53,7 +53,8 @@ struct PlannedRun {
   EdgeRule rule;
   ToolPath path;
   std::unique_ptr<Lattice> lattice;
-  /// Of the last job that the run was searched in. What it knows of nodes and edges holds in any.
+  /// The run's cost-to-go in the job that was searched last. What it knows of nodes and edges holds
+  /// in every job.
   std::unique_ptr<CostToGo> cost_to_go;
   std::int64_t ik_nodes_before = 0, edges_before = 0;  // counts of cost_to_go before this search
   Executor alone{1};
@@ -610,14 +611,14 @@ JobResult plan_executable(const PreparedRobot& robot, const Job& job, const Plan
 JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
                    JobView* view) {
   validate(job);
-  require_supported(options);
+  require_supported(options, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   return plan_in_order(robot, job, options, options.budget(), view);
 }
 
 JobResult plan_job(const Job& job, const PlanOptions& options) {
   validate(job);
-  require_supported(options);
+  require_supported(options, "jobs");
   return plan_job(PreparedRobot(problem_of_run(job, {0, false})), job, options);
 }
 
@@ -625,7 +626,7 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
                               const PlanOptions& options, const JobTimingOptions& timing,
                               JobView* view) {
   validate(job);
-  require_supported(options);
+  require_supported(options, "jobs");
   require_speeds(job, timing);
   const Job completed = with_motion_defaults(job);
   robot.require_prepared_for(problem_of_run(completed, {0, false}));

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "job/supported_options.hpp"
+#include "plan/supported_options.hpp"
 #include "study/job_answered.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/parallel/executor.hpp"
@@ -214,7 +214,7 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem,
 void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
   validate(job);
-  require_supported(options.plan);
+  require_supported(options.plan, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   const int count = episodes_to_plan(job.source, job.vary, options);
   if (count == 0) return;

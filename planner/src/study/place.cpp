@@ -12,8 +12,8 @@
 #include <string>
 #include <utility>
 
-#include "job/supported_options.hpp"
 #include "measure/nearest_approach.hpp"
+#include "plan/supported_options.hpp"
 #include "study/job_answered.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -222,7 +222,7 @@ struct PlacementPlanner::JobPlacements : Impl {
       : Impl(options), robot(std::move(r)), job(std::move(j)), thing(std::move(t)) {
     single.evidence.postures = true;  // clearances
     validate(job);
-    require_supported(single);
+    require_supported(single, "jobs");
     robot->require_prepared_for(problem_of_run(job, {0, false}));
     static_cast<void>(placed_job(job, thing, {}));
   }

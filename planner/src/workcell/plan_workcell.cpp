@@ -9,13 +9,13 @@
 #include "measure/measure_rows.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
+#include "plan/supported_options.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/pair_search.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -27,13 +27,6 @@
 namespace swivel {
 
 namespace {
-
-void require_supported_by_workcells(const PlanOptions& options) {
-  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
-    throw InvalidArgument("planner: allowed for workcells are lazy and parallel");
-  if (options.hooks.check || options.hooks.cost)
-    throw InvalidArgument("hooks: allowed for workcells are none");
-}
 
 /// One arm with what its search needs. It is searched by one thread at a time.
 struct PlannedArm {
@@ -60,10 +53,8 @@ struct PlannedArm {
 
 class WorkcellPlan {
  public:
-  WorkcellPlan(const PreparedWorkcell& prepared, const Workcell& cell, const PlanOptions& options,
-               const Budget& budget)
+  WorkcellPlan(const PreparedWorkcell& prepared, const PlanOptions& options, const Budget& budget)
       : prepared_(prepared),
-        cell_(cell),
         options_(options),
         budget_(budget),
         executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {}
@@ -72,7 +63,7 @@ class WorkcellPlan {
     const TraceSpan span("plan workcell");
     result_.planner = to_string(options_.planner);
     result_.threads = executor_.threads();
-    for (std::size_t k = 0; k < 2; ++k) result_.names[k] = cell_.arms[k].name;
+    for (std::size_t k = 0; k < 2; ++k) result_.names[k] = prepared_.name(k);
     try {
       Stopwatch watch;
       lay_out();
@@ -113,7 +104,7 @@ class WorkcellPlan {
       arms_[k] = std::make_unique<PlannedArm>(prepared_.problem(k), prepared_.robot(k), budget_);
     });
     if (arms_[0]->path.size() != arms_[1]->path.size())  // one of them is cut off
-      throw InputError(cell_.source,
+      throw InputError(prepared_.problem(0).source,
                        "a path leads far beyond its arm's reach: are these millimetres? Lengths "
                        "are read as metres");
     for (std::size_t k = 0; k < 2; ++k) describe(*arms_[k], result_.arms[k]);
@@ -282,7 +273,6 @@ class WorkcellPlan {
   }
 
   const PreparedWorkcell& prepared_;
-  const Workcell& cell_;
   const PlanOptions& options_;
   Budget budget_;
   Executor executor_;
@@ -292,15 +282,14 @@ class WorkcellPlan {
 
 }  // namespace
 
-WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const Workcell& cell,
-                             const PlanOptions& options) {
-  require_supported_by_workcells(options);
-  return WorkcellPlan(prepared, cell, options, options.budget()).plan();
+WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options) {
+  require_supported(options, "workcells");
+  return WorkcellPlan(prepared, options, options.budget()).plan();
 }
 
 WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options) {
-  require_supported_by_workcells(options);
-  return plan_workcell(PreparedWorkcell(cell), cell, options);
+  require_supported(options, "workcells");
+  return plan_workcell(PreparedWorkcell(cell), options);
 }
 
 }  // namespace swivel

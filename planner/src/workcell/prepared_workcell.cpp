@@ -24,12 +24,14 @@ Limits stricter(const Limits& a, const Limits& b) {
 }  // namespace
 
 struct PreparedWorkcell::Impl {
+  std::array<std::string, 2> names;
   std::array<Problem, 2> problems;
   std::array<PreparedRobot, 2> robots;
   InterArmWorld between;
 
   Impl(const Workcell& cell, const Budget& budget)
-      : problems(problems_of_arms(cell, budget)),
+      : names{cell.arms[0].name, cell.arms[1].name},
+        problems(problems_of_arms(cell, budget)),
         robots{PreparedRobot(problems[0], budget), PreparedRobot(problems[1], budget)},
         between(*cell.arms[0].model,
                 {ArmInPair{&robots[0].arm(), &cell.arms[0].attached},
@@ -52,6 +54,9 @@ PreparedWorkcell::~PreparedWorkcell() = default;
 PreparedWorkcell::PreparedWorkcell(PreparedWorkcell&&) noexcept = default;
 PreparedWorkcell& PreparedWorkcell::operator=(PreparedWorkcell&&) noexcept = default;
 
+const std::string& PreparedWorkcell::name(std::size_t arm) const {
+  return impl_->names[arm];
+}
 const Problem& PreparedWorkcell::problem(std::size_t arm) const {
   return impl_->problems[arm];
 }

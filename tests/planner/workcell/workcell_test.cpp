@@ -227,7 +227,7 @@ TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
     Workcell cell = random_workcell(robots[random.coin() ? 0 : 1], random);
     if (random.coin()) cell.scene.push_back(random_post(random));
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult found = plan_workcell(prepared, lazily());
     const double least = found.least_costs[0] + found.least_costs[1];
     conflicts += found.decided_by == WorkcellSearch::kRegions ||
                  found.decided_by == WorkcellSearch::kProduct;
@@ -256,7 +256,7 @@ TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
   for (int trial = 0; trial < count; ++trial) {
     const Workcell cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.decided_by != WorkcellSearch::kArmsAlone || found.status != PlanStatus::kSolved)
       continue;
     ++alone;
@@ -277,11 +277,11 @@ TEST(Workcell, IsTheSameOnTwoThreads) {
   for (int trial = 0; trial < count; ++trial) {
     const Workcell cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult one = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult one = plan_workcell(prepared, lazily());
     PlanOptions parallel = lazily();
     parallel.planner = PlannerKind::kParallel;
     parallel.threads = 2;
-    const WorkcellResult two = plan_workcell(prepared, cell, parallel);
+    const WorkcellResult two = plan_workcell(prepared, parallel);
     ASSERT_EQ(one.status, two.status);
     EXPECT_EQ(one.cost, two.cost);
     EXPECT_EQ(one.counters.rounds, two.counters.rounds);
@@ -305,7 +305,7 @@ TEST(Workcell, BeginsAndEndsInGivenPostures) {
     cell.arms[0].end = free.arms[0].trajectory.back().q;
     cell.arms[1].start = free.arms[1].trajectory.front().q;
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult given = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult given = plan_workcell(prepared, lazily());
     ASSERT_EQ(given.status, PlanStatus::kSolved);
     EXPECT_NEAR(given.cost, free.cost, 1e-6 * free.cost);
     EXPECT_EQ(given.arms[0].trajectory.back().q, *cell.arms[0].end);
@@ -331,7 +331,7 @@ TEST(Workcell, FollowsALeader) {
                                                    Eigen::AngleAxisd(0.1, Vector3d::UnitZ()));
     }
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
     const Chain &left = prepared.robot(0).arm().chain, &follower = prepared.robot(1).arm().chain;
@@ -373,7 +373,7 @@ TEST(Workcell, CarriesABarWithTwoHands) {
     }
     cell.arms[1].path_frame = "left";
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
     const Chain &left = prepared.robot(0).arm().chain, &right = prepared.robot(1).arm().chain;
@@ -404,7 +404,7 @@ TEST(Workcell, CheckRefusesSpoiltAnswers) {
   for (int trial = 0; trial < count; ++trial) {
     const Workcell cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, cell, lazily());
+    const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.status == PlanStatus::kSolved) {
       const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
                                                            found.arms[1].trajectory};
@@ -465,6 +465,12 @@ TEST(Workcell, RefusesWhatMakesNoSense) {
           "is where the one before it is");
   refuses([](Workcell& c) { c.may_touch.push_back({"left_tool", "nobody"}); }, "'nobody'");
   refuses([](Workcell& c) { c.arms[0].steps = {3}; }, "steps");
+  refuses(
+      [](Workcell& c) {
+        c.arms[1].path_frame = "left";
+        c.arms[1].smooth = PathSmoothing();
+      },
+      "smooth");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <string>
 
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/workcell.hpp"
@@ -25,6 +26,8 @@ class PreparedWorkcell {
   ~PreparedWorkcell();
   PreparedWorkcell(PreparedWorkcell&&) noexcept;
   PreparedWorkcell& operator=(PreparedWorkcell&&) noexcept;
+  /// Returns the name of an arm.
+  [[nodiscard]] const std::string& name(std::size_t arm) const;
   /// Returns the problem of an arm by itself: its path in the base frame, cut into as many steps as
   /// the other's, and a robot model without the collision shapes of the links that the other arm
   /// moves.
@@ -43,8 +46,8 @@ class PreparedWorkcell {
 /// that workcells do not have (an eager planner, hooks), InputError as plan() does of either arm,
 /// std::logic_error if options.check finds an answer invalid.
 [[nodiscard]] WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options = {});
-/// Plans a workcell that was prepared before, whose `cell` must be the same.
-[[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const Workcell& cell,
+/// Plans a workcell that was prepared before.
+[[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared,
                                            const PlanOptions& options = {});
 
 }  // namespace swivel
