@@ -14,6 +14,7 @@
 #include "job/order/order_estimate.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
+#include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/supported_options.hpp"
 #include "refine/keeps_branch.hpp"
@@ -539,13 +540,7 @@ class OrderSearch {
   }
   /// Adds what one search did to what all did.
   void add(const JobResult& found) {
-    counters_.ik_nodes += found.counters.ik_nodes;
-    counters_.edges += found.counters.edges;
-    counters_.nodes_checked += found.counters.nodes_checked;
-    counters_.edges_checked += found.counters.edges_checked;
-    counters_.fcl_calls += found.counters.fcl_calls;
-    counters_.proved_free += found.counters.proved_free;
-    counters_.proved_colliding += found.counters.proved_colliding;
+    add_counters(found.counters, counters_);
     transitions_.pairs += found.transitions.pairs;
     transitions_.searches += found.transitions.searches;
     transitions_.rounds += found.transitions.rounds;

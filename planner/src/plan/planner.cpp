@@ -96,18 +96,6 @@ LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {
   return info;
 }
 
-void add_counters(const Counters& more, Counters& sum) {
-  sum.ik_nodes += more.ik_nodes;
-  sum.edges += more.edges;
-  sum.nodes_checked += more.nodes_checked;
-  sum.edges_checked += more.edges_checked;
-  sum.fcl_calls += more.fcl_calls;
-  sum.proved_free += more.proved_free;
-  sum.proved_colliding += more.proved_colliding;
-  sum.expansions += more.expansions;
-  sum.iterations += more.iterations;
-}
-
 /// Returns the cost of the rows of a path whose nodes and edges cost `cost` in the lattice.
 double cost_of_rows(const Lattice& lattice, const SlotPath& path,
                     const std::vector<TrajectoryRow>& rows, double cost) {

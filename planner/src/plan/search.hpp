@@ -27,6 +27,19 @@ namespace swivel {
   return lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound;
 }
 
+/// Adds the work of one search to that of all.
+inline void add_counters(const Counters& more, Counters& sum) {
+  sum.ik_nodes += more.ik_nodes;
+  sum.edges += more.edges;
+  sum.nodes_checked += more.nodes_checked;
+  sum.edges_checked += more.edges_checked;
+  sum.fcl_calls += more.fcl_calls;
+  sum.proved_free += more.proved_free;
+  sum.proved_colliding += more.proved_colliding;
+  sum.expansions += more.expansions;
+  sum.iterations += more.iterations;
+}
+
 /// The result of a search by any of the planners.
 struct Found {
   /// False if the search was stopped before it was known whether there is a path.

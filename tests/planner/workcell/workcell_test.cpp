@@ -217,6 +217,13 @@ PlanOptions lazily() {
   return options;
 }
 
+/// Expects the same number of rows with the same joints, bit for bit.
+void expect_equal_rows(const std::vector<TrajectoryRow>& one,
+                       const std::vector<TrajectoryRow>& other) {
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t row = 0; row < one.size(); ++row) EXPECT_EQ(one[row].q, other[row].q);
+}
+
 TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
   Random random(seed("Workcell.CostsAsMuchAsAPlainProgramOverPairs"));
   const std::array<TestRobot, 2> robots{two_armed("sda10f"), two_armed("sda5f")};
@@ -262,9 +269,7 @@ TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
     ++alone;
     for (std::size_t k = 0; k < 2; ++k) {
       const PlanResult own = Planner(prepared.problem(k)).plan(lazily());
-      ASSERT_EQ(own.trajectory.size(), found.arms[k].trajectory.size());
-      for (std::size_t row = 0; row < own.trajectory.size(); ++row)
-        EXPECT_EQ(own.trajectory[row].q, found.arms[k].trajectory[row].q);
+      expect_equal_rows(own.trajectory, found.arms[k].trajectory);
     }
   }
   EXPECT_GE(alone, at_least(count / 5));
@@ -285,11 +290,8 @@ TEST(Workcell, IsTheSameOnTwoThreads) {
     ASSERT_EQ(one.status, two.status);
     EXPECT_EQ(one.cost, two.cost);
     EXPECT_EQ(one.counters.rounds, two.counters.rounds);
-    for (std::size_t k = 0; k < 2; ++k) {
-      ASSERT_EQ(one.arms[k].trajectory.size(), two.arms[k].trajectory.size());
-      for (std::size_t row = 0; row < one.arms[k].trajectory.size(); ++row)
-        EXPECT_EQ(one.arms[k].trajectory[row].q, two.arms[k].trajectory[row].q);
-    }
+    for (std::size_t k = 0; k < 2; ++k)
+      expect_equal_rows(one.arms[k].trajectory, two.arms[k].trajectory);
   }
 }
 
