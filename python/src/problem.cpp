@@ -26,6 +26,7 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Packages = std::map<std::string, std::filesystem::path>;
+using Ranges = std::map<std::string, std::array<double, 2>>;  // by joint: lower and upper, rad or m
 using Scene = std::vector<SceneObject>;
 
 Array to_array(py::handle source, const char* allowed) {
@@ -157,6 +158,14 @@ struct RobotKeywords {
   std::map<std::string, double> hold;
   std::optional<Roll> roll;
 };
+io::RobotOptions robot_options(std::vector<std::string> without, bool soft_limits,
+                               const std::optional<std::filesystem::path>& joint_limits,
+                               const Ranges& limits) {
+  io::RobotOptions options{std::move(without), soft_limits, joint_limits.value_or("")};
+  for (const auto& [joint, range] : limits) options.limits[joint] = {range[0], range[1]};
+  return options;
+}
+
 Robot make_robot(std::shared_ptr<const RobotModel> model, const RobotKeywords& keywords) {
   Robot robot;
   robot.model = std::move(model);
@@ -324,7 +333,9 @@ void bind_robot(py::module_& m) {
       "six joints whose tool may turn "
       "about its own z axis. without: links left out, with all that they carry. soft_limits: "
       "whether joints keep the soft limits\n"
-      "of the URDF's <safety_controller>.\n"
+      "of the URDF's <safety_controller>. joint_limits: MoveIt's joint_limits.yaml. limits: joint "
+      "-> "
+      "(lower, upper), rad or m, within the URDF's.\n"
       "Raises InputError.";
   py::class_<Robot> type(m, "Robot",
                          "The arm that plans: a chain of a robot model, and what it carries.");
@@ -335,32 +346,39 @@ void bind_robot(py::module_& m) {
                        std::optional<std::string> base, std::optional<std::string> tip,
                        const std::optional<Pose>& tool, std::map<std::string, double> hold,
                        const Packages& packages, const std::optional<Roll>& roll,
-                       std::vector<std::string> without, bool soft_limits) {
+                       std::vector<std::string> without, bool soft_limits,
+                       const std::optional<std::filesystem::path>& joint_limits,
+                       const Ranges& limits) {
              return make_robot(io::load_robot(urdf, srdf.value_or(""), packages,
-                                              {std::move(without), soft_limits}),
+                                              robot_options(std::move(without), soft_limits,
+                                                            joint_limits, limits)),
                                {std::move(base), std::move(tip), tool, std::move(hold), roll});
            }),
            py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(),
            py::arg("base") = py::none(), py::arg("tip") = py::none(), py::arg("tool") = py::none(),
            py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
            py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{},
-           py::arg("soft_limits") = true, keywords)
+           py::arg("soft_limits") = true, py::arg("joint_limits") = py::none(),
+           py::arg("limits") = Ranges{}, keywords)
       .def_static(
           "from_string",
           [](const std::string& urdf, const std::optional<std::string>& srdf,
              std::optional<std::string> base, std::optional<std::string> tip,
              const std::optional<Pose>& tool, std::map<std::string, double> hold,
              const Packages& packages, const std::optional<Roll>& roll,
-             std::vector<std::string> without, bool soft_limits) {
+             std::vector<std::string> without, bool soft_limits,
+             const std::optional<std::filesystem::path>& joint_limits, const Ranges& limits) {
             return make_robot(io::parse_robot(urdf, srdf.value_or(""), packages,
-                                              {std::move(without), soft_limits}),
+                                              robot_options(std::move(without), soft_limits,
+                                                            joint_limits, limits)),
                               {std::move(base), std::move(tip), tool, std::move(hold), roll});
           },
           py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(),
           py::arg("base") = py::none(), py::arg("tip") = py::none(), py::arg("tool") = py::none(),
           py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
           py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{},
-          py::arg("soft_limits") = true,
+          py::arg("soft_limits") = true, py::arg("joint_limits") = py::none(),
+          py::arg("limits") = Ranges{},
           (std::string("The same of the texts of a URDF and an SRDF, as ROS 2's robot_description "
                        "has them.\n") +
            keywords)

@@ -98,6 +98,8 @@ class Robot:
         roll: Roll | None = None,
         without: Sequence[str] = [],
         soft_limits: bool = True,
+        joint_limits: _File | None = None,
+        limits: Mapping[str, tuple[float, float]] = {},
     ) -> None: ...
     @staticmethod
     def from_string(
@@ -112,6 +114,8 @@ class Robot:
         roll: Roll | None = None,
         without: Sequence[str] = [],
         soft_limits: bool = True,
+        joint_limits: _File | None = None,
+        limits: Mapping[str, tuple[float, float]] = {},
     ) -> Robot: ...
     @property
     def name(self) -> str: ...

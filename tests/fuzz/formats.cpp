@@ -361,6 +361,23 @@ Reader workcell_reader(const TempFolder& folder) {
           })};
 }
 
+/// Returns the reader of MoveIt's limits of the joints of the iiwa.
+Reader joint_limits_reader(const TempFolder& folder) {
+  return {"joint_limits",
+          {R"(default_velocity_scaling_factor: 0.1
+joint_limits:
+  joint_a1: {has_velocity_limits: true, max_velocity: 1.2, has_acceleration_limits: true,
+             max_acceleration: 3, max_jerk: 40}
+  joint_a2: {has_position_limits: true, min_position: -1, max_position: 1.5, max_deceleration: 2}
+)"},
+          kYamlWords,
+          at(folder, "joint_limits.yaml", [](const fs::path& path) {
+            io::RobotOptions options;
+            options.joint_limits = path;
+            (void)io::load_robot(data_dir() / "robots/iiwa14.urdf", {}, {}, options);
+          })};
+}
+
 /// Returns the reader of a campaign that was broken off, of 100 episodes with these settings.
 Reader campaign_reader(const TempFolder& folder, const io::RunSettings& settings) {
   {
@@ -465,6 +482,7 @@ std::vector<Reader> readers(const TempFolder& folder) {
   std::ranges::move(motion_readers(folder), std::back_inserter(all));
   all.push_back(job_reader(folder));
   all.push_back(workcell_reader(folder));
+  all.push_back(joint_limits_reader(folder));
   const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}},
                                  {{"arm.urdf", 0x0123456789abcdef}}};
   all.push_back(campaign_reader(folder, settings));

@@ -667,6 +667,17 @@ class Robots(unittest.TestCase):
         self.assertTrue((robot.joint_limits[:, 0] < plan.joints.min(axis=0)).all())
         self.assertTrue((robot.joint_limits[:, 1] > plan.joints.max(axis=0)).all())
 
+    def test_limits_of_joints_by_name(self):
+        with tempfile.TemporaryDirectory() as folder:
+            limits = Path(folder) / "joint_limits.yaml"
+            limits.write_text("joint_limits: {joint_a2: {min_position: -1, max_position: 1}}")
+            robot = swivel.Robot(
+                ROBOTS / "iiwa14.urdf", joint_limits=limits, limits={"joint_a1": (-0.5, 0.75)}
+            )
+        self.assertEqual(robot.joint_limits[:2].tolist(), [[-0.5, 0.75], [-1, 1]])
+        with self.assertRaisesRegex(swivel.InputError, "joint_a1.*reaches beyond"):
+            swivel.Robot(ROBOTS / "iiwa14.urdf", limits={"joint_a1": (-9, 9)})
+
     def test_links_left_out_and_soft_limits(self):
         urdf = (ROBOTS / "iiwa14.urdf").read_text()
         hand = (

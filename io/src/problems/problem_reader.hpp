@@ -107,6 +107,8 @@ class ProblemReader {
   std::optional<std::vector<double>> feeds_;
   /// Names of frames that a path may be in besides `base_link` and those of scene objects.
   std::vector<std::string> more_frames_;
+  /// Names of joints that `cost.weights` may have besides those of the arm.
+  std::vector<std::string> more_joints_;
 
  private:
   [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;
@@ -135,6 +137,8 @@ class ProblemReader {
   void read_robot(const YamlValue& value);
   [[nodiscard]] Packages read_packages(const YamlSection& section) const;
   [[nodiscard]] std::vector<std::string> joint_names() const;
+  /// Narrows the limits of the robot's joints as the section `limits` says.
+  void read_robot_limits(const YamlValue& value, RobotModel& robot) const;
   void read_hold(const YamlValue& value);
   void read_attached(const YamlValue& value);
   Shape shape(const YamlSection& section);
@@ -150,6 +154,8 @@ class ProblemReader {
   /// default.
   void read_smooth(const YamlValue& value);
   void read_refine(const YamlValue& value);
+  /// Reads `cost.weights`: one for each joint, or by name.
+  void read_weights(const YamlValue& value);
   void read_resolution(const YamlValue& value);
   [[nodiscard]] ArmModel arm() const;
   void read_start_place();

@@ -7,6 +7,7 @@
 #include "files/files.hpp"
 #include "problems/path_file.hpp"
 #include "problems/problem_reader.hpp"
+#include "robots/joint_limits.hpp"
 #include "robots/srdf.hpp"
 #include "robots/urdf.hpp"
 #include "schema/yaml_value.hpp"
@@ -207,12 +208,31 @@ void ProblemReader::read_model(const YamlValue& value) {
     return with_key(urdf, resolve(urdf),
                     [&](const fs::path& file) { return load_urdf(file, packages, options); });
   });
+  if (const auto limits = root_.find_filled("limits")) read_robot_limits(*limits, *robot.model);
   if (srdf)
     with_key(*srdf, resolve(*srdf),
              [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
   problem_.model = robot.model;
   problem_.base_link = link_name(base);
   if (const auto hold = section.find_filled("hold")) read_hold(*hold);
+}
+
+void ProblemReader::read_robot_limits(const YamlValue& value, RobotModel& robot) const {
+  const auto require = [](const YamlValue& place, const std::optional<LimitFault>& fault) {
+    if (fault) place.fail(fault->what, fault->allowed);
+  };
+  const YamlSection section = value.section();
+  if (const auto file = section.find_filled("file"))
+    with_key(*file, resolve(*file),
+             [&](const fs::path& limits) { read_joint_limits(limits, robot); });
+  if (const auto joints = section.find_filled("joints"))
+    for (const auto& [joint, range] : joints->entries()) {
+      const std::vector<double> ends = range.numbers();
+      require(range, narrow_range(robot, joint, {ends[0], ends[1]}));
+    }
+  if (const auto margins = section.find("joint_margin"); margins && margins->is_map())
+    for (const auto& [joint, margin] : margins->entries())
+      require(margin, keep_off_limits(robot, joint, margin.number()));
 }
 
 void ProblemReader::read_hand(const YamlValue& value) {
@@ -445,7 +465,14 @@ void ProblemReader::read_limits(const YamlValue& value) {
   set(section, "clearance", limits.clearance);
   set(section, "self_clearance", limits.self_clearance);
   set(section, "manipulability", limits.manipulability);
-  set(section, "joint_margin", limits.joint_margin);
+  if (const auto margin = section.find("joint_margin"); margin && !margin->is_map()) {
+    const auto of_file = root_.find_filled("limits");
+    const auto by_name = of_file ? of_file->section().find("joint_margin") : std::nullopt;
+    if (by_name && by_name->is_map())
+      margin->fail("is given, and the `limits` of the file have one for each joint",
+                   "joint_margin in one of the two");
+    limits.joint_margin = margin->number();
+  }
   set(section, "joint_step", limits.joint_step);
   set(section, "arm_slope", limits.arm_slope);
   set(section, "roll_slope", limits.roll_slope);
@@ -541,13 +568,7 @@ void ProblemReader::read_cost() {
   const YamlSection section = value->section();
   if (const auto metric = section.find("metric"))
     problem_.cost.metric = word(*metric, {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime});
-  if (const auto weights = section.find_filled("weights")) {
-    const std::vector<double> values = joint_numbers(*weights);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      if (!weight_allowed(values[k]))
-        weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
-    std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
-  }
+  if (const auto weights = section.find_filled("weights")) read_weights(*weights);
   if (const auto roll = section.find("roll")) {
     problem_.cost.roll = roll->number();
     if (!weight_allowed(problem_.cost.roll))
@@ -555,6 +576,32 @@ void ProblemReader::read_cost() {
     if (problem_.cost.roll > 0 && !problem_.roll)
       roll->fail("is given, but no roll is free",
                  "this key beside path.roll, of arms of six joints");
+  }
+}
+
+void ProblemReader::read_weights(const YamlValue& value) {
+  const auto allowed = [](const YamlValue& place, double weight) {
+    if (!weight_allowed(weight)) place.fail("is " + format_double(weight), kAllowedWeights);
+    return weight;
+  };
+  if (!value.is_map()) {
+    const std::vector<double> weights = joint_numbers(value);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      problem_.cost.weights[k] = allowed(value.items()[k], weights[k]);
+    return;
+  }
+  const auto& names = arm().chain.joint_names;
+  for (const auto& [joint, weight] : value.entries()) {
+    const auto at = std::find(names.begin(), names.end(), joint);
+    if (at == names.end() &&
+        std::find(more_joints_.begin(), more_joints_.end(), joint) != more_joints_.end())
+      continue;
+    if (at == names.end())
+      weight.fail("'" + joint + "' is no joint of the arm, nearest is '" +
+                      nearest_name(joint, {names.begin(), names.end()}) + "'",
+                  "a joint of the arm");
+    problem_.cost.weights[static_cast<std::size_t>(at - names.begin())] =
+        allowed(weight, weight.number());
   }
 }
 

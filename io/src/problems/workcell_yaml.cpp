@@ -77,6 +77,7 @@ class WorkcellReader : ProblemReader {
     static_cast<Task&>(problem_) = Task();
     problem_.roll.reset();
     more_frames_ = {cell_.arms[1 - k].name};
+    more_joints_ = joints_before(cell_.arms[1 - k].tip_link);
     const YamlValue path = section.require("path");
     read_path(path);
     if (!problem_.waypoints.empty() && problem_.waypoints.front().roll)
@@ -107,6 +108,18 @@ class WorkcellReader : ProblemReader {
     static_cast<Task&>(arm) = problem_;
     if (cell_.leader_of(k) >= 0 && k == 1 && cell_.leader_of(0) >= 0)
       path.fail("leads the arm that leads it", "one arm in the frame of the other");
+  }
+
+  /// Returns the names of the joints between the root of the robot and a link, and that of a roll.
+  [[nodiscard]] std::vector<std::string> joints_before(const std::string& link) const {
+    std::vector<std::string> names{"roll"};
+    const RobotModel& robot = *problem_.model;
+    for (int at = robot.find_link(link);;) {
+      const int joint = robot.links[static_cast<std::size_t>(at)].parent_joint;
+      if (joint < 0) return names;
+      names.push_back(robot.joints[static_cast<std::size_t>(joint)].name);
+      at = robot.joints[static_cast<std::size_t>(joint)].parent_link;
+    }
   }
 
   void require_equal_lengths() const {

@@ -10,6 +10,7 @@
 #include "files/files.hpp"
 #include "files/text_number.hpp"
 #include "files/xml.hpp"
+#include "robots/joint_limits.hpp"
 #include "robots/srdf.hpp"
 #include "robots/xml_words.hpp"
 #include "swivel/core/messages/bounds.hpp"
@@ -620,7 +621,9 @@ class ModelBuilder {
   ShapeSurvey survey_;
 };
 
-std::shared_ptr<const RobotModel> with_srdf(UrdfRobot robot, const std::optional<XmlSource>& srdf) {
+std::shared_ptr<const RobotModel> with_srdf(UrdfRobot robot, const RobotOptions& options,
+                                            const std::optional<XmlSource>& srdf) {
+  keep_limits(options, *robot.model);
   if (srdf) load_srdf(*srdf, *robot.model, robot.left_out);
   return robot.model;
 }
@@ -642,7 +645,8 @@ std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& u
   ModelBuilder builder(source, packages, options, Shapes::kNone);
   UrdfRobot robot = builder.build();
   shapes = builder.survey();
-  return with_srdf(std::move(robot), srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
+  return with_srdf(std::move(robot), options,
+                   srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
 }
 
 std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf,
@@ -656,7 +660,7 @@ std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,
                                              const std::filesystem::path& srdf,
                                              const Packages& packages,
                                              const RobotOptions& options) {
-  return with_srdf(load_urdf(urdf, packages, options),
+  return with_srdf(load_urdf(urdf, packages, options), options,
                    srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
 }
 
@@ -664,7 +668,7 @@ std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std
                                               const Packages& packages,
                                               const RobotOptions& options) {
   const XmlSource source{"URDF text", urdf};
-  return with_srdf(ModelBuilder(source, packages, options).build(),
+  return with_srdf(ModelBuilder(source, packages, options).build(), options,
                    srdf.empty() ? std::nullopt : std::optional(XmlSource{"SRDF text", srdf}));
 }
 

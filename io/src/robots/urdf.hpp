@@ -16,7 +16,8 @@ struct UrdfRobot {
   std::set<std::string> left_out;
 };
 
-/// Loads a robot from its URDF. Throws InputError.
+/// Loads a robot from its URDF, with the URDF's limits: keep_limits() narrows them. Throws
+/// InputError.
 [[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages,
                                   const RobotOptions& options);
 

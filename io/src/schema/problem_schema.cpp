@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "schema/schema.hpp"
 #include "swivel/core/problem/job.hpp"
 
@@ -206,8 +208,16 @@ Keys clearance_limits() {
 Keys joint_and_path_limits() {
   const Limits d;
   return {
-      {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin),
-       "distance kept from both limits of each joint"},
+      {"joint_margin", either(number(kNonNegative), map(number(kNonNegative))), "rad or m",
+       otherwise(d.joint_margin),
+       "distance kept from both limits of each joint; or, `{joint_5: 0.1}`, of each joint that is "
+       "named"},
+      {"joints", map(numbers(2, kFinite)), "rad or m", in_words("those of the URDF"),
+       "joint → `[lower, upper]`, narrower than its limits in the URDF; a continuous joint gets "
+       "them"},
+      {"file", text(), "", optional(),
+       "name of a `joint_limits.yaml` as MoveIt has it: its positions narrow the limits of the "
+       "URDF, its speeds, accelerations and jerks stand in place of the URDF's"},
       {"soft_limits", one_of({"true", "false"}), "", otherwise("true"),
        "joints keep the soft limits of their `<safety_controller>` in the URDF, where these "
        "are narrower"},
@@ -262,8 +272,10 @@ Schema cost() {
                   {"metric", one_of({"l2", "max", "time"}), "", otherwise("l2"),
                    "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v "
                    "with the velocities of the URDF"},
-                  {"weights", numbers(kDof, kNonNegative), "", in_words("1 each, that of a roll 0"),
-                   "w, base to tip: each 0 or from 1e-6 to 1e6"},
+                  {"weights", either(numbers(kDof, kNonNegative), map(number(kNonNegative))),
+                   "per rad or m", in_words("1 each, that of a roll 0"),
+                   "w, base to tip: each 0 or from 1e-6 to 1e6; or, `{joint_1: 2}`, of the joints "
+                   "that are named"},
                   {"roll", number(kNonNegative), "", otherwise(Cost().roll),
                    "per m of path and rad that the tool stands turned from where the waypoints "
                    "have it: 0 or from 1e-6 to 1e6; with "
@@ -330,8 +342,14 @@ Keys keys_of_strokes(const char* other) {
 Schema limits_of_one() {
   Schema limits =
       section("", join(join(clearance_limits(), joint_and_path_limits()), speed_limits()));
-  std::erase_if(limits.keys, [](const Schema::Key& key) { return key.name == "soft_limits"; });
-  limits.refused = {{"soft_limits", "is of the robot", "this key in the `limits` of the file"}};
+  for (const char* const of_robot : {"soft_limits", "joints", "file"}) {
+    std::erase_if(limits.keys, [&](const Schema::Key& key) { return key.name == of_robot; });
+    limits.refused.push_back({of_robot, "is of the robot", "this key in the `limits` of the file"});
+  }
+  const auto margin =
+      std::find_if(limits.keys.begin(), limits.keys.end(),
+                   [](const Schema::Key& key) { return key.name == "joint_margin"; });
+  margin->value = number(kNonNegative);
   return limits;
 }
 

@@ -16,6 +16,11 @@ struct RobotOptions {
   std::vector<std::string> without;  ///< links to leave out, with all that they carry
   /// joints keep the soft limits of their <safety_controller>, if these are narrower
   bool soft_limits = true;
+  /// joint limits of MoveIt, joint_limits.yaml; empty: none. They narrow the URDF's ranges, and
+  /// their rates stand in place of the URDF's.
+  std::filesystem::path joint_limits = {};
+  /// joint -> range, rad or m, within that of the URDF; a continuous joint becomes a revolute one
+  std::map<std::string, Joint::Range> limits = {};
 };
 
 /// Loads a robot from a URDF 1.0 to 1.2, and an SRDF if not empty. Meshes have package:// names
