@@ -159,6 +159,35 @@ const char* const kDae = R"(<?xml version="1.0"?>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 )";
 
+/// A cut of an APT file between rapid moves, with all statements that are read.
+const char* const kApt = R"($$ written by hand
+PARTNO / part
+UNITS/MM
+MULTAX/ON
+TLAXIS/0,0,1
+LOADTL/1
+SPINDL/2000,RPM,CLW
+FROM/0,0,100
+RAPID
+GOTO/10,0,50,0,0,1
+FEDRAT/300.0,MMPM
+GOTO/10.0,0.0,5.0
+GOTO/20.0,1.5E+00,5.25, $
+0.1,0,0.9949874
+FEDRAT/40,IPM
+GOTO / -30.5 , +2. , .5 , 0.2, -0.1, 0.9746794
+MULTAX/OFF
+GOTO/40,2,1
+RAPID
+GOTO/40,2,90
+GOHOME
+FINI
+)";
+/// An APT file with notes in comments that go on in the next line.
+const char* const kNotes =
+    "$$* CL file\n$$-> CSYS / 1, 0, $\n0, 1, 0, $\n0\nUNITS / INCHES\nGOTO / 1, 2, $\n 3, 0, 0, "
+    "1\nGOTO / 2, 2, 3, 0, 1, 1 $$ aside\nCUTCOM / OFF\nORIGIN / 0, 0, 0\n";
+
 std::string bytes(const void* data, std::size_t size) {
   return {static_cast<const char*>(data), size};
 }
@@ -242,11 +271,19 @@ std::vector<Reader> problem_readers(const TempFolder& folder) {
                  at(folder, "robot.srdf", [](const fs::path& file) {
                    (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file);
                  })});
-  all.push_back({"path",
-                 {first_lines(data("paths/door_polish.csv"), 30),
-                  "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
-                 {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\""},
-                 at(folder, "path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
+  all.push_back(
+      {"path",
+       {first_lines(data("paths/door_polish.csv"), 30),
+        "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
+       {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\"", ";", "\t", " ", "\r", "0,5", "#", "sep=;",
+        "x;y;z;nx;ny;nz\n", "x y z i j k\n", "tx,ty,tz", "feed [mm/min]", "X (mm)"},
+       at(folder, "path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
+  all.push_back({"apt",
+                 {kApt, kNotes},
+                 {",", "/", "$", "$$", "$$->", "\n", "$\n", "GOTO/1,2,3\n", "GOTO/1,2,3,0,0,-1\n",
+                  "RAPID\n", "FEDRAT/MMPM,1e300\n", "UNITS/INCHES\n", "MULTAX/OFF\n", "FINI\n",
+                  "CIRCLE/0,0,0\n", "TLAXIS/0,0,0\n", "PPRINT ", "1e999", "FROM/"},
+                 at(folder, "path.apt", [](const fs::path& file) { (void)io::load_path(file); })});
   return all;
 }
 

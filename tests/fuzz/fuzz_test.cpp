@@ -16,6 +16,16 @@ TEST(Fuzz, EveryReaderRefusesWhatItCannotRead) {
   fuzz("Fuzz", readers(folder), trials(2000), false);
 }
 
+/// 20,000 files, since the format has no library that others have tried.
+TEST(Fuzz, AptFiles) {
+  const TempFolder folder;
+  prepare(folder);
+  std::vector<Reader> apt = readers(folder);
+  std::erase_if(apt, [](const Reader& reader) { return reader.name != std::string("apt"); });
+  ASSERT_EQ(apt.size(), 1u);
+  fuzz("Apt", apt, trials(20'000), false);
+}
+
 /// The watchdog finds each kind of fault that it is there for.
 TEST(Fuzz, TheWatchdogBites) {
   const Tally tally = watch(9, {3, 250}, [](int k) {

@@ -75,6 +75,12 @@ std::vector<Large> large_problems() {
       {"path", "", ",", "", 256 * kMiB},
       {"path", path + row, "0,0,0,1,0,0,0,", "", 256 * kMiB},
       {"path", path, "\"\"", "", 256 * kMiB},
+      {"path", "", ";", "", 256 * kMiB},
+      {"apt", "", "$\n", "", 256 * kMiB},
+      {"apt", "", "1,$\n", "", 256 * kMiB},
+      {"apt", "", "A,", "", 256 * kMiB},
+      {"apt", "", "A/,\n", "", 256 * kMiB},
+      {"apt", "UNITS/MM\n", "GOTO/1,2,3\n", "", 256 * kMiB},
   };
 }
 

@@ -34,7 +34,7 @@ TEST(Path, BadFiles) {
       {"header alone", kHeader, {"0 data row"}},
       {"one row", kHeader + good, {"1 data row"}},
       {"no header", good + good, {"p.csv:1", "header", "x,y,z,qw,qx,qy,qz"}},
-      {"wrong header", "x,y,z,qx,qy,qz,qw\n" + good + good, {"p.csv:1", "header"}},
+      {"wrong header", "x,y,z,qx,qy,qz,q\n" + good + good, {"p.csv:1", "header", "qw"}},
       {"column missing",
        kHeader + good + "0,0,0,1,0,0\n",
        {"p.csv:3", "data row 2", "counted from 1", "6 columns"}},

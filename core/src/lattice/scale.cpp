@@ -52,8 +52,8 @@ class Scale {
  public:
   explicit Scale(double reach) : reach_(reach) {}
 
-  void distance(const std::string& what, double metres) {
-    if (metres > kFar * reach_) tell(what, formatted(" is %.4g m from the arm", metres), "");
+  void distance(const std::string& what, double metres, const char* hint = "") {
+    if (metres > kFar * reach_) tell(what, formatted(" is %.4g m from the arm", metres), hint);
   }
   /// A box or another plain shape must also be thick: floors and walls are large, but thin.
   void size(const std::string& what, const Shape& shape) {
@@ -145,7 +145,7 @@ std::vector<std::string> scale_warnings(const Chain& chain, const ToolPath& path
   const auto away = [&](const Pose& pose) { return (pose.translation() - chain.point[0]).norm(); };
   if (const auto far = first_far_waypoint(chain, path))
     scale.distance("path: waypoint " + std::to_string(path.layer(*far).waypoint),
-                   away(path.layer(*far).tool));
+                   away(path.layer(*far).tool), " (a path's file may have `units: mm`)");
   for (const SceneObject& object : scene) {
     scale.size("scene: '" + object.name + "'", object.shape);
     scale.distance("scene: '" + object.name + "'", away(object.pose) - size_of(object.shape).most);

@@ -37,10 +37,10 @@ std::string csv_number(const std::optional<double>& value) {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
+std::string_view trimmed(std::string_view text, const char* spaces = " \t\r") {
+  const auto first = text.find_first_not_of(spaces);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+  return text.substr(first, text.find_last_not_of(spaces) - first + 1);
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -51,11 +51,12 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::vector<std::string> csv_fields(std::string_view line, std::size_t most) {
+std::vector<std::string> csv_fields(std::string_view line, std::size_t most, char separator) {
+  const char* const spaces = separator == '\t' ? " \r" : " \t\r";
   std::vector<std::string> fields;
   while (true) {
     std::string field;
-    line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(spaces), line.size()));
     if (line.starts_with('"')) {
       line.remove_prefix(1);
       for (; !line.empty() && (line[0] != '"' || line.substr(0, 2) == "\"\"");
@@ -64,11 +65,11 @@ std::vector<std::string> csv_fields(std::string_view line, std::size_t most) {
       if (line.empty()) return {};  // left open
       line.remove_prefix(1);
     }
-    const auto comma = line.find(',');
-    field += trimmed(line.substr(0, comma));
+    const auto end = line.find(separator);
+    field += trimmed(line.substr(0, end), spaces);
     fields.push_back(std::move(field));
-    if (comma == std::string_view::npos || fields.size() > most) return fields;
-    line.remove_prefix(comma + 1);
+    if (end == std::string_view::npos || fields.size() > most) return fields;
+    line.remove_prefix(end + 1);
   }
 }
 

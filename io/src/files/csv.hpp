@@ -20,10 +20,12 @@ namespace swivel::io {
 /// Returns the shortest digits that read back as the same double; empty if there is no value.
 [[nodiscard]] std::string csv_number(const std::optional<double>& value);
 
-/// Returns the fields of a line given without its end (RFC 4180), without outer spaces that are not
-/// quoted; none if a quote is left open. Bytes behind a quoted field belong to it. Stops after
-/// `most` + 1 fields, because a field takes many times its bytes.
-[[nodiscard]] std::vector<std::string> csv_fields(std::string_view line, std::size_t most);
+/// Returns the fields of a line given without its end (RFC 4180, with another separator than the
+/// comma if one is given), without outer spaces that are not quoted; none if a quote is left open.
+/// Bytes behind a quoted field belong to it. Stops after `most` + 1 fields, because a field takes
+/// many times its bytes.
+[[nodiscard]] std::vector<std::string> csv_fields(std::string_view line, std::size_t most,
+                                                  char separator = ',');
 
 /// The headers that a table may have.
 struct CsvHeader {

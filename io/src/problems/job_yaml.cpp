@@ -142,6 +142,7 @@ class JobReader : ProblemReader {
     read_cost();
     shared_ = problem_;
     model_ = suitable_arm();
+    require_free_axis(*model_);
     if (const auto limits = root_.find_filled("limits")) require_arm_angle(*model_, *limits);
   }
 

@@ -54,6 +54,8 @@ class ProblemReader {
   void read_start(const YamlValue& value);
   /// Throws InputError for a key of the file that only stands beside another one that is missing.
   void require_keys_beside() const;
+  /// Throws InputError for such a key of a section.
+  static void require_keys_beside(const YamlSection& section, const Schema& schema);
   /// Reads `path` into `problem_`: frame, waypoints, smoothing, roll, and feeds where `feeds_` is
   /// set.
   void read_path(const YamlValue& value);
@@ -90,6 +92,9 @@ class ProblemReader {
                         const std::vector<YamlValue>& limits) const;
   /// Throws InputError if the section `limits` has an arm_slope and the arm no arm angle.
   void require_arm_angle(const ArmModel& model, const YamlValue& limits) const;
+  /// Throws InputError if the file of a path has the tool's axis alone, and the arm has seven
+  /// joints but no arm angle: no lattice turns its tool then.
+  void require_free_axis(const ArmModel& model) const;
 
   /// Returns what a word stands for. `values` are in the order of the schema's words.
   template <class Enum>
@@ -105,6 +110,8 @@ class ProblemReader {
   std::optional<Roll> path_roll_;
   /// Where a path's CSV file may have feeds: those of the path that was read last, m/s.
   std::optional<std::vector<double>> feeds_;
+  /// The name of the first path file that has the tool's axis alone.
+  std::optional<YamlValue> free_axis_;
   /// Names of frames that a path may be in besides `base_link` and those of scene objects.
   std::vector<std::string> more_frames_;
   /// Names of joints that `cost.weights` may have besides those of the arm.
@@ -145,6 +152,14 @@ class ProblemReader {
   static Vector3d mesh_scale(const YamlValue& value);
   void read_allowed(const YamlValue& value, SceneObject& object) const;
   void read_waypoints(const YamlValue& value);
+  /// Reads the file of a path, whose section and name are given.
+  void read_path_file(const YamlSection& section, const YamlValue& name);
+  /// Frees the roll for a path whose file has the tool's axis alone, and adds a warning if the
+  /// section does not say so. Throws InputError for a range of the roll.
+  void free_axis(const YamlSection& section, const YamlValue& name,
+                 std::vector<std::string>& warnings);
+  /// Adds warnings to those of the robot's files, which every answer has.
+  void warn(const std::vector<std::string>& warnings);
   /// Limits the window of rolls of each waypoint to the range of path.roll, and that range to what
   /// all windows cover together. Throws InputError if a window becomes empty, if the roll is not
   /// free, or if the windows cover only one roll or a whole turn.
@@ -169,6 +184,7 @@ class ProblemReader {
   void set(const YamlSection& section, const char* key,
            std::optional<std::array<double, kDof>>& target) const;
 
+  std::shared_ptr<RobotModel> model_file_;  ///< problem_.model
   MeshCache meshes_;
 };
 

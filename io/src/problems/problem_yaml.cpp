@@ -14,6 +14,7 @@
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -117,6 +118,7 @@ Problem ProblemReader::read() {
   read_path(path);
   read_task();
   const ArmModel model = suitable_arm();
+  require_free_axis(model);
   const auto limits = root_.find_filled("limits");
   require_in_scale(model, path, limits ? std::vector{*limits} : std::vector<YamlValue>());
   if (limits) require_arm_angle(model, *limits);
@@ -146,9 +148,28 @@ void ProblemReader::require_one_path() const {
 }
 
 void ProblemReader::require_keys_beside() const {
-  for (const Schema::Key& key : problem_schema().keys)
-    if (const auto value = root_.find_filled(key.name); value && !key.beside.empty())
-      value->fail("is given without " + key.beside, "this key beside " + key.beside);
+  require_keys_beside(root_, problem_schema());
+}
+
+void ProblemReader::require_keys_beside(const YamlSection& section, const Schema& schema) {
+  for (const Schema::Key& key : schema.keys)
+    if (!key.beside.empty() && !section.find_filled(key.beside))
+      if (const auto value = section.find_filled(key.name))
+        value->fail("is given without " + key.beside, "this key beside " + key.beside);
+}
+
+void ProblemReader::require_free_axis(const ArmModel& model) const {
+  if (!free_axis_ || !model.chain.free_roll) return;
+  try {
+    static_cast<void>(fit_srs(model.chain, problem_.model->source));
+  } catch (const NotSrs& error) {
+    free_axis_->fail(
+        "has the tool's axis alone, about which an arm of seven joints can turn it only if it is "
+        "S-R-S; here " +
+            error.why(),
+        "the direction of the tool's x axis besides (tangents or quaternions), or one joint less "
+        "(robot.hold)");
+  }
 }
 
 void ProblemReader::read_surroundings() {
@@ -212,7 +233,7 @@ void ProblemReader::read_model(const YamlValue& value) {
   if (srdf)
     with_key(*srdf, resolve(*srdf),
              [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
-  problem_.model = robot.model;
+  problem_.model = model_file_ = robot.model;
   problem_.base_link = link_name(base);
   if (const auto hold = section.find_filled("hold")) read_hold(*hold);
 }
@@ -368,17 +389,51 @@ void ProblemReader::read_path(const YamlValue& value) {
                   "'" + problem_.base_link + "' or the name of a scene object");
   }
   const auto [key, poses] = *section.chosen("waypoints");
+  require_keys_beside(section, problem_schema().find("path")->value);
   if (feeds_) feeds_->clear();
-  if (key == "file") {
-    PathFile path = with_key(poses, resolve(poses), [&](const fs::path& file) {
-      return load_path_file(file, feeds_.has_value());
-    });
-    problem_.waypoints = std::move(path.waypoints);
-    if (feeds_) *feeds_ = std::move(path.feeds);
-  } else {
+  if (key == "file")
+    read_path_file(section, poses);
+  else
     read_waypoints(poses);
-  }
   if (problem_.waypoints.front().roll) narrow_roll(poses);
+  if (problem_.roll && problem_.roll->circle()) choose_sides(problem_.waypoints);
+}
+
+void ProblemReader::read_path_file(const YamlSection& section, const YamlValue& name) {
+  PathFileOptions options;
+  if (const auto units = section.find_filled("units"))
+    options.units = word(*units, {LengthUnit::kMetre, LengthUnit::kMillimetre, LengthUnit::kInch});
+  if (const auto cut = section.find_filled("cut"))
+    options.cut = static_cast<std::size_t>(cut->whole_number());
+  options.feeds = feeds_.has_value();
+  options.turns_freely = problem_.roll && problem_.roll->circle();
+  PathFile path = with_key(name, resolve(name),
+                           [&](const fs::path& file) { return load_path_file(file, options); });
+  problem_.waypoints = std::move(path.waypoints);
+  if (feeds_) *feeds_ = std::move(path.feeds);
+  if (path.axis_alone) free_axis(section, name, path.warnings);
+  warn(path.warnings);
+}
+
+void ProblemReader::free_axis(const YamlSection& section, const YamlValue& name,
+                              std::vector<std::string>& warnings) {
+  if (problem_.roll && !problem_.roll->circle())
+    section.find("roll")->fail(
+        "is a range, but the path's file has the tool's axis alone, and says of no turn about it "
+        "that it is 0",
+        "free, or tangents in the file");
+  if (!free_axis_) free_axis_ = name;
+  if (problem_.roll) return;
+  problem_.roll = path_roll_ = Roll{};
+  problem_.cost.weights.back() = 0;
+  warnings.push_back(name.where() +
+                     ": has the tool's axis alone: the tool may turn about it (`roll: free`)");
+}
+
+void ProblemReader::warn(const std::vector<std::string>& warnings) {
+  std::vector<std::string>& all = model_file_->warnings;
+  for (const std::string& warning : warnings)
+    if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
 }
 
 void ProblemReader::read_waypoints(const YamlValue& value) {

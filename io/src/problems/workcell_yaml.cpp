@@ -79,6 +79,7 @@ class WorkcellReader : ProblemReader {
     more_frames_ = {cell_.arms[1 - k].name};
     more_joints_ = joints_before(cell_.arms[1 - k].tip_link);
     const YamlValue path = section.require("path");
+    free_axis_.reset();
     read_path(path);
     if (!problem_.waypoints.empty() && problem_.waypoints.front().roll)
       path.fail("has windows of the roll at waypoints, in a workcell",
@@ -92,6 +93,10 @@ class WorkcellReader : ProblemReader {
     }
     read_cost();
     const ArmModel model = suitable_arm();
+    if (free_axis_ && model.chain.free_roll)
+      free_axis_->fail("has the tool's axis alone, and the arm has seven joints",
+                       "quaternions or tangents in it: in a workcell the roll of arms of six "
+                       "joints alone may be free");
     require_in_scale(model, path, limits);
     for (const YamlValue& value : limits) require_arm_angle(model, value);
     if (const auto start = section.find_filled("start")) read_start(*start);

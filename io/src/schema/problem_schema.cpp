@@ -106,6 +106,7 @@ Schema configuration() {
 }
 
 Schema path() {
+  constexpr Range kCut{"a whole number from 1 to 1000000", 1, 1'000'000};
   const PathSmoothing smooth;
   const Keys window{{"roll", numbers(2, kFinite), "rad", optional(),
                      "with `roll` of the path: `[lower, upper]`, what it may be there, at all "
@@ -120,7 +121,12 @@ Schema path() {
            list(section("waypoint", join(pose_keys(required()), window), {kOneOrientation})), "",
            optional(), "at least two [poses](#poses) that the tool frame visits"},
           {"file", text(), "", optional(),
-           "instead of `waypoints`: name of a [CSV file](#tool-path-csv) with them"},
+           "instead of `waypoints`: name of a [CSV file](#tool-path-csv) or an [APT "
+           "file](#tool-path-apt) with them"},
+          {"units", one_of({"m", "mm", "inch"}), "", in_words("m; of APT files what they say"),
+           "of positions and feeds in the `file`", "", "", "file"},
+          {"cut", integer(kCut), "", in_words("the `file` has only one"),
+           "which [cut](#tool-path-apt) of an APT file the path is, from 1", "", "", "file"},
           {"smooth",
            or_null(section("smooth",
                            {

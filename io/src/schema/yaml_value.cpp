@@ -68,6 +68,15 @@ double YamlValue::number() const {
   return *value;
 }
 
+int YamlValue::whole_number() const {
+  const Range& range = schema_->as(Schema::Type::kInteger).range;
+  const std::optional<double> value = number_in(node_);
+  if (!value) fail(shown(node_) + " is not a number", range.allowed);
+  if (!range.has(*value) || *value != std::floor(*value))
+    fail("is " + node_.Scalar(), range.allowed);
+  return static_cast<int>(*value);
+}
+
 std::vector<double> YamlValue::numbers() const {
   const std::size_t count = schema_->as(Schema::Type::kList).count;
   const std::string allowed = "a list of " + std::to_string(count) + " numbers";

@@ -38,6 +38,7 @@ class YamlValue {
 
   // Each of these throws InputError if the value is not what the schema allows for that type.
   [[nodiscard]] double number() const;
+  [[nodiscard]] int whole_number() const;
   [[nodiscard]] std::vector<double> numbers() const;
   [[nodiscard]] Vector3d vector3() const;
   /// Returns a scalar, which must not be empty.

@@ -8,10 +8,10 @@
 
 namespace swivel::io {
 
-/// Loads a tool path from a CSV file with the header x,y,z,qw,qx,qy,qz, optionally followed by
-/// roll_min,roll_max, and at least two rows; m and rad. Quaternions stay as written and must have
-/// length 1 within 1e-3. Throws InputError.
-[[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& csv);
+/// Loads a tool path from a table or an APT file, docs/formats.md: m unless the file says another
+/// unit. Quaternions stay as written. Where the file has the tool's axis alone, how far waypoints
+/// are turned about it is arbitrary. Throws InputError.
+[[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& file);
 
 /// Loads a problem file and the files that it names, docs/formats.md. Throws InputError; for an
 /// unknown key it names the nearest known key.
