@@ -269,7 +269,8 @@ std::vector<Reader> problem_readers(const TempFolder& folder) {
                   "link1='link_1' link2='link_2'/></robot>"},
                  kXmlWords,
                  at(folder, "robot.srdf", [](const fs::path& file) {
-                   (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file);
+                   const auto robot = io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file);
+                   (void)io::planning_groups(TempFolder::read(file), *robot);
                  })});
   all.push_back(
       {"path",

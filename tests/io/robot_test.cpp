@@ -488,6 +488,54 @@ TEST(Robot, Srdf) {
   EXPECT_EQ(model->disabled_pairs, expected);
 }
 
+TEST(Robot, PlanningGroups) {
+  const auto model = parse_robot(
+      robot("<link name='world'/><link name='a'/><link name='b'/><link name='c'/>"
+            "<link name='tip'/><link name='finger'/>\n" +
+            joint("rail", "prismatic", "world", "a", kLimit) + joint("fixed", "fixed", "c", "tip") +
+            joint("j2", "revolute", "b", "c", kLimit) + joint("j1", "revolute", "a", "b", kLimit) +
+            joint("grip", "prismatic", "c", "finger", kLimit)));
+  using Names = std::vector<std::string>;
+  struct Case {
+    std::string what;
+    Names joints;
+    std::string base, tip;
+  };
+  const Case cases[] = {
+      {"<chain base_link='a' tip_link='tip'/>", {"j1", "j2"}, "a", "tip"},
+      {"<chain base_link='world' tip_link='c'/>", {"rail", "j1", "j2"}, "world", "c"},
+      {"<joint name='j2'/><joint name='j1'/>", {"j1", "j2"}, "a", "c"},
+      {"<link name='c'/><link name='tip'/>", {"j2"}, "b", "tip"},
+      {"<group name='g0'/><joint name='fixed'/>", {"j1", "j2"}, "a", "tip"},
+      {"<group name='g2'/><joint name='grip'/>", {"j1", "j2", "grip"}, "a", "finger"},
+      {"<group name='g2'/><joint name='grip'/><joint name='fixed'/>", {"j2", "j1", "grip"}, "", ""},
+      {"<chain base_link='tip' tip_link='b'/>", {}, "", ""},
+      {"<chain base_link='nowhere' tip_link='b'/><joint name='no'/>", {}, "", ""},
+      {"<group name='g9'/>", {}, "", ""},  // itself
+  };
+  std::string srdf;
+  for (std::size_t k = 0; k < std::size(cases); ++k)
+    srdf += "<group name='g" + std::to_string(k) + "'>" + cases[k].what + "</group>\n";
+  // A group may name one that comes later.
+  srdf = "<group name='first'><group name='g1'/></group>" + srdf;
+  const std::vector<PlanningGroup> groups = planning_groups(robot(srdf), *model);
+  ASSERT_EQ(groups.size(), std::size(cases) + 1);
+  EXPECT_EQ(groups[0].joints, cases[1].joints);
+  for (std::size_t k = 0; k < std::size(cases); ++k) {
+    const PlanningGroup& group = groups[k + 1];
+    EXPECT_EQ(group.name, "g" + std::to_string(k));
+    EXPECT_EQ(group.joints, cases[k].joints) << k;
+    EXPECT_EQ(group.base_link, cases[k].base) << k;
+    EXPECT_EQ(group.tip_link, cases[k].tip) << k;
+  }
+  EXPECT_TRUE(planning_groups("", *model).empty());
+  std::string deep;
+  for (int k = 0; k < 200; ++k)
+    deep += "<group name='" + std::to_string(k) + "'><group name='" + std::to_string(k + 1) +
+            "'/></group>";
+  expect_message(input_error([&] { (void)planning_groups(robot(deep), *model); }), {"100 levels"});
+}
+
 TEST(Robot, TextsAreReadAsFilesAre) {
   const TempFolder folder;
   const std::string urdf = arm_urdf(),

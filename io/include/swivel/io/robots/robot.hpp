@@ -41,6 +41,20 @@ struct RobotOptions {
     const std::map<std::string, std::filesystem::path>& packages = {},
     const RobotOptions& options = {});
 
+/// A planning group of an SRDF: joints that move together while all others rest.
+struct PlanningGroup {
+  std::string name;
+  /// Names of its movable joints, base to tip where they are one chain.
+  std::vector<std::string> joints;
+  /// The link that carries the first joint and the link that the last one carries, fixed joints
+  /// included; both empty unless the joints lie on one way from the robot's root outwards.
+  std::string base_link, tip_link;
+};
+/// Returns the planning groups of the text of an SRDF, in its order: of chains, joints, links and
+/// other groups. What the robot does not have is left out. Throws InputError.
+[[nodiscard]] std::vector<PlanningGroup> planning_groups(const std::string& srdf,
+                                                         const RobotModel& robot);
+
 /// Counts the shapes of a URDF.
 struct ShapeSurvey {
   std::size_t collision = 0;      ///< <collision> elements
