@@ -51,6 +51,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/plan/plan_options.hpp
   swivel/planner/plan/plan_view.hpp
   swivel/planner/plan/planner.hpp
+  swivel/planner/refine/cartesian_path.hpp
   swivel/planner/refine/motion.hpp
   swivel/planner/refine/refine.hpp
   swivel/planner/robot/motion_defaults.hpp

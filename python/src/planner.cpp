@@ -11,6 +11,8 @@
 #include "job.hpp"
 #include "plan_keywords.hpp"
 #include "results.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/measure/measure.hpp"
@@ -229,6 +231,12 @@ class SharedPlanner {
   void change(const Change& change) {
     const Use use(*this);
     change(planner_);
+  }
+  /// Returns the number of rows that a trajectory of the whole path has.
+  int rows_of_path() {
+    return prepared([](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
+      return problem_path(problem, robot.arm().chain, budget).size();
+    });
   }
   Plan plan(const PlanKeywords& keywords, bool refined, std::optional<double> speed,
             std::optional<double> turn_speed, std::optional<double> rate,
@@ -497,6 +505,7 @@ void bind_planner(py::module_& m) {
            "rate:\n"
            "samples a second. chord: m; slower where the tool would leave its path by more between "
            "samples. Raises TimeoutError.")
+      .def("_rows_of_path", &SharedPlanner::rows_of_path)
       .def("advise", &SharedPlanner::advise, py::arg("plan"), py::kw_only(),
            py::arg("timeout") = 1.0,
            "What would help a problem that has no path, found by planning it for so many seconds: "

@@ -153,8 +153,9 @@ def compute_cartesian_path(
         ):
             ahead = ahead[1:]  # the start itself
         task.waypoints = _np.vstack([first[None], ahead])
-    result = Planner(robot, task, scene).plan(**options)  # noqa: F405
+    planner = Planner(robot, task, scene)  # noqa: F405
+    result = planner.plan(**options)
     if result.solved:
         return 1.0, result.trajectory
     reached = result.partial
-    return max(0, len(reached) - 1) / max(1, result.lattice.layers - 1), reached
+    return max(0, len(reached) - 1) / max(1, planner._rows_of_path() - 1), reached

@@ -839,6 +839,13 @@ class Cartesian(unittest.TestCase):
         )
         self.assertEqual(fraction, 1.0)
 
+    def test_a_tool_that_may_turn_about_its_axis(self):
+        robot = arm(base="base_link", tip="tool0", roll=swivel.Roll(lower=-0.3, upper=0.3))
+        wall = [swivel.SceneObject("wall", swivel.Box([0.05, 0.02, 0.05]), self.there)]
+        fraction, rows = swivel.compute_cartesian_path(robot, wall, [self.there], self.start)
+        self.assertTrue(0 < fraction < 1, fraction)
+        self.assertAlmostEqual(rows.s[-1], 0.3 * fraction, places=9)
+
     def test_a_start_in_collision_goes_nowhere(self):
         wall = [
             swivel.SceneObject(
