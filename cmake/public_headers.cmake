@@ -63,6 +63,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/verify/complete_rows.hpp
   swivel/planner/workcell/check_workcell.hpp
   swivel/planner/workcell/plan_workcell.hpp
+  swivel/planner/workcell/workcell_view.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp
   swivel/io/jobs/job_trajectory.hpp

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "exact/depth.hpp"
+#include "exact/nearest_points.hpp"
 #include "exact/pair_test.hpp"
 #include "proofs/distance_proof.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -427,6 +428,20 @@ std::optional<InterArmWorld::Query::Clearance> InterArmWorld::Query::clearance(
     if (!least || found.margin() < least->margin()) least = found;
   }
   return least;
+}
+
+std::optional<std::array<Vector3d, 2>> InterArmWorld::Query::nearest_points(
+    const std::array<Config, 2>& q, const Clearance& clearance) {
+  impl_->move_to(q);
+  const Impl::Placed two = impl_->placed(clearance.pair);
+  return detail::nearest_points(two.a, two.b, clearance.distance);
+}
+
+std::optional<Vector3d> InterArmWorld::Query::common_point(const std::array<Config, 2>& q,
+                                                           const BodyPair& pair) {
+  impl_->move_to(q);
+  const Impl::Placed two = impl_->placed(pair);
+  return detail::common_point(two.a, two.b);
 }
 
 CollisionCounters InterArmWorld::Query::counters() const {

@@ -21,6 +21,7 @@
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/workcell_view.hpp"
 #include "validity/collision_validity.hpp"
 #include "workcell/between_arms.hpp"
 
@@ -49,15 +50,29 @@ struct PlannedArm {
   std::unique_ptr<CostToGo> cost_to_go;
   Executor alone{1};
   std::optional<CollisionValidity> validity;
+  /// What was found out about its nodes by all searches of the lattice; for a view alone.
+  std::optional<Verdicts> noted;
+  /// The path that a view shows: the answer, or else that of the arm by itself.
+  std::vector<int> shown;
+  /// Has planned the arm by itself, where it has no path.
+  std::unique_ptr<Planner> without_path;
+  [[nodiscard]] PlanView view() const {
+    if (without_path) return without_path->view();
+    return {robot, problem, *lattice, world, &*noted, shown};
+  }
 };
+using PlannedArms = std::array<std::unique_ptr<PlannedArm>, 2>;
 
 class WorkcellPlan {
  public:
-  WorkcellPlan(const PreparedWorkcell& prepared, const PlanOptions& options, const Budget& budget)
+  /// `view`: filled with what was found out, or null.
+  WorkcellPlan(const PreparedWorkcell& prepared, const PlanOptions& options, const Budget& budget,
+               WorkcellView* view)
       : prepared_(prepared),
         options_(options),
         budget_(budget),
-        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads) {}
+        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads),
+        view_(view) {}
 
   WorkcellResult plan() {
     const TraceSpan span("plan workcell");
@@ -79,6 +94,7 @@ class WorkcellPlan {
       }
       explain();
       result_.time_ms["report"] = watch.lap();
+      if (view_) give_view();
     } catch (const Stopped&) {
       if (result_.arms[0].trajectory.empty()) result_.status = stopped_status();
     }
@@ -134,11 +150,14 @@ class WorkcellPlan {
       PairSearchOptions options;
       options.paths.batch = 8;
       options.work = work();
+      for (std::size_t k = 0; view_ && k < 2; ++k)
+        options.noted[k] = &arms_[k]->noted.emplace(*arms_[k]->lattice);
       const PairOutcome outcome =
           search_pair({PairArm{arms_[0]->cost_to_go.get(), &*arms_[0]->validity},
                        PairArm{arms_[1]->cost_to_go.get(), &*arms_[1]->validity}},
                       between, options);
       note(outcome, between);
+      if (view_) note_for_view(outcome);
       if (outcome.paths[0].empty()) return;
       if (tell_turns_apart(outcome)) continue;
       for (std::size_t k = 0; k < 2; ++k) {
@@ -172,6 +191,7 @@ class WorkcellPlan {
       if (off == Lattice::Joints{}) continue;
       arms_[k]->validity.reset();
       arms_[k]->cost_to_go.reset();
+      arms_[k]->noted.reset();
       arms_[k]->lattice = arms_[k]->lattice->with_windings(off);
       any = true;
     }
@@ -192,7 +212,7 @@ class WorkcellPlan {
     result_.conflict.reset();
     if (outcome.decided() && outcome.paths[0].empty() && !outcome.tree.empty() &&
         outcome.tree.front().region)
-      note_conflict(*outcome.tree.front().region, between);
+      note_conflict(*outcome.tree.front().region, outcome.alone, between);
   }
   void count(const PlannedArm& arm, PlanResult& result) const {
     Counters& sum = result.counters;
@@ -208,8 +228,10 @@ class WorkcellPlan {
     result.lattice.method = arm.robot.arm_class().method();
     result.lattice.complete = arm.robot.arm_class().complete();
   }
-  /// Notes where and by which bodies the arms bar each other in a region.
-  void note_conflict(const ConflictRegion& region, BetweenArms& between) {
+  /// Notes where and by which bodies the arms bar each other on their cheapest paths, which meet in
+  /// a region.
+  void note_conflict(const ConflictRegion& region, const std::array<SlotPath, 2>& paths,
+                     BetweenArms& between) {
     ArmConflict& conflict = result_.conflict.emplace();
     conflict.layer = region.layer;
     conflict.of_motion = region.of_moves;
@@ -225,7 +247,7 @@ class WorkcellPlan {
     } else {
       NodePair nodes{.layer = region.layer};
       for (std::size_t k = 0; k < 2; ++k) {
-        nodes.slots[k] = region.slots[k].front();
+        nodes.slots[k] = paths[k][static_cast<std::size_t>(region.layer)];
         nodes.q[k] = *arms_[k]->lattice->node(region.layer, nodes.slots[k]);
       }
       pair = between.barred(nodes);
@@ -251,13 +273,39 @@ class WorkcellPlan {
       PlanOptions alone = options_;
       alone.check = false;
       // The pointer does not own the robot, which outlives the plan.
-      Planner planner(
+      auto planner = std::make_unique<Planner>(
           std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &prepared_.robot(k)),
           prepared_.problem(k));
-      PlanResult found = planner.plan(alone);
+      PlanResult found = planner->plan(alone);
       result_.arms[k].diagnosis = std::move(found.diagnosis);
       result_.arms[k].partial = std::move(found.partial);
+      if (view_ && found.status == PlanStatus::kInfeasible)
+        arms_[k]->without_path = std::move(planner);
     }
+  }
+  void note_for_view(const PairOutcome& outcome) {
+    view_->alone = outcome.alone;
+    view_->region.reset();
+    for (std::size_t k = 0; k < 2; ++k)
+      arms_[k]->shown = outcome.paths[k].empty() ? outcome.alone[k] : outcome.paths[k];
+    if (outcome.tree.empty() || !outcome.tree.front().region) return;
+    const ConflictRegion& region = *outcome.tree.front().region;
+    view_->region = {region.layer, region.slots, {}};
+    for (std::size_t k = 0; k < 2; ++k)
+      for (const SlotMove& move : region.moves[k]) {
+        view_->region->slots[k].push_back(move.from);
+        view_->region->next[k].push_back(move.to);
+      }
+  }
+  /// Hands both arms over to the view.
+  void give_view() {
+    const auto owner = std::make_shared<PlannedArms>(std::move(arms_));
+    for (const auto& arm : *owner) {
+      arm->validity.reset();
+      arm->cost_to_go.reset();
+      view_->arms.push_back(arm->view());
+    }
+    view_->owner = owner;
   }
   void measure_between() {
     InterArmWorld::Query query(prepared_.between());
@@ -276,15 +324,18 @@ class WorkcellPlan {
   const PlanOptions& options_;
   Budget budget_;
   Executor executor_;
-  std::array<std::unique_ptr<PlannedArm>, 2> arms_;
+  WorkcellView* view_;
+  PlannedArms arms_;
   WorkcellResult result_;
 };
 
 }  // namespace
 
-WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options) {
+WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
+                             WorkcellView* view) {
   require_supported(options, "workcells");
-  return WorkcellPlan(prepared, options, options.budget()).plan();
+  if (view) *view = {};
+  return WorkcellPlan(prepared, options, options.budget(), view).plan();
 }
 
 WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options) {

@@ -21,9 +21,12 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/workcell_view.hpp"
 #include "two_arms.hpp"
 
 namespace swivel::test {
@@ -436,6 +439,98 @@ TEST(Workcell, CheckRefusesSpoiltAnswers) {
   }
   EXPECT_GE(spoilt, at_least(count / 4));
   EXPECT_GE(met, at_least(count / 16));
+}
+
+/// Expects that no node of the one arm's side of a region keeps clear of any of the other's, and
+/// that the paths of both arms alone lead through it.
+void expect_conflict(const PreparedWorkcell& prepared, const WorkcellView& view, Random& random) {
+  const RegionOfConflict& region = *view.region;
+  InterArmWorld::Query query(prepared.between(), DistanceProofs::kOff);
+  const auto rows = [&](std::size_t arm, int slot) {
+    return *view.arms[arm].lattice.exact_config(region.layer, slot,
+                                                *view.arms[arm].lattice.node(region.layer, slot));
+  };
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::vector<int>& slots = region.slots[k];
+    const int on_path = view.alone[k][static_cast<std::size_t>(region.layer)];
+    ASSERT_NE(std::find(slots.begin(), slots.end(), on_path), slots.end());
+  }
+  if (!region.next[0].empty()) return;
+  for (int k = 0; k < 20; ++k) {
+    const auto pick = [&](const std::vector<int>& slots) {
+      return slots[random.below(static_cast<int>(slots.size()))];
+    };
+    const std::array<Config, 2> q{rows(0, pick(region.slots[0])), rows(1, pick(region.slots[1]))};
+    EXPECT_TRUE(query.find_violating_pair(q, ClearanceRule::kNode));
+  }
+}
+
+/// Expects that the bodies of a conflict are those that meet on the paths of both arms alone. Where
+/// bodies touch they have a point in common, else points that are as far apart as they are.
+void expect_meeting(const PreparedWorkcell& prepared, const WorkcellView& view,
+                    const ArmConflict& conflict) {
+  std::array<Config, 2> q;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Lattice& lattice = view.arms[k].lattice;
+    q[k] = lattice.path_rows(view.alone[k])[static_cast<std::size_t>(conflict.layer)].q;
+  }
+  InterArmWorld::Query query(prepared.between());
+  const auto pair = query.find_violating_pair(q, ClearanceRule::kNode);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(prepared.between().names(*pair), conflict.bodies);
+  const auto least = query.clearance(q);
+  ASSERT_TRUE(least);
+  const auto ends = query.nearest_points(q, *least);
+  EXPECT_EQ(ends.has_value(), least->distance > 0);
+  EXPECT_EQ(query.common_point(q, least->pair).has_value(), !(least->distance > 0));
+  if (ends) {
+    EXPECT_NEAR(((*ends)[0] - (*ends)[1]).norm(), least->distance, 1e-4);
+  }
+}
+
+TEST(Workcell, ShowsWhatItFoundOut) {
+  Random random(seed("Workcell.ShowsWhatItFoundOut"));
+  const TestRobot robot = two_armed("sda10f");
+  int answers = 0, regions = 0, meetings = 0, without = 0;
+  const int count = trials(100);
+  for (int trial = 0; trial < count; ++trial) {
+    SCOPED_TRACE(trial);
+    Workcell cell = random_workcell(robot, random);
+    if (random.coin()) cell.scene.push_back(random_post(random));
+    const PreparedWorkcell prepared(cell);
+    WorkcellView view;
+    const WorkcellResult found = plan_workcell(prepared, lazily(), &view);
+    EXPECT_EQ(found.cost, plan_workcell(prepared, lazily()).cost);
+    ASSERT_EQ(view.arms.size(), 2u);
+    const bool met = found.decided_by != WorkcellSearch::kArmsAlone;
+    EXPECT_EQ(view.region.has_value(), met);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const PlanView& arm = view.arms[k];
+      const bool has_path = found.least_costs[k] < kNone;
+      EXPECT_EQ(view.alone[k].empty(), !has_path);
+      without += has_path ? 0 : 1;
+      if (found.status == PlanStatus::kSolved) {
+        expect_equal_rows(arm.lattice.path_rows(arm.path), found.arms[k].trajectory);
+        ++answers;
+      } else if (has_path) {
+        EXPECT_EQ(arm.path, view.alone[k]);
+      }
+      for (std::size_t layer = 0; layer < arm.path.size(); ++layer)
+        EXPECT_EQ(arm.verdicts->node(static_cast<int>(layer), arm.path[layer]), Verdict::kValid);
+    }
+    if (!met) continue;
+    ++regions;
+    expect_conflict(prepared, view, random);
+    if (!found.conflict || found.conflict->of_motion) continue;
+    expect_meeting(prepared, view, *found.conflict);
+    ++meetings;
+  }
+  std::printf("%d workcells: %d answers of arms, %d regions, %d meetings, %d arms without a path\n",
+              count, answers, regions, meetings, without);
+  EXPECT_GE(answers, at_least(count / 4));
+  EXPECT_GE(regions, at_least(count / 12));
+  EXPECT_GE(meetings, at_least(count / 50));
+  EXPECT_GE(without, at_least(count / 30));
 }
 
 TEST(Workcell, RefusesWhatMakesNoSense) {

@@ -25,8 +25,9 @@ class PairSearch {
   void run() {
     if (!decide_by_arms_alone()) search_in_turns();
   }
-  void count_questions() {
+  void note_questions() {
     for (std::size_t k = 0; k < 2; ++k) {
+      if (options_.noted[k]) arms_[k].validity().write(*options_.noted[k]);
       outcome_.nodes[k] = arms_[k].validity().nodes_asked();
       outcome_.edges[k] = arms_[k].validity().edges_asked();
     }
@@ -42,6 +43,7 @@ class PairSearch {
     });
     outcome_.bound = 0;
     for (std::size_t k = 0; k < 2; ++k) {
+      outcome_.alone[k] = alone[k].path;
       if (!alone[k].path.empty()) outcome_.least_costs[k] = arms_[k].cost_to_go().best();
       outcome_.bound += outcome_.least_costs[k];
     }
@@ -51,9 +53,8 @@ class PairSearch {
       outcome_.decided_by = PairSearcher::kArmsAlone;
       return true;
     }
-    const std::array<SlotPath, 2> paths{alone[0].path, alone[1].path};
-    if (between_.conflict(arms_, paths)) return false;
-    outcome_.paths = paths;
+    if (between_.conflict(arms_, outcome_.alone)) return false;
+    outcome_.paths = outcome_.alone;
     outcome_.costs = {alone[0].cost, alone[1].cost};
     outcome_.cost = alone[0].cost + alone[1].cost;
     outcome_.decided_by = PairSearcher::kArmsAlone;
@@ -69,6 +70,7 @@ class PairSearch {
       for_both_arms(options_.work, [&](int arm) {
         const auto k = static_cast<std::size_t>(arm);
         best[k] = arms_[k].cheapest();
+        outcome_.alone[k] = best[k].path;
       });
       regions.begin(std::move(best));
     }
@@ -100,7 +102,7 @@ PairOutcome search_pair(const std::array<PairArm, 2>& arms, Between& between,
     search.run();
   } catch (const Stopped&) {
   }
-  search.count_questions();
+  search.note_questions();
   return outcome;
 }
 

@@ -179,4 +179,13 @@ void RememberedValidity::write(CostToGo& cost_to_go, Written& written) const {
   }
 }
 
+void RememberedValidity::write(Verdicts& verdicts) const {
+  for (const auto& [layer, slot] : nodes_) {
+    if (node_.at(key(layer, slot)).answer.valid)
+      verdicts.keep_node(layer, slot);
+    else
+      verdicts.remove_node(layer, slot);
+  }
+}
+
 }  // namespace swivel

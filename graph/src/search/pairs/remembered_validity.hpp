@@ -37,6 +37,8 @@ class RememberedValidity final : public Validity {
   /// Writes what is known, but for what was written before, into the verdicts of a cost-to-go of
   /// the lattice. Values follow at the next CostToGo::repair().
   void write(CostToGo& cost_to_go, Written& written) const;
+  /// Writes what is known of nodes into verdicts of the lattice that have none.
+  void write(Verdicts& verdicts) const;
 
   /// Returns how many nodes were asked about.
   [[nodiscard]] std::int64_t nodes_asked() const { return nodes_asked_; }

@@ -116,6 +116,15 @@ class InterArmWorld {
     /// Returns the pair with the least margin over what it keeps at layers, as FCL tells; nothing
     /// if there are no pairs.
     [[nodiscard]] std::optional<Clearance> clearance(const std::array<Config, 2>& q);
+    /// Returns a point of each of the two bodies of clearance(q), in the base frame, that are as
+    /// far apart as the bodies are, within 0.1 mm; meant for drawing. Returns nothing if the bodies
+    /// touch or if FCL's points are not credible.
+    [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(
+        const std::array<Config, 2>& q, const Clearance& clearance);
+    /// Returns a point that both bodies contain, in the base frame, within 0.1 mm; meant for
+    /// drawing. Returns nothing if they do not touch or no point is found soon.
+    [[nodiscard]] std::optional<Vector3d> common_point(const std::array<Config, 2>& q,
+                                                       const BodyPair& pair);
     [[nodiscard]] CollisionCounters counters() const;
 
    private:

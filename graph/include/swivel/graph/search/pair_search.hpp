@@ -80,6 +80,9 @@ struct PairSearchOptions {
   /// Rounds after which Between is asked for thorough regions.
   std::int64_t quick_rounds = 8;
   ParallelFor work;  ///< shares the two arms among threads; the result is the same
+  /// Of each arm: verdicts of its lattice, without any, into which all that was found out about its
+  /// nodes is written at the end; or null.
+  std::array<Verdicts*, 2> noted{};
 };
 
 /// A set of nodes, or of moves, of each arm, no two of which are apart: pairs of paths that have no
@@ -113,6 +116,9 @@ struct PairOutcome {
   double cost = kUnreachable;                                     ///< of both paths together
   std::array<double, 2> costs{kUnreachable, kUnreachable};        ///< of each path
   std::array<double, 2> least_costs{kUnreachable, kUnreachable};  ///< of each arm by itself
+  /// The answer of each arm by itself, empty where it has none: where these have a conflict, the
+  /// first one among equally cheap paths, with which regions begin.
+  std::array<SlotPath, 2> alone;
   /// No pair of valid paths without conflict costs less; kUnreachable: there is none.
   double bound = 0;
   /// Where regions decided that there is no pair: the proof, whose leaves are all without a path.

@@ -12,6 +12,7 @@ namespace swivel {
 
 class InterArmWorld;
 class PreparedRobot;
+struct WorkcellView;
 
 /// What is known of a workcell before it is planned: the problem that each arm poses by itself and
 /// its prepared robot, and the bodies of both arms that must keep clear of each other. Immutable
@@ -46,8 +47,9 @@ class PreparedWorkcell {
 /// that workcells do not have (an eager planner, hooks), InputError as plan() does of either arm,
 /// std::logic_error if options.check finds an answer invalid.
 [[nodiscard]] WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options = {});
-/// Plans a workcell that was prepared before.
+/// Plans a workcell that was prepared before. `view`: filled with what was found out, or null.
 [[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared,
-                                           const PlanOptions& options = {});
+                                           const PlanOptions& options = {},
+                                           WorkcellView* view = nullptr);
 
 }  // namespace swivel
