@@ -79,4 +79,5 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/workcells/workcell_csv.hpp
   swivel/report/job_page.hpp
   swivel/report/lattice_map.hpp
-  swivel/report/page.hpp)
+  swivel/report/page.hpp
+  swivel/report/workcell_page.hpp)

@@ -376,6 +376,10 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
 /// Plans a workcell and writes and prints the answer.
 int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                      std::optional<io::OutputFiles>& outputs) {
+  if (!arguments.report.empty() && arguments.motion.ask_for_job_motion())
+    throw InputError(
+        "--report: the page of a workcell shows its paths without times: allowed without --speed "
+        "and --rate");
   const bool moved =
       arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
   refuse_options("workcells", arguments.problem,
@@ -383,22 +387,24 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                   {arguments.motion.ask_for_job_motion(), "--speed, --rate"},
                   {arguments.advise.has_value(), "--advise"},
                   {!arguments.certificate.empty(), "--certificate"},
-                  {!arguments.report.empty(), "--report"},
                   {!arguments.trace.empty(), "--trace"},
                   {arguments.map, "--map"},
                   {!arguments.map_svg.empty(), "--map-svg"},
                   {arguments.full_map, "--full-map"},
                   {moved, "--episode and placements"}});
+  if (!arguments.report.empty()) require_pages();
   require_table_name("--out", arguments.out, "the trajectory of a workcell", "a name like X.csv");
   WorkcellRequest request{.cell = std::get<Workcell>(std::move(file.what)),
                           .options = arguments.search.plan_options(),
+                          .report = !arguments.report.empty(),
                           .quiet = arguments.quiet,
                           .load_ms = file.load_ms};
   for (WorkcellArm& arm : request.cell.arms) arguments.search.apply(arm);
   require_planner_of("workcells", arguments.search);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   request.options.check = !arguments.no_check;
-  if (!arguments.quiet || !arguments.json.empty()) request.options.evidence = Evidence::all();
+  if (!arguments.quiet || !arguments.json.empty() || request.report)
+    request.options.evidence = Evidence::all();
   outputs.emplace(std::move(file.inputs));
   add_outputs(arguments, *outputs);
   return plan_workcell_file(std::move(request), *outputs);

@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
@@ -15,6 +17,8 @@
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
+#include "swivel/planner/workcell/workcell_view.hpp"
+#include "swivel/report/workcell_page.hpp"
 #include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
 
@@ -49,19 +53,43 @@ void print_workcell(const WorkcellResult& result) {
   for (const PlanResult& arm : result.arms) warn(arm.warnings);
 }
 
+/// Returns the page of --report; unset where there is neither a plan nor a verdict, or where time
+/// is up first, of which a warning tells.
+std::optional<std::string> page_of(const WorkcellRequest& request, const PreparedWorkcell& prepared,
+                                   const WorkcellView& view, const Budget& budget,
+                                   WorkcellResult& result) {
+  if (!request.report || view.arms.empty()) return std::nullopt;
+  try {
+    return to_workcell_page({prepared, request.cell, result, view}, io::to_workcell_json(result),
+                            budget, {.which = "", .answer = workcell_text(result)});
+  } catch (const Stopped&) {
+    result.warnings.push_back("stopped before the page was made: there is no report");
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  WorkcellResult result = plan_workcell(request.cell, request.options);
+  const Budget budget = request.options.budget();  // of the page; the plan has its own
+  const PreparedWorkcell prepared(request.cell);
+  WorkcellView view;
+  WorkcellResult result =
+      plan_workcell(prepared, request.options, request.report ? &view : nullptr);
   result.time_ms["load"] = request.load_ms;
+  std::optional<std::string> page = page_of(request, prepared, view, budget, result);
   progress.clear();
   if (result.arms[0].trajectory.empty())
     outputs.remove("--out");
   else
     outputs.write("--out", io::to_workcell_csv(result));
+  if (page)
+    outputs.write("--report", std::move(*page));
+  else
+    outputs.remove("--report");
   if (outputs.wants("--json")) outputs.write("--json", io::to_workcell_json(result) + "\n");
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   deliver(outputs, infeasible ? "there is no plan now" : "the search was stopped", [&] {

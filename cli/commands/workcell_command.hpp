@@ -12,12 +12,13 @@ namespace swivel::cli {
 struct WorkcellRequest {
   Workcell cell{};
   PlanOptions options{};
+  bool report = false;  ///< whether the page of --report is made
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took
 };
 
 /// Plans a workcell, writes its trajectories and its result, and prints the answer. `outputs` has
-/// --out and --json. Returns the exit code. Throws InputError.
+/// --out, --report and --json. Returns the exit code. Throws InputError.
 int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs);
 
 /// Checks the trajectories of a workcell that a CSV file has, and prints the verdict. Returns the

@@ -19,7 +19,8 @@ std::string conflict_text(const WorkcellResult& result) {
   std::string text = "no plan: each arm has a path by itself, and no two of them keep clear";
   if (result.decided_by == WorkcellSearch::kRegions)
     text +=
-        formatted(" (%lld regions of conflict)", static_cast<long long>(result.counters.rounds));
+        formatted(" (%lld region%s of conflict)", static_cast<long long>(result.counters.rounds),
+                  result.counters.rounds == 1 ? "" : "s");
   text += "\n";
   if (const auto& conflict = result.conflict)
     text += formatted("  the cheapest paths meet at s = %.4f m of '%s' and %.4f m of '%s'%s: ",

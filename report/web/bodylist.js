@@ -6,12 +6,21 @@ import { kBodies, kLines } from './palette.js';
 /** What stands on the ground of the robot is told apart from what moves. */
 export const kindOf = (body) => (body.stands ? 'fixed' : body.kind);
 /** The entry of the legend that a body belongs to: an object of the scene has its own. */
-export const entryOf = (body) => (body.kind === 'scene' ? `scene ${body.name}` : kindOf(body));
+export const entryOf = (body) =>
+  body.kind === 'scene'
+    ? `scene ${body.name}`
+    : `${kindOf(body)}${body.arm && !body.stands ? ` ${body.arm}` : ''}`;
 
 const kNames = { robot: 'arm', tool: 'tool', fixed: 'base of the robot' },
   kLooks = ['shown', 'faded', 'hidden'],
   kMarks = { shown: '●', faded: '◐', hidden: '○' },
   kClick = 4; // pixels that a click may move
+
+/** What a body of the robot or its tool is part of, in words; of two arms, of which. */
+const partOf = (body) =>
+  kNames[kindOf(body)] && body.arm && !body.stands
+    ? `${kNames[kindOf(body)]} of ${body.arm}`
+    : kNames[kindOf(body)];
 
 export class BodyList {
   /** view: a View, whose looks the entries change. */
@@ -20,19 +29,19 @@ export class BodyList {
     const entries = new Map();
     for (const { body } of view.parts) entries.set(entryOf(body), body);
     const order = ['robot', 'tool', 'fixed'];
-    const rank = (entry) => (order.indexOf(entry) + order.length + 1) % (order.length + 1);
+    const rank = (body) => (order.indexOf(kindOf(body)) + order.length + 1) % (order.length + 1);
     this.buttons = [...entries]
-      .sort(([a], [b]) => rank(a) - rank(b))
+      .sort(([, a], [, b]) => rank(a) - rank(b))
       .map(([entry, body]) => this.button(entry, body));
     host.replaceChildren(...this.buttons, ...this.colours());
     this.listen();
   }
   button(entry, body) {
     const button = document.createElement('button'),
-      name = kNames[entry] ?? body.name;
+      name = partOf(body) ?? body.name;
     let look = 0;
     const paint = () => {
-      const swatch = this.swatch(kBodies[body.kind === 'scene' ? 'scene' : entry]);
+      const swatch = this.swatch(kBodies[kindOf(body)]);
       button.replaceChildren(
         swatch,
         name,
@@ -64,13 +73,14 @@ export class BodyList {
   }
   /** What colours mean that no body has for itself. */
   colours() {
-    const { rows, cut, moves, paths, plans } = this.view.data;
+    const { rows, cut, moves, paths, plans, numbers, ways } = this.view.data;
     return [
       [rows.some(({ pair }) => pair), kBodies.near, '', 'nearest to each other'],
       [cut?.pair || plans?.some(({ past }) => past?.pair), kBodies.hit, '', 'too near each other'],
-      [rows.length > 1, kBodies.start, 'outline', paths ? 'at the begin' : 'at the start'],
+      [rows.length > 1, kBodies.start, 'outline', numbers ? 'at the begin' : 'at the start'],
       [rows.length > 1, kBodies.end, 'outline', 'at the end'],
       [moves?.length, kLines.moves, 'dashes', 'transitions'],
+      [ways?.length, kLines.moves, 'dashes', 'way of the follower’s tool'],
     ]
       .filter(([is]) => is)
       .map(([, colour, className, text]) => {
@@ -97,7 +107,7 @@ export class BodyList {
   }
   words({ body, point }) {
     const { pair, text } = this.view.told ?? {},
-      kind = kNames[kindOf(body)],
+      kind = partOf(body),
       lines = [kind && kind !== body.name ? `${body.name} (${kind})` : body.name];
     if (pair?.includes(body.name)) {
       const other = pair.find((name) => name !== body.name) ?? body.name;

@@ -15,11 +15,14 @@ function turned(joint, angle) {
 
 /**
  * The displacement of a body of each group from its pose at q = 0, base frame: G_0 ... G_7, then of
- * the joints that mimic the arm's.
+ * the joints that mimic the arm's. A chain of two arms has the joints of both, one arm after the
+ * other: each then names the group that carries it (`parent`).
  */
 export function displacements(chain, q) {
   const g = [new Matrix4()];
-  chain.joints.forEach((joint, k) => g.push(g[k].clone().multiply(turned(joint, q[k]))));
+  chain.joints.forEach((joint, k) =>
+    g.push(g[joint.parent ?? k].clone().multiply(turned(joint, q[k]))),
+  );
   for (const follower of chain.followers ?? []) {
     const motion = follower.multiplier * q[follower.leader];
     const own = follower.slides
@@ -37,9 +40,13 @@ export function displacements(chain, q) {
 export const standing = ({ ground }, g) =>
   ground ? g[ground.group].clone().multiply(matrix(ground.pose)).invert() : new Matrix4();
 
-/** The pose of the tool; g: displacements(chain, q), where they are known. */
-export const toolPose = (chain, q, g = displacements(chain, q)) =>
-  g[chain.joints.length].clone().multiply(matrix(chain.home));
+/** The tools of a chain: of one arm its own, of two arms that of each. */
+export const toolsOf = (chain) => chain.tools ?? [{ group: chain.joints.length, home: chain.home }];
+/** The poses of the tools of a chain; g: displacements at its joints. */
+export const toolPoses = (chain, g) =>
+  toolsOf(chain).map(({ group, home }) => g[group].clone().multiply(matrix(home)));
+/** The pose of the tool of a chain of one arm. */
+export const toolPose = (chain, q) => toolPoses(chain, displacements(chain, q))[0];
 
 /**
  * Yoshikawa's sqrt(det(J J^T)), J the 6 x 7 geometric Jacobian at the base origin (the value does

@@ -40,20 +40,41 @@ function marks(cells) {
   ]);
 }
 
+/** Fills a legend. entries: as of Cells.legend(); colours: of the theme. */
+export function showLegend(host, entries, colours) {
+  host.replaceChildren(
+    ...entries.map((one) => {
+      const entry = document.createElement('span'),
+        swatch = document.createElement('i');
+      swatch.style.background = one.hatched
+        ? hatchedBy(one.colour, one.lines ?? colours.hatch)
+        : one.colour;
+      entry.append(swatch, words(one));
+      return entry;
+    }),
+  );
+}
+
+const kRegionLeast = 7; // pixels, of the width in which a region is drawn
+
 export class Panels {
   /**
-   * cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or none;
-   * cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null.
+   * cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or of
+   * another one, or none; cut: { layer } where every path has ended, or null; hover, pick: called
+   * with a cell, or null. Of one of two arms: name, which stands before those of panels; region:
+   * { runs: [{ layer, sheet, from, to }] } of cells where it bars the other, or null; the page then
+   * fills the legend of both.
    */
-  constructor(host, cells, rows, beside, cut, hover, pick) {
+  constructor(host, cells, rows, beside, cut, hover, pick, { name = '', region = null } = {}) {
     Object.assign(this, { cells, rows, beside, cut, marks: marks(cells), pose: null });
+    Object.assign(this, { name, region });
     this.panels = cells.panels.map((panel, index) => {
       const box = document.createElement('div');
       box.className = 'panel';
       box.innerHTML =
         '<h3></h3><div class="stack"><div class="chart"></div><div class="cursor"></div>' +
         '<div class="dot" hidden></div></div>';
-      box.firstChild.textContent = panel.name;
+      box.firstChild.textContent = name ? `${name}: ${panel.name}` : panel.name;
       const drawn = {
         ...panel,
         index,
@@ -163,6 +184,7 @@ export class Panels {
             ),
         (_, { x, y }) => this.hatched(panel.index, x, y, colours),
         (_, { x, y }) => this.walls(panel.index, x, y, colours),
+        (_, { x, y }) => this.barred(panel, x, y),
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
         cut === null
           ? null
@@ -317,6 +339,29 @@ export class Panels {
     for (const [stroke, d] of lines) group.append(element('path', { d, stroke }));
     return group;
   }
+  /** The cells of the region in which the arm bars the other one. */
+  barred(panel, x, y) {
+    const group = element('g', {}),
+      { pattern, fill } = hatching(kLines.nearest),
+      runs = panel.rolls ? [] : (this.region?.runs ?? []);
+    if (runs.some(({ sheet }) => sheet === panel.sheet)) group.append(pattern);
+    for (const { layer, sheet, from, to } of runs) {
+      if (sheet !== panel.sheet) continue;
+      const middle = x(layer),
+        width = Math.max(kRegionLeast, x(layer + 0.5) - x(layer - 0.5)),
+        box = {
+          x: (middle - width / 2).toFixed(1),
+          y: y(to + 0.5).toFixed(1),
+          width: width.toFixed(1),
+          height: (y(from - 0.5) - y(to + 0.5)).toFixed(1),
+        };
+      group.append(
+        element('rect', { ...box, fill: '#fff', stroke: '#fff', 'stroke-width': 3.5 }),
+        element('rect', { ...box, fill, stroke: kLines.nearest, 'stroke-width': 1.4 }),
+      );
+    }
+    return group;
+  }
   /** How much of a panel is what, in words. */
   share({ index }) {
     const { cells } = this,
@@ -342,18 +387,11 @@ export class Panels {
         colours,
       );
       Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
-      show(panel.chart, drawing, `Map of ${panel.name}: ${this.share(panel)}`);
+      const name = this.name ? `${this.name}, ${panel.name}` : panel.name;
+      show(panel.chart, drawing, `Map of ${name}: ${this.share(panel)}`);
     }
-    const legend = document.getElementById('legend');
-    legend.replaceChildren(
-      ...this.cells.legend(colours).map((one) => {
-        const entry = document.createElement('span'),
-          swatch = document.createElement('i');
-        swatch.style.background = one.hatched ? hatchedBy(one.colour, colours.hatch) : one.colour;
-        entry.append(swatch, words(one));
-        return entry;
-      }),
-    );
+    if (!this.name)
+      showLegend(document.getElementById('legend'), this.cells.legend(colours), colours);
     this.draw(this.pose);
   }
   /** The cursor alone, which moves with every frame: to a pose, or none. */

@@ -61,11 +61,13 @@ export const viewKeys = (view) => ({
   2: () => view()?.look('side'),
   3: () => view()?.look('top'),
 });
-/** view: as of viewKeys; joints: returns those that are shown. */
-export function viewOptions(view, joints) {
+/**
+ * view: as of viewKeys; joints: returns those that are shown; text: what is copied of them.
+ */
+export function viewOptions(view, joints, text = (q) => `[${q.join(', ')}]`) {
   $('trail').addEventListener('change', ({ target }) => view()?.showTrail(target.checked));
   $('copy-joints').addEventListener('click', ({ target }) => {
-    navigator.clipboard?.writeText(`[${joints().join(', ')}]`);
+    navigator.clipboard?.writeText(text(joints()));
     target.textContent = 'Copied';
     setTimeout(() => (target.textContent = 'Copy joints'), 1200);
   });

@@ -5,7 +5,15 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { BodyList, entryOf, kindOf } from './bodylist.js';
 import { bestDirection, fit, subject } from './camera.js';
-import { displacements, matrix, standing, toolPose, vector } from './kinematics.js';
+import {
+  displacements,
+  matrix,
+  standing,
+  toolPose,
+  toolPoses,
+  toolsOf,
+  vector,
+} from './kinematics.js';
 import { $, isDark } from './page.js';
 import { kBodies, kLines, ramp } from './palette.js';
 import { Quality } from './quality.js';
@@ -74,7 +82,7 @@ class View {
       return mesh;
     });
     this.addNearest();
-    this.addTool();
+    this.tools = toolsOf(data.chain).map(() => this.addTool());
     this.paint();
     this.show(data);
     this.orbit = new OrbitControls(this.camera, canvas);
@@ -99,6 +107,12 @@ class View {
     for (const { label } of this.names ?? []) label.remove();
     this.shown = new THREE.Group();
     this.world.add(this.shown);
+    // What each tool carries along.
+    this.carried = toolsOf(data.chain).map(() => {
+      const group = Object.assign(new THREE.Group(), { matrixAutoUpdate: false });
+      this.shown.add(group);
+      return group;
+    });
     this.addGhosts();
     this.addPath();
     this.addNames();
@@ -216,17 +230,24 @@ class View {
       );
     this.scene.add(this.trail);
   }
-  /** Where the tool goes: on the path, or on the paths of several strokes with moves between. */
+  /**
+   * Where the tools go: on the path, or on several, some of which a tool carries along (`on`: the
+   * number of that tool, or null, of each path); with moves between them, or other ways, dashed.
+   */
   addPath() {
-    const { tool_path, paths, moves } = this.data;
-    this.lines = (paths ?? [tool_path]).map((path) => this.addLine(path.map(vector)));
+    const { tool_path, paths, moves, on, ways } = this.data;
+    this.lines = (paths ?? [tool_path]).map((path, k) =>
+      this.addLine(path.map(vector), this.carried[on?.[k]] ?? this.shown),
+    );
     if (moves?.length) this.addMoves(moves);
+    if (ways?.length) this.addWays(ways);
   }
-  /** A path that colourPath() colours; arrows tell its direction. */
-  addLine(points) {
-    const rings = Math.min(2 * points.length, 200);
+  /** A path in a group that colourPath() colours; arrows tell its direction. */
+  addLine(points, group) {
+    const rings = Math.min(2 * points.length, 200),
+      isPoint = points.every((point) => point.distanceTo(points[0]) < 1e-6);
     const tube =
-      points.length > 1
+      points.length > 1 && !isPoint
         ? new THREE.TubeGeometry(
             new THREE.CatmullRomCurve3(points, false, 'centripetal'),
             rings,
@@ -239,7 +260,7 @@ class View {
       new THREE.Mesh(tube, surface(null, { opacity: 0.3, lit: false, depthTest: false })),
       { renderOrder: 1 },
     );
-    this.shown.add(new THREE.Mesh(tube, surface(null)), through);
+    group.add(new THREE.Mesh(tube, surface(null)), through);
     const length = points.reduce(
       (sum, point, k) => sum + (k ? point.distanceTo(points[k - 1]) : 0),
       0,
@@ -254,7 +275,7 @@ class View {
       const mesh = Object.assign(new THREE.Mesh(cone, arrow), { renderOrder: 2 });
       mesh.position.copy(points[k]);
       mesh.lookAt(points[k].clone().add(way));
-      this.shown.add(mesh);
+      group.add(mesh);
     }
     return { tube, rings };
   }
@@ -280,6 +301,25 @@ class View {
           if (from.distanceTo(to) > 1e-4) rods.push(rodBetween(from, to));
         }
       }
+    this.addRods(rods);
+  }
+  /** Ways of tools, dashed. ways: points of each. */
+  addWays(ways) {
+    const rods = [];
+    for (const way of ways) {
+      const points = way.map(vector);
+      for (let k = 0, passed = 0; k + 1 < points.length; ++k) {
+        const before = Math.floor(passed / kDash);
+        passed += points[k].distanceTo(points[k + 1]);
+        // A dash is a step, or several of short ones, of every second length.
+        if (before % 2 === 0 && points[k].distanceTo(points[k + 1]) > 1e-5)
+          rods.push(rodBetween(points[k], points[k + 1]));
+      }
+    }
+    this.addRods(rods);
+  }
+  /** Rods seen faintly through bodies as well. */
+  addRods(rods) {
     if (!rods.length) return;
     const shape = mergeGeometries(rods);
     this.shown.add(
@@ -307,9 +347,9 @@ class View {
     this.nearest.visible = false;
     this.world.add(this.nearest);
   }
-  /** The tool's frame: x red, y green, z blue. */
+  /** A tool's frame: x red, y green, z blue. */
   addTool() {
-    this.tool = new THREE.Group();
+    const tool = new THREE.Group();
     for (const [axis, colour] of [
       [[1, 0, 0], 0xd62728],
       [[0, 1, 0], 0x2ca02c],
@@ -321,12 +361,13 @@ class View {
       );
       rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector(axis));
       rod.renderOrder = 2;
-      this.tool.add(rod);
+      tool.add(rod);
     }
-    this.tool.matrixAutoUpdate = false;
-    this.world.add(this.tool);
+    tool.matrixAutoUpdate = false;
+    this.world.add(tool);
+    return tool;
   }
-  /** The names of the scene's objects, beside them, and the numbers of strokes. */
+  /** The names of the scene's objects and of tools, beside them, and the numbers of strokes. */
   addNames() {
     const objects = new Map();
     for (const { body, rest, fine } of this.parts) {
@@ -347,6 +388,10 @@ class View {
       top.z = Math.min(box.max.z, top.z + 0.25);
       return labelled(name, 'name', top);
     });
+    this.toolNames = (this.data.chain.tools ?? []).map(({ name }) =>
+      labelled(name, 'name', new THREE.Vector3()),
+    );
+    this.names.push(...this.toolNames);
     for (const { text, point } of this.data.numbers ?? [])
       this.names.push(labelled(text, 'number', vector(point)));
   }
@@ -388,7 +433,11 @@ class View {
       this.dress(mesh, kind);
     }
     this.hideGhostsOfArm(g);
-    this.tool.matrix.copy(toolPose(this.data.chain, q, g));
+    toolPoses(this.data.chain, g).forEach((pose, k) => {
+      this.tools[k].matrix.copy(pose);
+      this.carried[k].matrix.copy(pose);
+      this.toolNames[k]?.at.setFromMatrixPosition(pose);
+    });
     this.nearest.visible = line !== null;
     this.gap.hidden = line === null;
     if (line) {

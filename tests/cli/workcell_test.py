@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -116,6 +117,33 @@ class Workcells(unittest.TestCase):
         self.assertIsNotNone(result["arms"][1]["diagnosis"])
         self.assertIsNone(result["arms"][0]["diagnosis"])
 
+    def test_pages(self):
+        page = self.folder / "cell.html"
+        done = self.plan(cell(), "--report", page)
+        if "built without reports" in done.stderr:
+            self.skipTest("built without reports")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        html = page.read_text()
+        data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', html, re.S)[1])
+        result = json.loads(self.result.read_text())
+        for key in ("arms", "between_arms", "cost", "decided_by"):
+            self.assertEqual(data["result"][key], result[key])
+        self.assertEqual(len(data["between"]), 6)
+        for one, found in zip(data["arms"], result["arms"]):
+            self.assertEqual(
+                [row["q"] for row in one["rows"]], [row["joints"] for row in found["trajectory"]]
+            )
+        # Without an answer there is a page as well, but none where time was up.
+        self.assertEqual(self.plan(cell(gap=0.02), "--report", page).returncode, 1)
+        self.assertIn("no two of them keep clear", page.read_text())
+        done = self.plan(cell(), "--report", page, "--timeout", "1e-9")
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertFalse(page.exists())
+        done = self.plan(cell(), "--report", page, "--speed", "0.1")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--report: the page of a workcell shows its paths without times", done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+
     def test_check_refuses_spoilt_rows(self):
         self.assertEqual(self.plan(cell()).returncode, 0)
         rows = [line.split(",") for line in self.out.read_text().splitlines()]
@@ -187,7 +215,7 @@ class Workcells(unittest.TestCase):
             self.assertEqual(done.returncode, 2, command)
             self.assertIn("workcell", done.stderr)
         for options in (
-            ("--report", self.folder / "r.html"), ("--speed", "0.1"), ("--refine",), ("--map",),
+            ("--speed", "0.1"), ("--refine",), ("--map",),
             ("--advise", "1"), ("--certificate", self.folder / "c.json"),
             ("--planner", "eager"), ("--path", "--x", "0.1"),
         ):

@@ -154,3 +154,37 @@ export async function assertFits(page, width) {
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= width, `${wide} pixels wide on a screen of ${width}`);
 }
+
+/** On paper all is light, the arm is a picture, and afterwards all is as before. */
+export async function assertPrints(page) {
+  const dark = () => page.evaluate(() => document.documentElement.dataset.theme === 'dark'),
+    before = await dark();
+  const printed = await page.evaluate(() => {
+    dispatchEvent(new Event('beforeprint'));
+    const kept = document.getElementById('kept');
+    return kept.decode().then(() => {
+      const canvas = document.createElement('canvas'),
+        pen = canvas.getContext('2d'),
+        chart = document.querySelector('#map .chart svg');
+      [canvas.width, canvas.height] = [200, 150];
+      pen.drawImage(kept, 0, 0, 200, 150);
+      const { data } = pen.getImageData(0, 0, 200, 150);
+      return {
+        colours: new Set(new Uint32Array(data.buffer)).size,
+        nights: new Uint32Array(data.buffer).filter((pixel) => pixel === 0xff27201a).length,
+        theme: document.documentElement.dataset.theme,
+        width: chart.getBoundingClientRect().width,
+        all: document.body.scrollWidth,
+      };
+    });
+  });
+  assert.ok(printed.colours > 200, `${printed.colours} colours in the picture`);
+  assert.equal(printed.nights, 0, 'pixels of the ground of the dark theme');
+  assert.equal(printed.theme, 'light');
+  assert.ok(printed.width <= 700);
+  assert.ok(printed.all <= 700, `${printed.all} pixels wide on paper`);
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  assert.equal(await dark(), before);
+  assert.ok(await page.isVisible('#scene'));
+  assert.equal((await page.pdf({ format: 'A4' })).subarray(0, 4).toString(), '%PDF');
+}

@@ -39,6 +39,7 @@ try {
       '--out',
       join(folder, 'job.csv'),
     ),
+    workcell: page('workcell.html', 'plan', join(problems, 'sda10f_plate_workcell.yaml')),
     overview: page(
       'campaign.html',
       'campaign',

@@ -7,7 +7,16 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { triangles } from '../../report/web/bytes.js';
-import { assertFits, elements, press, saved, some, until, withBrowser } from './browser.mjs';
+import {
+  assertFits,
+  assertPrints,
+  elements,
+  press,
+  saved,
+  some,
+  until,
+  withBrowser,
+} from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
 const wide = { width: 1280, height: 800 },
@@ -307,36 +316,6 @@ async function checkNothingOver(page) {
     );
   }
 }
-/** On paper all is light, the arm is a picture, and afterwards all is as before. */
-async function checkPrint(page) {
-  const before = await dark(page);
-  const printed = await page.evaluate(() => {
-    dispatchEvent(new Event('beforeprint'));
-    const kept = document.getElementById('kept');
-    return kept.decode().then(() => {
-      const canvas = document.createElement('canvas'),
-        pen = canvas.getContext('2d'),
-        chart = document.querySelector('#map .chart svg');
-      [canvas.width, canvas.height] = [200, 150];
-      pen.drawImage(kept, 0, 0, 200, 150);
-      const { data } = pen.getImageData(0, 0, 200, 150);
-      return {
-        colours: new Set(new Uint32Array(data.buffer)).size,
-        nights: new Uint32Array(data.buffer).filter((pixel) => pixel === 0xff27201a).length,
-        theme: document.documentElement.dataset.theme,
-        width: chart.getBoundingClientRect().width,
-      };
-    });
-  });
-  assert.ok(printed.colours > 200, `${printed.colours} colours in the picture`);
-  assert.equal(printed.nights, 0, 'pixels of the ground of the dark theme');
-  assert.equal(printed.theme, 'light');
-  assert.ok(printed.width <= 700);
-  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
-  assert.equal(await dark(page), before);
-  assert.ok(await page.isVisible('#scene'));
-  assert.equal((await page.pdf({ format: 'A4' })).subarray(0, 4).toString(), '%PDF');
-}
 /** Where nothing of the arm has the focus, keys scroll. */
 async function checkKeysScroll(page) {
   const at = await page.inputValue('#slider');
@@ -502,7 +481,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     await checkExports(page, name, data.map.panels.length);
     await checkLegend(page);
     await checkKeysScroll(page);
-    await checkPrint(page);
+    await assertPrints(page);
     await press(page, 't');
     assert.equal(await dark(page), name !== 'b');
     const opening = await firstPicture(page);

@@ -13,6 +13,7 @@ namespace swivel::detail {
 [[nodiscard]] std::string_view overview_template();
 [[nodiscard]] std::string_view placement_template();
 [[nodiscard]] std::string_view job_template();
+[[nodiscard]] std::string_view workcell_template();
 
 /// Returns the text with its lines escaped for HTML.
 [[nodiscard]] std::string escaped_lines(const std::string& text);

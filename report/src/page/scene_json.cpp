@@ -63,9 +63,25 @@ Json ground_json(const RobotModel& robot, const ArmModel& arm) {
 }
 
 Bodies::Bodies(const World& world, const std::vector<SceneObject>& scene) {
-  for (const RobotBody& body : world.bodies())
-    add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
+  for (const RobotBody& body : world.bodies()) add(body, body.group);
+  add_scene(scene);
+}
+
+void Bodies::add_arm(const World& world, const std::string& name, const std::vector<int>& groups,
+                     bool standing) {
+  for (const RobotBody& body : world.bodies()) {
+    if (body.group == 0 && !body.attached && !standing) continue;
+    add(body, groups[static_cast<std::size_t>(body.group)]);
+    if (body.group != 0 || body.attached) bodies.back()["arm"] = name;
+  }
+}
+
+void Bodies::add_scene(const std::vector<SceneObject>& scene) {
   for (const SceneObject& object : scene) add(object.name, "scene", 0, object.shape, object.pose);
+}
+
+void Bodies::add(const RobotBody& body, int group) {
+  add(body.name, body.attached ? "tool" : "robot", group, body.shape, body.pose);
 }
 
 void Bodies::add(const std::string& name, const char* kind, int group, const Shape& shape,

@@ -41,12 +41,20 @@ template <class T>
 /// however many bodies share one.
 class Bodies {
  public:
+  Bodies() = default;
   Bodies(const World& world, const std::vector<SceneObject>& scene);
+  /// Adds the bodies of one of several arms: those that stand in the base frame where `standing`,
+  /// and those that it moves, as bodies of the arm of that name. `groups`: the number that each of
+  /// its groups has among those of all arms.
+  void add_arm(const World& world, const std::string& name, const std::vector<int>& groups,
+               bool standing);
+  void add_scene(const std::vector<SceneObject>& scene);
   Json bodies = Json::array(), meshes = Json::array();
 
  private:
   void add(const std::string& name, const char* kind, int group, const Shape& shape,
            const Pose& pose);
+  void add(const RobotBody& body, int group);
   std::size_t index_of(const TriangleMesh& mesh);
   std::map<const TriangleMesh*, std::size_t> index_;
 };

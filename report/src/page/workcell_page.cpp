@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/report/workcell_page.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "drawing.hpp"
+#include "page/page_parts.hpp"
+#include "page/page_template.hpp"
+#include "swivel/collision/arms/inter_arm_world.hpp"
+#include "swivel/core/answer/answer_text.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+
+using namespace detail;
+
+namespace {
+
+constexpr int kJoints = static_cast<int>(kDof);
+
+/// Numbers of the groups of two chains among the groups of both: that of what stands, the links of
+/// arm 0, those of arm 1, the followers of arm 0, those of arm 1.
+class GroupsOfBoth {
+ public:
+  explicit GroupsOfBoth(const std::array<const Chain*, 2>& chains) {
+    int followers = 1 + 2 * kJoints;
+    for (int arm = 0; arm < 2; ++arm) {
+      std::vector<int>& groups = groups_[static_cast<std::size_t>(arm)];
+      groups.push_back(0);
+      for (int joint = 1; joint <= kJoints; ++joint) groups.push_back(arm * kJoints + joint);
+      for (std::size_t k = 0; k < chains[static_cast<std::size_t>(arm)]->followers.size(); ++k)
+        groups.push_back(followers++);
+    }
+  }
+  /// Returns the number of each group of an arm.
+  [[nodiscard]] const std::vector<int>& of(std::size_t arm) const { return groups_[arm]; }
+
+ private:
+  std::array<std::vector<int>, 2> groups_;
+};
+
+/// Writes two chains as one for the page's forward kinematics: the joints of arm 0 and then those
+/// of arm 1, each with the group that carries it, and where either tool is.
+Json chain_of_both(const std::array<const Chain*, 2>& chains,
+                   const std::array<std::string, 2>& names, const GroupsOfBoth& groups) {
+  Json both = {{"joints", Json::array()}, {"followers", Json::array()}, {"tools", Json::array()}};
+  for (std::size_t arm = 0; arm < 2; ++arm) {
+    Json chain = chain_json(*chains[arm]);
+    const std::vector<int>& of = groups.of(arm);
+    for (std::size_t j = 0; j < kDof; ++j) {
+      chain["joints"][j]["parent"] = of[j];
+      both["joints"].push_back(std::move(chain["joints"][j]));
+    }
+    for (Json& follower : chain["followers"]) {
+      follower["parent"] = of[follower["parent"].get<std::size_t>()];
+      follower["leader"] = follower["leader"].get<int>() + static_cast<int>(arm) * kJoints;
+      both["followers"].push_back(std::move(follower));
+    }
+    both["tools"].push_back(
+        {{"name", names[arm]}, {"group", of[kDof]}, {"home", std::move(chain["home"])}});
+  }
+  return both;
+}
+
+/// Makes the data of a workcell's page, and the maps for a page without JavaScript.
+class WorkcellPage {
+ public:
+  WorkcellPage(const PlannedWorkcell& planned, const std::string& result_json, const Budget& budget)
+      : planned_(planned),
+        result_(planned.result),
+        between_(planned.prepared.between()),
+        query_(between_),
+        budget_(budget),
+        json_(Json::parse(result_json)) {}
+
+  /// Returns the data of the page. Throws Stopped.
+  Json data(const std::string& name, const PageWords& words) {
+    const std::array<const Chain*, 2> chains{&view(0).lattice.chain(), &view(1).lattice.chain()};
+    const GroupsOfBoth groups(chains);
+    Bodies bodies;
+    Json arms = Json::array(), ground = nullptr;
+    for (std::size_t k = 0; k < 2; ++k) {
+      bodies.add_arm(view(k).world, result_.names[k], groups.of(k), k == 0);
+      arms.push_back(arm(k));
+      if (!ground.is_null()) continue;
+      ground = ground_json(*planned_.cell.arms[k].model, view(k).robot.arm());
+      if (!ground.is_null()) ground["group"] = groups.of(k)[ground["group"].get<std::size_t>()];
+    }
+    bodies.add_scene(planned_.cell.scene);
+    Json meeting = meetings(), conflict = conflict_json();
+    return {{"problem", name},
+            {"answer", words.answer},
+            {"result", std::move(json_)},
+            {"chain", chain_of_both(chains, result_.names, groups)},
+            {"ground", std::move(ground)},
+            {"bodies", std::move(bodies.bodies)},
+            {"meshes", std::move(bodies.meshes)},
+            {"arms", std::move(arms)},
+            {"between", std::move(meeting)},
+            {"conflict", std::move(conflict)}};
+  }
+  /// Returns the maps of the arms as HTML, after data() was called.
+  [[nodiscard]] const std::string& maps() const { return maps_; }
+
+ private:
+  [[nodiscard]] const PlanView& view(std::size_t arm) const { return planned_.view.arms[arm]; }
+  /// Returns true if an arm has a path: that of the answer, or where there is no plan its own.
+  [[nodiscard]] bool has_path(std::size_t arm) const { return !planned_.view.alone[arm].empty(); }
+
+  /// Returns an arm: where its tool goes, its rows, map, and where its paths end.
+  Json arm(std::size_t k) {
+    const PlanView& of = view(k);
+    const Lattice& lattice = of.lattice;
+    const std::vector<TrajectoryRow>& answer = result_.arms[k].trajectory;
+    const LatticeMap map = make_map(of, false, budget_);
+    const std::vector<PageRow> rows =
+        placed(lattice, map, answer.empty() ? rows_of(lattice, of.path) : answer, of.path);
+    for (const PageRow& row : rows) shown_[k].push_back(row.at.q);
+    const int leader = planned_.cell.leader_of(k);
+    const Json& diagnosis = json_["arms"][k]["diagnosis"];
+    Json json = {
+        {"name", result_.names[k]},
+        {"leader", leader >= 0 ? Json(leader) : Json(nullptr)},
+        {"answer", has_path(k) ? "" : answer_text(result_.arms[k])},
+        {"chain", chain_json(lattice.chain())},
+        {"settings", settings_json(of.problem, lattice)},
+        {"tool_path", tool_path_json(lattice.path_of_rows())},
+        {"on_leader", leader >= 0 ? on_tool(k, static_cast<std::size_t>(leader)) : Json(nullptr)},
+        {"rows", rows_json(of.world, lattice, rows, budget_)},
+        {"beside", beside(k, map)},
+        {"cut", diagnosis.is_object() ? cut_json(map, lattice, of.world, of.path, rows, diagnosis)
+                                      : Json(nullptr)},
+        {"region", region(k, map)}};
+    json["map"] = map_json(map, lattice, of.world, of.path, rows, kMostCells * 3 / 4, budget_);
+    maps_ += "<h2>" + escaped(result_.names[k]) + "</h2>\n" + to_svg(map);
+    return json;
+  }
+  /// Returns the points of a follower's path in the tool frame of its leader.
+  [[nodiscard]] Json on_tool(std::size_t follower, std::size_t leader) const {
+    const ToolPath &path = view(follower).lattice.path_of_rows(),
+                   &carrying = view(leader).lattice.path_of_rows();
+    Json points = Json::array();
+    for (int layer = 0; layer < std::min(path.size(), carrying.size()); ++layer)
+      points.push_back(
+          vector_json(carrying.layer(layer).tool.inverse() * path.layer(layer).tool.translation()));
+    return points;
+  }
+  /// Returns the path of an arm by itself, where the answer is another one.
+  [[nodiscard]] Json beside(std::size_t k, const LatticeMap& map) const {
+    const std::vector<int>& alone = planned_.view.alone[k];
+    const PlanView& of = view(k);
+    if (alone.empty() || alone == of.path) return Json::array();
+    LatticeMap own = map;
+    own.path.clear();
+    for (const int slot : alone)
+      own.path.push_back(map_cell(map, of.lattice, static_cast<int>(own.path.size()), slot));
+    return beside_json(placed(of.lattice, own, rows_of(of.lattice, alone), alone));
+  }
+
+  /// Returns the cells of an arm's map in which its nodes of the region of conflict are: of each
+  /// run of cells the layer, the panel and the first and the last cell. Null without a region.
+  [[nodiscard]] Json region(std::size_t k, const LatticeMap& map) const {
+    const auto& region = planned_.view.region;
+    if (!region) return nullptr;
+    Json runs = Json::array();
+    add_runs(k, map, region->layer, region->slots[k], runs);
+    add_runs(k, map, region->layer + 1, region->next[k], runs);
+    return {{"layer", region->layer},
+            {"of_motion", !region->next[k].empty()},
+            {"nodes", region->slots[k].size()},
+            {"runs", std::move(runs)}};
+  }
+  void add_runs(std::size_t k, const LatticeMap& map, int layer, const std::vector<int>& slots,
+                Json& runs) const {
+    const int cells = map.panels() * map.angles;
+    std::vector<char> within(static_cast<std::size_t>(cells));
+    for (const int slot : slots) {
+      within[static_cast<std::size_t>(map_cell(map, view(k).lattice, layer, slot))] = 1;
+      for (int cell = 0; !map.grid() && cell < cells; ++cell)
+        if (map.slots[static_cast<std::size_t>(layer) * static_cast<std::size_t>(cells) +
+                      static_cast<std::size_t>(cell)] == slot)
+          within[static_cast<std::size_t>(cell)] = 1;
+    }
+    for (int cell = 0; cell < cells; ++cell) {
+      if (!within[static_cast<std::size_t>(cell)]) continue;
+      int last = cell;
+      while ((last + 1) % map.angles != 0 && within[static_cast<std::size_t>(last + 1)]) ++last;
+      runs.push_back({{"layer", layer},
+                      {"sheet", cell / map.angles},
+                      {"from", cell % map.angles},
+                      {"to", last % map.angles}});
+      cell = last;
+    }
+  }
+
+  /// Returns a pair of bodies of both arms at joints `q`, how far they are apart, and the line
+  /// between their nearest points.
+  Json meeting(const std::array<Config, 2>& q, const InterArmWorld::Query::Clearance& found) {
+    const auto names = between_.names(found.pair);
+    Json json = {{"mm", 1e3 * found.distance},
+                 {"asked_mm", 1e3 * found.required},
+                 {"pair", {names[0], names[1]}},
+                 {"nearest", nullptr}};
+    std::optional<std::array<Vector3d, 2>> ends = query_.nearest_points(q, found);
+    if (const auto point = ends ? std::nullopt : query_.common_point(q, found.pair))
+      ends = {*point, *point};
+    if (ends) {
+      json["nearest"] = vector_json((*ends)[0]);
+      for (const double x : (*ends)[1]) json["nearest"].push_back(x);
+    }
+    return json;
+  }
+  /// Returns of each row the bodies of both arms with the least margin; empty where an arm has no
+  /// path, or where no body of the one needs to keep clear of one of the other.
+  Json meetings() {
+    Json list = Json::array();
+    if (!has_path(0) || !has_path(1)) return list;
+    for (std::size_t row = 0; row < std::min(shown_[0].size(), shown_[1].size()); ++row) {
+      budget_.poll();
+      const std::array<Config, 2> q{shown_[0][row], shown_[1][row]};
+      const auto found = query_.clearance(q);
+      if (!found) return Json::array();
+      list.push_back(meeting(q, *found));
+    }
+    return list;
+  }
+
+  /// Returns where the cheapest paths of both arms meet, as a place in their rows.
+  Json conflict_json() {
+    const auto& conflict = result_.conflict;
+    if (!conflict || !has_path(0) || !has_path(1)) return nullptr;
+    const int row = view(0).lattice.layer_of_rows(conflict->layer);
+    const auto at = static_cast<std::size_t>(row);
+    Json json = {{"row", row + (conflict->of_motion ? 0.5 : 0.0)},
+                 {"of_motion", conflict->of_motion},
+                 {"s", conflict->s},
+                 {"pair", {conflict->bodies[0], conflict->bodies[1]}},
+                 {"nearest", nullptr},
+                 {"text", ""}};
+    if (conflict->of_motion || at >= shown_[0].size() || at >= shown_[1].size()) return json;
+    const std::array<Config, 2> q{shown_[0][at], shown_[1][at]};
+    const auto pair = query_.find_violating_pair(q, ClearanceRule::kNode);
+    if (!pair || between_.names(*pair) != conflict->bodies) return json;
+    if (const auto point = query_.common_point(q, *pair)) {
+      json["nearest"] = vector_json(*point);
+      for (const double x : *point) json["nearest"].push_back(x);
+      json["text"] = "they touch";
+    } else if (const auto found = query_.clearance(q); found && found->pair == *pair) {
+      json["nearest"] = meeting(q, *found)["nearest"];
+      json["text"] =
+          formatted("%.3g mm apart, asked %.3g mm", 1e3 * found->distance, 1e3 * found->required);
+    }
+    return json;
+  }
+
+  const PlannedWorkcell& planned_;
+  const WorkcellResult& result_;
+  const InterArmWorld& between_;
+  InterArmWorld::Query query_;
+  const Budget& budget_;
+  Json json_;                                   ///< the result
+  std::array<std::vector<Config>, 2> shown_{};  ///< joints of the rows of each arm
+  std::string maps_;
+};
+
+}  // namespace
+
+std::string to_workcell_page(const PlannedWorkcell& planned, const std::string& result_json,
+                             const Budget& budget, const PageWords& words) {
+  const std::string name = std::filesystem::path(planned.cell.source).filename().string();
+  WorkcellPage page(planned, result_json, budget);
+  const Json data = page.data(name, words);
+  return fill(
+      workcell_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+      {{"@@ANSWER@@", escaped_lines(name + "\n\n" + words.answer)}, {"@@MAP@@", page.maps()}});
+}
+
+}  // namespace swivel

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The report of a workcell: two arms that work at one time, a map of each; one cursor moves both.
+import { sheet, savers } from './figure.js';
+import { Cells, mapNote, mapTitle } from './map.js';
+import { $, data, isDark, tell, themes, whenResized } from './page.js';
+import { Pair } from './pair.js';
+import { kDark, kLight, kLines } from './palette.js';
+import { Panels, showLegend } from './panels.js';
+import { keys, Player, viewKeys, viewOptions } from './player.js';
+import { Plots } from './plots.js';
+import { cellBeside, cellWords, offPath, placeWords, rowOf, shading } from './poses.js';
+import { tellPose } from './readout.js';
+import { startView } from './scene.js';
+import { alongRows } from './series.js';
+import { armTable, verdict, workcellSummary } from './workcelltables.js';
+
+const pair = new Pair(data),
+  { arms, conflict } = pair,
+  solved = data.result.cost !== null,
+  barredArm = arms.findIndex(({ cut }) => cut);
+
+$('title').textContent = data.problem;
+document.title = `${data.problem} – Swivel`;
+
+// What is shown are the poses of both arms: of their paths at the cursor, unless one arm is kept
+// off its path, or shown at the hovered cell of its map.
+let view = null,
+  cursor = 0,
+  active = 0,
+  kept = null,
+  hovered = null,
+  turned = null,
+  told = 0,
+  begun = false,
+  noting = 0;
+/** For those who test the page: joints of both arms and line shown now, row, pictures drawn. */
+window.swivel = { joints: null, frames: 0, line: null, row: null, active };
+
+const player = new Player(() => {
+  if (pair.moves && cursor >= pair.last) go(0);
+  return pair.moves;
+});
+/** To a row of the user's choice. */
+function to(k) {
+  player.pause();
+  go(k);
+}
+
+verdict(data, pair, to, (arm) => showCut(arm));
+armTable(data, (arm) => choose(arm));
+workcellSummary(data);
+
+const maps = arms.map((arm, k) => {
+  const objects = [
+    ...new Set(data.bodies.filter(({ kind }) => kind === 'scene').map(({ name }) => name)),
+  ];
+  arm.cells = new Cells(arm.map, arm.chain.joints, objects);
+  return new Panels(
+    $('map'),
+    arm.cells,
+    arm.rows,
+    arm.beside,
+    arm.cut && arm.rows.length ? { layer: arm.rows.at(-1).layer } : null,
+    (cell, event) => hover(k, cell, event),
+    (cell) => pick(k, cell),
+    { name: arm.name, region: arm.region },
+  );
+});
+const plots = arms.map(({ name, chain, rows, settings }, k) =>
+  plotsOf(name, rows, alongRows(chain, rows, settings, data.result.arms[k].summary)),
+);
+const gap =
+  pair.between.length > 0
+    ? plotsOf(
+        'Between the arms',
+        arms[0].rows,
+        [
+          {
+            title: 'clearance between the arms',
+            unit: 'mm',
+            values: pair.gaps,
+            of: ({ mm }) => mm,
+            low: pair.asked,
+            high: null,
+            from0: true,
+          },
+        ],
+        `s of ${arms[0].name}, m`,
+      )
+    : null;
+/** Plots below a heading, over s of the rows; null where there are none. */
+function plotsOf(name, rows, series, axis = 's, m') {
+  if (!rows.length) return null;
+  const box = document.createElement('div'),
+    title = document.createElement('h3');
+  title.textContent = name;
+  $('plots').append(title, box);
+  return new Plots(
+    box,
+    rows.map((row) => row.s),
+    series,
+    to,
+    axis,
+  );
+}
+
+/** Makes an arm the one that the arrows turn and whose line may be drawn. */
+function choose(arm) {
+  active = arm;
+  kept = hovered = turned = null;
+  window.swivel.active = arm;
+  present();
+}
+function hover(arm, cell, event) {
+  if (cell && arm !== active) choose(arm);
+  hovered = cell?.q ? offPath(cell, rowOf(arms[arm].rows, cell.layer)) : null;
+  if (hovered) player.pause();
+  present();
+  tell(
+    cell ? `${arms[arm].name}\n${cellWords(cell, arms[arm].chain, arms[arm].map.letter)}` : null,
+    event,
+  );
+}
+function pick(arm, cell) {
+  const { rows } = arms[arm];
+  if (rows.length) to(rowOf(rows, cell.layer) ?? rows.length - 1);
+  if (cell.q) keep(arm, cell);
+}
+/** Shows an arm away from its path until the cursor moves. */
+function keep(arm, at) {
+  active = window.swivel.active = arm;
+  hovered = null;
+  kept = offPath(at, rowOf(arms[arm].rows, at.layer));
+  present();
+}
+/** Turns an arm about its tool where it stands. */
+function turn(by) {
+  const { cells, rows } = arms[active],
+    row = rows[Math.round(cursor)],
+    next = row && cellBeside(cells, row, turned, by);
+  if (!next) return;
+  player.pause();
+  keep(active, next.cell);
+  turned = next.turned;
+}
+function showCut(arm) {
+  if (arms[arm].rows.length) to(arms[arm].rows.length - 1);
+  keep(arm, arms[arm].cut);
+}
+/** The poses of both arms, and what is between them where both are on their paths. */
+function shown() {
+  const off = hovered ?? kept;
+  if (off) return { poses: pair.posesBeside(active, off), between: null };
+  return { poses: pair.posesAt(cursor), between: pair.betweenAt(cursor) };
+}
+/** What the view marks: the pose off a path, where the arms meet, or the line of one's choice. */
+function marked({ poses, between }) {
+  const off = poses.find((pose) => pose.off && pose.hit);
+  if (off) return off;
+  const wanted = $('line-of').value,
+    own = poses[Number(wanted)];
+  if (between && (between.hit || wanted === 'between')) return between;
+  return wanted === 'between' ? { pair: null, line: null, hit: false } : own;
+}
+/** Both arms, their numbers, and the cursors of maps and plots: all of one row. */
+function present() {
+  const now = shown(),
+    { poses, between } = now;
+  draw(now);
+  // What is told in numbers and beside the arms need not change with every frame.
+  if (player.playing && performance.now() - told < 60) return;
+  told = performance.now();
+  poses.forEach((pose, k) => {
+    const { name, chain, map } = arms[k],
+      place = pose.s === undefined ? '' : `\n${placeWords(pose, map.letter, 4)}`;
+    const title = `${k === active ? '▸ ' : ''}${name}${place}`;
+    tellPose(readouts[k], chain, title, pose, pose.off ? 1 : 2);
+    maps[k].draw(pose.layer === undefined ? null : pose);
+    plots[k]?.draw(pose.row, pose);
+  });
+  gapReadout.textContent = between?.note ?? '';
+  gap?.draw(Math.min(cursor, arms[0].rows.length - 1), { mm: between?.mm ?? null });
+}
+function draw(now) {
+  const q = pair.joints(now.poses),
+    { pair: bodies, line, hit } = marked(now);
+  view?.pose(q, bodies ?? null, line ?? null, hit);
+  Object.assign(window.swivel, { joints: q, line, row: cursor });
+}
+// What is between the arms stands before both.
+const [gapReadout, ...readouts] = ['gap', 'arm', 'arm'].map((className) => {
+  const box = Object.assign(document.createElement('div'), { className });
+  $('readout').append(box);
+  return box;
+});
+
+/** To row k, not always whole. */
+function go(k) {
+  if (pair.moves) {
+    noteAddress();
+    cursor = Math.min(pair.last, Math.max(0, k));
+  }
+  kept = hovered = turned = null;
+  const late = player.playing && performance.now() - told < 60;
+  present();
+  if (late) return;
+  $('slider').value = cursor;
+  $('where').textContent = `${Math.round(cursor)} / ${pair.last}`;
+}
+/** Plays on, both paths in eight seconds; true while it plays. now: ms. */
+function step(now) {
+  if (!player.playing) return false;
+  go(cursor + (player.passed(now) / 8) * pair.last);
+  if (cursor >= pair.last) to(pair.last);
+  return player.playing;
+}
+
+function colourPaths() {
+  const kind = $('path-colour').value,
+    known = arms.map(({ rows }, k) => ({ rows, k }));
+  for (const { rows, k } of known) {
+    const { ends, of } =
+      kind === 'between'
+        ? { ends: ['0', '100 mm'], of: (_, row) => (pair.between[row]?.mm ?? NaN) / 100 }
+        : shading(kind, arms[k].chain, kind === 'manipulability' ? everyRow : rows);
+    const [low, , high] = $('ramp').children;
+    [low.textContent, high.textContent] = ends;
+    view?.colourPath(
+      arms[k].tool_path.map((_, row) => (rows[row] ? of(rows[row], row) : NaN)),
+      k,
+    );
+  }
+}
+const everyRow = arms.flatMap(({ rows }) => rows);
+
+function paint() {
+  view?.paint();
+  for (const one of [...maps, ...plots, gap]) one?.paint();
+  paintLegend();
+}
+/** One legend for both maps, whose colours mean the same. */
+function paintLegend() {
+  const colours = isDark() ? kDark : kLight,
+    entries = new Map();
+  for (const { cells } of arms)
+    for (const one of cells.legend(colours)) {
+      const known = entries.get(one.meaning) ?? { ...one, details: [] };
+      known.details = [...new Set([...known.details, ...one.details])].sort();
+      entries.set(one.meaning, known);
+    }
+  if (arms[0].region)
+    entries.set('region', {
+      meaning: arms[0].region.of_motion
+        ? 'first conflict: the motion on from here and that of the other arm do not keep clear'
+        : 'first conflict: no pose here keeps clear of any such pose of the other arm',
+      colour: '#fff',
+      lines: kLines.nearest,
+      hatched: true,
+      details: [],
+    });
+  showLegend($('legend'), [...entries.values()], colours);
+}
+
+/** The line that is drawn between nearest bodies. */
+function addLineChoice() {
+  const label = document.createElement('label'),
+    select = Object.assign(document.createElement('select'), { id: 'line-of' });
+  if (pair.between.length) select.append(new Option('the arms', 'between'));
+  arms.forEach(({ name }, k) => select.append(new Option(`${name} and its surroundings`, k)));
+  label.append('nearest of ', select);
+  $('views').before(label);
+  select.addEventListener('change', () => present());
+  if (pair.between.length) $('path-colour').append(new Option('distance of the arms', 'between'));
+  $('path-colour').addEventListener('change', colourPaths);
+}
+addLineChoice();
+
+$('controls').hidden = $('plots-section').hidden = !pair.moves;
+$('slider').max = Math.max(0, pair.last);
+$('slider').addEventListener('input', ({ target }) => to(Number(target.value)));
+$('scene').ariaLabel = $('scene').ariaLabel.replace('The arm', 'Both arms');
+$('kept').alt = $('kept').alt.replace('The arm', 'Both arms');
+viewOptions(
+  () => view,
+  () => window.swivel.joints,
+  (q) => arms.map(({ name }, k) => `${name}: [${q.slice(7 * k, 7 * k + 7).join(', ')}]`).join('\n'),
+);
+keys({
+  ' ': () => player.turn(),
+  ArrowLeft: (step) => to(Math.round(cursor) - step),
+  ArrowRight: (step) => to(Math.round(cursor) + step),
+  ArrowUp: () => turn(1),
+  ArrowDown: () => turn(-1),
+  a: () => choose(1 - active),
+  Home: () => to(0),
+  End: () => to(pair.last),
+  t: () => turnTheme(),
+  ...viewKeys(() => view),
+});
+
+const titles = [...new Set(arms.map(({ cells }) => mapTitle(cells)))];
+document.querySelector('#map-section h2').firstChild.textContent =
+  `${titles.map((title) => title.replace(/map$/, 'maps')).join(', ')} of ` +
+  arms.map(({ name }) => name).join(' and ');
+$('map-note').textContent = mapNotes();
+/** How the maps are to be read; what is the same of both is said once. */
+function mapNotes() {
+  const notes = arms.map(({ cells, cut, rows }, k) =>
+    mapNote(cells, data.result.arms[k].lattice, {
+      beside: false,
+      ended: cut !== null && rows.length > 0,
+    }),
+  );
+  const own = notes.map((note, k) => `${arms[k].name}: ${note.trim()}`).join(' ');
+  const empty = arms.filter(({ cells }) => !cells.panels.length).map(({ name }) => name),
+    dashed = arms.filter(({ beside }) => beside.length).map(({ name }) => name);
+  return (
+    (notes[0] === notes[1] ? notes[0].trim() : own) +
+    (empty.length ? ` No pose of ${empty.join(' and ')} exists, so that it has no map.` : '') +
+    (dashed.length
+      ? ` The thin dashed line is the path that ${dashed.join(' and ')} would take alone.`
+      : '') +
+    (solved || barredArm >= 0 || !conflict
+      ? ''
+      : ' The paths are those that each arm would take alone.')
+  );
+}
+const letters = [...new Set(arms.map(({ map }) => map.letter))];
+$('path-colour').querySelector('[value=phi]').textContent = letters.join(', ');
+
+const stem = data.problem.replace(/\.[^.]*$/, '');
+savers(document.querySelector('#plots-section h2'), `${stem}_plots`, () =>
+  sheet([...plots, gap].filter((one) => one).map((one) => one.figure())),
+);
+savers(document.querySelector('#map-section h2'), `${stem}_maps`, () =>
+  sheet(maps.map((one) => one.figure())),
+);
+const turnTheme = themes(paint);
+whenResized(paint);
+function showBarred() {
+  if (conflict) to(conflict.row);
+  else showCut(barredArm);
+}
+$('blocked').hidden = !conflict && barredArm < 0;
+if (conflict) $('blocked').textContent = 'Where they meet';
+$('blocked').addEventListener('click', showBarred);
+
+/** The address names the row once the cursor rests, so that the page opens there again. */
+function noteAddress() {
+  clearTimeout(noting);
+  if (begun)
+    noting = setTimeout(() => history.replaceState(null, '', `#row=${Math.round(cursor)}`), 400);
+}
+/** At the row that the address names (#row=12). */
+function openAtAddress() {
+  const row = Number(new URLSearchParams(location.hash.slice(1)).get('row') ?? NaN);
+  if (!Number.isFinite(row) || !pair.moves) return false;
+  to(row);
+  return true;
+}
+if (!openAtAddress()) {
+  if (conflict || barredArm >= 0) showBarred();
+  else go(data.result.between_arms?.row ?? 0);
+}
+begun = true; // what is shown from now on is the user's choice
+addEventListener('hashchange', openAtAddress);
+
+startView(
+  () => pair.scene(data),
+  (started) => {
+    view = started;
+    colourPaths();
+    draw(shown());
+  },
+  step,
+);

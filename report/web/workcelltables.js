@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A workcell in words and numbers.
+import { $, number, table } from './page.js';
+import { kNear } from './readout.js';
+import { separator, warn, words } from './summary.js';
+
+/**
+ * The answer in one line, whose parts lead to the rows that they are about, and warnings. go: shows
+ * a row; showCut: where the paths of an arm end.
+ */
+export function verdict({ answer, result, arms }, pair, go, showCut) {
+  const host = $('verdict'),
+    found = result.cost !== null;
+  const say = (text, action, near = false) => {
+    if (host.childNodes.length) host.append(separator());
+    const part = document.createElement(action ? 'button' : 'span');
+    part.textContent = text;
+    if (action) {
+      part.title = 'Go there';
+      part.addEventListener('click', action);
+      part.classList.toggle('near', near);
+    } else part.className = 'part';
+    host.append(part);
+  };
+  host.classList.add(found ? 'solved' : 'failed');
+  if (found) sayFound(result, arms, say, go);
+  else {
+    const [first] = answer.split('\n');
+    say(`${first[0].toUpperCase()}${first.slice(1)}.`);
+    const { conflict } = result;
+    if (conflict && pair.conflict)
+      say(
+        `the cheapest paths meet at s ${conflict.s[0].toFixed(3)} of ${arms[0].name} and ` +
+          `s ${conflict.s[1].toFixed(3)} of ${arms[1].name}: ${conflict.bodies.join(' – ')}`,
+        () => go(pair.conflict.row),
+      );
+    arms.forEach((arm, k) => {
+      if (!arm.answer) return;
+      // As the terminal has it: the next line may say what else stands in the way.
+      const [line, second] = arm.answer.split('\n');
+      say(`${arm.name}: ${line}.`, arm.cut ? () => showCut(k) : undefined);
+      if (/^ {2}(without|no single)/.test(second ?? '')) say(second.trim());
+    });
+  }
+  const warnings = new Set([...result.warnings, ...result.arms.flatMap((arm) => arm.warnings)]);
+  warn(host, { warnings: [...warnings] });
+}
+
+/** What a plan costs and keeps. */
+function sayFound(result, arms, say, go) {
+  const alone = result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
+    solved = result.status === 'solved';
+  say(
+    `${solved ? 'Solved' : 'Stopped'}: two arms, ${arms[0].rows.length} rows, cost ` +
+      `${number(result.cost)}: ` +
+      (result.decided_by === 'arms alone'
+        ? 'that of both arms alone, which do not meet'
+        : `${number(100 * (result.cost / alone - 1), 2)} % more than both arms alone, which ` +
+          'would meet') +
+      (solved || !(result.bound > 0)
+        ? ''
+        : `, at most ${number(100 * (result.cost / result.bound - 1), 2)} % from the best`),
+  );
+  const near = result.between_arms;
+  if (near)
+    say(
+      `arms nearest to each other ${number(near.clearance_mm, 3)} mm (asked ` +
+        `${number(near.clearance_mm - near.margin_mm)}): ${near.bodies.join(' – ')} at row ` +
+        near.row,
+      () => go(near.row),
+    );
+  result.arms.forEach(({ name, summary }, k) => {
+    const rowAt = (s) =>
+      arms[k].rows.reduce(
+        (best, row, i) => (Math.abs(row.s - s) < Math.abs(arms[k].rows[best].s - s) ? i : best),
+        0,
+      );
+    const { clearance, joint_limit: limit } = summary ?? {};
+    if (clearance)
+      say(
+        `${name}: least clearance ${number(1e3 * clearance.value, 3)} mm (asked ` +
+          `${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')} at s ` +
+          clearance.s.toFixed(3),
+        () => go(rowAt(clearance.s)),
+      );
+    if (limit)
+      say(
+        `${limit.joint} ${number(limit.margin_deg, 2)}° from its limit at s ` + limit.s.toFixed(3),
+        () => go(rowAt(limit.s)),
+        limit.margin_deg < kNear,
+      );
+  });
+}
+
+const millimetres = (value) => (value === undefined ? null : number(1e3 * value));
+const kColumns = [
+  ['arm', ({ name }) => name],
+  ['path', ({ path, least_cost }) => path ?? (least_cost === null ? 'none' : 'by itself')],
+  ['cost', ({ cost }) => number(cost, 5)],
+  ['least cost by itself', ({ least_cost }) => number(least_cost, 5)],
+  [
+    'dearer for the other',
+    ({ cost, least_cost }) =>
+      cost === null || !least_cost ? null : `${number(100 * (cost / least_cost - 1), 2)} %`,
+  ],
+  ['clearance, mm', ({ summary }) => millimetres(summary?.clearance?.value)],
+  ['from a limit', ({ summary }) => limitWords(summary?.joint_limit)],
+  ['tool off its path, mm', ({ summary }) => number(summary?.tool_path_error?.max_mm, 3)],
+];
+const limitWords = (limit) => (limit ? `${number(limit.margin_deg, 3)}° (${limit.joint})` : null);
+
+/** The table of arms; choose: called with the number of one. */
+export function armTable({ result, arms }, choose) {
+  const both = {
+    name: 'both',
+    path: 'none',
+    cost: result.cost,
+    least_cost: result.arms.some(({ least_cost }) => least_cost === null)
+      ? null
+      : result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
+  };
+  const told = (value) => [...result.arms, both].some((arm) => ![null, '–'].includes(value(arm))),
+    columns = kColumns.filter(([name, value]) =>
+      name === 'path' ? result.cost === null : told(value),
+    ),
+    host = $('arms');
+  for (const [name] of columns) {
+    const cell = document.createElement('th');
+    cell.textContent = name;
+    host.querySelector('thead tr').append(cell);
+  }
+  [...result.arms, both].forEach((arm, k) => {
+    const line = host.querySelector('tbody').insertRow();
+    for (const [, value] of columns) line.insertCell().textContent = value(arm) ?? '–';
+    if (!arms[k]) return;
+    const { leader } = arms[k];
+    line.cells[0].textContent +=
+      leader !== null
+        ? `, on the tool of ${arms[leader].name}`
+        : arms.some((other) => other.leader === k)
+          ? ', leads'
+          : '';
+    line.tabIndex = 0;
+    line.title = 'makes it the arm that the arrows turn';
+    line.addEventListener('click', () => choose(k));
+    line.addEventListener('keydown', (event) => event.key === 'Enter' && choose(k));
+  });
+}
+
+/** The answer where there is no plan, how it was found, work and times. */
+export function workcellSummary({ answer, result, arms }) {
+  if (result.cost === null) $('answer').textContent = answer.trimEnd();
+  const add = (caption, entries) => entries.length && table($('tables'), caption, entries),
+    { rounds, pops, node_pairs, move_pairs } = result.counters;
+  add('Search', [
+    ['decided by', result.decided_by],
+    ...(result.bound === null ? [] : [['no pair costs less than', number(result.bound, 6)]]),
+    ['regions of conflict', number(rounds, 9)],
+    ['pairs of nodes taken', number(pops, 9)],
+    ['pairs of nodes asked about', number(node_pairs, 9)],
+    ['pairs of motions asked about', number(move_pairs, 9)],
+    ['planner', result.planner],
+    ['threads', String(result.threads)],
+  ]);
+  // Workcells have stages of their own in place of these two.
+  const { prepare, plan, stages, ...rest } = result.time_ms;
+  add('Times, ms', [...words(rest), ...words(stages)]);
+  result.arms.forEach(({ name, counters, lattice }, k) => {
+    add(`Counters of ${name}`, words(counters));
+    add(`Lattice of ${name}`, words(lattice));
+    add(`Settings of ${name}`, words(arms[k].settings));
+  });
+}
