@@ -45,18 +45,24 @@ export class Pair {
       return { mm: near?.mm ?? null, pair, line, hit: true, note: meetingWords(this.conflict) };
     }
     if (!near) return null;
-    const { mm, asked_mm, pair, nearest } = near,
-      hit = mm < asked_mm - 0.051 || (this.meetsAt(k) && this.conflict !== null);
-    const bodies = this.meetsAt(k) ? this.conflict.pair : pair;
+    const { mm, asked_mm, pair, nearest } = near;
+    // On the way between two rows nothing is known but the bodies.
+    if (this.meetsAt(k))
+      return {
+        mm,
+        pair: this.conflict.pair,
+        line: null,
+        hit: true,
+        note: meetingWords(this.conflict),
+      };
     return {
       mm,
-      pair: bodies,
-      hit,
+      pair,
+      hit: mm < asked_mm - 0.051, // the check forgives 0.05 mm
       line: nearest && { points: nearest, text: mm > 0 ? `${number(mm, 3)} mm` : 'they touch' },
-      note: this.meetsAt(k)
-        ? meetingWords(this.conflict)
-        : `arms ${mm > 0 ? `${number(mm, 4)} mm apart` : 'touch'} (asked ${number(asked_mm)}): ` +
-          pair.join(' – '),
+      note:
+        `arms ${mm > 0 ? `${number(mm, 4)} mm apart` : 'touch'} (asked ${number(asked_mm)}): ` +
+        pair.join(' – '),
     };
   }
   /** The values between the arms, one a row; nulls where nothing is known. */

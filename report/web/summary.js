@@ -17,11 +17,6 @@ export function verdict(host, { answer, result, chain, map }, jump) {
     } = result.summary ?? {},
     d = result.diagnosis,
     held = result.held ?? [];
-  /** The joints that are held, where: named(joint) is what stands before each `at`. */
-  const heldAt = (named) =>
-    held
-      .map(({ joint, position, unit }) => `${named(joint)} at ${number(position)} ${unit}`)
-      .join(', ');
   const margin = (k, q) => Math.min(q[k] - chain.joints[k].lower, chain.joints[k].upper - q[k]);
   const say = (text, s, off, near = false) => {
     if (host.childNodes.length) host.append(separator());
@@ -73,14 +68,7 @@ export function verdict(host, { answer, result, chain, map }, jump) {
       );
     const contact = result.deepest_contact;
     if (contact)
-      say(
-        `contact ${contact.at_most === null ? 'at least ' : ''}` +
-          `${number(1e3 * contact.depth, 3)} mm deep` +
-          `${contact.allowed === null ? '' : ` (allowed ${number(1e3 * contact.allowed)})`}: ` +
-          `${contact.bodies.join(' – ')}`,
-        result.trajectory[contact.row]?.s,
-        (_, k) => k !== contact.row,
-      );
+      say(contactWords(contact), result.trajectory[contact.row]?.s, (_, k) => k !== contact.row);
     if (limit)
       say(
         `${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`,
@@ -103,10 +91,18 @@ export function verdict(host, { answer, result, chain, map }, jump) {
       );
     if (speed)
       say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s, (_, k) => -k);
-    if (held.length) say(`held: ${heldAt((joint) => joint)}`);
+    if (held.length) say(`held: ${heldWords(held)}`);
   }
   warn(host, result);
 }
+
+/** How deep two bodies may touch and do. */
+export const contactWords = ({ depth, at_most, allowed, bodies }) =>
+  `contact ${at_most === null ? 'at least ' : ''}${number(1e3 * depth, 3)} mm deep` +
+  `${allowed === null ? '' : ` (allowed ${number(1e3 * allowed)})`}: ${bodies.join(' – ')}`;
+/** The joints that are held, and where. */
+export const heldWords = (held) =>
+  held.map(({ joint, position, unit }) => `${joint} at ${number(position)} ${unit}`).join(', ');
 
 /** What stands between the parts of an answer that is one line. */
 export const separator = () =>

@@ -67,7 +67,12 @@ const maps = arms.map((arm, k) => {
   );
 });
 const plots = arms.map(({ name, chain, rows, settings }, k) =>
-  plotsOf(name, rows, alongRows(chain, rows, settings, data.result.arms[k].summary)),
+  plotsOf(
+    name,
+    rows,
+    alongRows(chain, rows, settings, data.result.arms[k].summary),
+    `s of ${name}, m`,
+  ),
 );
 const gap =
   pair.between.length > 0
@@ -88,8 +93,8 @@ const gap =
         `s of ${arms[0].name}, m`,
       )
     : null;
-/** Plots below a heading, over s of the rows; null where there are none. */
-function plotsOf(name, rows, series, axis = 's, m') {
+/** Plots below a heading, over s of the rows, which `axis` names; null where there are none. */
+function plotsOf(name, rows, series, axis) {
   if (!rows.length) return null;
   const box = document.createElement('div'),
     title = document.createElement('h3');

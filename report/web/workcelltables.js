@@ -2,7 +2,7 @@
 // A workcell in words and numbers.
 import { $, number, table } from './page.js';
 import { kNear } from './readout.js';
-import { separator, warn, words } from './summary.js';
+import { contactWords, heldWords, separator, warn, words } from './summary.js';
 
 /**
  * The answer in one line, whose parts lead to the rows that they are about, and warnings. go: shows
@@ -31,7 +31,8 @@ export function verdict({ answer, result, arms }, pair, go, showCut) {
     if (conflict && pair.conflict)
       say(
         `the cheapest paths meet at s ${conflict.s[0].toFixed(3)} of ${arms[0].name} and ` +
-          `s ${conflict.s[1].toFixed(3)} of ${arms[1].name}: ${conflict.bodies.join(' – ')}`,
+          `s ${conflict.s[1].toFixed(3)} of ${arms[1].name}` +
+          `${conflict.on_motion ? ', on the way on' : ''}: ${conflict.bodies.join(' – ')}`,
         () => go(pair.conflict.row),
       );
     arms.forEach((arm, k) => {
@@ -69,7 +70,7 @@ function sayFound(result, arms, say, go) {
         near.row,
       () => go(near.row),
     );
-  result.arms.forEach(({ name, summary }, k) => {
+  result.arms.forEach(({ name, summary, deepest_contact: contact }, k) => {
     const rowAt = (s) =>
       arms[k].rows.reduce(
         (best, row, i) => (Math.abs(row.s - s) < Math.abs(arms[k].rows[best].s - s) ? i : best),
@@ -83,6 +84,7 @@ function sayFound(result, arms, say, go) {
           clearance.s.toFixed(3),
         () => go(rowAt(clearance.s)),
       );
+    if (contact) say(`${contactWords(contact)} at row ${contact.row}`, () => go(contact.row));
     if (limit)
       say(
         `${limit.joint} ${number(limit.margin_deg, 2)}° from its limit at s ` + limit.s.toFixed(3),
@@ -90,6 +92,8 @@ function sayFound(result, arms, say, go) {
         limit.margin_deg < kNear,
       );
   });
+  const held = new Map(result.arms.flatMap((arm) => arm.held).map((one) => [one.joint, one]));
+  if (held.size) say(`held: ${heldWords([...held.values()])}`);
 }
 
 const millimetres = (value) => (value === undefined ? null : number(1e3 * value));
@@ -106,6 +110,7 @@ const kColumns = [
   ['clearance, mm', ({ summary }) => millimetres(summary?.clearance?.value)],
   ['from a limit', ({ summary }) => limitWords(summary?.joint_limit)],
   ['tool off its path, mm', ({ summary }) => number(summary?.tool_path_error?.max_mm, 3)],
+  ['tool speed at most, m/s', ({ summary }) => number(summary?.top_tool_speed?.speed, 3)],
 ];
 const limitWords = (limit) => (limit ? `${number(limit.margin_deg, 3)}° (${limit.joint})` : null);
 

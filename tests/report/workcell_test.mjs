@@ -21,7 +21,7 @@ const wide = { width: 1280, height: 800 },
   kNames = ['left', 'right'];
 
 /** A workcell whose tools go along two lines, [from, to, turn about the vertical, rad] of each. */
-function lines(folder, name, both, scene = []) {
+function lines(folder, name, both, { scene = [], coarse = null } = {}) {
   const file = join(folder, `${name}.yaml`),
     robots = resolve(problems, '../robots');
   const arms = both.map(([from, to, yaw], k) => ({
@@ -44,7 +44,7 @@ function lines(folder, name, both, scene = []) {
     hold: { torso_joint_b1: 0 },
   };
   const resolution = { ds: 0.01, dphi: 0.1 };
-  writeFileSync(file, JSON.stringify({ robot, arms, resolution, scene }));
+  writeFileSync(file, JSON.stringify({ robot, arms, resolution, scene, ...coarse }));
   return file;
 }
 // The tools cross, one above the other: the forearms would meet on the cheapest paths.
@@ -292,6 +292,9 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await checkNumbers(page, plate);
   await checkMaps(page, plate);
   assert.ok(!(await page.isVisible('#blocked')));
+  assert.match(await page.textContent('#verdict'), /held: torso_joint_b1 at 0 rad/);
+  const names = await page.$$eval('.chart', (all) => all.map((one) => one.ariaLabel));
+  assert.equal(new Set(names).size, names.length, 'charts of one name');
   assert.match(await page.textContent('#bodies'), /arm of left.*arm of right.*follower/s);
   for (const [section, name] of [
     ['map', 'maps'],
@@ -376,9 +379,32 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await shoot(failed.page, 'workcell_meeting.png', { fullPage: true });
   await failed.close();
 
+  // In two layers they meet on the way alone.
+  const passing = [1, -1].map((side) => [
+      [0.68, 0.03 * side, 1 - 0.12 * side],
+      [0.68, 0.03 * side, 1 + 0.12 * side],
+      -0.1 * side,
+    ]),
+    coarse = {
+      resolution: { ds: 1, dphi: 1 },
+      limits: { tool_path_error: 0.2, joint_step: 3 },
+    };
+  const moving = planned(folder, lines(folder, 'moving', passing, { coarse }));
+  assert.equal(moving.status, 1);
+  assert.ok(moving.result.conflict.on_motion);
+  const way = await open(moving.html, { viewport: wide });
+  await drawn(way.page);
+  assert.equal((await shown(way.page)).row, 0.5);
+  assert.equal((await shown(way.page)).line, null);
+  assert.match(await way.page.textContent('#verdict'), /of right, on the way on: /);
+  assert.match(await way.page.textContent('#readout .gap'), /meet on the way to the next row/);
+  assert.match(await way.page.textContent('#legend'), /first conflict: the motion on from here/);
+  await checkRegion(way.page, moving);
+  await way.close();
+
   // One arm has no path by itself: a knob stands on it.
   const knob = { name: 'knob', sphere: { radius: 0.03 }, xyz: middle(kCrossing[1]) };
-  const barred = planned(folder, lines(folder, 'barred', kCrossing, [knob]));
+  const barred = planned(folder, lines(folder, 'barred', kCrossing, { scene: [knob] }));
   assert.equal(barred.status, 1);
   const stuck = await open(barred.html, { viewport: wide });
   await drawn(stuck.page);
