@@ -397,7 +397,7 @@ TEST(Apt, RefusedByLine) {
   };
   for (const auto& [text, needles] : cases)
     expect_message(folder.refusal("p.apt", text, text.empty() ? ", units: mm" : ""), needles);
-  // The same statements where they say nothing.
+  // Statements of these words that change nothing are read over.
   EXPECT_EQ(folder
                 .load("p.apt", go + "CUTCOM/OFF\nCYCLE/OFF\nORIGIN/0,0,0\nTRACUT/NOMORE\n"
                                     "GOTO/2,2,3\n")

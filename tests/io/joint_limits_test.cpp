@@ -71,7 +71,8 @@ TEST(JointLimits, WeightsMayBeByName) {
   EXPECT_EQ((std::array<double, kDof>{2, 1, 1, 1, 1, 1, 0.5}), problem.cost.weights);
   expect_message(refusal_of(folder, {{"cost", "{weights: {finger_joint: 2}}"}}),
                  {"'finger_joint' is no joint of the arm", "nearest is"});
-  expect_message(refusal_of(folder, {{"cost", "{weights: {joint_1: 1e9}}"}}), {"joint_1", "1000000000"});
+  expect_message(refusal_of(folder, {{"cost", "{weights: {joint_1: 1e9}}"}}),
+                 {"joint_1", "1000000000"});
 }
 
 TEST(JointLimits, AreReadFromMoveItsFile) {

@@ -150,6 +150,9 @@ class ProblemReader {
   void read_attached(const YamlValue& value);
   Shape shape(const YamlSection& section);
   static Vector3d mesh_scale(const YamlValue& value);
+  /// Attaches a body of the scene, whose pose is in the frame of a link, to that link.
+  void fix_to_link(const YamlValue& frame, const std::optional<YamlValue>& allow,
+                   SceneObject object);
   void read_allowed(const YamlValue& value, SceneObject& object) const;
   void read_waypoints(const YamlValue& value);
   /// Reads the file of a path, whose section and name are given.

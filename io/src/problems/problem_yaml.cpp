@@ -354,9 +354,24 @@ void ProblemReader::read_scene() {
       name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
     object.shape = shape(section);
     object.pose = pose(section);
-    if (const auto allow = section.find_filled("allow")) read_allowed(*allow, object);
+    const auto frame = section.find_filled("frame"), allow = section.find_filled("allow");
+    if (frame && frame->text() != problem_.base_link) {
+      fix_to_link(*frame, allow, std::move(object));
+      continue;
+    }
+    if (allow) read_allowed(*allow, object);
     problem_.scene.push_back(std::move(object));
   }
+}
+
+void ProblemReader::fix_to_link(const YamlValue& frame, const std::optional<YamlValue>& allow,
+                                SceneObject object) {
+  const std::string link = link_name(frame);
+  if (allow)
+    allow->fail(
+        "is given of a body that is fixed to link '" + link + "'",
+        "`allow` of bodies in the frame of `base_link`; the SRDF says which links may touch");
+  problem_.attached.push_back({std::move(object.name), std::move(object.shape), object.pose, link});
 }
 
 void ProblemReader::read_allowed(const YamlValue& value, SceneObject& object) const {
@@ -386,7 +401,7 @@ void ProblemReader::read_path(const YamlValue& value) {
                                     problem_.path_frame) != more_frames_.end();
     if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame) && !is_other)
       frame->fail("unknown frame '" + problem_.path_frame + "'",
-                  "'" + problem_.base_link + "' or the name of a scene object");
+                  "'" + problem_.base_link + "' or the name of a scene object in its frame");
   }
   const auto [key, poses] = *section.chosen("waypoints");
   require_keys_beside(section, problem_schema().find("path")->value);
@@ -667,7 +682,8 @@ void ProblemReader::read_vary() {
     const YamlSection section = item.section();
     const YamlValue object = section.require("object");
     if (!is_object(object.text()))
-      object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
+      object.fail("unknown object '" + object.text() + "'",
+                  "the name of a scene object in the frame of `base_link`");
     problem_.vary.push_back(
         {object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
   }

@@ -26,6 +26,7 @@ class WorkcellReader : ProblemReader {
       arms.fail("has " + std::to_string(sections_.size()) + " arms", "a list of two");
     read_robot_of_both();
     list_arms();
+    require_scene_in_base();
     read_scene();
     for (std::size_t k = 0; k < 2; ++k) read_arm(k);
     require_equal_lengths();
@@ -38,6 +39,16 @@ class WorkcellReader : ProblemReader {
   }
 
  private:
+  void require_scene_in_base() const {
+    const auto scene = root_.find_filled("scene");
+    if (!scene) return;
+    for (const YamlValue& item : scene->items())
+      if (const auto frame = item.section().find_filled("frame");
+          frame && frame->text() != root_.require("robot").section().require("base_link").text())
+        frame->fail("is another link than `base_link`, in a workcell, which is not supported yet",
+                    "bodies in the frame of `base_link`, or `attached` of an arm");
+  }
+
   void read_robot_of_both() {
     problem_.source = file_.string();
     const YamlValue robot = root_.require("robot");

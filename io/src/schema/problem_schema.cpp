@@ -157,7 +157,11 @@ Schema scene() {
   const Keys allow{{"allow", either(list(text()), map(number(kLength))), "m", optional(),
                     "links and attached bodies that may touch it; or, `{nozzle: 0.003}`, how "
                     "[deep](model.md#contact) each may be in it"}};
-  return list(section("scene", join(join(name, shape_keys()), join(pose_keys(), allow)),
+  const Keys frame{{"frame", text(), "", in_words("`base_link`"),
+                    "the link in whose frame its pose is, and with which it moves: the table under "
+                    "a part, or what the robot stands on where the table is the `base_link`"}};
+  return list(section("scene",
+                      join(join(name, shape_keys()), join(join(pose_keys(), frame), allow)),
                       {kOneShape, kOneOrientation}));
 }
 
