@@ -2,6 +2,8 @@
 #include "swivel/core/problem/workcell.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -44,6 +46,48 @@ std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm) {
   return scene;
 }
 
+void validate_given(const Workcell& cell, std::size_t number) {
+  const WorkcellArm &arm = cell.arms[number], &other = cell.arms[1 - number];
+  require(other.given.empty(), "given: both motions are given: allowed is one");
+  require(arm.given.size() >= 2, "given: 1 row: allowed are two or more");
+  for (std::size_t row = 0; row < arm.given.size(); ++row)
+    require(arm.given[row].allFinite(),
+            "given: row " + std::to_string(row) + ": allowed are finite joints");
+  require(arm.waypoints.empty() && !arm.start && !arm.end && !arm.smooth && !arm.roll &&
+              cell.leader_of(number) < 0,
+          "waypoints, start, end, smooth, roll, path_frame: allowed for an arm whose motion is "
+          "given are none");
+  const std::size_t last = arm.given.size() - 1, waypoints = other.waypoints.size();
+  if (other.steps.empty()) {
+    require(waypoints == 2 || waypoints == arm.given.size(),
+            "waypoints: " + std::to_string(waypoints) + ", and the given motion has " +
+                std::to_string(arm.given.size()) +
+                " rows: allowed are two, one for each row, or `steps` that say at which rows they "
+                "are");
+    return;
+  }
+  const auto sum = std::accumulate(other.steps.begin(), other.steps.end(), std::int64_t{0});
+  require(sum == static_cast<std::int64_t>(last), "steps: together " + std::to_string(sum) +
+                                                      ": allowed are " + std::to_string(last) +
+                                                      ", since the given motion ends then");
+}
+
+/// Returns the problem of an arm by itself, for its validation. An arm whose motion is given takes
+/// the other arm's waypoints for this.
+Problem alone(const Workcell& cell, std::size_t number) {
+  const WorkcellArm& arm = cell.arms[number];
+  Problem problem;
+  static_cast<Robot&>(problem) = arm;
+  static_cast<Task&>(problem) = arm;
+  problem.scene = scene_of(cell, number);
+  problem.vary = cell.vary;
+  problem.source =
+      cell.source.empty() ? "arm '" + arm.name + "'" : cell.source + ": arm '" + arm.name + "'";
+  if (!arm.given.empty()) problem.waypoints = cell.arms[1 - number].waypoints;
+  if (cell.leader_of(number) >= 0) problem.path_frame.clear();
+  return problem;
+}
+
 }  // namespace
 
 void validate(const Workcell& cell) {
@@ -54,7 +98,9 @@ void validate(const Workcell& cell) {
   require(first.hold == second.hold, "hold: allowed is one for both arms");
   require(cell.leader_of(0) < 0 || cell.leader_of(1) < 0,
           "path_frame: the arms lead each other: allowed is one leader");
-  require(first.waypoints.size() == second.waypoints.size(),
+  const auto given = cell.given_arm();
+  if (given) validate_given(cell, *given);
+  require(given || first.waypoints.size() == second.waypoints.size(),
           "waypoints: " + std::to_string(first.waypoints.size()) + " and " +
               std::to_string(second.waypoints.size()) +
               ": allowed is the same number for both arms, since they are at them at one time");
@@ -62,19 +108,12 @@ void validate(const Workcell& cell) {
     const WorkcellArm& arm = cell.arms[k];
     require(!arm.smooth || cell.leader_of(k) < 0,
             "smooth: allowed for a follower is none: it keeps to the leader's curve");
-    require(arm.rolls.empty() && arm.steps.empty(), "rolls, steps: allowed are none");
+    require(arm.rolls.empty() && (arm.steps.empty() || given == 1 - k),
+            "rolls, steps: allowed are none");
     for (const Waypoint& waypoint : arm.waypoints)
       require(!waypoint.roll,
               "waypoints: roll: allowed in a workcell is the roll of the whole path");
-    Problem alone;
-    static_cast<Robot&>(alone) = arm;
-    static_cast<Task&>(alone) = arm;
-    alone.scene = scene_of(cell, k);
-    alone.vary = cell.vary;
-    alone.source =
-        cell.source.empty() ? "arm '" + arm.name + "'" : cell.source + ": arm '" + arm.name + "'";
-    if (cell.leader_of(k) >= 0) alone.path_frame.clear();
-    validate(alone);
+    validate(alone(cell, k));
   }
 }
 

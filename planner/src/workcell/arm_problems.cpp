@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
@@ -153,6 +154,66 @@ void cut_alike(std::array<Problem, 2>& problems, const Budget& budget) {
   }
 }
 
+/// Returns the waypoints of a given motion, one for each row: where its tool is, in the base frame.
+/// Throws InputError for a row at which the tool is where it was at the row before, or turned by
+/// 180 deg.
+std::vector<Waypoint> waypoints_of_rows(const Chain& chain, const std::vector<Config>& rows,
+                                        const std::string& source) {
+  constexpr double kSamePlace = 1e-9;  // m and rad
+  std::vector<Waypoint> waypoints;
+  for (const Config& q : rows) {
+    const Pose tool = chain.tool(q);
+    Waypoint waypoint;
+    waypoint.position = tool.translation();
+    waypoint.orientation = Quaterniond(tool.linear()).normalized();
+    const std::size_t row = waypoints.size();
+    if (row > 0) {
+      const Waypoint& before = waypoints.back();
+      const double angle = before.orientation.angularDistance(waypoint.orientation);
+      if ((before.position - waypoint.position).norm() <= kSamePlace && angle <= kSamePlace)
+        throw InputError(source, formatted("given motion: row %zu: the tool is where it is at the "
+                                           "row before: allowed is a tool that moves on",
+                                           row));
+      if (angle > kPi - 1e-6)
+        throw InputError(source, formatted("given motion: row %zu: the tool turns by 180 deg from "
+                                           "the row before: allowed is less",
+                                           row));
+    }
+    waypoints.push_back(waypoint);
+  }
+  return waypoints;
+}
+
+/// Gives an arm the path that its given rows lead its tool along, with a layer at each row. Limits
+/// of the tool's path are those of a leader, whose follower keeps to it; else there is none.
+void lay_along_rows(Problem& problem, const WorkcellArm& arm, const Chain& chain, bool leads) {
+  problem.waypoints = waypoints_of_rows(chain, arm.given, problem.source);
+  problem.steps.assign(arm.given.size() - 1, 1);
+  problem.path_frame = problem.base_link;
+  if (!leads) problem.limits.tool_path_error = problem.limits.tool_angle_error = std::nullopt;
+}
+
+/// Cuts the path of an arm into steps that end where those of the other arm's given motion do.
+/// `steps` of the problem says how, or is empty (Workcell).
+void cut_along(const Problem& given, Problem& planned, bool follows, const Budget& budget) {
+  const std::size_t rows = given.waypoints.size();
+  if (planned.steps.empty()) {
+    if (planned.waypoints.size() == rows)
+      planned.steps.assign(rows - 1, 1);
+    else
+      planned.steps = {static_cast<int>(rows - 1)};
+  }
+  const ToolPath along = path_of(given, given.waypoints, given.steps, budget);
+  if (follows) planned.path_frame = planned.base_link;
+  const auto waypoints = waypoints_in_base(planned);  // or in the leader's tool frame
+  if (follows) {
+    planned.waypoints = carried(along, waypoints, planned.steps);
+    planned.steps.assign(rows - 1, 1);
+  }
+  // Throws for a path that has no such steps.
+  static_cast<void>(path_of(planned, waypoints_in_base(planned), planned.steps, budget));
+}
+
 }  // namespace
 
 std::array<Problem, 2> problems_of_arms(const Workcell& cell, const Budget& budget) {
@@ -163,6 +224,13 @@ std::array<Problem, 2> problems_of_arms(const Workcell& cell, const Budget& budg
       throw InputError(problems[k].source,
                        "path.roll: of an arm with an arm angle: allowed in a workcell are arms of "
                        "six joints with a roll, or none");
+  if (const auto given = cell.given_arm()) {
+    const std::size_t planned = 1 - *given;
+    const bool follows = cell.leader_of(planned) >= 0;
+    lay_along_rows(problems[*given], cell.arms[*given], arms[*given].chain, follows);
+    cut_along(problems[*given], problems[planned], follows, budget);
+    return problems;
+  }
   for (std::size_t k = 0; k < 2; ++k)
     if (cell.leader_of(k) >= 0) {
       follow(problems[1 - k], problems[k], budget);

@@ -7,6 +7,7 @@
 
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -31,7 +32,10 @@ class WorkcellCheck {
     for (std::size_t k = 0; k < 2; ++k)
       result_.arms[k] =
           check_trajectory(prepared_.robot(k), prepared_.problem(k), rows_[k], options_);
-    if (simultaneous()) examine_both();
+    if (simultaneous()) {
+      examine_given();
+      examine_both();
+    }
     result_.passed = result_.arms[0].passed && result_.arms[1].passed && result_.failure_count == 0;
     return std::move(result_);
   }
@@ -65,6 +69,21 @@ class WorkcellCheck {
       }
     }
     return true;
+  }
+
+  /// Finds rows of a given motion that are not those given.
+  void examine_given() {
+    if (!prepared_.given_arm()) return;
+    const auto& given = prepared_.given_rows();
+    for (std::size_t row = 0; row < given.size(); ++row) {
+      const double off =
+          (rows_[*prepared_.given_arm()][row].q - given[row].q).cwiseAbs().maxCoeff();
+      if (off > kLimitTolerance)
+        fail(
+            formatted("row %zu: a joint of '%s' is %.3g rad from the given motion: allowed are "
+                      "the rows given",
+                      row, prepared_.name(*prepared_.given_arm()).c_str(), off));
+    }
   }
 
   void examine_both() {

@@ -15,6 +15,7 @@
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/graph/search/pair_search.hpp"
 #include "swivel/parallel/executor.hpp"
@@ -24,6 +25,7 @@
 #include "swivel/planner/workcell/workcell_view.hpp"
 #include "validity/collision_validity.hpp"
 #include "workcell/between_arms.hpp"
+#include "workcell/given_motion.hpp"
 
 namespace swivel {
 
@@ -31,13 +33,17 @@ namespace {
 
 /// One arm with what its search needs. It is searched by one thread at a time.
 struct PlannedArm {
-  PlannedArm(const Problem& p, const PreparedRobot& r, const Budget& budget)
+  /// `given`: the rows of the arm's motion, if that is given; else null.
+  PlannedArm(const Problem& p, const PreparedRobot& r, const std::vector<TrajectoryRow>* given,
+             const Budget& budget)
       : problem(p),
         robot(r),
         world(r.world(), p, budget),
         rule(world.edge_rule(r.radii())),
         path(path_within_scale(p, r.arm().chain, budget)),
-        lattice(make_lattice(r.arm().chain, r.arm_class(), path, p, budget)) {
+        is_given(given != nullptr),
+        lattice(given != nullptr ? std::make_unique<GivenLattice>(r.arm().chain, path, p, *given)
+                                 : make_lattice(r.arm().chain, r.arm_class(), path, p, budget)) {
     if (const std::string rest = joints_at_rest(*p.model, r.arm().chain); !rest.empty())
       throw InputError(rest);
   }
@@ -46,22 +52,42 @@ struct PlannedArm {
   World world;
   EdgeRule rule;
   ToolPath path;
+  bool is_given;
   std::unique_ptr<Lattice> lattice;
   std::unique_ptr<CostToGo> cost_to_go;
   Executor alone{1};
-  std::optional<CollisionValidity> validity;
+  GivenValidity sound;                        // of an arm whose motion is given
+  std::optional<CollisionValidity> validity;  // of an arm that is planned
   /// What was found out about its nodes by all searches of the lattice; for a view alone.
   std::optional<Verdicts> noted;
   /// The path that a view shows: the answer, or else that of the arm by itself.
   std::vector<int> shown;
   /// Has planned the arm by itself, where it has no path.
   std::unique_ptr<Planner> without_path;
+  PairArm in_pair() {
+    return {cost_to_go.get(), is_given ? static_cast<Validity*>(&sound) : &*validity};
+  }
   [[nodiscard]] PlanView view() const {
     if (without_path) return without_path->view();
     return {robot, problem, *lattice, world, &*noted, shown};
   }
 };
 using PlannedArms = std::array<std::unique_ptr<PlannedArm>, 2>;
+
+/// Throws InputError if a given motion does not keep the limits of its arm by itself.
+void require_sound(const PreparedWorkcell& prepared, std::size_t arm, const Budget& budget) {
+  const CheckResult found =
+      check_trajectory(prepared.robot(arm), prepared.problem(arm), prepared.given_rows(),
+                       {.margins = false, .budget = budget});
+  if (found.passed) return;
+  std::string more;
+  if (found.failure_count > 1)
+    more = formatted(" (and %lld more)", static_cast<long long>(found.failure_count - 1));
+  throw InputError(prepared.problem(arm).source,
+                   "given motion: " + found.failures.front() + more +
+                       ": allowed is a motion that keeps the limits; `limits` of the arm may be "
+                       "wider than the file's");
+}
 
 class WorkcellPlan {
  public:
@@ -115,9 +141,14 @@ class WorkcellPlan {
   }
 
   void lay_out() {
+    const auto given = prepared_.given_arm();
+    result_.given_arm = given;
     executor_.for_each(2, [&](int arm, int) {
       const auto k = static_cast<std::size_t>(arm);
-      arms_[k] = std::make_unique<PlannedArm>(prepared_.problem(k), prepared_.robot(k), budget_);
+      if (given == k) require_sound(prepared_, k, budget_);
+      arms_[k] =
+          std::make_unique<PlannedArm>(prepared_.problem(k), prepared_.robot(k),
+                                       given == k ? &prepared_.given_rows() : nullptr, budget_);
     });
     if (arms_[0]->path.size() != arms_[1]->path.size())  // one of them is cut off
       throw InputError(prepared_.problem(0).source,
@@ -125,6 +156,12 @@ class WorkcellPlan {
                        "are read as metres");
     for (std::size_t k = 0; k < 2; ++k) describe(*arms_[k], result_.arms[k]);
     result_.warnings = prepared_.between().warnings();
+    if (!given) return;
+    const PlannedArm& planned = *arms_[1 - *given];
+    if (const std::string warning =
+            long_step_warning(planned.path, planned.problem.resolution, prepared_.name(1 - *given));
+        !warning.empty())
+      result_.warnings.push_back(warning);
   }
   void describe(const PlannedArm& arm, PlanResult& result) const {
     const Chain& chain = arm.robot.arm().chain;
@@ -153,9 +190,7 @@ class WorkcellPlan {
       for (std::size_t k = 0; view_ && k < 2; ++k)
         options.noted[k] = &arms_[k]->noted.emplace(*arms_[k]->lattice);
       const PairOutcome outcome =
-          search_pair({PairArm{arms_[0]->cost_to_go.get(), &*arms_[0]->validity},
-                       PairArm{arms_[1]->cost_to_go.get(), &*arms_[1]->validity}},
-                      between, options);
+          search_pair({arms_[0]->in_pair(), arms_[1]->in_pair()}, between, options);
       note(outcome, between);
       if (view_) note_for_view(outcome);
       if (outcome.paths[0].empty()) return;
@@ -178,6 +213,7 @@ class WorkcellPlan {
       PlannedArm& arm = *arms_[static_cast<std::size_t>(k)];
       arm.validity.reset();
       arm.cost_to_go = make_cost_to_go(*arm.lattice, pruning_of(*arm.lattice), budget_);
+      if (arm.is_given) return;
       arm.validity.emplace(*arm.lattice, arm.world, arm.rule, arm.problem.limits.edges,
                            distance_proofs(), arm.alone, 1, budget_);
     });
@@ -218,12 +254,14 @@ class WorkcellPlan {
     Counters& sum = result.counters;
     sum.ik_nodes += arm.cost_to_go->ik_nodes();
     sum.edges += arm.cost_to_go->edges();
-    sum.nodes_checked += arm.validity->nodes_checked();
-    sum.edges_checked += arm.validity->edges_checked();
-    const CollisionCounters collision = arm.validity->counters();
-    sum.fcl_calls += collision.fcl_calls;
-    sum.proved_free += collision.proved_free;
-    sum.proved_colliding += collision.proved_colliding;
+    if (arm.validity) {
+      sum.nodes_checked += arm.validity->nodes_checked();
+      sum.edges_checked += arm.validity->edges_checked();
+      const CollisionCounters collision = arm.validity->counters();
+      sum.fcl_calls += collision.fcl_calls;
+      sum.proved_free += collision.proved_free;
+      sum.proved_colliding += collision.proved_colliding;
+    }
     result.lattice = arm.lattice->describe();
     result.lattice.method = arm.robot.arm_class().method();
     result.lattice.complete = arm.robot.arm_class().complete();

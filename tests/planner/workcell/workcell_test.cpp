@@ -6,19 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <vector>
 
-#include "plain_edge_rule.hpp"
+#include "plain_arm.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
-#include "swivel/collision/world/world.hpp"
-#include "swivel/core/kinematics/closed_form/arm_class.hpp"
-#include "swivel/core/lattice/kinds/make_lattice.hpp"
-#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
@@ -32,68 +27,6 @@
 namespace swivel::test {
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::infinity();
-
-/// One arm for the plain program: the nodes of each layer that its own world allows, and which of
-/// its edges that world allows, asked when they are needed.
-class PlainArm {
- public:
-  PlainArm(const Problem& problem, const PreparedRobot& robot)
-      : path_(problem_path(problem, robot.arm().chain)),
-        lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
-        world_(robot.world(), problem),
-        rule_(world_.edge_rule(robot.radii())),
-        query_(world_, DistanceProofs::kOff) {
-    layers_.resize(static_cast<std::size_t>(lattice_->layers()));
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-      std::vector<Lattice::Node> nodes;
-      lattice_->layer_nodes(static_cast<int>(i), nodes);
-      for (const Lattice::Node& node : nodes)
-        if (!query_.find_violating_pair(node.q, ClearanceRule::kNode)) layers_[i].push_back(node);
-    }
-  }
-  [[nodiscard]] std::size_t layers() const { return layers_.size(); }
-  [[nodiscard]] const std::vector<Lattice::Node>& nodes(std::size_t layer) const {
-    return layers_[layer];
-  }
-  struct Edge {
-    std::size_t to = 0;
-    double cost = 0;
-  };
-  /// Returns the edges that are not known to be invalid from node a of a layer.
-  [[nodiscard]] std::vector<Edge> edges(std::size_t layer, std::size_t a) const {
-    std::vector<Edge> edges;
-    const Lattice::Node& from = layers_[layer][a];
-    for (std::size_t b = 0; b < layers_[layer + 1].size(); ++b) {
-      const Lattice::Node& to = layers_[layer + 1][b];
-      const int i = static_cast<int>(layer);
-      const Config delta = lattice_->delta(from.q, to.q);
-      if (lattice_->in_window(i, from.slot, to.slot) && lattice_->step_allowed(i, delta) &&
-          !invalid_.contains({layer, a, b}))
-        edges.push_back({b, lattice_->edge_cost(delta)});
-    }
-    return edges;
-  }
-  /// Returns whether an edge is valid; if not, edges() leaves it out from now on.
-  bool valid(std::size_t layer, std::size_t a, std::size_t b) {
-    const Lattice::Node &from = layers_[layer][a], &to = layers_[layer + 1][b];
-    const bool valid =
-        lattice_->follows_path(static_cast<int>(layer), from.slot, from.q, to.slot, to.q) &&
-        !edge_blocked_plain(query_, rule_, from.q, to.q);
-    if (!valid) invalid_.insert({layer, a, b});
-    return valid;
-  }
-
- private:
-  ToolPath path_;
-  std::unique_ptr<Lattice> lattice_;
-  World world_;
-  EdgeRule rule_;
-  World::Query query_;
-  std::vector<std::vector<Lattice::Node>> layers_;
-  std::set<std::tuple<std::size_t, std::size_t, std::size_t>> invalid_;
-};
 
 /// The cheapest two paths without conflict, by a dynamic program over all pairs of nodes that is
 /// begun anew whenever an edge or a motion of its best two paths turns out to be invalid. FCL alone
@@ -211,20 +144,6 @@ SceneObject random_post(Random& random) {
   if (random.coin())
     post.pose.linear() = Eigen::AngleAxisd(kPi / 2, Vector3d::UnitX()).toRotationMatrix();
   return post;
-}
-
-PlanOptions lazily() {
-  PlanOptions options;
-  options.planner = PlannerKind::kLazy;
-  options.check = true;
-  return options;
-}
-
-/// Expects the same number of rows with the same joints, bit for bit.
-void expect_equal_rows(const std::vector<TrajectoryRow>& one,
-                       const std::vector<TrajectoryRow>& other) {
-  ASSERT_EQ(one.size(), other.size());
-  for (std::size_t row = 0; row < one.size(); ++row) EXPECT_EQ(one[row].q, other[row].q);
 }
 
 TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {

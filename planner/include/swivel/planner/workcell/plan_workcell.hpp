@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/workcell.hpp"
@@ -21,8 +24,8 @@ class PreparedWorkcell {
  public:
   /// Prepares both arms. Throws InvalidArgument for what validate(Workcell) refuses, InputError for
   /// what PreparedRobot refuses of either arm, arms that share a joint or a link, a follower whose
-  /// tool stands still in the base frame on a step, and a roll that is chosen besides the arm
-  /// angle; Stopped.
+  /// tool stands still in the base frame on a step, a given motion whose tool stands still on one,
+  /// and a roll that is chosen besides the arm angle; Stopped.
   explicit PreparedWorkcell(const Workcell& cell, const Budget& budget = {});
   ~PreparedWorkcell();
   PreparedWorkcell(PreparedWorkcell&&) noexcept;
@@ -30,11 +33,16 @@ class PreparedWorkcell {
   /// Returns the name of an arm.
   [[nodiscard]] const std::string& name(std::size_t arm) const;
   /// Returns the problem of an arm by itself: its path in the base frame, cut into as many steps as
-  /// the other's, and a robot model without the collision shapes of the links that the other arm
-  /// moves.
+  /// the other's (for a given motion, the path that its rows lead the tool along), and a robot
+  /// model without the collision shapes of the links that the other arm moves.
   [[nodiscard]] const Problem& problem(std::size_t arm) const;
   [[nodiscard]] const PreparedRobot& robot(std::size_t arm) const;
   [[nodiscard]] const InterArmWorld& between() const;
+  /// Returns the number of the arm whose motion is given, if one is.
+  [[nodiscard]] std::optional<std::size_t> given_arm() const;
+  /// Returns the rows of the given motion: the joints of Workcell::given, bit for bit, with the
+  /// path length, arm angle and branch that follow from them. Empty where no motion is given.
+  [[nodiscard]] const std::vector<TrajectoryRow>& given_rows() const;
 
  private:
   struct Impl;
@@ -43,8 +51,11 @@ class PreparedWorkcell {
 
 /// Plans two arms that work at one time: the two paths without conflict whose costs together are
 /// least. Where the arms' own answers have no conflict, they are the answer, bit for bit. The
-/// result is the same at any thread count, unless it times out. Throws InvalidArgument for options
-/// that workcells do not have (an eager planner, hooks), InputError as plan() does of either arm,
+/// result is the same at any thread count, unless it times out. Where the motion of one arm is
+/// given, the answer is the other arm's cheapest path that keeps clear of it. Throws
+/// InvalidArgument for options that workcells do not have (an eager planner, hooks), InputError as
+/// plan() does of either arm and for a given motion that does not pass check_trajectory() by
+/// itself,
 /// std::logic_error if options.check finds an answer invalid.
 [[nodiscard]] WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options = {});
 /// Plans a workcell that was prepared before. `view`: filled with what was found out, or null.

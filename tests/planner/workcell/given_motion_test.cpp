@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plans of an arm beside another one whose motion is given, against a plain program over all nodes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "plain_arm.hpp"
+#include "swivel/collision/arms/inter_arm_world.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+#include "two_arms.hpp"
+
+namespace swivel::test {
+
+namespace {
+
+std::vector<Config> joints_of(const std::vector<TrajectoryRow>& rows) {
+  std::vector<Config> joints;
+  for (const TrajectoryRow& row : rows) joints.push_back(row.q);
+  return joints;
+}
+
+/// Returns a workcell in which the left arm's own answer is its given motion, and the right arm's
+/// path is in the world or, half of the time, on the left one's tool; nothing where the left arm
+/// has no answer.
+std::optional<Workcell> random_cell_with_given(const TestRobot& robot, Random& random) {
+  Workcell cell = random_workcell(robot, random);
+  const PreparedWorkcell both(cell);
+  const PlanResult left = Planner(both.problem(0)).plan(lazily());
+  if (left.status != PlanStatus::kSolved) return std::nullopt;
+  if (random.coin()) {
+    const Chain& chain = both.robot(0).arm().chain;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Pose tool = chain.tool((k == 0 ? left.trajectory.front() : left.trajectory.back()).q);
+      Waypoint& waypoint = cell.arms[1].waypoints[k];
+      waypoint.position = tool.inverse() * waypoint.position;
+      waypoint.orientation = Quaterniond(tool.linear()).inverse() * waypoint.orientation;
+    }
+    cell.arms[1].path_frame = "left";
+  }
+  cell.arms[0].given = joints_of(left.trajectory);
+  cell.arms[0].waypoints.clear();
+  return cell;
+}
+
+/// The cheapest path of the right arm that keeps clear of the left one's rows, by a dynamic program
+/// over all nodes that is begun anew whenever a move of its best path turns out to be invalid. FCL
+/// alone answers.
+class PlainBesideGiven {
+ public:
+  explicit PlainBesideGiven(const PreparedWorkcell& prepared)
+      : prepared_(prepared),
+        arm_(prepared.problem(1), prepared.robot(1)),
+        query_(prepared.between(), DistanceProofs::kOff) {}
+
+  /// Returns the least cost; infinite where there is none.
+  double cost() {
+    std::vector<std::vector<char>> apart(arm_.layers());
+    for (std::size_t i = 0; i < arm_.layers(); ++i)
+      for (const Lattice::Node& node : arm_.nodes(i))
+        apart[i].push_back(
+            !query_.find_violating_pair({given(i), node.q}, ClearanceRule::kNode).has_value());
+    for (;;) {
+      std::vector<std::vector<double>> value(arm_.layers());
+      std::vector<std::vector<std::size_t>> next(arm_.layers());
+      for (std::size_t i = arm_.layers(); i-- > 0;) {
+        value[i].assign(arm_.nodes(i).size(), kNone);
+        next[i].assign(arm_.nodes(i).size(), 0);
+        for (std::size_t a = 0; a < value[i].size(); ++a) {
+          if (!apart[i][a]) continue;
+          if (i + 1 == arm_.layers()) {
+            value[i][a] = 0;
+            continue;
+          }
+          for (const PlainArm::Edge& edge : arm_.edges(i, a))
+            if (const double cost = edge.cost + value[i + 1][edge.to];
+                cost < value[i][a] && !barred_.contains({i, a, edge.to}))
+              value[i][a] = cost, next[i][a] = edge.to;
+        }
+      }
+      const auto best = std::min_element(value[0].begin(), value[0].end());
+      if (best == value[0].end() || *best == kNone) return kNone;
+      if (holds(static_cast<std::size_t>(best - value[0].begin()), next)) return *best;
+    }
+  }
+
+ private:
+  [[nodiscard]] const Config& given(std::size_t row) const {
+    return prepared_.given_rows()[row].q;
+  }
+  bool holds(std::size_t a, const std::vector<std::vector<std::size_t>>& next) {
+    bool all = true;
+    for (std::size_t i = 0; i + 1 < arm_.layers(); ++i) {
+      const std::size_t b = next[i][a];
+      all = arm_.valid(i, a, b) && all;
+      if (query_.find_pair_blocking_motion(
+              {prepared_.robot(0).radii(), prepared_.robot(1).radii()},
+              {given(i), arm_.nodes(i)[a].q}, {given(i + 1), arm_.nodes(i + 1)[b].q})) {
+        barred_.insert({i, a, b});
+        all = false;
+      }
+      a = b;
+    }
+    return all;
+  }
+
+  const PreparedWorkcell& prepared_;
+  PlainArm arm_;
+  InterArmWorld::Query query_;
+  std::set<std::tuple<std::size_t, std::size_t, std::size_t>> barred_;
+};
+
+TEST(GivenMotion, CostsAsMuchAsAPlainProgramOverNodes) {
+  Random random(seed("GivenMotion.CostsAsMuchAsAPlainProgramOverNodes"));
+  const std::array<TestRobot, 2> robots{data_robot("sda10f"), data_robot("sda5f")};
+  int drawn = 0, solved = 0, conflicts = 0, none = 0, followers = 0, alone = 0;
+  const int count = trials(200);
+  while (drawn < count) {
+    SCOPED_TRACE(drawn);
+    const auto cell = random_cell_with_given(robots[random.coin() ? 0 : 1], random);
+    if (!cell) continue;
+    const PreparedWorkcell prepared(*cell);
+    const WorkcellResult found = plan_workcell(prepared, lazily());
+    if (found.least_costs[1] == kNone && random.coin(0.8)) continue;  // these are many
+    ++drawn;
+    ASSERT_EQ(prepared.given_arm(), 0u);
+    const double cost = PlainBesideGiven(prepared).cost();
+    ASSERT_EQ(found.status == PlanStatus::kSolved, cost < kNone);
+    ASSERT_NE(found.decided_by, WorkcellSearch::kNone);
+    conflicts += found.decided_by != WorkcellSearch::kArmsAlone;
+    if (!(cost < kNone)) {
+      ++none;
+      continue;
+    }
+    ++solved;
+    followers += cell->leader_of(1) == 0;
+    EXPECT_NEAR(found.arms[1].cost, cost, 1e-9);
+    ASSERT_EQ(found.arms[0].trajectory.size(), cell->arms[0].given.size());
+    for (std::size_t row = 0; row < cell->arms[0].given.size(); ++row)
+      EXPECT_EQ(found.arms[0].trajectory[row].q, cell->arms[0].given[row]);
+    const WorkcellCheckResult check =
+        check_workcell(prepared, {found.arms[0].trajectory, found.arms[1].trajectory});
+    EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
+    if (found.decided_by != WorkcellSearch::kArmsAlone) continue;
+    const PlanResult own = Planner(prepared.problem(1)).plan(lazily());
+    expect_equal_rows(own.trajectory, found.arms[1].trajectory);
+    ++alone;
+  }
+  std::printf("%d cells: %d solved, %d of them with a follower; %d in conflict, %d without a path; "
+              "%d as the arm alone\n",
+              drawn, solved, followers, conflicts, none, alone);
+  EXPECT_GE(solved, at_least(count / 3));
+  EXPECT_GE(followers, at_least(count / 16));
+  EXPECT_GE(conflicts, at_least(count / 5));
+  EXPECT_GE(none, at_least(count / 20));
+}
+
+TEST(GivenMotion, HasLayersAtItsRowsWhereWaypointsAreAsked) {
+  Random random(seed("GivenMotion.HasLayersAtItsRowsWhereWaypointsAreAsked"));
+  const TestRobot robot = data_robot("sda10f");
+  int cells = 0;
+  const int count = trials(20);
+  while (cells < count) {
+    std::optional<Workcell> cell = random_cell_with_given(robot, random);
+    if (!cell || cell->arms[0].given.size() < 6) continue;
+    ++cells;
+    WorkcellArm& right = cell->arms[1];
+    right.path_frame = right.base_link;
+    for (std::size_t k = 0; k < 3; ++k) {
+      right.waypoints.resize(3);
+      right.waypoints[k].position = Vector3d(0.6, -0.5 + 0.08 * static_cast<double>(k * k), 1.0);
+      right.waypoints[k].orientation = Quaterniond::Identity();
+    }
+    const int rows = static_cast<int>(cell->arms[0].given.size()),
+              middle = 1 + random.below(rows - 2);
+    right.steps = {middle, rows - 1 - middle};
+    const PreparedWorkcell prepared(*cell);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const ToolPath path = problem_path(prepared.problem(k), prepared.robot(k).arm().chain);
+      ASSERT_EQ(path.size(), rows);
+      if (k == 0)
+        for (int row = 0; row < rows; ++row)
+          EXPECT_TRUE(path.layer(row).tool.isApprox(
+              prepared.robot(0).arm().chain.tool(cell->arms[0].given[static_cast<std::size_t>(row)]),
+              1e-12));
+      else
+        EXPECT_NEAR((path.layer(middle).tool.translation() - right.waypoints[1].position).norm(),
+                    0, 1e-12);
+    }
+    // The steps are longer than the resolution says, and this is said.
+    right.resolution.ds = 0.005;
+    const std::vector<std::string> warnings = plan_workcell(*cell, lazily()).warnings;
+    EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.find("steps of 'right' are up to ") == 0;
+    }));
+    right.steps.clear();
+    EXPECT_THROW(static_cast<void>(PreparedWorkcell(*cell)), InvalidArgument);
+    right.waypoints.assign(cell->arms[0].given.size(), right.waypoints[0]);  // one for each row
+    for (std::size_t k = 0; k < right.waypoints.size(); ++k)
+      right.waypoints[k].position.y() += 0.001 * static_cast<double>(k * k);
+    const PreparedWorkcell each(*cell);
+    EXPECT_EQ(problem_path(each.problem(1), each.robot(1).arm().chain).size(), rows);
+  }
+}
+
+TEST(GivenMotion, CheckRefusesOtherRows) {
+  Random random(seed("GivenMotion.CheckRefusesOtherRows"));
+  const TestRobot robot = data_robot("sda10f");
+  int spoilt = 0;
+  const int count = trials(10);
+  while (spoilt < count) {
+    const auto cell = random_cell_with_given(robot, random);
+    if (!cell) continue;
+    const PreparedWorkcell prepared(*cell);
+    const WorkcellResult found = plan_workcell(prepared, lazily());
+    if (found.status != PlanStatus::kSolved) continue;
+    ++spoilt;
+    std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
+                                                   found.arms[1].trajectory};
+    rows[0][1].q[6] += 1e-7;
+    const WorkcellCheckResult check = check_workcell(prepared, rows, {.margins = false});
+    EXPECT_FALSE(check.passed);
+    ASSERT_FALSE(check.failures.empty());
+    EXPECT_NE(check.failures[0].find("row 1: a joint of 'left' is 1e-07 rad from the given motion"),
+              std::string::npos)
+        << check.failures[0];
+  }
+}
+
+TEST(GivenMotion, IsRefusedWhereItDoesNotKeepTheLimits) {
+  Random random(seed("GivenMotion.IsRefusedWhereItDoesNotKeepTheLimits"));
+  const TestRobot robot = data_robot("sda10f");
+  std::optional<Workcell> good;
+  while (!good || plan_workcell(*good, lazily()).status != PlanStatus::kSolved)
+    good = random_cell_with_given(robot, random);
+  const auto refuses = [&](const auto& spoil, const char* words) {
+    Workcell cell = *good;
+    spoil(cell);
+    try {
+      static_cast<void>(plan_workcell(cell, lazily()));
+      ADD_FAILURE() << "not refused: " << words;
+    } catch (const std::exception& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  refuses(
+      [](Workcell& c) {
+        const PreparedWorkcell prepared(c);
+        SceneObject ball;
+        ball.name = "ball";
+        ball.shape = Sphere{0.02};
+        ball.pose.translation() = prepared.robot(0).arm().chain.tool(c.arms[0].given[2]).translation();
+        c.scene.push_back(ball);
+      },
+      "arm 'left': given motion: row ");
+  refuses([](Workcell& c) { c.arms[0].limits.joint_step = 1e-4; }, "given motion: ");
+  refuses([](Workcell& c) { c.arms[0].limits.joint_margin = 1; }, "is outside its limits");
+  refuses([](Workcell& c) { c.arms[0].given[1] = c.arms[0].given[0]; },
+          "given motion: row 1: the tool is where it is at the row before");
+  refuses([](Workcell& c) { c.arms[1].given = c.arms[0].given; }, "both motions are given");
+  refuses([](Workcell& c) { c.arms[0].given.resize(1); }, "allowed are two or more");
+  refuses([](Workcell& c) { c.arms[0].given[1][2] = kNone; }, "row 1: allowed are finite");
+  refuses([](Workcell& c) { c.arms[0].waypoints = c.arms[1].waypoints; }, "are none");
+  refuses(
+      [](Workcell& c) {
+        c.arms[0].path_frame = "right";
+        c.arms[1].path_frame.clear();
+      },
+      "are none");
+  refuses([](Workcell& c) { c.arms[1].steps = {1}; }, "since the given motion ends then");
+}
+
+}  // namespace
+
+}  // namespace swivel::test
