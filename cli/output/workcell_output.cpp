@@ -14,9 +14,33 @@ bool has_path_alone(const WorkcellResult& result, std::size_t arm) {
   return std::isfinite(result.least_costs[arm]);
 }
 
+/// Returns "the given motion of 'left'".
+std::string given_words(const WorkcellResult& result) {
+  return "the given motion of '" + result.names[*result.given_arm] + "'";
+}
+
+/// Returns what a plan says of the costs of the arms alone.
+std::string alone_text(const WorkcellResult& result) {
+  const auto given = result.given_arm;
+  const std::size_t planned = given ? 1 - *given : 0;
+  const double least = given ? result.least_costs[planned]
+                             : result.least_costs[0] + result.least_costs[1],
+               cost = given ? result.arms[planned].cost : result.cost;
+  const std::string who =
+      given ? "'" + result.names[planned] + "' alone, which " : "both arms alone, which ";
+  if (result.decided_by == WorkcellSearch::kArmsAlone)
+    return ": that of " + who + (given ? "keeps clear of it" : "do not meet");
+  if (least <= 0) return "";
+  return formatted(": %.2g %% more than ", 100 * (cost / least - 1)) + who +
+         (given ? "would not keep clear of it" : "would meet");
+}
+
 /// Returns why two arms, each of which has a path by itself, have none together.
 std::string conflict_text(const WorkcellResult& result) {
   std::string text = "no plan: each arm has a path by itself, and no two of them keep clear";
+  if (result.given_arm)
+    text = "no plan: '" + result.names[1 - *result.given_arm] +
+           "' has a path by itself, and none keeps clear of " + given_words(result);
   if (result.decided_by == WorkcellSearch::kRegions)
     text +=
         formatted(" (%lld region%s of conflict)", static_cast<long long>(result.counters.rounds),
@@ -33,12 +57,11 @@ std::string conflict_text(const WorkcellResult& result) {
 std::string solved_text(const WorkcellResult& result) {
   std::string text =
       formatted("two arms, %zu layers, cost %.6g", result.arms[0].trajectory.size(), result.cost);
-  const double alone = result.least_costs[0] + result.least_costs[1];
-  if (result.decided_by == WorkcellSearch::kArmsAlone)
-    text += ": that of both arms alone, which do not meet";
-  else if (alone > 0)
-    text += formatted(": %.2g %% more than both arms alone, which would meet",
-                      100 * (result.cost / alone - 1));
+  if (const auto given = result.given_arm)
+    text = formatted("'%s' beside %s, %zu layers, cost %.6g", result.names[1 - *given].c_str(),
+                     given_words(result).c_str(), result.arms[0].trajectory.size(),
+                     result.arms[1 - *given].cost);
+  text += alone_text(result);
   if (result.status != PlanStatus::kSolved && result.bound > 0)
     text += formatted("; stopped, at most %.2g %% from the best",
                       100 * (result.cost / result.bound - 1));
@@ -73,8 +96,9 @@ std::string workcell_text(const WorkcellResult& result) {
     text = "no plan: an arm has no path by itself\n";
   for (std::size_t k = 0; k < 2; ++k) {
     if (!solved && has_path_alone(result, k)) continue;
-    PlanResult arm = result.arms[k];
-    text += "  " + result.names[k] + ":\n" + indented(indented(answer_text(arm)));
+    const PlanResult& arm = result.arms[k];
+    text += "  " + result.names[k] + (result.given_arm == k ? " (given):\n" : ":\n") +
+            indented(indented(answer_text(arm)));
   }
   return text;
 }

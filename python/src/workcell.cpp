@@ -49,20 +49,51 @@ bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObjec
                     });
 }
 
-/// Makes a workcell of two problems, whose scene is that of the first.
-Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::string, 2>>& touch) {
+/// Gives an arm the rows of a motion; limits, resolution and cost are those of `like`. Throws
+/// ValueError for rows of other joints.
+void give(WorkcellArm& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
+  static_cast<Robot&>(arm) = robot;
+  const auto names =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll)
+          .chain.joint_names;
+  if (!std::equal(names.begin(), names.end(), motion.joint_names.begin(), motion.joint_names.end()))
+    throw py::value_error("arms: the trajectory of '" + arm.name +
+                          "' has other joints than its robot: allowed are rows of this robot");
+  arm.limits = like.limits;
+  arm.resolution = like.resolution;
+  arm.cost = like.cost;
+  for (const TrajectoryRow& row : *motion.rows) arm.given.push_back(row.q);
+}
+
+/// Returns the steps between rows at which waypoints are. Throws ValueError unless they ascend
+/// from 0.
+std::vector<int> steps_of(const std::vector<int>& at_rows) {
+  std::vector<int> steps;
+  for (std::size_t k = 1; k < at_rows.size(); ++k) steps.push_back(at_rows[k] - at_rows[k - 1]);
+  if (at_rows.front() != 0 || std::any_of(steps.begin(), steps.end(), [](int n) { return n < 1; }))
+    throw py::value_error("at_rows: allowed are ascending rows from 0");
+  return steps;
+}
+
+/// Makes a workcell of two arms, whose scene is that of the first that has a problem.
+Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::string, 2>>& touch,
+                       const std::vector<int>& at_rows) {
   if (arms.size() != 2)
     throw py::value_error("arms: has " + std::to_string(arms.size()) +
                           " entries: allowed are two, name -> Problem");
   auto cell = std::make_shared<swivel::Workcell>();
   std::size_t k = 0;
+  const Problem* first_problem = nullptr;
   for (const auto& [name, value] : arms) {
-    const auto& problem = value.cast<const Problem&>();
-    WorkcellArm& arm = cell->arms[k];
+    WorkcellArm& arm = cell->arms[k++];
     arm.name = py::str(name);
+    if (py::isinstance<py::tuple>(value)) continue;  // its motion is given
+    const auto& problem = value.cast<const Problem&>();
     static_cast<Robot&>(arm) = problem;
     static_cast<Task&>(arm) = problem;
-    if (k == 0) {
+    if (!at_rows.empty()) arm.steps = steps_of(at_rows);
+    if (first_problem == nullptr) {
+      first_problem = &problem;
       cell->scene = problem.scene;
       cell->vary = problem.vary;
       cell->source = problem.source;
@@ -71,7 +102,15 @@ Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::s
           "arms: have different scenes: allowed is one scene, or none of the "
           "second arm");
     }
-    ++k;
+  }
+  if (first_problem == nullptr)
+    throw py::value_error("arms: both motions are given: allowed is one Problem at least");
+  k = 0;
+  for (const auto& [name, value] : arms) {
+    WorkcellArm& arm = cell->arms[k++];
+    if (!py::isinstance<py::tuple>(value)) continue;
+    const auto& [robot, motion] = value.cast<std::pair<const Robot*, const Trajectory*>>();
+    give(arm, *robot, *motion, *first_problem);
   }
   // Two Robots of Python that were loaded from one file have a model each.
   const RobotModel &first = *cell->arms[0].model, &second = *cell->arms[1].model;
@@ -139,16 +178,22 @@ void bind_cell(py::module_& m) {
       .def(
           py::init(&make_workcell), py::arg("arms"), py::kw_only(),
           py::arg("may_touch") = std::vector<std::array<std::string, 2>>(),
+          py::arg("at_rows") = std::vector<int>(),
           "arms: two entries, name -> Problem, of one robot model with one base link and one "
           "`hold`; the `frame` of one path may be the name of the other arm, which leads then. The "
-          "scene is that of the first. may_touch: pairs of bodies, one of either arm, that may "
-          "touch. Raises InvalidArgument.")
+          "scene is that of the first. One entry may be (Robot, Trajectory) instead: an arm whose "
+          "motion is given, with limits, resolution and cost of the other. at_rows: the row of "
+          "that "
+          "motion at which each waypoint of the other arm is; empty: there is one for each row, or "
+          "two. may_touch: pairs of bodies, one of either arm, that may touch. Raises "
+          "InvalidArgument.")
       .def_property_readonly(
           "names", [](const Workcell& w) { return names_of(*w.cell); }, "Names of both arms.")
       .def_property_readonly("source", [](const Workcell& w) { return w.cell->source; })
       .def("__repr__", [](const Workcell& w) {
+        const std::size_t of = w.cell->given_arm() == 0u ? 1 : 0;
         return formatted("<Workcell of '%s' and '%s', %zu waypoints>", w.cell->arms[0].name.c_str(),
-                         w.cell->arms[1].name.c_str(), w.cell->arms[0].waypoints.size());
+                         w.cell->arms[1].name.c_str(), w.cell->arms[of].waypoints.size());
       });
   m.def(
       "load_workcell",
@@ -165,6 +210,13 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "solved", [](const WorkcellPlan& p) { return p.result->status == PlanStatus::kSolved; })
       .def_property_readonly("names", [](const WorkcellPlan& p) { return p.result->names; })
+      .def_property_readonly(
+          "given",
+          [](const WorkcellPlan& p) -> std::optional<std::string> {
+            if (!p.result->given_arm) return {};
+            return p.result->names[*p.result->given_arm];
+          },
+          "Name of the arm whose motion was given.")
       .def_property_readonly(
           "cost", [](const WorkcellPlan& p) { return p.result->cost; }, "Of both paths together.")
       .def_property_readonly(

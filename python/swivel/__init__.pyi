@@ -1117,7 +1117,11 @@ def load_job_trajectory(file: _File, job: Job | _File) -> list[JobPart] | JobMot
 
 class Workcell:
     def __init__(
-        self, arms: dict[str, Problem], *, may_touch: Sequence[tuple[str, str]] = ()
+        self,
+        arms: dict[str, Problem | tuple[Robot, Trajectory]],
+        *,
+        may_touch: Sequence[tuple[str, str]] = (),
+        at_rows: Sequence[int] = (),
     ) -> None: ...
     @property
     def names(self) -> list[str]: ...
@@ -1131,6 +1135,8 @@ class WorkcellPlan:
     def solved(self) -> bool: ...
     @property
     def names(self) -> list[str]: ...
+    @property
+    def given(self) -> str | None: ...
     @property
     def cost(self) -> float: ...
     @property

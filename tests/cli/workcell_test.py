@@ -207,6 +207,107 @@ class Workcells(unittest.TestCase):
         twice["waypoints"][1] = twice["waypoints"][0]
         self.refused(changed(0, path=twice), "is where the one before it is")
 
+    def given(self, name="rows.csv", **changes):
+        """The workcell in which the left arm's motion is given by a file beside it."""
+        problem = cell(**changes)
+        del problem["arms"][0]["path"]
+        problem["arms"][0]["trajectory"] = name
+        return problem
+
+    def test_an_arm_whose_motion_is_given(self):
+        self.assertEqual(self.plan(cell()).returncode, 0)
+        both = list(csv.DictReader(self.out.read_text().splitlines()))
+        rows = self.folder / "rows.csv"
+        rows.write_text(self.out.read_text())
+        names = [f"arm_left_joint_{k}" for k in ("1_s", "2_l", "3_e", "4_u", "5_r", "6_b", "7_t")]
+        alone = [",".join(reversed(names))]
+        alone += [",".join(row[name] for name in reversed(names)) for row in both]
+        problem = self.given()
+        for text in (None, "\n".join(alone) + "\n"):
+            if text is not None:
+                rows.write_text(text)
+            done = self.plan(problem)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            lines = done.stdout.splitlines()
+            self.assertRegex(
+                lines[0], r"^'right' beside the given motion of 'left', 6 layers, cost [0-9.]+: "
+                r"that of 'right' alone, which keeps clear of it; nearest to each other "
+            )
+            self.assertEqual(lines[1], "  left (given):")
+            again = list(csv.DictReader(self.out.read_text().splitlines()))
+            for old, new in zip(both, again, strict=True):
+                for name in old:
+                    if "joint" in name:
+                        self.assertEqual(old[name], new[name])
+            result = json.loads(self.result.read_text())
+            self.assertEqual([one["given"] for one in result["arms"]], [True, False])
+            checked = run("check", self.folder / "cell.yaml", self.out)
+            self.assertEqual(checked.returncode, 0, checked.stdout)
+        spoilt = [dict(row) for row in again]
+        spoilt[2][names[6]] = str(float(spoilt[2][names[6]]) + 1e-7)
+        self.out.write_text(
+            "\n".join([",".join(spoilt[0])] + [",".join(row.values()) for row in spoilt]) + "\n"
+        )
+        done = run("check", self.folder / "cell.yaml", self.out)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("row 2: a joint of 'left' is 1e-07 rad from the given motion", done.stdout)
+
+    def test_no_path_beside_a_given_motion(self):
+        apart = cell(arms=[arm("left", 0.02), arm("right", -0.4)])
+        self.assertEqual(self.plan(apart).returncode, 0)
+        (self.folder / "rows.csv").write_text(self.out.read_text())
+        problem = self.given(arms=[arm("left", 0.02), arm("right", -0.01)])
+        done = self.plan(problem)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertTrue(
+            done.stdout.startswith(
+                "no plan: 'right' has a path by itself, and none keeps clear of the given motion "
+                "of 'left' ("
+            )
+        )
+
+    def test_bad_given_motions(self):
+        self.assertEqual(self.plan(cell()).returncode, 0)
+        both = self.out.read_text()
+        rows = self.folder / "rows.csv"
+        rows.write_text(both)
+        self.out.unlink()
+
+        def refused(words, text=both, index=1, **keys):
+            rows.write_text(text)
+            problem = self.given()
+            problem["arms"][index].update(keys)
+            self.refused(problem, words)
+
+        refused("No such file", index=0, trajectory="nowhere.csv")
+        refused("is given, as is that of the other arm", trajectory="rows.csv", path=None)
+        refused("is given for an arm whose motion is given", index=0, start={"joints": [0] * 7})
+        refused("is given for an arm whose motion is given", index=0, at_rows=[0, 5])
+        refused("column 's_left' is unknown", text=both.replace("phi_left", "phi"))
+        names = ",".join(both.splitlines()[0].split(",")[6:13])
+        joints = [",".join(line.split(",")[6:13]) for line in both.splitlines()[1:]]
+        timed = [f"t,{names}"] + [f"{k},{line}" for k, line in enumerate(joints)]
+        refused("has times", text="\n".join(timed) + "\n")
+        refused("row 1: the tool is where it is", "\n".join([names, joints[0], *joints]) + "\n")
+        refused("given motion: row 0: ", limits={"joint_margin": 1.5}, index=0)
+        path = copy.deepcopy(cell()["arms"][1]["path"])
+        path["waypoints"].insert(1, {"xyz": [0.72, -0.25, 1.05], "rpy": [0, 1.5707963, 0]})
+        refused("has 3 waypoints, and the given motion of 'left' 6 rows", path=path)
+        for at, words in (
+            ([0, 5], "has 2 rows from 0 to 5"), ([0, 2, 4], "has 3 rows from 0 to 4"),
+            ([0, 3, 3], "is 3, after 3"), ([0, 2.5, 5], "is 2.5"), ([0, 2, 9], "is 9"),
+            ([], "has 0 rows"),
+        ):
+            refused(words, path=path, at_rows=at)
+        rows.write_text(both)
+        problem = self.given()
+        problem["arms"][1].update(path=path, at_rows=[0, 2, 5])
+        self.assertEqual(self.plan(problem).returncode, 0)
+        self.out.unlink()
+        problem = cell()
+        problem["arms"][1]["at_rows"] = [0, 5]
+        self.refused(problem, "no arm has a `trajectory`")
+
     def test_who_refuses_workcells(self):
         file = self.file(cell())
         for command in (("campaign", file), ("place", file, "--object", "x", "--x", "0:1:0.5"),

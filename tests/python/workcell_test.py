@@ -91,6 +91,33 @@ class Workcells(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "there is no plan"):
             barred.save(self.folder / "none.csv")
 
+    def test_plans_beside_a_given_motion(self):
+        arms = self.arms(0.5)
+        plan = swivel.plan_workcell(swivel.Workcell(arms))
+        self.assertIsNone(plan.given)
+        left = plan.trajectories["left"]
+        cell = swivel.Workcell({"left": (arms["left"].robot, left), "right": arms["right"]})
+        self.assertRegex(repr(cell), "<Workcell of 'left' and 'right', 2 waypoints>")
+        beside = swivel.plan_workcell(cell)
+        self.assertEqual(beside.given, "left")
+        self.assertTrue(np.array_equal(beside.trajectories["left"].joints, left.joints))
+        self.assertTrue(
+            np.array_equal(
+                beside.trajectories["right"].joints, plan.trajectories["right"].joints
+            )
+        )
+        self.assertTrue(swivel.check_workcell(cell, beside))
+        given = {"left": (arms["left"].robot, left), "right": arms["right"]}
+        self.assertTrue(swivel.plan_workcell(swivel.Workcell(given, at_rows=[0, 5])).solved)
+        with self.assertRaises(swivel.InvalidArgument):
+            swivel.Workcell(given, at_rows=[0, 2, 5])
+        with self.assertRaisesRegex(ValueError, "ascending rows from 0"):
+            swivel.Workcell(given, at_rows=[1, 5])
+        with self.assertRaisesRegex(ValueError, "both motions are given"):
+            swivel.Workcell({"left": given["left"], "right": given["left"]})
+        with self.assertRaisesRegex(ValueError, "has other joints"):
+            swivel.Workcell({"left": arms["left"], "right": (arms["right"].robot, left)})
+
     def test_bad_input(self):
         with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
             swivel.load_workcell(DATA / "problems" / "experiment_c.yaml")

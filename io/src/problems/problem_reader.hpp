@@ -71,6 +71,8 @@ class ProblemReader {
   /// Of an arm of six joints six numbers are enough: the roll is that of the last waypoint.
   void read_end(const YamlValue& path, const Chain& chain);
 
+  /// Returns the path of a file that a key names, from the folder of the problem file.
+  [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;
   [[nodiscard]] std::string link_name(const YamlValue& value) const;
   /// Returns one number for each joint of the arm, base to tip. An arm of six joints has a seventh
   /// number, for the roll of the tool.
@@ -118,7 +120,6 @@ class ProblemReader {
   std::vector<std::string> more_joints_;
 
  private:
-  [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;
   [[nodiscard]] bool is_attached(const std::string& name) const;
   [[nodiscard]] bool is_object(const std::string& name) const;
 

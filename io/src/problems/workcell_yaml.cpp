@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
+#include "files/csv.hpp"
+#include "motions/given_rows.hpp"
 #include "problems/problem_reader.hpp"
 #include "schema/schema.hpp"
 #include "swivel/io/problems/workcell.hpp"
@@ -28,8 +31,14 @@ class WorkcellReader : ProblemReader {
     list_arms();
     require_scene_in_base();
     read_scene();
-    for (std::size_t k = 0; k < 2; ++k) read_arm(k);
-    require_equal_lengths();
+    for (std::size_t k = 0; k < 2; ++k)
+      if (!is_given(k)) read_arm(k);
+    for (std::size_t k = 0; k < 2; ++k)
+      if (is_given(k)) read_given_arm(k);
+    if (const auto given = cell_.given_arm())
+      read_steps(*given);
+    else
+      require_equal_lengths();
     read_may_touch();
     read_vary();
     cell_.source = problem_.source;
@@ -138,7 +147,76 @@ class WorkcellReader : ProblemReader {
     }
   }
 
+  [[nodiscard]] bool is_given(std::size_t k) const {
+    return sections_[k].section().find_filled("trajectory").has_value();
+  }
+
+  /// Reads an arm whose motion is given. The other arm has been read.
+  void read_given_arm(std::size_t k) {
+    WorkcellArm& arm = cell_.arms[k];
+    const YamlSection section = sections_[k].section();
+    const YamlValue file = section.require("trajectory");
+    if (sections_[1 - k].section().find_filled("trajectory"))
+      file.fail("is given, as is that of the other arm", "one arm with a `path`");
+    for (const char* const key : {"start", "at_rows"})
+      if (const auto value = section.find_filled(key))
+        value->fail("is given for an arm whose motion is given", "no such key here");
+    static_cast<Robot&>(problem_) = arm;
+    static_cast<Task&>(problem_) = Task();
+    problem_.roll.reset();
+    more_joints_ = joints_before(cell_.arms[1 - k].tip_link);
+    read_task();
+    if (const auto value = section.find_filled("limits")) read_limits(*value);
+    read_cost();
+    std::array<JointNames, 2> joints;
+    for (std::size_t each = 0; each < 2; ++each) {
+      static_cast<Robot&>(problem_) = cell_.arms[each];
+      joints[each] = suitable_arm().chain.joint_names;
+    }
+    arm.given = with_key(file, resolve(file), [&](const std::filesystem::path& path) {
+      return load_given_rows(path, k, {cell_.arms[0].name, cell_.arms[1].name}, joints);
+    });
+    static_cast<Task&>(arm) = problem_;
+  }
+
+  /// Reads at which rows of the given motion the waypoints of the other arm are.
+  void read_steps(std::size_t given) {
+    const YamlSection section = sections_[1 - given].section();
+    WorkcellArm& arm = cell_.arms[1 - given];
+    const std::size_t rows = cell_.arms[given].given.size(), waypoints = arm.waypoints.size();
+    const auto at_rows = section.find_filled("at_rows");
+    if (!at_rows) {
+      if (waypoints != 2 && waypoints != rows)
+        section.require("path").fail(
+            "has " + std::to_string(waypoints) + " waypoints, and the given motion of '" +
+                cell_.arms[given].name + "' " + std::to_string(rows) + " rows",
+            "two waypoints, one for each row, or `at_rows` beside the path");
+      return;
+    }
+    std::vector<int> at;
+    for (const YamlValue& row : at_rows->items()) {
+      if (row.number() != std::floor(row.number()) || row.number() >= static_cast<double>(rows))
+        row.fail("is " + csv_number(row.number()),
+                 "a whole number from 0 to " + std::to_string(rows - 1) + ", the last row");
+      at.push_back(static_cast<int>(row.number()));
+      if (at.size() > 1 && at.back() <= at[at.size() - 2])
+        row.fail("is " + std::to_string(at.back()) + ", after " + std::to_string(at[at.size() - 2]),
+                 "a row after that of the waypoint before");
+    }
+    if (at.size() != waypoints || at.front() != 0 || at.back() + 1 != static_cast<int>(rows))
+      at_rows->fail("has " + std::to_string(at.size()) + " rows" +
+                        (at.empty() ? ""
+                                    : " from " + std::to_string(at.front()) + " to " +
+                                          std::to_string(at.back())),
+                    "one for each of the " + std::to_string(waypoints) +
+                        " waypoints, from 0 to the last, " + std::to_string(rows - 1));
+    for (std::size_t k = 1; k < at.size(); ++k) arm.steps.push_back(at[k] - at[k - 1]);
+  }
+
   void require_equal_lengths() const {
+    for (const YamlValue& section : sections_)
+      if (const auto at_rows = section.section().find_filled("at_rows"))
+        at_rows->fail("is given, and no arm has a `trajectory`", "no such key here");
     const std::size_t first = cell_.arms[0].waypoints.size(),
                       second = cell_.arms[1].waypoints.size();
     if (first != second)

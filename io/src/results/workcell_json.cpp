@@ -20,6 +20,7 @@ Json arm_json(const WorkcellResult& result, std::size_t arm) {
   const bool no_path =
       result.status == PlanStatus::kInfeasible && !std::isfinite(result.least_costs[arm]);
   Json json = {{"name", result.names[arm]},
+               {"given", result.given_arm == arm},
                {"least_cost", finite_or_null(result.least_costs[arm])},
                {"cost", solved ? Json(plan.cost) : Json(nullptr)},
                {"summary", summary_json(plan, plan.trajectory)},

@@ -396,15 +396,23 @@ Schema arms() {
        list(section("", join(join(body, shape_keys()), join(pose_keys(), where)),
                     {kOneShape, kOneOrientation})),
        "", optional(), "bodies that move with the arm: tools, held parts"},
-      {"path", path(), "", required(),
+      {"path", path(), "", in_words("**required**, or `trajectory`"),
        "its [path](#path); `frame` may be the name of the other arm, whose tool carries it then",
-       "a section with waypoints or file"},
+       "a section with waypoints or file; or `trajectory`, of an arm whose motion is given"},
+      {"trajectory", text(), "", optional(),
+       "instead, of one of the arms: the file of its [given motion](#an-arm-whose-motion-is-given)",
+       "the name of a file"},
+      {"at_rows", list(number(kNonNegative)), "",
+       in_words("see [there](#an-arm-whose-motion-is-given)"),
+       "beside an arm whose motion is given: the row at which each waypoint is, from 0"},
       {"start", configuration(), "", in_words("Swivel chooses"),
        "`{joints: [...]}` (rad): its configuration at the first waypoint"},
       {"limits", limits_of_one(), "", optional(),
        "[limits](#limits) in place of the file's, key by key"}};
-  return refusing(list(section("arm", keys), 2),
-                  {not_yet("trajectory"), not_yet("axes"), not_yet("cost")});
+  Schema arm = section(
+      "arm", keys,
+      {{{"path", "trajectory"}, true}, {{"at_rows", "trajectory"}}, {{"start", "trajectory"}}});
+  return refusing(list(std::move(arm), 2), {not_yet("axes"), not_yet("cost")});
 }
 
 /// Returns the keys that only jobs have.

@@ -4,28 +4,15 @@
 #include "files/bad_input.hpp"
 #include "files/csv.hpp"
 #include "files/files.hpp"
+#include "motions/given_rows.hpp"
 #include "swivel/io/workcells/workcell_csv.hpp"
 
 namespace swivel::io {
 
-namespace {
-
-std::vector<std::string> workcell_header(const std::array<std::string, 2>& names,
-                                         const std::array<JointNames, 2>& joint_names) {
-  std::vector<std::string> columns;
-  for (const char* const what : {"s_", "phi_", "branch_"})
-    for (const std::string& name : names) columns.push_back(what + name);
-  for (const JointNames& joints : joint_names)
-    columns.insert(columns.end(), joints.begin(), joints.end());
-  return columns;
-}
-
-}  // namespace
-
 std::string to_workcell_csv(const WorkcellResult& result) {
   std::string text;
   for (const std::string& name :
-       workcell_header(result.names, {result.arms[0].joint_names, result.arms[1].joint_names}))
+       workcell_columns(result.names, {result.arms[0].joint_names, result.arms[1].joint_names}))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   const auto &first = result.arms[0].trajectory, &second = result.arms[1].trajectory;
@@ -44,7 +31,7 @@ std::string to_workcell_csv(const WorkcellResult& result) {
 std::array<std::vector<TrajectoryRow>, 2> load_workcell_csv(
     const std::filesystem::path& csv, const std::array<std::string, 2>& names,
     const std::array<JointNames, 2>& joint_names) {
-  const CsvTable table(csv, workcell_header(names, joint_names));
+  const CsvTable table(csv, workcell_columns(names, joint_names));
   std::array<std::vector<TrajectoryRow>, 2> rows;
   for (std::size_t k = 0; k < table.rows(); ++k)
     for (std::size_t arm = 0; arm < 2; ++arm) {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motions/given_rows.hpp"
+
+#include "files/bad_input.hpp"
+#include "files/csv.hpp"
+#include "files/files.hpp"
+
+namespace swivel::io {
+
+std::vector<std::string> workcell_columns(const std::array<std::string, 2>& names,
+                                          const std::array<JointNames, 2>& joints) {
+  std::vector<std::string> columns;
+  for (const char* const what : {"s_", "phi_", "branch_"})
+    for (const std::string& name : names) columns.push_back(what + name);
+  for (const JointNames& of_arm : joints)
+    columns.insert(columns.end(), of_arm.begin(), of_arm.end());
+  return columns;
+}
+
+namespace {
+
+/// Returns whether a table begins with these columns, as Swivel writes them.
+bool begins_with(const std::string& text, const std::vector<std::string>& columns) {
+  std::string header;
+  for (const std::string& column : columns) header += (header.empty() ? "" : ",") + csv_field(column);
+  return text.starts_with(header + "\n") || text.starts_with(header + "\r\n");
+}
+
+}  // namespace
+
+std::vector<Config> load_given_rows(const std::filesystem::path& file, std::size_t arm,
+                                    const std::array<std::string, 2>& names,
+                                    const std::array<JointNames, 2>& joints) {
+  std::vector<Config> rows;
+  const std::vector<std::string> of_both = workcell_columns(names, joints);
+  if (begins_with(read_file(file, "trajectory file", kMostTableBytes), of_both)) {
+    const CsvTable table(file, of_both);
+    for (std::size_t k = 0; k < table.rows(); ++k)
+      rows.emplace_back(Config::Map(&table.row(k)[of_both.size() - kDof * (2 - arm)]));
+    return rows;
+  }
+  const TrajectoryFile read = load_trajectory_file(file, joints[arm]);
+  if (!read.timed.empty())
+    bad_input(file.string(), "has times, which the plan of two arms would not keep",
+              "rows without times, as `swivel plan --out` writes them");
+  if (!read.stated.last_joint)
+    bad_input(file.string(), "lacks the roll of an arm of six joints",
+              "a motion of an arm of seven joints");
+  for (const TrajectoryRow& row : read.rows) rows.push_back(row.q);
+  return rows;
+}
+
+}  // namespace swivel::io

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "swivel/io/motions/motion.hpp"
+
+namespace swivel::io {
+
+/// Returns the columns of the trajectories of a workcell: for each arm s, phi and branch, named
+/// after it, then the joints of both. `names` and `joint_names` are those of both arms.
+[[nodiscard]] std::vector<std::string> workcell_columns(const std::array<std::string, 2>& names,
+                                                        const std::array<JointNames, 2>& joints);
+/// Loads the rows of a motion that is given for arm `arm` of a workcell: its joints, rad, from a
+/// trajectory without times that load_trajectory_file() reads, or from the trajectories of both
+/// arms. What else the file says of a row follows from the joints, and is not read. Throws
+/// InputError.
+[[nodiscard]] std::vector<Config> load_given_rows(const std::filesystem::path& file,
+                                                  std::size_t arm,
+                                                  const std::array<std::string, 2>& names,
+                                                  const std::array<JointNames, 2>& joints);
+
+}  // namespace swivel::io
