@@ -175,6 +175,38 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(counts.chosen, at_least_among(count / 40));
 }
 
+/// An arm of six joints beside a turntable, whose plate is the base link: seven joints, of which
+/// the first moves the room against the part. In every other problem a body stands in the room.
+TEST(Arms, FourPlannersAndBruteForceBesideATurntable) {
+  const std::uint64_t base = seed("Arms.Turntable");
+  TestRobot robot = arm_of_data("kr6_turntable_like");
+  robot.base_link = "plate";
+  ArmsCounts counts;
+  const int count = trials(200);
+  int turned = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_task(robot, random);
+    if (trial % 2 == 0) {
+      const Pose post = random_pose(random, Vector3d(0.5, 0, 0.6), 0.4);
+      problem.attached.push_back({"post", Cylinder{0.04, 0.8}, post, "room"});
+    }
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const int solved = counts.solved;
+    check_agreement(problem, what, counts);
+    if (HasFatalFailure()) return;
+    if (counts.solved == solved) continue;
+    const std::vector<TrajectoryRow> rows = plan(problem).trajectory;
+    turned += std::abs(rows.back().q[0] - rows.front().q[0]) > 0.01;
+  }
+  std::printf("%d problems: %d solved (%d with windings; in %d the table turns), %d infeasible\n",
+              count, counts.solved, counts.wound, turned, counts.infeasible);
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  EXPECT_GE(counts.infeasible, at_least_among(count / 20));
+  EXPECT_GE(turned, at_least_among(count / 8));
+}
+
 /// A path that turns the last joint on from near its limit: the first answer on circles leaves the
 /// limits.
 TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
