@@ -86,7 +86,8 @@ class ArmAngleRedundancy final : public Redundancy {
   ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
                      const Problem& problem, const Budget& budget,
                      std::optional<double> last_joint = {})
-      : grid_(chain, arm, path, problem, budget, {}, last_joint) {}
+      : grid_(chain, arm, path, problem, budget, {}, last_joint,
+              SrsLattice::possible_circles(chain, arm, path, problem)) {}
   [[nodiscard]] const Lattice& lattice() const override { return grid_; }
   [[nodiscard]] bool has_grid() const override { return true; }
   [[nodiscard]] std::unique_ptr<LayerSolver> solver(

@@ -236,7 +236,7 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& p
   try {
     for (const auto& joints : certificate.windings) {
       lattice = lattice->with_windings(joints);
-      if (!lattice) throw Refused{"windings: are of arms that are planned on arcs"};
+      if (!lattice) throw Refused{"windings: of joints that are told apart anyway"};
     }
     const World world(robot.world(), problem, budget);
     Verifier(*lattice, world, world.edge_rule(robot.radii()), certificate, result, check, budget)

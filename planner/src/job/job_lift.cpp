@@ -3,25 +3,20 @@
 
 #include <cmath>
 
+#include "plan/told_turns.hpp"
+
 namespace swivel {
 
 namespace {
 
 constexpr double kRounding = 1e-9;  // rad
 
-/// Returns true if a joint has limits, though the lattice treats it as a circle. The roll of the
-/// tool has none in transitions.
-bool is_bounded_circle(const Lattice& lattice, std::size_t j) {
-  const JointLimit& limit = lattice.chain().limit[j];
-  return lattice.continuous()[j] && !limit.continuous && !limit.wide() &&
-         !(lattice.chain().roll && j + 1 == kDof);
-}
-
 /// Notes the bounded joints that are outside of their limits at q.
 void note_off_limits(const Lattice& lattice, const Config& q, Lattice::Joints& off) {
   const double margin = lattice.limits().joint_margin - kRounding;
+  const Lattice::Joints circles = bounded_circles(lattice);
   for (std::size_t j = 0; j < kDof; ++j) {
-    if (!is_bounded_circle(lattice, j)) continue;
+    if (!circles[j]) continue;
     const double x = q[static_cast<Eigen::Index>(j)];
     const JointLimit& limit = lattice.chain().limit[j];
     off[j] = off[j] || x < limit.lower + margin || x > limit.upper - margin;
@@ -31,9 +26,10 @@ void note_off_limits(const Lattice& lattice, const Config& q, Lattice::Joints& o
 /// Notes the bounded joints that are in another turn at `q` than at `wanted`.
 void note_other_turn(const Lattice& lattice, const Config& q, const Config& wanted,
                      Lattice::Joints& off) {
+  const Lattice::Joints circles = bounded_circles(lattice);
   for (std::size_t j = 0; j < kDof; ++j) {
     const auto i = static_cast<Eigen::Index>(j);
-    if (is_bounded_circle(lattice, j)) off[j] = off[j] || std::abs(q[i] - wanted[i]) > kPi;
+    if (circles[j]) off[j] = off[j] || std::abs(q[i] - wanted[i]) > kPi;
   }
 }
 
@@ -43,10 +39,8 @@ Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice, const 
   Lattice::Joints off{};
   std::optional<Config> end = job.home;
   for (JobPart& part : parts) {
-    if (part.rows.empty()) {  // the run itself leaves the limits, whatever its turn
-      for (std::size_t j = 0; j < kDof; ++j) off[j] = is_bounded_circle(lattice, j);
-      return off;
-    }
+    // the run itself leaves the limits, whatever its turn
+    if (part.rows.empty()) return bounded_circles(lattice);
     Config last = part.rows.front().q;
     if (end) last = *end + lattice.delta(*end, last);
     Config before = part.rows.front().q;

@@ -14,10 +14,11 @@
 #include "job/order/order_estimate.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
+#include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/supported_options.hpp"
-#include "refine/keeps_branch.hpp"
+#include "plan/told_turns.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
@@ -237,6 +238,7 @@ class JobPlan {
   /// lattices that treat a wide joint as a circle are replaced by such as tell its turns apart,
   /// where the job leaves its limits.
   void find() {
+    share_circles();
     for (;;) {
       JobTransitions transitions(robot_, *transition_world_, transition_limits_,
                                  *runs_.front()->lattice, distance_proofs(), executor_, budget_);
@@ -247,7 +249,8 @@ class JobPlan {
       paths_.resize(runs_.size());
       if (outcome.paths.empty()) return;
       std::vector<JobPart> parts = parts_of(outcome, transitions);
-      const Lattice::Joints off = lift(parts, *runs_.front()->lattice, job_);
+      Lattice::Joints off = off_in_every_turn(parts);
+      if (off == Lattice::Joints{}) off = lift(parts, *runs_.front()->lattice, job_);
       if (off == Lattice::Joints{}) {
         result_.status = outcome.decided ? PlanStatus::kSolved : stopped_status();
         result_.parts = std::move(parts);
@@ -255,6 +258,37 @@ class JobPlan {
       }
       for (auto& run : runs_) run = shared_->with_lattice(*run, run->lattice->with_windings(off));
     }
+  }
+  /// Lets a joint be a circle in all runs or in none, since transitions lead from one to the next:
+  /// a joint's largest move on a step, by which it can be a circle or not, may differ from stroke
+  /// to stroke.
+  void share_circles() {
+    Lattice::Joints shared = bounded_circles(*runs_.front()->lattice);
+    for (const auto& run : runs_) {
+      const Lattice::Joints own = bounded_circles(*run->lattice);
+      for (std::size_t j = 0; j < kDof; ++j) shared[j] = shared[j] && own[j];
+    }
+    for (auto& run : runs_) {
+      Lattice::Joints more = bounded_circles(*run->lattice);
+      for (std::size_t j = 0; j < kDof; ++j) more[j] = more[j] && !shared[j];
+      if (more != Lattice::Joints{})
+        run = shared_->with_lattice(*run, run->lattice->with_windings(more));
+    }
+  }
+  /// Returns the circles that leave their limits along a run, whatever its turn; such runs have no
+  /// rows.
+  [[nodiscard]] Lattice::Joints off_in_every_turn(const std::vector<JobPart>& parts) const {
+    Lattice::Joints off{};
+    std::size_t k = 0;
+    for (const JobPart& part : parts) {
+      if (!part.run) continue;
+      if (part.rows.empty()) {
+        const Lattice::Joints here = runs_[k]->lattice->off_nearest(paths_[k]);
+        for (std::size_t j = 0; j < kDof; ++j) off[j] = off[j] || here[j];
+      }
+      ++k;
+    }
+    return off;
   }
   [[nodiscard]] DistanceProofs distance_proofs() const {
     return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;

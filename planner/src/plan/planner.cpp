@@ -10,8 +10,10 @@
 
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
+#include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
+#include "plan/told_turns.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -89,6 +91,12 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   return rows;
 }
 
+/// Returns whether what the hooks say of a state may differ from turn to turn of a joint.
+bool may_tell_turns_apart(const Hooks& hooks) {
+  const bool keeps_branch = dynamic_cast<const KeepsBranch*>(hooks.check.get()) != nullptr;
+  return hooks.cost || (hooks.check && !keeps_branch);
+}
+
 LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {
   LatticeInfo info = lattice.describe();
   info.method = arm.method();
@@ -164,15 +172,30 @@ struct Planner::Impl {
   };
   /// What depends on the task and on the pose of the path's frame.
   struct Layout {
-    Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
+    /// `told_apart`: whether the lattices of S-R-S arms tell the turns of all joints apart, because
+    /// the caller's hooks may.
+    Layout(const PreparedRobot& robot, const Problem& problem, bool told_apart,
+           const Budget& budget)
         : path(path_within_scale(problem, robot.arm().chain, budget)),
+          turns_told_apart(told_apart),
           first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget),
                 nullptr},
           coaxial(first.lattice != nullptr) {
       if (!coaxial)
-        first.lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
+        first.lattice = free_lattice(robot, problem, budget);
+      else if (turns_told_apart)
+        first.lattice = with_all_windings(std::move(first.lattice));
+    }
+    /// Returns the lattice of the task in which no joint rests.
+    [[nodiscard]] std::unique_ptr<Lattice> free_lattice(const PreparedRobot& robot,
+                                                        const Problem& problem,
+                                                        const Budget& budget) const {
+      auto lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
+      return turns_told_apart && robot.arm_class().srs ? with_all_windings(std::move(lattice))
+                                                       : std::move(lattice);
     }
     ToolPath path;
+    bool turns_told_apart;
     Searched first;  // searched by every plan
     // Whether joint 7 rests in `first` (make_coaxial_lattice()), so that another lattice may have a
     // path even if `first` has none.
@@ -295,12 +318,14 @@ struct Planner::Impl {
     executor_threads = wanted;
     return *executor;
   }
-  void lay_out(const Budget& budget, PlanResult& result) {
+  /// `told_apart`: as Layout takes it.
+  void lay_out(bool told_apart, const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
     if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain); !rest.empty())
       throw InputError(rest);
-    if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
+    if (layout && layout->turns_told_apart != told_apart) path_changed();
+    if (!layout) layout = std::make_unique<Layout>(*robot, problem, told_apart, budget);
     layout->second.reset();
     result.time_ms["lattice"] = watch.lap();
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
@@ -319,33 +344,46 @@ struct Planner::Impl {
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());
   }
-  /// Searches the lattices of the task one after the other until one answers. A path on which a
-  /// joint that is treated as a circle cannot begin in the turn nearest to the middle of its range
-  /// is not the answer yet: the next lattice tells the values of such joints apart.
+  /// Searches the lattices of the task one after the other until one answers.
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
                PlanResult& result) {
     was_eager = is_eager(options);
     // The cost of a state by the caller's hook may depend on joint 7, which must then be free.
     const bool rests = layout->coaxial && !options.hooks.cost;
-    Found found;
-    if (rests || !layout->coaxial)
-      found = search(layout->first, !single_use, rule, options, budget, result);
-    if (layout->coaxial && (!rests || (found.decided && found.outcome.path.empty()))) {
-      layout->second = Searched{
-          make_lattice(robot->arm().chain, robot->arm_class(), layout->path, problem, budget),
-          nullptr};
-      result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-      return search(*layout->second, false, rule, options, budget, result);
+    if (rests || !layout->coaxial) {
+      Found found = search(layout->first, !single_use, rule, options, budget, result);
+      found = tell_turns_apart(std::move(found), rule, options, budget, result);
+      if (!layout->coaxial || !found.decided || !found.outcome.path.empty()) return found;
     }
+    layout->second = Searched{layout->free_lattice(*robot, problem, budget), nullptr};
+    result.lattice = info_of(*layout->second->lattice, robot->arm_class());
+    Found found = search(*layout->second, false, rule, options, budget, result);
+    return tell_turns_apart(std::move(found), rule, options, budget, result);
+  }
+  /// Returns `found`, the answer of the lattice searched last, if its path is the answer of the
+  /// task. A path on which a joint that is treated as a circle leaves its limits
+  /// (Lattice::off_nearest()) is not: the next lattice tells the values of such joints apart, and
+  /// its answer is returned.
+  Found tell_turns_apart(Found found, const EdgeRule& rule, const PlanOptions& options,
+                         const Budget& budget, PlanResult& result) {
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
       if (!found.decided || found.outcome.path.empty()) return found;
       const Lattice::Joints off = lattice.off_nearest(found.outcome.path);
       if (off == Lattice::Joints{}) return found;
       layout->second = Searched{lattice.with_windings(off), nullptr};
-      result.lattice.nodes = layout->second->lattice->nodes();
+      result.lattice = info_of(*layout->second->lattice, robot->arm_class());
       found = search(*layout->second, false, rule, options, budget, result);
     }
+  }
+  /// Notes what a search asked.
+  static void count(const CollisionValidity& validity, Counters& counters) {
+    counters.nodes_checked = validity.nodes_checked();
+    counters.edges_checked = validity.edges_checked();
+    const CollisionCounters collision = validity.counters();
+    counters.fcl_calls = collision.fcl_calls;
+    counters.proved_free = collision.proved_free;
+    counters.proved_colliding = collision.proved_colliding;
   }
   /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
   /// does.
@@ -357,22 +395,14 @@ struct Planner::Impl {
     Executor& threads = threads_of(options);
     Counters counters;
     Found found;
-    const auto count = [&](const CollisionValidity& validity) {
-      counters.nodes_checked = validity.nodes_checked();
-      counters.edges_checked = validity.edges_checked();
-      const CollisionCounters collision = validity.counters();
-      counters.fcl_calls = collision.fcl_calls;
-      counters.proved_free = collision.proved_free;
-      counters.proved_colliding = collision.proved_colliding;
-      add_counters(counters, result.counters);
-    };
     if (was_eager) {
       if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
       CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
                                  distance_proofs_of(options), threads, 0, budget);
       HookedValidity hooked(lattice, validity, options.hooks, budget);
       found = search_eagerly(lattice, hooked, options, budget, counters);
-      count(validity);
+      count(validity, counters);
+      add_counters(counters, result.counters);
       return found;
     }
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
@@ -398,7 +428,8 @@ struct Planner::Impl {
     found =
         search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : PriorFailures{},
                       asked_before, options, counters, result.time_ms);
-    count(validity);
+    count(validity, counters);
+    add_counters(counters, result.counters);
     return found;
   }
   /// If a second thread may run, it builds the trees of heavy meshes while the first thread finds
@@ -419,7 +450,7 @@ struct Planner::Impl {
   }
   void find(const PlanOptions& options, const Budget& budget, PlanResult& result) {
     Stopwatch watch, whole;
-    lay_out(budget, result);
+    lay_out(may_tell_turns_apart(options.hooks), budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
     const Found found = [&] {

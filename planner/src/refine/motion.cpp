@@ -10,7 +10,7 @@
 
 #include "measure/first_clearance_violation.hpp"
 #include "measure/measure_rows.hpp"
-#include "refine/keeps_branch.hpp"
+#include "plan/keeps_branch.hpp"
 #include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"

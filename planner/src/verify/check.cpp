@@ -151,7 +151,10 @@ class Check {
         at_waypoints_{limits_.tool_path_error.value_or(kAtWaypoints.position),
                       limits_.tool_angle_error.value_or(kAtWaypoints.angle)} {
     if (limits_.step_error)
-      lattice_.emplace(chain_, robot.srs("limits.step_error"), path_, problem);
+      lattice_.emplace(
+          chain_, robot.srs("limits.step_error"), path_, problem, Budget(), std::vector<ArmPlane>(),
+          std::nullopt,
+          SrsLattice::possible_circles(chain_, robot.srs("limits.step_error"), path_, problem));
   }
 
   CheckResult run() {

@@ -395,13 +395,16 @@ SliverCase random_sliver_case(bool wide, Random& random) {
 /// Compares all planners with brute force, and expects a warning where a range is too wide.
 void check_slivers(const Problem& problem, const Answer& truth, bool wide,
                    const std::string& what) {
+  const PreparedRobot robot(problem);
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+  ASSERT_EQ(SrsLattice(robot.arm().chain, robot.srs(), path, problem).windings(), 2) << what;
   std::vector<PlanResult> results;
   for (const PlannerKind planner : kPlanners) {
     PlanOptions options;
     options.planner = planner;
     options.threads = 2;
     results.push_back(plan(problem, options));
-    ASSERT_EQ(results.back().lattice.grid->windings, 2) << what;
+    ASSERT_LE(results.back().lattice.grid->windings, 2) << what;  // 1 where joint 7 is a circle
     expect_same(results[0], results.back(), what + " planner " + results.back().planner);
     if (::testing::Test::HasFatalFailure()) return;
   }

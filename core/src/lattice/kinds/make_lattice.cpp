@@ -30,9 +30,11 @@ bool turns_about_last_joint(const Chain& chain) {
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                       const Problem& problem, const Budget& budget) {
   if (chain.free_roll && !path.unturned())
-    return RollLattice::make(chain, *arm.srs, path, problem, budget);
+    return RollLattice::make(chain, *arm.srs, path, problem, budget, std::nullopt, true);
   if (arm.kind == ArmKind::kSrs)
-    return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
+    return std::make_unique<SrsLattice>(
+        chain, *arm.srs, path, problem, budget, std::vector<ArmPlane>(), std::nullopt,
+        SrsLattice::possible_circles(chain, *arm.srs, path, problem));
   if (problem.limits.arm_slope != Limits().arm_slope)
     throw InputError(problem.source,
                      "limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed "
@@ -55,7 +57,7 @@ std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass
                                               const ToolPath& path, const Problem& problem,
                                               const Budget& budget) {
   const auto rest = last_joint_at_rest(chain, arm, problem);
-  return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest) : nullptr;
+  return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest, true) : nullptr;
 }
 
 }  // namespace swivel

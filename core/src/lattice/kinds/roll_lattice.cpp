@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kinematics/srs/exact_chain_turned.hpp"
+#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
@@ -73,12 +74,14 @@ bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& 
 std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm,
                                                const ToolPath& path, const Problem& problem,
                                                const Budget& budget,
-                                               std::optional<double> last_joint) {
+                                               std::optional<double> last_joint, bool circles) {
   if (problem.limits.step_error)
     throw InputError(problem.source,
                      "limits.step_error: allowed without path.roll, or for arms of six joints");
+  Joints wound;
+  wound.fill(!circles);
   return std::unique_ptr<RollLattice>(new RollLattice(
-      chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint));
+      chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint, wound));
 }
 
 RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resolution& resolution) {
@@ -102,7 +105,7 @@ RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resoluti
 
 RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
                          const Problem& problem, const Budget& budget, Knots knots,
-                         std::optional<double> last_joint)
+                         std::optional<double> last_joint, const Joints& wound)
     : Lattice(chain, *knots.path, problem, arm.fit_error),
       arm_(&arm),
       last_joint_(last_joint),
@@ -115,6 +118,13 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   const Resolution& resolution = problem.resolution;
 
   set_row_step_bounds(bounds_between_knots(knots_, whole_step_bounds_));
+  circles_ = SrsLattice::possible_circles(chain, arm, problem,
+                                          bounds_between_knots(knots_, whole_step_bounds_));
+  for (std::size_t j = 0; j < kDof; ++j) {
+    circles_[j] = circles_[j] && !wound[j] && !(last_joint_ && j + 1 == kDof);
+    continuous_[j] = continuous_[j] || circles_[j];
+  }
+  if (circles_ != Joints{}) problem_ = problem;
 
   const Roll& range = *chain.free_roll;
   circle_ = range.circle();
@@ -136,7 +146,8 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
     ToolPath turned = knot_path_->with_rolls(rolls);
     std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
     turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm,
-                                               of_nodes, budget, std::move(planes), last_joint_));
+                                               of_nodes, budget, std::move(planes), last_joint_,
+                                               circles_));
   }
   width_ = at_roll(0).width();
   require_memory(static_cast<double>(rolls()) * width_, nodes(), problem.source);
@@ -156,7 +167,7 @@ void RollLattice::place_given(const Problem& problem, const Budget& budget) {
         knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
     std::vector<ArmPlane> planes = planes_at(*arm_, planes_, knots_, turned);
     return std::make_unique<const Given>(roll, std::move(turned), *chain_, *arm_, only, budget,
-                                         std::move(planes));
+                                         std::move(planes), circles_);
   };
   Problem only = problem;
   only.end.reset();
@@ -531,7 +542,7 @@ LatticeInfo RollLattice::describe() const {
   return info;
 }
 
-std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots) const {
+std::vector<TrajectoryRow> RollLattice::followed(const std::vector<int>& slots) const {
   std::vector<TrajectoryRow> rows;
   for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
     const int slot = slots[static_cast<std::size_t>(k)];
@@ -551,6 +562,43 @@ std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots)
   turn_to_end(joints);
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k].q = joints[k];
   return rows;
+}
+
+CircleTurns RollLattice::turns_along(const std::vector<TrajectoryRow>& rows,
+                                     std::size_t slots) const {
+  std::vector<Config> joints;
+  for (const TrajectoryRow& row : rows) joints.push_back(row.q);
+  const bool ends = end_ && static_cast<int>(slots) == layers();
+  return circle_turns(*this, circles_, joints, starts_given_, ends ? &*end_ : nullptr);
+}
+
+std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots) const {
+  std::vector<TrajectoryRow> rows = followed(slots);
+  if (circles_ == Joints{}) return rows;
+  const CircleTurns turns = turns_along(rows, slots.size());
+  if (!turns.fit()) return {};
+  for (TrajectoryRow& row : rows) row.q += turns.turn;
+  return rows;
+}
+
+Lattice::Joints RollLattice::off_nearest(const std::vector<int>& slots) const {
+  if (circles_ == Joints{}) return {};
+  return turns_along(followed(slots), slots.size()).furthest_over();
+}
+
+std::unique_ptr<Lattice> RollLattice::with_windings(const Joints& joints) const {
+  if (!problem_) return nullptr;
+  Joints wound{};
+  std::vector<Joints> told_apart = told_apart_;
+  told_apart.push_back(joints);
+  for (const Joints& told : told_apart)
+    for (std::size_t j = 0; j < kDof; ++j) wound[j] = wound[j] || told[j];
+  std::unique_ptr<RollLattice> lattice(new RollLattice(*chain_, *arm_, *whole_, *problem_, {},
+                                                       knots_along(*whole_, problem_->resolution),
+                                                       last_joint_, wound));
+  lattice->told_apart_ = std::move(told_apart);
+  lattice->take_clearances(limits_);
+  return lattice;
 }
 
 }  // namespace swivel

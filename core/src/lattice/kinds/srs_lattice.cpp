@@ -9,6 +9,7 @@
 
 #include "kinematics/kernels/kernels.hpp"
 #include "kinematics/srs/exact_chain_turned.hpp"
+#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -207,37 +208,17 @@ void fill_winding_mask(const LayerNodes& nodes, int solution,
 
 SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
                        const Problem& problem, const Budget& budget, std::vector<ArmPlane> planes,
-                       std::optional<double> last_joint)
+                       std::optional<double> last_joint, const Joints& circles)
     : Lattice(chain, path, problem, arm.fit_error),
       id_(next_id()),
+      source_(problem.source),
+      has_arcs_(problem.resolution.arcs),
       arm_(&arm),
       last_joint_(last_joint),
       planes_(std::move(planes)) {
   const TraceSpan span("lattice");
-  if (last_joint_)
-    continuous_[kLastJoint] = true;  // whatever the arm angle, it stays within its limits
   const Resolution& resolution = problem.resolution;
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[j];
-    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-    if (last_joint_ && j == kLastJoint) {
-      images_[j] = {*last_joint_ - kPi, kUnbounded, 1};
-    } else if (continuous_[j]) {
-      images_[j] = {limit.continuous ? -kPi : turn_within(limit), kUnbounded, 1};
-    } else {
-      const double lower = limit.lower + limits_.joint_margin,
-                   upper = limit.upper - limits_.joint_margin;
-      const auto joint = static_cast<Eigen::Index>(j);
-      const double highest = highest_of({problem.start, end_}, joint, lower);
-      images_[j] = images_between(lower, upper, highest, arm.fit_error[joint]);
-    }
-  }
-  windings_ = count_windings(images_, chain, problem.source);
-
-  tracks_ = 2;
-  for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
-  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(solutions());
-
+  set_circles(circles, {problem.start, end_});
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
   require_memory(wanted * kBranches * windings_, layers(), problem.source);
   angles_ = static_cast<int>(wanted);
@@ -251,18 +232,108 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   for (int i = 0; i < layers(); ++i) {
     if (i % 64 == 0) budget.poll(Stage::kLattice, i, layers());
     reach_.push_back(reach_status(arm, plane(i).reach));
-    const bool reachable = reach_.back() == ReachStatus::kReachable;
-    auto& circles = circles_.emplace_back();
-    if (reachable) circles = elbow_circles(arm, plane(i), path.layer(i).tool);
-    const Images& images = images_[kElbowJoint];
-    for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle
-      elbow_alive_.push_back(reachable && image_from(circle.q4, images.base) <= images.upper);
+    auto& of_layer = circles_.emplace_back();
+    if (reach_.back() == ReachStatus::kReachable)
+      of_layer = elbow_circles(arm, plane(i), path.layer(i).tool);
   }
-
-  place_given(problem);
+  if (problem.start) validate_given(PathEnd::kFirst, problem, chain, path);
+  if (end_) validate_given(PathEnd::kLast, problem, chain, path);
   if (!arm.exact) pose_error_model_.emplace(chain, arm);
+  place_nodes({problem.start, end_}, budget);
+}
+
+Lattice::Joints SrsLattice::possible_circles(const Chain& chain, const SrsArm& arm,
+                                             const Problem& problem,
+                                             const std::vector<Config>& step_bounds) {
+  Joints circles{};
+  for (std::size_t j = 0; j < kDof && !problem.resolution.arcs; ++j) {
+    const auto joint = static_cast<Eigen::Index>(j);
+    const JointLimit& limit = chain.limit[j];
+    const double lower = limit.lower + problem.limits.joint_margin,
+                 upper = limit.upper - problem.limits.joint_margin;
+    circles[j] = !limit.continuous && !limit.wide() &&
+                 images_between(lower, upper, lower, arm.fit_error[joint]).count > 1 &&
+                 std::all_of(step_bounds.begin(), step_bounds.end(), [&](const Config& most) {
+                   return most[joint] + 2 * arm.fit_error[joint] < kPi;
+                 });
+  }
+  return circles;
+}
+
+void SrsLattice::set_circles(const Joints& circles,
+                             const std::array<std::optional<Config>, 2>& given) {
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain_->limit[j];
+    const auto joint = static_cast<Eigen::Index>(j);
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    const bool rests = last_joint_ && j == kLastJoint;  // within its limits at every arm angle
+    circle_joints_[j] = circles[j] && !rests;
+    continuous_[j] = limit.continuous || limit.wide() || rests || circles[j];
+    if (rests) {
+      images_[j] = {*last_joint_ - kPi, kUnbounded, 1};
+    } else if (circles[j]) {
+      images_[j] = {(limit.lower + limit.upper) / 2 - kPi, kUnbounded, 1};
+    } else if (continuous_[j]) {
+      images_[j] = {limit.continuous ? -kPi : turn_within(limit), kUnbounded, 1};
+    } else {
+      const double lower = limit.lower + limits_.joint_margin,
+                   upper = limit.upper - limits_.joint_margin;
+      images_[j] =
+          images_between(lower, upper, highest_of(given, joint, lower), arm_->fit_error[joint]);
+    }
+  }
+  windings_ = count_windings(images_, *chain_, source_);
+  tracks_ = 2;
+  for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
+  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(solutions());
+}
+
+void SrsLattice::place_nodes(const std::array<std::optional<Config>, 2>& given,
+                             const Budget& budget) {
+  const Images& images = images_[kElbowJoint];
+  elbow_alive_.clear();
+  for (std::size_t i = 0; i < circles_.size(); ++i)
+    for (const ElbowCircle& circle : circles_[i])  // one elbow angle serves the whole circle
+      elbow_alive_.push_back(reach_[i] == ReachStatus::kReachable &&
+                             image_from(circle.q4, images.base) <= images.upper);
+  if (given[0]) start_ = placed(0, *given[0]);
+  if (given[1]) last_ = placed(layers() - 1, *given[1]);
   prepare_arcs();
-  if (resolution.arcs) place_off_grid_nodes(budget);
+  if (has_arcs_) place_off_grid_nodes(budget);
+}
+
+std::unique_ptr<Lattice> SrsLattice::with_windings(const Joints& joints) const {
+  std::unique_ptr<SrsLattice> wound(new SrsLattice(*this));
+  wound->id_ = next_id();
+  wound->told_apart_.push_back(joints);
+  Joints circles = circle_joints_;
+  for (std::size_t j = 0; j < kDof; ++j) circles[j] = circles[j] && !joints[j];
+  std::array<std::optional<Config>, 2> given;
+  if (start_) given[0] = start_->row;
+  if (last_) given[1] = last_->row;
+  wound->set_circles(circles, given);
+  require_memory(wound->width(), layers(), source_);
+  wound->place_nodes(given, {});
+  return wound;
+}
+
+CircleTurns SrsLattice::turns_along(const std::vector<Config>& rows) const {
+  const bool ends = end_ && static_cast<int>(rows.size()) == layers();
+  return circle_turns(*this, circle_joints_, rows, starts_given_, ends ? &*end_ : nullptr);
+}
+
+std::vector<Config> SrsLattice::path_joints(const std::vector<int>& slots) const {
+  std::vector<Config> rows = Lattice::path_joints(slots);
+  if (circle_joints_ == Joints{}) return rows;
+  const CircleTurns turns = turns_along(rows);
+  if (!turns.fit()) return {};
+  for (Config& q : rows) q += turns.turn;
+  return rows;
+}
+
+Lattice::Joints SrsLattice::off_nearest(const std::vector<int>& slots) const {
+  if (circle_joints_ == Joints{}) return {};
+  return turns_along(Lattice::path_joints(slots)).furthest_over();
 }
 
 std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
@@ -309,17 +380,6 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
   // lower where a start or an end is there.
   if (highest >= images.base + length) images.base = upper + kLimitTolerance - length;
   return images;
-}
-
-void SrsLattice::place_given(const Problem& problem) {
-  if (problem.start) {
-    validate_given(PathEnd::kFirst, problem, *chain_, *path_);
-    start_ = placed(0, *problem.start);
-  }
-  if (end_) {
-    validate_given(PathEnd::kLast, problem, *chain_, *path_);
-    last_ = placed(layers() - 1, *end_);
-  }
 }
 
 SrsLattice::Given SrsLattice::placed(int layer, const Config& q) const {

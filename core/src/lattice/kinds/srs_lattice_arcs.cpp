@@ -22,6 +22,7 @@ int SrsLattice::triple_winding(int solution, int triple) const {
 
 void SrsLattice::prepare_arcs() {
   for (int triple = 0; triple < 2; ++triple) {
+    triple_limits_[static_cast<std::size_t>(triple)].clear();
     const std::size_t first = triple == 0 ? 0 : 4;
     int count = 1;
     for (std::size_t j = first; j < first + 3; ++j) count *= images_[j].count;
@@ -96,6 +97,7 @@ bool SrsLattice::proved_unreachable(int layer) const {
 
 void SrsLattice::place_off_grid_nodes(const Budget& budget) {
   const TraceSpan span("arcs");
+  off_grid_.clear();
   off_grid_begin_.assign(1, 0);
   off_grid_branches_.assign(static_cast<std::size_t>(layers()), 0);
   // Arcs of each triple, computed once for the branches and windings that share them.

@@ -140,10 +140,10 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// and branch of each row. Includes the rows at the layers between if has_layers_between().
   [[nodiscard]] virtual std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const;
   using Joints = std::array<bool, kDof>;
-  /// Returns which joints, among those that the lattice treats as circles, leave their limits along
-  /// a path whose first row has each of them in the turn nearest to the middle of its range,
-  /// whether or not another turn would keep the limits. If the best path of a lattice has no such
-  /// joint, it is the answer.
+  /// Returns joints that the lattice treats as circles and that must be told apart before its best
+  /// path can be the answer: of arcs, those that leave their limits if the first row is in the turn
+  /// nearest to the middle of the range; of other lattices, one that leaves them in every turn. If
+  /// the best path of a lattice has no such joint, it is the answer.
   [[nodiscard]] virtual Joints off_nearest(const std::vector<int>& slots) const {
     static_cast<void>(slots);
     return {};

@@ -28,19 +28,18 @@ namespace swivel {
 /// that among equally good paths the one that turns least wins. Edges lead to rolls and arm angles
 /// within roll_slope and arm_slope times the path length between the knots. Both are rounded down
 /// to whole cells, with at least one cell of arm angles; rolls are not rounded if waypoints have
-/// windows, nor on the last step to a given end. Immutable once made.
+/// windows, nor on the last step to a given end. Bounded joints of more than a turn are circles
+/// if that is asked for and SrsLattice::possible_circles() allows it. Immutable once made.
 class RollLattice final : public Lattice {
  public:
   /// Returns the lattice of the whole path. `chain`, `arm` and `path` must outlive it.
   /// `last_joint`: where joint 7 rests, rad (last_joint_at_rest()); there is no roll to choose
-  /// then, because joint 7 would only undo it. Throws InputError as SrsLattice does, and for a
-  /// start or end whose roll is outside the range, a roll_slope of less than a cell from knot to
-  /// knot, and limits.step_error; Stopped.
-  [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm,
-                                                         const ToolPath& path,
-                                                         const Problem& problem,
-                                                         const Budget& budget = {},
-                                                         std::optional<double> last_joint = {});
+  /// then, because joint 7 would only undo it. `circles`: whether joints that can be circles are.
+  /// Throws InputError as SrsLattice does, and for a start or end whose roll is outside the range,
+  /// a roll_slope of less than a cell from knot to knot, and limits.step_error; Stopped.
+  [[nodiscard]] static std::unique_ptr<RollLattice> make(
+      const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
+      const Budget& budget = {}, std::optional<double> last_joint = {}, bool circles = false);
 
   // --- rolls
   [[nodiscard]] int rolls() const { return static_cast<int>(turned_.size()); }
@@ -89,8 +88,17 @@ class RollLattice final : public Lattice {
     return knots_[static_cast<std::size_t>(layer)];
   }
   /// Returns the rows at all layers of the whole path along a path of the lattice, from layer 0 to
-  /// the path's last slot.
+  /// the path's last slot, with each circle in a turn as SrsLattice::path_joints() has it; an empty
+  /// list if off_nearest() has any.
   [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
+
+  /// Returns which joints are circles.
+  [[nodiscard]] const Joints& circles() const { return circles_; }
+  /// Returns the circle that leaves its limits furthest along the rows of a path, as that of an
+  /// SrsLattice.
+  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
+  [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
+  [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return told_apart_; }
 
   [[nodiscard]] LatticeInfo describe() const override;
   [[nodiscard]] GridPlace grid_place(int layer, int slot) const override {
@@ -160,7 +168,8 @@ class RollLattice final : public Lattice {
     std::unique_ptr<const ToolPath> path;
   };
   RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
-              const Budget& budget, Knots knots, std::optional<double> last_joint);
+              const Budget& budget, Knots knots, std::optional<double> last_joint,
+              const Joints& wound);
   static Knots knots_along(const ToolPath& path, const Resolution& resolution);
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
   [[nodiscard]] const SrsLattice& at(int layer, int slot) const {
@@ -169,6 +178,11 @@ class RollLattice final : public Lattice {
   }
   /// Places the start and the end that the problem gives, each at the roll of its joints.
   void place_given(const Problem& problem, const Budget& budget);
+  /// Returns the rows of a path as path_rows() does, in whatever turn circles are.
+  [[nodiscard]] std::vector<TrajectoryRow> followed(const std::vector<int>& slots) const;
+  /// Returns the turns of the circles along the rows of a path of so many slots.
+  [[nodiscard]] CircleTurns turns_along(const std::vector<TrajectoryRow>& rows,
+                                        std::size_t slots) const;
   void choose_rolls(double nominal, double droll);
   /// Returns the roll, rad, that an entry of values_ stands for at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
@@ -195,10 +209,10 @@ class RollLattice final : public Lattice {
   struct Turned {
     Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm,
            const Problem& problem, const Budget& budget, std::vector<ArmPlane> planes,
-           const std::optional<double>& last_joint)
+           const std::optional<double>& last_joint, const Joints& circles)
         : rolls(std::move(by)),
           path(std::move(knots)),
-          lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
+          lattice(chain, arm, path, problem, budget, std::move(planes), last_joint, circles) {}
     std::vector<double> rolls;  // rad, by layer
     ToolPath path;
     SrsLattice lattice;
@@ -207,10 +221,10 @@ class RollLattice final : public Lattice {
   /// `roll` (rad) along `path`, and `lattice` has the posture at that layer.
   struct Given {
     Given(double by, ToolPath turned, const Chain& chain, const SrsArm& arm, const Problem& problem,
-          const Budget& budget, std::vector<ArmPlane> planes)
+          const Budget& budget, std::vector<ArmPlane> planes, const Joints& circles)
         : roll(by),
           path(std::move(turned)),
-          lattice(chain, arm, path, problem, budget, std::move(planes)) {}
+          lattice(chain, arm, path, problem, budget, std::move(planes), {}, circles) {}
     double roll;
     ToolPath path;
     SrsLattice lattice;
@@ -229,6 +243,9 @@ class RollLattice final : public Lattice {
 
   const SrsArm* arm_;
   std::optional<double> last_joint_;
+  Joints circles_{};
+  std::vector<Joints> told_apart_;  // joints_with_windings()
+  std::optional<Problem> problem_;  // for with_windings(), if there are circles
   const ToolPath* whole_;
   std::vector<int> knots_;
   std::unique_ptr<const ToolPath> knot_path_;

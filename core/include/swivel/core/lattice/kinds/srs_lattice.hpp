@@ -15,6 +15,7 @@
 namespace swivel {
 
 struct TripleTask;
+struct CircleTurns;
 
 /// The joints of all IK solutions of one layer over a run of arm angles; a buffer to be reused from
 /// layer to layer, since a lattice does not store its nodes. IK solutions share the arrays of what
@@ -93,6 +94,11 @@ class LayerNodes {
 /// off. A joint with a range of over 64 turns is treated as continuous (JointLimit::wide): its
 /// angles begin in the turn about 0, or in the nearest turn that leaves 31 turns to both limits.
 ///
+/// Joints of several images can be *circles* instead, whose images count as one node, with the
+/// joint in the turn about the middle of its range. A path of the lattice with circles may leave
+/// their limits; path_joints() looks for turns in which it does not. Edges and costs are those of
+/// the lattice that tells windings apart, as long as no edge moves a circle by half a turn.
+///
 /// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider
 /// by the arm's fit error. Newton's method finds exact configurations from them.
 ///
@@ -106,12 +112,25 @@ class SrsLattice final : public Lattice {
   /// Builds the lattice of `path`, which must outlive it, as must `chain` and `arm`. `planes`: the
   /// planes of the path's layers from which arm angles are measured; carried_planes() if empty.
   /// `last_joint`: where joint 7 rests, rad, for an arm whose tool turns freely about that joint's
-  /// axis, in a problem without a start and an end. Throws InputError if start or end do not fit,
-  /// for more than 1024 windings, and if the lattice is too large for the machine's memory;
-  /// Stopped.
+  /// axis, in a problem without a start and an end. `circles`: which joints are circles, as
+  /// possible_circles() allows. Throws InputError if start or end do not fit, for more than 1024
+  /// windings, and if the lattice is too large for the machine's memory; Stopped.
   SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
              const Budget& budget = {}, std::vector<ArmPlane> planes = {},
-             std::optional<double> last_joint = {});
+             std::optional<double> last_joint = {}, const Joints& circles = {});
+  /// Returns which joints can be circles: bounded joints of several images that no edge moves by
+  /// half a turn. None can with `resolution.arcs`, whose nodes at the ends of arcs depend on the
+  /// turns. `step_bounds`: the largest moves of rows on each step, rad; one entry if all steps are
+  /// alike.
+  [[nodiscard]] static Joints possible_circles(const Chain& chain, const SrsArm& arm,
+                                               const Problem& problem,
+                                               const std::vector<Config>& step_bounds);
+  /// Returns possible_circles() for a path all of whose layers are layers of the lattice.
+  [[nodiscard]] static Joints possible_circles(const Chain& chain, const SrsArm& arm,
+                                               const ToolPath& path, const Problem& problem) {
+    return possible_circles(chain, arm, problem,
+                            step_bounds_along(chain, path, problem.limits, problem.resolution));
+  }
 
   [[nodiscard]] int angles() const { return angles_; }
   [[nodiscard]] int solutions() const { return kBranches * windings_; }
@@ -133,6 +152,18 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int start_slot() const { return start_->slot; }
   /// Returns the slot that stands for a given start or end in a layer for which is_given() holds.
   [[nodiscard]] int given_slot(int layer) const { return given(layer)->slot; }
+
+  /// Returns which joints are circles.
+  [[nodiscard]] const Joints& circles() const { return circle_joints_; }
+  /// Returns the joints of each row, without jumps, with each circle in a turn that keeps its
+  /// limits all along: of these the one in which the first row is nearest to the middle of the
+  /// range, or the one of the given start or end. Returns an empty list if off_nearest() has any.
+  [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
+  /// Returns the circle that leaves its limits furthest along a path, in its best turn or in that
+  /// of the given start or end: one at a time, since other paths may keep the others within.
+  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
+  [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
+  [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return told_apart_; }
 
   [[nodiscard]] LatticeInfo describe() const override;
   [[nodiscard]] int slots(int) const override { return width(); }
@@ -303,8 +334,14 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] bool elbow_alive(int layer, int elbow) const {
     return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)];
   }
-  /// Places the start and the end that the problem gives.
-  void place_given(const Problem& problem);
+  SrsLattice(const SrsLattice&) = default;
+  /// Returns the turns of the circles along the rows of a path.
+  [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
+  /// Sets which joints are circles, and the images of all joints, which must hold the given start
+  /// and end. Throws InputError for too many windings.
+  void set_circles(const Joints& circles, const std::array<std::optional<Config>, 2>& given);
+  /// Places what depends on the images: the given start and end, elbow sides, nodes of arcs.
+  void place_nodes(const std::array<std::optional<Config>, 2>& given, const Budget& budget);
   /// Returns the node of a layer whose posture `q` is given.
   [[nodiscard]] Given placed(int layer, const Config& q) const;
   /// Returns the solution of the fitted arm at the arm angle and the branch of a given posture `q`,
@@ -322,6 +359,10 @@ class SrsLattice final : public Lattice {
 
   // Identifies a lattice and its copies, so that a Layout may outlive its lattice.
   std::uint64_t id_;
+  std::string source_;  // the problem's, for messages
+  bool has_arcs_ = false;
+  Joints circle_joints_{};
+  std::vector<Joints> told_apart_;  // joints_with_windings()
   const SrsArm* arm_;
   std::optional<double> last_joint_;
   int angles_ = 0, windings_ = 1, window_ = 1;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <memory>
+#include <utility>
+
+#include "swivel/core/lattice/lattice.hpp"
+
+namespace swivel {
+
+/// Returns which joints have limits, though the lattice treats them as circles. The roll of a tool
+/// counts as none.
+[[nodiscard]] inline Lattice::Joints bounded_circles(const Lattice& lattice) {
+  Lattice::Joints circles{};
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = lattice.chain().limit[j];
+    circles[j] = lattice.continuous()[j] && !limit.continuous && !limit.wide() &&
+                 !(lattice.chain().roll && j + 1 == kDof);
+  }
+  return circles;
+}
+
+/// Returns a lattice like `lattice` that treats no bounded joint as a circle.
+[[nodiscard]] inline std::unique_ptr<Lattice> with_all_windings(std::unique_ptr<Lattice> lattice) {
+  const Lattice::Joints circles = bounded_circles(*lattice);
+  if (circles == Lattice::Joints{}) return lattice;
+  auto wound = lattice->with_windings(circles);
+  return wound ? std::move(wound) : std::move(lattice);
+}
+
+}  // namespace swivel
