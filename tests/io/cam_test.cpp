@@ -370,6 +370,29 @@ TEST(Apt, CutsBetweenRapidMoves) {
                  {"p.apt: has no cut"});
 }
 
+TEST(Apt, StrokesTakeTheirCutsFromOneFile) {
+  const ProblemFolder folder;
+  std::string text = "UNITS/MM\nFEDRAT/600\n", strokes;
+  for (int k = 0; k < 3; ++k) {
+    const std::string x = std::to_string(k);
+    text += "RAPID\nGOTO/" + x + ",0,0\nGOTO/" + x + ",1,0\n";
+    strokes += "  - {name: s" + x + ", path: {file: p.apt, cut: " + std::to_string(3 - k) + "}}\n";
+  }
+  folder.folder().write("problems/p.apt", text);
+  const Job job = load_job(folder.folder().write(
+      "problems/job.yaml",
+      "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}\nstrokes:\n" +
+          strokes));
+  ASSERT_EQ(job.strokes.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(job.strokes[k].waypoints[1].position,
+              Vector3d(static_cast<double>(2 - k) / 1000, 0.001, 0));
+    EXPECT_EQ(job.strokes[k].feed.size(), 2u);
+  }
+  EXPECT_EQ(job.model->warnings.size(), 1u);
+  EXPECT_TRUE(job.roll && job.roll->circle());
+}
+
 TEST(Apt, RefusedByLine) {
   const CamFolder folder;
   const std::string go = "UNITS/MM\nGOTO/1,2,3\n";
@@ -397,7 +420,7 @@ TEST(Apt, RefusedByLine) {
   };
   for (const auto& [text, needles] : cases)
     expect_message(folder.refusal("p.apt", text, text.empty() ? ", units: mm" : ""), needles);
-  // Statements of these words that change nothing are read over.
+  // Where these statements say nothing they are skipped.
   EXPECT_EQ(folder
                 .load("p.apt", go + "CUTCOM/OFF\nCYCLE/OFF\nORIGIN/0,0,0\nTRACUT/NOMORE\n"
                                     "GOTO/2,2,3\n")

@@ -13,6 +13,33 @@
 
 namespace swivel::io {
 
+/// A feed of the tool: a length, in the file's unit unless it is stated, per minute.
+struct AptFeed {
+  double value = 0;  ///< 0: not known
+  std::optional<LengthUnit> unit = {};
+};
+
+/// A position that the tool is moved to.
+struct AptPoint {
+  Vector3d position;  // in the unit of the file
+  Vector3d axis;      // from tip to holder
+  AptFeed feed;       // of the move to it
+  int line = 0;
+};
+
+/// What an APT file has: points, and where cuts begin and end among them. Within a cut each point
+/// is reached by a move that is not rapid.
+struct AptMoves {
+  struct Cut {
+    std::size_t first = 0, count = 0;
+  };
+  std::vector<AptPoint> points;
+  std::vector<Cut> cuts;
+  std::optional<LengthUnit> unit;
+  int unit_line = 0;
+  std::vector<std::string> warnings;
+};
+
 namespace {
 
 constexpr std::size_t kMostPoints = 1'000'000, kMostStatement = std::size_t{1} << 20,
@@ -125,33 +152,6 @@ class AptStatements {
   std::string_view rest_;
   int line_ = 0;
   bool in_note_ = false;
-};
-
-/// A feed of the tool: a length, in the file's unit unless it is stated, per minute.
-struct Feed {
-  double value = kUnknownFeed;
-  std::optional<LengthUnit> unit = {};
-};
-
-/// A position that the tool is moved to.
-struct AptPoint {
-  Vector3d position;  // in the unit of the file
-  Vector3d axis;      // from tip to holder
-  Feed feed;          // of the move to it
-  int line = 0;
-};
-
-/// What an APT file has: points, and where cuts begin and end among them. Within a cut each point
-/// is reached by a move that is not rapid.
-struct AptMoves {
-  struct Cut {
-    std::size_t first = 0, count = 0;
-  };
-  std::vector<AptPoint> points;
-  std::vector<Cut> cuts;
-  std::optional<LengthUnit> unit;
-  int unit_line = 0;
-  std::vector<std::string> warnings;
 };
 
 class AptReader {
@@ -336,7 +336,7 @@ class AptReader {
   std::size_t begun_ = 0;  // first point of the cut, which may be none yet
   bool rapid_ = false, finished_ = false;
   Vector3d axis_ = Vector3d::UnitZ(), fixed_axis_ = Vector3d::UnitZ();
-  Feed feed_;
+  AptFeed feed_;
   std::size_t skipped_ = 0;
   int first_skipped_ = 0;
   std::vector<std::pair<std::string, std::size_t>> kinds_;
@@ -455,9 +455,11 @@ bool is_apt_name(const std::filesystem::path& file) {
                    {".APT", ".APTSOURCE", ".CL", ".CLS", ".NCL"});
 }
 
-PathFile read_apt_path(const std::string& file, std::string_view text,
-                       const PathFileOptions& options) {
-  const AptMoves moves = AptReader(file, text).read();
+std::shared_ptr<const AptMoves> read_apt(const std::string& file, std::string_view text) {
+  return std::make_shared<const AptMoves>(AptReader(file, text).read());
+}
+
+PathFile apt_path(const std::string& file, const AptMoves& moves, const PathFileOptions& options) {
   return AptPath(file, moves, options).path();
 }
 

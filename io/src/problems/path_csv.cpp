@@ -302,14 +302,18 @@ PathFile read_table_path(const std::string& file, std::string_view text,
   return PathRows(file, options).read(text);
 }
 
-PathFile load_path_file(const std::filesystem::path& file, const PathFileOptions& options) {
-  const bool apt = is_apt_name(file);
-  const std::string text = read_file(file, apt ? "APT file" : "CSV file", kMostTableBytes);
-  return (apt ? read_apt_path : read_table_path)(file.string(), text, options);
+PathFile load_path_file(const std::filesystem::path& file, const PathFileOptions& options,
+                        AptFile& last) {
+  if (!is_apt_name(file))
+    return read_table_path(file.string(), read_file(file, "CSV file", kMostTableBytes), options);
+  if (!last.moves || last.name != file)
+    last = {file, read_apt(file.string(), read_file(file, "APT file", kMostTableBytes))};
+  return apt_path(file.string(), *last.moves, options);
 }
 
 std::vector<Waypoint> load_path(const std::filesystem::path& file) {
-  return load_path_file(file, {}).waypoints;
+  AptFile last;
+  return load_path_file(file, {}, last).waypoints;
 }
 
 }  // namespace swivel::io

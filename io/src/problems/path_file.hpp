@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,17 +49,28 @@ struct PathFileOptions {
 inline constexpr const char* kNoFeeds =
     "strokes of a job have feeds, other paths the speed that `--speed` asks for";
 
-/// Loads a tool path, from an APT file if its name ends so (is_apt_name()), else from a table.
-/// Throws InputError.
+/// What an APT file has, whichever of its cuts is asked for.
+struct AptMoves;
+/// The APT file that was loaded last, since the strokes of a job take their cuts from one file.
+struct AptFile {
+  std::filesystem::path name;
+  std::shared_ptr<const AptMoves> moves;
+};
+
+/// Loads a tool path, from an APT file if its name ends so (is_apt_name()), else from a table. An
+/// APT file that is `last` is not read again. Throws InputError.
 [[nodiscard]] PathFile load_path_file(const std::filesystem::path& file,
-                                      const PathFileOptions& options);
+                                      const PathFileOptions& options, AptFile& last);
 
 /// Returns true if a file's name ends as those of APT/CL files do: .apt, .aptsource, .cl, .cls,
 /// .ncl, in small or capital letters.
 [[nodiscard]] bool is_apt_name(const std::filesystem::path& file);
 /// Reads the text of an APT/CL file. Throws InputError.
-[[nodiscard]] PathFile read_apt_path(const std::string& file, std::string_view text,
-                                     const PathFileOptions& options);
+[[nodiscard]] std::shared_ptr<const AptMoves> read_apt(const std::string& file,
+                                                       std::string_view text);
+/// Returns the path along a cut of an APT/CL file. Throws InputError.
+[[nodiscard]] PathFile apt_path(const std::string& file, const AptMoves& moves,
+                                const PathFileOptions& options);
 /// Reads the text of a table. Throws InputError.
 [[nodiscard]] PathFile read_table_path(const std::string& file, std::string_view text,
                                        const PathFileOptions& options);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "problems/path_file.hpp"
 #include "robots/urdf.hpp"
 #include "schema/yaml_value.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -189,6 +190,7 @@ class ProblemReader {
            std::optional<std::array<double, kDof>>& target) const;
 
   std::shared_ptr<RobotModel> model_file_;  ///< problem_.model
+  AptFile apt_file_;
   MeshCache meshes_;
 };
 

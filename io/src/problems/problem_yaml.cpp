@@ -422,8 +422,9 @@ void ProblemReader::read_path_file(const YamlSection& section, const YamlValue& 
     options.cut = static_cast<std::size_t>(cut->whole_number());
   options.feeds = feeds_.has_value();
   options.turns_freely = problem_.roll && problem_.roll->circle();
-  PathFile path = with_key(name, resolve(name),
-                           [&](const fs::path& file) { return load_path_file(file, options); });
+  PathFile path = with_key(name, resolve(name), [&](const fs::path& file) {
+    return load_path_file(file, options, apt_file_);
+  });
   problem_.waypoints = std::move(path.waypoints);
   if (feeds_) *feeds_ = std::move(path.feeds);
   if (path.axis_alone) free_axis(section, name, path.warnings);
@@ -437,12 +438,14 @@ void ProblemReader::free_axis(const YamlSection& section, const YamlValue& name,
         "is a range, but the path's file has the tool's axis alone, and says of no turn about it "
         "that it is 0",
         "free, or tangents in the file");
-  if (!free_axis_) free_axis_ = name;
+  const bool first = !free_axis_;
+  if (first) free_axis_ = name;
   if (problem_.roll) return;
   problem_.roll = path_roll_ = Roll{};
   problem_.cost.weights.back() = 0;
-  warnings.push_back(name.where() +
-                     ": has the tool's axis alone: the tool may turn about it (`roll: free`)");
+  if (first)
+    warnings.push_back(name.where() +
+                       ": has the tool's axis alone: the tool may turn about it (`roll: free`)");
 }
 
 void ProblemReader::warn(const std::vector<std::string>& warnings) {
