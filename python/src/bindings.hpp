@@ -189,6 +189,7 @@ void bind_results(py::module_& m);
 void bind_planner(py::module_& m);
 void bind_runs(py::module_& m);
 void bind_workcell(py::module_& m);
+void bind_states(py::module_& m);
 
 }  // namespace swivel::python
 

@@ -16,6 +16,7 @@ PYBIND11_MODULE(_swivel, m) {
       "allowed.";
   swivel::python::bind_problem(m);
   swivel::python::bind_results(m);
+  swivel::python::bind_states(m);
   swivel::python::bind_planner(m);
   swivel::python::bind_job(m);
   swivel::python::bind_runs(m);

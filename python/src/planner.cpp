@@ -11,6 +11,7 @@
 #include "job.hpp"
 #include "plan_keywords.hpp"
 #include "results.hpp"
+#include "states.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -284,6 +285,14 @@ class SharedPlanner {
       return swivel::measure(robot, problem, *trajectory.rows, Evidence::all(), budget);
     });
   }
+  Clearances clearance(const py::handle& joints, std::optional<double> timeout) {
+    const std::vector<Config> states = to_states(joints);
+    return {std::make_shared<const StateClearances>(prepared(
+        [&](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
+          return state_clearances(robot, problem, states, budget);
+        },
+        timeout))};
+  }
   RefinedPath refine(const Trajectory& trajectory, std::optional<double> timeout) {
     Refined refined = prepared(
         [&](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
@@ -492,6 +501,10 @@ void bind_planner(py::module_& m) {
       .def("measure", &SharedPlanner::measure, py::arg("trajectory"),
            "What plan(evidence=True) says of its own trajectory, of any with a row at each layer: "
            "Measures.")
+      .def("clearance", &SharedPlanner::clearance, py::arg("joints"), py::kw_only(),
+           py::arg("timeout") = py::none(),
+           "How near bodies come at states (n, 7), rad, one by one: Clearances. Raises "
+           "TimeoutError.")
       .def("refine", &SharedPlanner::refine, py::arg("trajectory"), py::kw_only(),
            py::arg("timeout") = py::none(),
            "Moves the arm angles of a trajectory that plan() found off the grid: Refined. Raises "

@@ -108,11 +108,38 @@ std::string number(double value) {
   return py::repr(py::float_(value)).cast<std::string>();
 }
 
-/// Returns a pose from a position, m, and rpy, rad, or a quaternion [w x y z].
+/// Returns axes whose z points along `axis`, of any length above 1e-6: those of the smallest turn
+/// from the frame's own, for an axis that points down from these turned by 180 deg about x, so that
+/// axes near straight up and straight down vary smoothly; or, with a tangent, those whose x is the
+/// part of the tangent perpendicular to z. Throws ValueError for vectors without a direction, and a
+/// tangent along the axis.
+Matrix3d axes_along(const Vector3d& axis, const std::optional<Vector3d>& tangent) {
+  if (!(axis.norm() > 1e-6) || !axis.allFinite())
+    throw py::value_error("pose: axis of length 0, or not finite: allowed is any other");
+  const Vector3d z = axis.normalized();
+  if (!tangent) {
+    const Vector3d from(1, z.z() < 0 ? -1 : 1, z.z() < 0 ? -1 : 1);  // diagonal of the frame before
+    const Vector3d up = Vector3d::UnitZ() * from.z();
+    return Quaterniond::FromTwoVectors(up, z).toRotationMatrix() * from.asDiagonal();
+  }
+  const Vector3d x = *tangent - tangent->dot(z) * z;
+  if (!(x.norm() > 1e-3 * tangent->norm()) || !(tangent->norm() > 1e-6) || !tangent->allFinite())
+    throw py::value_error("pose: tangent of length 0, or along the axis: allowed is any other");
+  Matrix3d axes;
+  axes << x.normalized(), z.cross(x.normalized()), z;
+  return axes;
+}
+
+/// Returns a pose from a position, m, and rpy, rad, a quaternion [w x y z], or the direction of its
+/// z axis.
 Pose make_pose(const Vector3d& xyz, const std::optional<Vector3d>& rpy,
-               const std::optional<Eigen::Vector4d>& quat) {
-  if (rpy && quat) throw py::value_error("pose: rpy and quat: allowed is one of the two");
+               const std::optional<Eigen::Vector4d>& quat, const std::optional<Vector3d>& axis,
+               const std::optional<Vector3d>& tangent) {
+  if (rpy.has_value() + quat.has_value() + axis.has_value() > 1)
+    throw py::value_error("pose: more than one of rpy, quat and axis: allowed is one of them");
+  if (tangent && !axis) throw py::value_error("pose: tangent: allowed is a tangent beside axis");
   Pose pose = Pose::Identity();
+  if (axis) pose.linear() = axes_along(*axis, tangent);
   pose.translation() = xyz;
   if (rpy)
     pose.linear() = (Eigen::AngleAxisd((*rpy)[2], Vector3d::UnitZ()) *
@@ -773,10 +800,13 @@ py::array_t<double> to_joints(py::handle source, const char* what) {
 
 void bind_problem(py::module_& m) {
   m.def("pose", &make_pose, py::arg("xyz") = Vector3d(Vector3d::Zero()),
-        py::arg("rpy") = py::none(), py::arg("quat") = py::none(),
+        py::arg("rpy") = py::none(), py::arg("quat") = py::none(), py::arg("axis") = py::none(),
+        py::arg("tangent") = py::none(),
         "A pose as a (4, 4) array. xyz: m. rpy: roll, pitch, yaw about the fixed axes x, y, z, "
         "rad, as in a URDF. quat: w x y z, of\n"
-        "any length but 0.");
+        "any length but 0. axis: direction of the z axis, against a surface's outward normal; x "
+        "points along the part of\n"
+        "`tangent` that is perpendicular to it, or is the x axis turned as little as can be.");
   bind_shapes(m);
   bind_robot(m);
   bind_scene(m);

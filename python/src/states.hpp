@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "bindings.hpp"
+#include "swivel/planner/measure/state_clearance.hpp"
+
+namespace swivel::python {
+
+/// Clearances of a batch of states, as Python holds them.
+struct Clearances {
+  std::shared_ptr<const StateClearances> result;
+};
+
+/// Returns states from an array (n, 7) or (7,), rad. Throws ValueError for other shapes and numbers
+/// that are not finite.
+[[nodiscard]] std::vector<Config> to_states(py::handle joints);
+
+}  // namespace swivel::python
