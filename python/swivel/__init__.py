@@ -64,14 +64,44 @@ def _planner(problem):
     return Planner(problem)  # noqa: F405
 
 
-def plan(problem, **options):
+def plan(
+    problem,
+    *,
+    planner="parallel",
+    threads=0,
+    timeout=None,
+    evidence=False,
+    check=None,
+    check_motions=None,
+    cost=None,
+    progress=None,
+    refine=False,
+    speed=None,
+    turn_speed=None,
+    rate=None,
+    chord=None,
+):
     """Plans one problem, once.
 
-    problem: a Problem, or the name of its file. options: those of Planner.plan().
+    problem: a Problem, or the name of its file. The others are those of Planner.plan().
 
     Returns a Plan. Raises InputError and InvalidArgument for a problem that makes no sense.
     """
-    return _planner(problem).plan(**options)
+    return _planner(problem).plan(
+        planner=planner,
+        threads=threads,
+        timeout=timeout,
+        evidence=evidence,
+        check=check,
+        check_motions=check_motions,
+        cost=cost,
+        progress=progress,
+        refine=refine,
+        speed=speed,
+        turn_speed=turn_speed,
+        rate=rate,
+        chord=chord,
+    )
 
 
 def check(problem, trajectory):

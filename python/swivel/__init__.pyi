@@ -1365,7 +1365,23 @@ def campaign(
 
 # --- functions that plan in one call
 
-def plan(problem: Problem | _File, **options: Any) -> Plan: ...
+def plan(
+    problem: Problem | _File,
+    *,
+    planner: _PlannerKind = "parallel",
+    threads: int = 0,
+    timeout: float | None = None,
+    evidence: bool = False,
+    check: _Check | None = None,
+    check_motions: _MotionCheck | None = None,
+    cost: _Check | None = None,
+    progress: _Progress | None = None,
+    refine: bool = False,
+    speed: float | None = None,
+    turn_speed: float | None = None,
+    rate: float | None = None,
+    chord: float | None = None,
+) -> Plan: ...
 def check(problem: Problem | _File, trajectory: Trajectory | Motion) -> Check: ...
 def measure(problem: Problem | _File, trajectory: Trajectory) -> Measures: ...
 def refine(problem: Problem | _File, trajectory: Trajectory, *, timeout: float | None = None) -> Refined: ...

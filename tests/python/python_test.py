@@ -1480,6 +1480,19 @@ class Stubs(unittest.TestCase):
             else set()
         )
 
+    def test_plan_has_the_options_of_planners(self):
+        def options(body):
+            (plan,) = [item for item in body if getattr(item, "name", "") == "plan"]
+            return [(a.arg, ast.dump(a.annotation)) for a in plan.args.kwonlyargs], [
+                ast.dump(default) for default in plan.args.kw_defaults
+            ]
+
+        (planner,) = [node for node in self.tree.body if getattr(node, "name", "") == "Planner"]
+        self.assertEqual(options(self.tree.body), options(planner.body))
+        self.assertEqual(len(options(self.tree.body)[0]), 13)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'timout'"):
+            swivel.plan(PROBLEMS / "experiment_a.yaml", timout=3)
+
     def test_names_are_those_of_the_module(self):
         self.assertTrue((self.folder / "py.typed").exists())
         classes = {node.name: node for node in self.tree.body if isinstance(node, ast.ClassDef)}
