@@ -2,6 +2,7 @@
 # Inverse kinematics of poses and clearances of states. Usage: states_test.py CASE; SWIVEL_DATA is
 # the data folder.
 import os
+import re
 import unittest
 from pathlib import Path
 
@@ -131,6 +132,28 @@ class InverseKinematics(unittest.TestCase):
         ):
             with self.assertRaisesRegex(ValueError, words):
                 call()
+
+    def test_an_arm_without_a_closed_form_is_refused(self):
+        generator = np.random.default_rng(5)
+
+        def moved(words, most):
+            return " ".join(str(float(word) + generator.uniform(-most, most)) for word in words)
+
+        def crooked(joint):
+            return re.sub(
+                r'<origin xyz="([^"]*)" rpy="([^"]*)"',
+                lambda at: f'<origin xyz="{moved(at[1].split(), 0.05)}" '
+                f'rpy="{moved(at[2].split(), 0.1)}"',
+                joint[0],
+            )
+
+        text = (ROBOTS / "iiwa14.urdf").read_text()
+        robot = swivel.Robot.from_string(
+            re.sub(r'<joint name="joint_a.*?</joint>', crooked, text, flags=re.DOTALL)
+        )
+        self.assertIn("no closed form", robot.method)
+        with self.assertRaisesRegex(ValueError, "Kinematics: this arm has no closed form"):
+            swivel.Kinematics(robot)
 
     def test_poses_by_an_axis(self):
         generator = np.random.default_rng(seed(2609))
