@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/results/result.hpp"
 #include "swivel/planner/job/time_job.hpp"

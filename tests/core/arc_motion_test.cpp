@@ -12,7 +12,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/motion/arc_lengths.hpp"
 #include "swivel/core/motion/path_motion.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "worst_rates.hpp"
 
 namespace swivel {

@@ -13,9 +13,11 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/motion/smooth_path.hpp"
-#include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
 #include "swivel/core/problem/tool_path.hpp"
+#include "swivel/core/timing/shared_travel.hpp"
+#include "swivel/core/timing/time_arms.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "worst_rates.hpp"
 
 namespace swivel {
@@ -439,6 +441,46 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
   EXPECT_GE(timed, at_least(20));
   EXPECT_GE(stops, at_least(6));
   EXPECT_GE(samples, at_least(5001));
+}
+
+TEST(TimeArms, TwoArmsAlikeMoveAsOne) {
+  const std::uint64_t base = seed("TimeArms.TwoArmsAlikeMoveAsOne");
+  int timed = 0, stops = 0;
+  double apart = 0;
+  const std::vector<TestRobot> robots = all_robots();
+  for (int trial = 0; trial < trials(24); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const PathSmoothing smooth = random.coin(0.2) ? PathSmoothing{0, 0} : PathSmoothing{};
+    const auto f =
+        followed(robots[static_cast<std::size_t>(trial) % robots.size()], random, smooth);
+    if (!f) continue;
+    const JointRates rates = joint_rates(f->chain, Limits{}, "test");
+    const TimingOptions options{.speed = random.coin() ? 0.05 : 0.25};
+    const auto motion = make_path_motion(f->chain, f->kind, *f->path, f->rows);
+    const TimingResult one = time_path(*motion, rates, options);
+    const CommonParameter common = common_parameter({&*f->path, &*f->path}, -1, 0.02);
+    std::array<TimedArm, 2> arms;
+    for (std::size_t k = 0; k < 2; ++k)
+      arms[k] = {motion.get(), &rates, &options, &common.travel[k]};
+    const ArmsTiming two = time_arms(arms, common.rests);
+    ASSERT_EQ(one.motion.has_value(), !two.failure.has_value());
+    if (!one.motion) continue;
+    ++timed;
+    stops += static_cast<int>(one.motion->stops.size());
+    EXPECT_TRUE(common.blended.empty());
+    for (const TimedPath& out : two.motions) {
+      ASSERT_EQ(out.rows.size(), one.motion->rows.size());
+      EXPECT_NEAR(out.duration, one.motion->duration, 1e-6 * out.duration);
+      EXPECT_NEAR(out.ideal, one.motion->ideal, 1e-9);
+      EXPECT_EQ(out.stops.size(), one.motion->stops.size());
+      for (std::size_t row = 0; row < out.rows.size(); ++row)
+        apart = std::max(
+            apart, (out.rows[row].row.q - one.motion->rows[row].row.q).lpNorm<Eigen::Infinity>());
+    }
+  }
+  std::printf("%d motions, %d stops: rows within %.2g rad\n", timed, stops, apart);
+  EXPECT_LE(apart, 1e-6);
+  EXPECT_GE(timed, at_least(10));
 }
 
 TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 
 namespace swivel::test {
 

@@ -87,8 +87,10 @@ void ArcMotion::find_jumps() {
         q = next;
         continue;
       }
-      jumps_.push_back({rows_[k].s, q && next ? "the joints would have to jump to the next layer"
-                                              : "the arm has no solution between layers"});
+      NoMotion& jump = jumps_.emplace_back();
+      jump.s = rows_[k].s;
+      jump.reason = q && next ? "the joints would have to jump to the next layer"
+                              : "the arm has no solution between layers";
       break;
     }
   }

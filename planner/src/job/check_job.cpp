@@ -11,7 +11,7 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "verify/check_rates.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 
 #include "page/page_parts.hpp"
 #include "page/page_template.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {

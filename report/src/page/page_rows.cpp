@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 
 namespace swivel::detail {
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 
 namespace swivel {
 
