@@ -34,6 +34,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/lattice/problem_path.hpp
   swivel/core/motion/timed_path.hpp
   swivel/core/motion/job_motion.hpp
+  swivel/core/motion/workcell_motion.hpp
   swivel/core/study/campaign.hpp
   swivel/core/study/placement.hpp
   swivel/collision/proofs/verdict.hpp
@@ -63,6 +64,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/verify/complete_rows.hpp
   swivel/planner/workcell/check_workcell.hpp
   swivel/planner/workcell/plan_workcell.hpp
+  swivel/planner/workcell/time_workcell.hpp
   swivel/planner/workcell/workcell_view.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp

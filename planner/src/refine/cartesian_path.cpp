@@ -14,7 +14,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"

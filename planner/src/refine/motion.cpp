@@ -8,10 +8,9 @@
 #include <span>
 #include <utility>
 
-#include "measure/first_clearance_violation.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/keeps_branch.hpp"
-#include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
+#include "refine/motion_faults.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -32,109 +31,6 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
 }
-
-/// Returns which joint limit a sample exceeds, or that its manipulability is too low; none if it
-/// keeps both. Limits are narrower by `inside`, rad.
-std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits,
-                                        const TrajectoryRow& row, double inside = 0) {
-  constexpr double kLimit = 1e-9;  // rad
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[j];
-    const double q = row.q[static_cast<Eigen::Index>(j)], margin = limits.joint_margin + inside;
-    if (!limit.continuous &&
-        !(q >= limit.lower + margin - kLimit && q <= limit.upper - margin + kLimit))
-      return NoMotion{row.s,
-                      "joint '" + chain.joint_names[j] + "' leaves its limits between layers"};
-  }
-  if (limits.manipulability > 0 && chain.manipulability(row.q) < limits.manipulability - 1e-9)
-    return NoMotion{row.s, "manipulability is too low between layers"};
-  return std::nullopt;
-}
-
-/// What is wrong with a motion, and the sample at which it is.
-struct Fault {
-  NoMotion what;
-  std::size_t row = 0;
-};
-
-/// Returns the first fault of a motion; none if it has none. Throws Stopped.
-std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& problem,
-                                 const std::vector<TimedRow>& rows, const Budget& budget) {
-  std::vector<Config> samples;
-  for (const TimedRow& row : rows) {
-    if (auto fault = fault_of_joints(robot.arm().chain, problem.limits, row.row))
-      return Fault{*fault, samples.size()};
-    samples.push_back(row.row.q);
-  }
-  const World world(robot.world(), problem, budget, kVerdictBand);
-  const auto found = first_clearance_violation(world, world.edge_rule(robot.radii()),
-                                               problem.limits, samples, budget);
-  if (!found) return std::nullopt;
-  const auto names = world.names(found->pair);
-  NoMotion fault{rows[found->row].row.s, "'" + names[0] + "' and '" + names[1] + "' come too near" +
-                                             (found->between ? " between samples" : "")};
-  fault.too_near = true;
-  return Fault{std::move(fault), found->row};
-}
-
-/// Returns the travel at s, m; none if the path only turns there.
-std::optional<double> travel_at(const ToolPath& path, double s) {
-  for (int i = 0; i + 1 < path.size(); ++i) {
-    const PathLayer &from = path.layer(i), &to = path.layer(i + 1);
-    if (s < to.s && from.step_length > 0)
-      return from.travel +
-             std::max(0.0, (s - from.s) / (to.s - from.s)) * (to.travel - from.travel);
-  }
-  return std::nullopt;
-}
-
-/// Finds postures for the stretches between layers on which a motion is at fault.
-class Bisection {
- public:
-  Bisection(const PreparedRobot& robot, const Problem& of_samples, const ToolPath& path,
-            const Budget& budget)
-      : chain_(&robot.arm().chain),
-        problem_(&of_samples),
-        path_(&path),
-        world_(robot.world(), of_samples, budget),
-        query_(world_) {}
-
-  /// Takes the samples at fault that follow each other from `first` on, and returns the posture
-  /// nearest to their middle one that keeps limits and clearance, and a little more. None if there
-  /// is none, or if one was returned for that place before.
-  std::optional<BetweenRow> posture(const std::vector<TimedRow>& rows, std::size_t first) {
-    constexpr double kFarthest = 0.5, kSame = 1e-6;  // rad, m
-    std::size_t last = first;
-    while (last + 1 < rows.size() && !allowed(rows[last + 1].row.q)) ++last;
-    const TrajectoryRow& middle = rows[(first + last) / 2].row;
-    const auto travel = travel_at(*path_, middle.s);
-    if (!travel) return std::nullopt;
-    for (const double other : found_)
-      if (std::abs(*travel - other) < kSame) return std::nullopt;
-    const auto q = nearest_allowed_posture(*chain_, middle.q, kFarthest,
-                                           [this](const Config& one) { return allowed(one); });
-    if (!q) return std::nullopt;
-    found_.push_back(*travel);
-    return BetweenRow{*travel, *q};
-  }
-
- private:
-  bool allowed(const Config& q) {
-    // rad and m, so that the samples beside are allowed as well
-    constexpr double kInside = 1e-4, kClear = 1e-4;
-    TrajectoryRow row;
-    row.q = q;
-    return !fault_of_joints(*chain_, problem_->limits, row, kInside) &&
-           !query_.find_violating_pair(q, Threshold(ClearanceRule::kNode, kClear));
-  }
-
-  const Chain* chain_;
-  const Problem* problem_;
-  const ToolPath* path_;
-  World world_;
-  World::Query query_;
-  std::vector<double> found_;  // m of travel
-};
 
 /// Returns the rolls of the rows, rad, moved so that the spline through them stays within the range
 /// and the waypoints' windows: where it leaves them, the rolls beside are moved by as much, again
@@ -177,21 +73,6 @@ std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
   return rolls;
 }
 
-/// Returns true if the tool leaves the tolerances of its path between the samples of a motion, as
-/// check_motion() finds.
-bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion,
-                    const Budget& budget) {
-  // Beside a corner, the distance half way between samples is at least this share of the largest.
-  constexpr double kShare = 0.5;
-  const Limits& limits = problem.limits;
-  if (!(limits.tool_path_error && motion.between_position > kShare * *limits.tool_path_error) &&
-      !(limits.tool_angle_error && motion.between_angle > kShare * *limits.tool_angle_error))
-    return false;
-  const CheckResult check = check_motion_in(robot.world(), robot, problem, motion.rows,
-                                            {.margins = false, .budget = budget});
-  return check.worst_path_error > 0 || check.worst_path_angle > 0;  // of moves that fail
-}
-
 /// Returns the motion of time_path(). If the tool would leave the path's tolerances between
 /// samples, as it may at few samples a second, returns a slower one, or none if that does so too.
 TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& problem,
@@ -214,41 +95,6 @@ TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& p
       NoMotion{
           0,
           "the tool would leave its path's tolerances between samples: a higher rate brings less"}};
-}
-
-/// Returns the timing options with the tool no faster than limits.tool_speed and
-/// limits.tool_turn_speed allow. Adds a warning for each speed that is lowered.
-TimingOptions within_limits(TimingOptions options, const Limits& limits,
-                            std::vector<std::string>& warnings) {
-  const auto lower = [&](double& asked, const std::optional<double>& limit, const char* format) {
-    if (!limit || asked <= *limit) return;
-    warnings.push_back(formatted(format, asked, *limit));
-    asked = *limit;
-  };
-  lower(options.speed, limits.tool_speed,
-        "a tool speed of %.6g m/s is asked for: limits.tool_speed allows %.6g m/s, which is kept");
-  if (limits.tool_speed)
-    for (SpeedFrom& from : options.speeds) from.speed = std::min(from.speed, *limits.tool_speed);
-  if (!options.turn_speed) options.turn_speed = limits.tool_turn_speed;
-  if (options.turn_speed)
-    lower(*options.turn_speed, limits.tool_turn_speed,
-          "a turn speed of %.6g rad/s is asked for: limits.tool_turn_speed allows %.6g rad/s, "
-          "which is kept");
-  return options;
-}
-
-/// Throws InvalidArgument unless the numbers of the options are finite and positive.
-void require_positive(const TimingOptions& options) {
-  const auto positive = [](double value, const char* name) {
-    if (!(value > 0) || !std::isfinite(value))
-      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " +
-                            formatted("%.9g", value) + ": allowed is a finite number > 0");
-  };
-  positive(options.speed, "speed");
-  for (const SpeedFrom& from : options.speeds) positive(from.speed, "speeds");
-  positive(options.turn_speed.value_or(1), "turn_speed");
-  positive(options.rate, "rate");
-  positive(options.chord.value_or(1), "chord");
 }
 
 /// Times the rows of a path, and proves the motion's samples. Tries several motions through the

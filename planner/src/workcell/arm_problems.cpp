@@ -78,15 +78,6 @@ void raise(std::vector<int>& steps, const std::vector<int>& more) {
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = std::max(steps[k], more[k]);
 }
 
-/// Returns a pose between two waypoints: the position is linear, the orientation turns on the short
-/// arc. `t`: 0 to 1.
-Pose between(const Waypoint& from, const Waypoint& to, double t) {
-  Pose pose = Pose::Identity();
-  pose.translation() = from.position + t * (to.position - from.position);
-  pose.linear() = from.orientation.slerp(t, to.orientation).toRotationMatrix();
-  return pose;
-}
-
 /// Returns the waypoints of a follower, one at each layer, in the base frame: each is the leader's
 /// tool at that layer times the follower's path, which the leader's tool carries. `steps`: those of
 /// both paths between waypoints.
@@ -99,10 +90,10 @@ std::vector<Waypoint> carried(const ToolPath& leader, const std::vector<Waypoint
     waypoint.position = tool.translation();
     waypoint.orientation = Quaterniond(tool.linear()).normalized();
   };
-  add(between(on_tool[0], on_tool[1], 0));
+  add(pose_between(on_tool[0], on_tool[1], 0));
   for (std::size_t k = 0; k < steps.size(); ++k)
     for (int step = 1; step <= steps[k]; ++step)
-      add(between(on_tool[k], on_tool[k + 1], static_cast<double>(step) / steps[k]));
+      add(pose_between(on_tool[k], on_tool[k + 1], static_cast<double>(step) / steps[k]));
   return waypoints;
 }
 
@@ -119,8 +110,8 @@ std::vector<int> too_long(const std::vector<Waypoint>& carried, const std::vecto
 }
 
 /// Cuts the paths of a leader and its follower into as many steps each, and gives the follower its
-/// path in the base frame.
-void follow(Problem& leader, Problem& follower, const Budget& budget) {
+/// path in the base frame. Returns the follower's waypoints in the leader's tool frame.
+std::vector<Waypoint> follow(Problem& leader, Problem& follower, const Budget& budget) {
   const auto carrying = waypoints_in_base(leader);
   follower.path_frame = follower.base_link;
   const auto on_tool = waypoints_in_base(follower);  // in the leader's tool frame
@@ -140,6 +131,7 @@ void follow(Problem& leader, Problem& follower, const Budget& budget) {
     for (std::size_t k = 0; k < steps.size(); ++k) steps[k] *= times[k];
   }
   leader.steps = std::move(steps);
+  return on_tool;
 }
 
 /// Cuts the paths of two arms into as many steps each.
@@ -216,9 +208,17 @@ void cut_along(const Problem& given, Problem& planned, bool follows, const Budge
 
 }  // namespace
 
-std::array<Problem, 2> problems_of_arms(const Workcell& cell, const Budget& budget) {
+Pose pose_between(const Waypoint& from, const Waypoint& to, double t) {
+  Pose pose = Pose::Identity();
+  pose.translation() = from.position + t * (to.position - from.position);
+  pose.linear() = from.orientation.slerp(t, to.orientation).toRotationMatrix();
+  return pose;
+}
+
+ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget) {
   const std::array<ArmModel, 2> arms = arms_of(cell);
-  std::array<Problem, 2> problems{problem_of(cell, 0, arms[1]), problem_of(cell, 1, arms[0])};
+  ArmProblems of_arms{{problem_of(cell, 0, arms[1]), problem_of(cell, 1, arms[0])}, {}};
+  std::array<Problem, 2>& problems = of_arms.problems;
   for (std::size_t k = 0; k < 2; ++k)
     if (arms[k].chain.free_roll)
       throw InputError(problems[k].source,
@@ -229,15 +229,15 @@ std::array<Problem, 2> problems_of_arms(const Workcell& cell, const Budget& budg
     const bool follows = cell.leader_of(planned) >= 0;
     lay_along_rows(problems[*given], cell.arms[*given], arms[*given].chain, follows);
     cut_along(problems[*given], problems[planned], follows, budget);
-    return problems;
+    return of_arms;
   }
   for (std::size_t k = 0; k < 2; ++k)
     if (cell.leader_of(k) >= 0) {
-      follow(problems[1 - k], problems[k], budget);
-      return problems;
+      of_arms.on_leader = follow(problems[1 - k], problems[k], budget);
+      return of_arms;
     }
   cut_alike(problems, budget);
-  return problems;
+  return of_arms;
 }
 
 }  // namespace swivel

@@ -10,6 +10,7 @@
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
+#include "verify/between_samples.hpp"
 #include "workcell/arm_problems.hpp"
 
 namespace swivel {
@@ -38,7 +39,11 @@ std::vector<TrajectoryRow> rows_along(const std::vector<Config>& q, const ToolPa
 
 struct PreparedWorkcell::Impl {
   std::array<std::string, 2> names;
-  std::array<Problem, 2> problems;
+  int follower;
+  std::shared_ptr<const RobotModel> model;  // of the whole robot
+  std::vector<std::array<std::string, 2>> may_touch;
+  ArmProblems of_arms;
+  const std::array<Problem, 2>& problems;
   std::array<PreparedRobot, 2> robots;
   InterArmWorld between;
   std::optional<std::size_t> given_arm;
@@ -46,12 +51,15 @@ struct PreparedWorkcell::Impl {
 
   Impl(const Workcell& cell, const Budget& budget)
       : names{cell.arms[0].name, cell.arms[1].name},
-        problems(problems_of_arms(cell, budget)),
+        follower(cell.leader_of(0) >= 0   ? 0
+                 : cell.leader_of(1) >= 0 ? 1
+                                          : -1),
+        model(cell.arms[0].model),
+        may_touch(cell.may_touch),
+        of_arms(problems_of_arms(cell, budget)),
+        problems(of_arms.problems),
         robots{PreparedRobot(problems[0], budget), PreparedRobot(problems[1], budget)},
-        between(*cell.arms[0].model,
-                {ArmInPair{&robots[0].arm(), &cell.arms[0].attached},
-                 ArmInPair{&robots[1].arm(), &cell.arms[1].attached}},
-                cell.may_touch, stricter(cell.arms[0].limits, cell.arms[1].limits), budget),
+        between(world(problems[0].limits, problems[1].limits, budget)),
         given_arm(cell.given_arm()) {
     if (!given_arm) return;
     const PreparedRobot& robot = robots[*given_arm];
@@ -59,6 +67,16 @@ struct PreparedWorkcell::Impl {
                             path_within_scale(problems[*given_arm], robot.arm().chain, budget));
     given_rows = complete_rows(robot, problems[*given_arm], std::move(given_rows),
                                Stated{.phi = false, .branch = false}, budget);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// Returns the world between the arms with what their limits keep.
+  [[nodiscard]] InterArmWorld world(const Limits& a, const Limits& b, const Budget& budget) const {
+    return InterArmWorld(*model,
+                         {ArmInPair{&robots[0].arm(), &problems[0].attached},
+                          ArmInPair{&robots[1].arm(), &problems[1].attached}},
+                         may_touch, stricter(a, b), budget);
   }
 };
 
@@ -94,6 +112,20 @@ std::optional<std::size_t> PreparedWorkcell::given_arm() const {
 }
 const std::vector<TrajectoryRow>& PreparedWorkcell::given_rows() const {
   return impl_->given_rows;
+}
+InterArmWorld PreparedWorkcell::between_samples(const Budget& budget) const {
+  return impl_->world(problem_of_samples(problem(0)).limits, problem_of_samples(problem(1)).limits,
+                      budget);
+}
+int PreparedWorkcell::follower() const {
+  return impl_->follower;
+}
+Pose PreparedWorkcell::on_leader(double layer) const {
+  const std::vector<int>& steps = problem(static_cast<std::size_t>(1 - follower())).steps;
+  const std::vector<Waypoint>& waypoints = impl_->of_arms.on_leader;
+  std::size_t k = 0;
+  while (k + 1 < steps.size() && layer >= steps[k]) layer -= steps[k++];
+  return pose_between(waypoints[k], waypoints[k + 1], std::clamp(layer / steps[k], 0.0, 1.0));
 }
 
 }  // namespace swivel

@@ -43,6 +43,14 @@ class PreparedWorkcell {
   /// Returns the rows of the given motion: the joints of Workcell::given, bit for bit, with the
   /// path length, arm angle and branch that follow from them. Empty where no motion is given.
   [[nodiscard]] const std::vector<TrajectoryRow>& given_rows() const;
+  /// Returns the bodies of both arms with what they keep at and between the samples of timed
+  /// motions (time_workcell()).
+  [[nodiscard]] InterArmWorld between_samples(const Budget& budget = {}) const;
+  /// Returns the number of the arm whose path the other one's tool carries; -1: there is none.
+  [[nodiscard]] int follower() const;
+  /// Returns the pose of the follower's tool in the frame of the leader's tool at a layer; between
+  /// two layers at a fraction. Only where there is a follower.
+  [[nodiscard]] Pose on_leader(double layer) const;
 
  private:
   struct Impl;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "swivel/core/motion/workcell_motion.hpp"
+#include "swivel/core/problem/workcell.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+
+namespace swivel {
+
+/// Returns the workcell with the defaults that timed motions use for keys it leaves unset
+/// (with_motion_defaults(Problem)): what is planned to be timed should be this. Throws InputError
+/// where the motion of an arm is given, since no motion in time is made beside it.
+[[nodiscard]] Workcell with_motion_defaults(Workcell cell);
+
+/// Times trajectories of both arms, rows at the layers of their paths, by one clock, and proves
+/// what a controller does with them: the joints of both arms move straight from sample to sample at
+/// one time. Tools are on their paths at samples; both are at their first waypoints together, at
+/// their second ones together, and so on. No tool is faster than `options.speed`; that of a
+/// follower is its speed relative to the leader's tool. Nor is a tool faster in the base frame than
+/// limits.tool_speed of its arm. So one of the tools is at its speed wherever joints allow it.
+/// Every joint keeps its speed, acceleration and jerk. Samples keep limits, manipulability and
+/// clearance, and motions between them the clearances of motions (within 0.05 mm), each arm by
+/// itself and both between each other.
+///
+/// At a waypoint at which the ratio of the tools' speeds changes, it does so over up to 20 mm on
+/// both sides; of a follower's path, over as little as keeps both tools within 0.05 mm of where
+/// they belong at that moment. Where there is no room for that, or where the arms would come too
+/// near to each other on the way, both stop there.
+///
+/// `prepared` is that of a workcell with_motion_defaults(). Throws InvalidArgument for another one,
+/// for options that are not positive, and for `options.speeds`, InputError for rows that are not at
+/// layers and for a joint without a speed limit, and Stopped.
+[[nodiscard]] WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
+                                           const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                                           const TimingOptions& options, const Budget& budget = {});
+
+/// A plan of a workcell and its motion in time.
+struct WorkcellMotionPlan {
+  WorkcellResult result;
+  /// Set if there is a plan and time was left; has a failure where it has no motion.
+  std::optional<WorkcellTiming> timing;
+  bool stopped = false;  ///< there is a plan, but time ran out before its motion
+};
+/// Plans a workcell and times the plan, both within the time-out of `options`, and proves both if
+/// options.check. `prepared` is that of a workcell with_motion_defaults(). Throws as
+/// plan_workcell() and time_workcell() do, std::logic_error if options.check finds an answer
+/// invalid.
+[[nodiscard]] WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
+                                                      const PlanOptions& options,
+                                                      const TimingOptions& timing);
+
+/// Proves a timed motion of two arms from the workcell alone, or tells what is wrong with it. The
+/// workcell is one with_motion_defaults(). Each arm passes check_motion() by itself; rows are at
+/// the same times; at every row, and on every motion from one to the next in which both arms move
+/// at one time, each straight in joint space, bodies of the two arms keep clear of each other (0.05
+/// mm are forgiven, contact never). Both tools are at their waypoints together: when one is there,
+/// the other is within its limits.tool_path_error (1 mm if that is not set) of its own. The tool of
+/// a follower is within tool_path_error and tool_angle_error (1 mm, 0.02 rad) of its path on the
+/// leader's tool at every row. Throws as check_workcell() does.
+[[nodiscard]] WorkcellCheckResult check_workcell_motion(
+    const PreparedWorkcell& prepared, const std::array<std::vector<TimedRow>, 2>& rows,
+    const CheckOptions& options = {});
+
+}  // namespace swivel

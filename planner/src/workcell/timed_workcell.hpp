@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "swivel/core/problem/tool_path.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+
+namespace swivel {
+
+/// Throws InvalidArgument unless a workcell was completed by with_motion_defaults() before it was
+/// prepared.
+void require_motion_defaults(const PreparedWorkcell& prepared);
+
+/// How far a follower's tool is off its path on the leader's tool: m and rad.
+struct FollowerError {
+  double position = 0, angle = 0;
+};
+
+/// Measures followers of a workcell that has one.
+class FollowerMeter {
+ public:
+  /// The workcell must outlive it.
+  FollowerMeter(const PreparedWorkcell& prepared, const Budget& budget);
+  /// Returns how far the follower's tool is from where it belongs while the leader is at joints q
+  /// and, by its row, at s (m along its path); `q` is by arm.
+  [[nodiscard]] FollowerError at(const std::array<Config, 2>& q, double leader_s) const;
+
+ private:
+  const PreparedWorkcell* prepared_;
+  std::size_t follower_;
+  ToolPath path_;  // of the leader
+};
+
+}  // namespace swivel
