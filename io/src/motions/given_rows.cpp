@@ -22,7 +22,8 @@ namespace {
 /// Returns whether a table begins with these columns, as Swivel writes them.
 bool begins_with(const std::string& text, const std::vector<std::string>& columns) {
   std::string header;
-  for (const std::string& column : columns) header += (header.empty() ? "" : ",") + csv_field(column);
+  for (const std::string& column : columns)
+    header += (header.empty() ? "" : ",") + csv_field(column);
   return text.starts_with(header + "\n") || text.starts_with(header + "\r\n");
 }
 

@@ -75,9 +75,10 @@ inline std::string long_step_warning(const ToolPath& path, const Resolution& res
   }
   if (length <= resolution.ds * (1 + kRounding) && angle <= resolution.dalpha * (1 + kRounding))
     return "";
-  return formatted("steps of '%s' are up to %.3g mm and %.3g rad long, and resolution.ds and dalpha "
-                   "say %.3g mm and %.3g rad: its layers are the rows of the given motion",
-                   name.c_str(), 1e3 * length, angle, 1e3 * resolution.ds, resolution.dalpha);
+  return formatted(
+      "steps of '%s' are up to %.3g mm and %.3g rad long, and resolution.ds and dalpha "
+      "say %.3g mm and %.3g rad: its layers are the rows of the given motion",
+      name.c_str(), 1e3 * length, angle, 1e3 * resolution.ds, resolution.dalpha);
 }
 
 }  // namespace swivel

@@ -92,17 +92,15 @@ class PlainBesideGiven {
   }
 
  private:
-  [[nodiscard]] const Config& given(std::size_t row) const {
-    return prepared_.given_rows()[row].q;
-  }
+  [[nodiscard]] const Config& given(std::size_t row) const { return prepared_.given_rows()[row].q; }
   bool holds(std::size_t a, const std::vector<std::vector<std::size_t>>& next) {
     bool all = true;
     for (std::size_t i = 0; i + 1 < arm_.layers(); ++i) {
       const std::size_t b = next[i][a];
       all = arm_.valid(i, a, b) && all;
-      if (query_.find_pair_blocking_motion(
-              {prepared_.robot(0).radii(), prepared_.robot(1).radii()},
-              {given(i), arm_.nodes(i)[a].q}, {given(i + 1), arm_.nodes(i + 1)[b].q})) {
+      if (query_.find_pair_blocking_motion({prepared_.robot(0).radii(), prepared_.robot(1).radii()},
+                                           {given(i), arm_.nodes(i)[a].q},
+                                           {given(i + 1), arm_.nodes(i + 1)[b].q})) {
         barred_.insert({i, a, b});
         all = false;
       }
@@ -153,9 +151,10 @@ TEST(GivenMotion, CostsAsMuchAsAPlainProgramOverNodes) {
     expect_equal_rows(own.trajectory, found.arms[1].trajectory);
     ++alone;
   }
-  std::printf("%d cells: %d solved, %d of them with a follower; %d in conflict, %d without a path; "
-              "%d as the arm alone\n",
-              drawn, solved, followers, conflicts, none, alone);
+  std::printf(
+      "%d cells: %d solved, %d of them with a follower; %d in conflict, %d without a path; "
+      "%d as the arm alone\n",
+      drawn, solved, followers, conflicts, none, alone);
   EXPECT_GE(solved, at_least(count / 3));
   EXPECT_GE(followers, at_least(count / 16));
   EXPECT_GE(conflicts, at_least(count / 5));
@@ -187,12 +186,13 @@ TEST(GivenMotion, HasLayersAtItsRowsWhereWaypointsAreAsked) {
       ASSERT_EQ(path.size(), rows);
       if (k == 0)
         for (int row = 0; row < rows; ++row)
-          EXPECT_TRUE(path.layer(row).tool.isApprox(
-              prepared.robot(0).arm().chain.tool(cell->arms[0].given[static_cast<std::size_t>(row)]),
-              1e-12));
+          EXPECT_TRUE(
+              path.layer(row).tool.isApprox(prepared.robot(0).arm().chain.tool(
+                                                cell->arms[0].given[static_cast<std::size_t>(row)]),
+                                            1e-12));
       else
-        EXPECT_NEAR((path.layer(middle).tool.translation() - right.waypoints[1].position).norm(),
-                    0, 1e-12);
+        EXPECT_NEAR((path.layer(middle).tool.translation() - right.waypoints[1].position).norm(), 0,
+                    1e-12);
     }
     // The steps are longer than the resolution says, and this is said.
     right.resolution.ds = 0.005;
@@ -256,7 +256,8 @@ TEST(GivenMotion, IsRefusedWhereItDoesNotKeepTheLimits) {
         SceneObject ball;
         ball.name = "ball";
         ball.shape = Sphere{0.02};
-        ball.pose.translation() = prepared.robot(0).arm().chain.tool(c.arms[0].given[2]).translation();
+        ball.pose.translation() =
+            prepared.robot(0).arm().chain.tool(c.arms[0].given[2]).translation();
         c.scene.push_back(ball);
       },
       "arm 'left': given motion: row ");
