@@ -91,7 +91,7 @@ inline PlanOptions lazily() {
 
 /// Expects the same number of rows with the same joints, bit for bit.
 inline void expect_equal_rows(const std::vector<TrajectoryRow>& one,
-                       const std::vector<TrajectoryRow>& other) {
+                              const std::vector<TrajectoryRow>& other) {
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t row = 0; row < one.size(); ++row) EXPECT_EQ(one[row].q, other[row].q);
 }
