@@ -23,6 +23,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
+#include "swivel/graph/search/turned_path.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/robot/planning_arm.hpp"
 #include "validity/collision_validity.hpp"
@@ -89,6 +90,20 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
   for (; !path.empty() && rows.empty(); path.pop_back()) rows = lattice.path_rows(path);
   return rows;
+}
+
+/// Returns the values that bounded joints may have which the lattice treats as circles, wider by
+/// the fit error, as those of nodes are.
+std::vector<CircleRange> circle_ranges(const Lattice& lattice) {
+  std::vector<CircleRange> ranges;
+  const Lattice::Joints circles = bounded_circles(lattice);
+  for (int j = 0; j < kDof; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const JointLimit& limit = lattice.chain().limit[k];
+    const double inside = lattice.limits().joint_margin - kLimitTolerance - lattice.fit_error()[j];
+    if (circles[k]) ranges.push_back({j, limit.lower + inside, limit.upper - inside});
+  }
+  return ranges;
 }
 
 /// Returns whether what the hooks say of a state may differ from turn to turn of a joint.
@@ -371,10 +386,53 @@ struct Planner::Impl {
       if (!found.decided || found.outcome.path.empty()) return found;
       const Lattice::Joints off = lattice.off_nearest(found.outcome.path);
       if (off == Lattice::Joints{}) return found;
+      if (problem.start && !was_eager && !lattice.has_layers_between() && robot->arm_class().srs)
+        if (const auto turned = search_turns(layout->last(), rule, options, budget, result))
+          return *turned;
       layout->second = Searched{lattice.with_windings(off), nullptr};
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
       found = search(*layout->second, false, rule, options, budget, result);
     }
+  }
+  /// Searches a lattice for the cheapest path along which the joints that it treats as circles keep
+  /// their limits from the given start on. Returns nothing where there is none, or where it would
+  /// take too long.
+  std::optional<Found> search_turns(Searched& searched, const EdgeRule& rule,
+                                    const PlanOptions& options, const Budget& budget,
+                                    PlanResult& result) {
+    constexpr int kMostLabels = 20'000;  // about as long as a sweep over a few million nodes
+    const Lattice& lattice = *searched.lattice;
+    auto whole = make_cost_to_go(lattice, Pruning::kNone, budget);
+    if (single_use) whole->set_single_use();
+    Executor& threads = threads_of(options);
+    if (shares_work(lattice)) whole->share(shared_with(threads));
+    CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
+                               distance_proofs_of(options), threads, chunks_of(options, lattice),
+                               budget);
+    HookedValidity hooked(lattice, validity, options.hooks, budget);
+    SearchCounters work;
+    Found found;
+    std::optional<SearchOutcome> outcome;
+    try {
+      whole->sweep(lattice.layers() - 1);
+      outcome = path_first_within(*whole, hooked, circle_ranges(lattice), {.batch = 8}, kMostLabels,
+                                  work);
+    } catch (const Stopped&) {
+      return Found{};  // undecided
+    }
+    Counters counters;
+    counters.ik_nodes = whole->ik_nodes();
+    counters.edges = whole->edges();
+    counters.expansions = work.expansions;
+    counters.iterations = work.iterations;
+    count(validity, counters);
+    add_counters(counters, result.counters);
+    if (!outcome || lattice.off_nearest(outcome->path) != Lattice::Joints{}) return std::nullopt;
+    searched.cost_to_go = std::move(whole);
+    found.decided = true;
+    found.outcome = *outcome;
+    found.valid_path = outcome->path;
+    return found;
   }
   /// Notes what a search asked.
   static void count(const CollisionValidity& validity, Counters& counters) {
