@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
+#include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -110,6 +112,59 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
   EXPECT_GE(solved, at_least(20));
   EXPECT_GE(best, at_least(3));
   EXPECT_GE(detours, at_least(3));
+}
+
+/// Joints 1 and 7 of two turns are circles, unless a step may move them by half a turn; no step of
+/// these jobs does, so that the cost is the same.
+TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
+  const Job door = load("door_job.yaml");
+  const Problem first = problem_of_run(door, {0, false});
+  const TestRobot wide =
+      with_limits({"door", door.model, first.base_link, first.tip_link}, [](int number, Joint& j) {
+        if (number == 0 || number == 6) j.lower = -kTwoPi, j.upper = kTwoPi;
+      });
+  Random random(seed("PlanJob.Wide"));
+  int solved = 0, told_apart = 0;
+  const int count = trials(24);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "trial " + std::to_string(trial);
+    Job job = door;
+    job.model = wide.model;
+    job.scene = episode_problem(first, 1, static_cast<std::uint64_t>(trial)).scene;
+    while (job.strokes.size() > 2 && random.coin()) job.strokes.pop_back();
+    if (random.coin()) job.home.reset();
+    for (Stroke& stroke : job.strokes) {
+      stroke.resolution.ds = 0.03;
+      stroke.resolution.dphi = 0.25;
+      stroke.limits.tool_path_error = 0.02;
+      const double turn = random.uniform(-4, 4);  // of the tool, about its axis
+      const std::size_t parts = stroke.waypoints.size();
+      for (std::size_t k = 0; k < parts; ++k)
+        stroke.waypoints[k].orientation =
+            stroke.waypoints[k].orientation *
+            Quaterniond(Eigen::AngleAxisd(
+                turn * static_cast<double>(k) / static_cast<double>(parts), Vector3d::UnitZ()));
+    }
+    std::array<JobResult, 2> found;
+    std::array<int, 2> windings{};
+    for (std::size_t apart = 0; apart < 2; ++apart) {
+      // one stroke that moves joints by half a turn tells them apart in all
+      for (Stroke& stroke : job.strokes) stroke.limits.joint_step = 3.0;
+      if (apart == 1) job.strokes.back().limits.joint_step = 3.2;
+      found[apart] = plan_job(job, {});
+      ASSERT_FALSE(found[apart].runs.empty()) << what;
+      windings[apart] = found[apart].runs[0].lattice.grid->windings;
+    }
+    ASSERT_EQ(windings[1], 4) << what;
+    ASSERT_EQ(found[0].status, found[1].status) << what;
+    ASSERT_NEAR(found[0].cost, found[1].cost, 1e-6) << what;
+    solved += found[0].status == PlanStatus::kSolved;
+    told_apart += windings[0] > 1;
+  }
+  std::printf("%d jobs, %d solved, %d with turns told apart\n", count, solved, told_apart);
+  EXPECT_GE(solved, at_least_among(count / 3));
+  EXPECT_GE(told_apart, at_least(1));
+  EXPECT_LT(told_apart, count);
 }
 
 /// Expects that a run's view has the rows of its part, but for whole turns, and knows their nodes.
