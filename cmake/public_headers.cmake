@@ -25,6 +25,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/answer/plan.hpp
   swivel/core/answer/refined.hpp
   swivel/core/answer/stated.hpp
+  swivel/core/answer/workcell_certificate.hpp
   swivel/core/answer/workcell_result.hpp
   swivel/core/kinematics/chain/arm.hpp
   swivel/core/lattice/body_pose_classes.hpp

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "certificate/cut.hpp"
 #include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -27,16 +28,16 @@ void add(std::vector<InfeasibilityCertificate::Range>& ranges, int slot) {
     ranges.push_back({slot, slot});
 }
 
-/// Finds the certificate of a plan that found no path, from the verdicts of its search.
+/// Finds the certificate of a search that found no path, from its verdicts.
 class Finder {
  public:
-  Finder(const PlanView& view, const Verdicts& verdicts, const std::shared_ptr<StateCheck>& check,
-         const Budget& budget)
-      : lattice_(view.lattice),
+  Finder(const Lattice& lattice, const World& world, const EdgeRule& rule, const Verdicts& verdicts,
+         const RegionSides& regions, const std::shared_ptr<StateCheck>& check, const Budget& budget)
+      : lattice_(lattice),
         verdicts_(verdicts),
+        regions_(regions),
         budget_(budget),
-        witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()),
-                   DistanceProofs::kOn, check, budget) {}
+        witnesses_(lattice, world, rule, DistanceProofs::kOn, check, budget) {}
 
   /// Returns the certificate without the settings of the problem. Throws InvalidArgument if there
   /// is a path, and Stopped.
@@ -148,6 +149,19 @@ class Finder {
     return layer;
   }
 
+  /// Returns a witness that removes a node, or -1. `suspected`: the witness before, or -1.
+  [[nodiscard]] int witness_of_node(int layer, int slot, int suspected) {
+    if (const int region = regions_.of_node(layer, slot); region >= 0) return region;
+    return counted(witnesses_.of_node(layer, slot, std::max(-1, suspected - regions_.count())));
+  }
+  /// Returns a witness that removes an edge, or -1, as witness_of_node() does.
+  [[nodiscard]] int witness_of_edge(int layer, int a, int b, int suspected) {
+    if (const int region = regions_.of_edge(layer, a, b); region >= 0) return region;
+    return counted(witnesses_.of_edge(layer, a, b, std::max(-1, suspected - regions_.count())));
+  }
+  /// Returns the number of a cause after those of the regions; -1 of none.
+  [[nodiscard]] int counted(int cause) const { return cause < 0 ? -1 : cause + regions_.count(); }
+
   /// Returns a layer of the certificate: its reached slots, and a witness for each slot that is
   /// asked for and not reached.
   [[nodiscard]] InfeasibilityCertificate::Layer layer_of(int layer, const Nodes& nodes,
@@ -160,7 +174,7 @@ class Finder {
       if (reached[index(slot)]) {
         add(found.reached, slot);
       } else if (asked[index(slot)]) {
-        witness = witnesses_.of_node(layer, slot, witness);
+        witness = witness_of_node(layer, slot, witness);
         require(witness >= 0, layer, "a node");
         if (!found.removed.empty() && found.removed.back().witness == witness &&
             found.removed.back().slots.last + 1 == slot)
@@ -217,7 +231,7 @@ class Finder {
                                                                       int& witness) {
     std::vector<InfeasibilityCertificate::Edges> edges;
     for (const int a : tails) {
-      witness = witnesses_.of_edge(layer, a, b, witness);
+      witness = witness_of_edge(layer, a, b, witness);
       require(witness >= 0, layer, "an edge");
       if (edges.empty() || edges.back().witness != witness)
         edges.push_back({{a, a}, {b, b}, witness, 0});
@@ -279,11 +293,18 @@ class Finder {
 
   const Lattice& lattice_;
   const Verdicts& verdicts_;
+  const RegionSides& regions_;
   const Budget& budget_;
   Witnesses witnesses_;
 };
 
 }  // namespace
+
+InfeasibilityCertificate find_cut(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                                  const Verdicts& verdicts, const RegionSides& regions,
+                                  const std::shared_ptr<StateCheck>& check, const Budget& budget) {
+  return Finder(lattice, world, rule, verdicts, regions, check, budget).find();
+}
 
 InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget,
                                           const std::shared_ptr<StateCheck>& check) {
@@ -300,7 +321,8 @@ InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& bu
     static_cast<void>(path_first(*own, hooked, {}, counters));
   }
   InfeasibilityCertificate certificate =
-      Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
+      find_cut(view.lattice, view.world, view.world.edge_rule(view.robot.radii()),
+               own ? own->verdicts() : *view.verdicts, {}, check, budget);
   certificate.resolution = view.problem.resolution;
   certificate.edges = view.problem.limits.edges;
   certificate.windings = view.lattice.joints_with_windings();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "certificate/cut.hpp"
 #include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -27,10 +28,11 @@ std::string number(int k) {
 class Verifier {
  public:
   Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule,
-           const InfeasibilityCertificate& certificate, CertificateCheck& result,
-           const std::shared_ptr<StateCheck>& check, const Budget& budget)
+           const InfeasibilityCertificate& certificate, const RegionSides& regions,
+           CertificateCheck& result, const std::shared_ptr<StateCheck>& check, const Budget& budget)
       : lattice_(lattice),
         certificate_(certificate),
+        regions_(regions),
         result_(result),
         budget_(budget),
         witnesses_(lattice, world, rule, DistanceProofs::kOff, check, budget) {}
@@ -104,18 +106,32 @@ class Verifier {
     }
     for (const InfeasibilityCertificate::Nodes& removed : said.removed) {
       tell(removed.slots, State::kRemoved);
-      const Cause& cause = witness(removed.witness, number_of);
+      require_witness(removed.witness, number_of);
       for (int slot = removed.slots.first; slot <= removed.slots.last; ++slot, ++result_.nodes)
-        if (!witnesses_.removes_node(removed.witness, number_of, slot))
-          refuse(number_of, slot, "is not removed by its witness, " + words(cause));
+        if (!removes_node(removed.witness, number_of, slot))
+          refuse(number_of, slot, "is not removed by its witness, " + words_of(removed.witness));
     }
     return layer;
   }
 
-  const Cause& witness(int k, int layer) const {
-    if (k < 0 || k >= static_cast<int>(certificate_.witnesses.size()))
+  void require_witness(int k, int layer) const {
+    if (k < 0 || k - regions_.count() >= static_cast<int>(certificate_.witnesses.size()))
       throw Refused{"layer " + number(layer) + ": witness " + number(k) + " is not listed"};
-    return certificate_.witnesses[index(k)];
+  }
+  [[nodiscard]] std::string words_of(int witness) const {
+    return witness < regions_.count()
+               ? "region " + number(witness) + " of its arm"
+               : words(certificate_.witnesses[index(witness - regions_.count())]);
+  }
+  [[nodiscard]] bool removes_node(int witness, int layer, int slot) {
+    return witness < regions_.count()
+               ? regions_.removes_node(witness, layer, slot)
+               : witnesses_.removes_node(witness - regions_.count(), layer, slot);
+  }
+  [[nodiscard]] bool removes_edge(int witness, int layer, int a, int b) {
+    return witness < regions_.count()
+               ? regions_.removes_edge(witness, layer, a, b)
+               : witnesses_.removes_edge(witness - regions_.count(), layer, a, b);
   }
 
   void every_node_is_told(const Layer& layer) const {
@@ -131,7 +147,7 @@ class Verifier {
   void nothing_leads_on(const Layer& from, const Layer& to,
                         const std::vector<InfeasibilityCertificate::Edges>& removed) {
     for (const InfeasibilityCertificate::Edges& edges : removed) {
-      witness(edges.witness, to.layer);
+      require_witness(edges.witness, to.layer);
       for (const int slot : {edges.tails.first, edges.tails.last})
         if (slot < 0 || slot >= static_cast<int>(from.state.size()) ||
             from.state[index(slot)] != State::kReached)
@@ -180,10 +196,10 @@ class Verifier {
       told = true;
       ++asked[k];
       ++result_.edges;
-      if (!witnesses_.removes_edge(edges.witness, layer, a, b))
+      if (!removes_edge(edges.witness, layer, a, b))
         refuse(layer, a,
                "its edge to slot " + number(b) + " is not removed by its witness, " +
-                   words(certificate_.witnesses[index(edges.witness)]));
+                   words_of(edges.witness));
     }
     if (!told)
       refuse(layer, a,
@@ -192,6 +208,7 @@ class Verifier {
 
   const Lattice& lattice_;
   const InfeasibilityCertificate& certificate_;
+  const RegionSides& regions_;
   CertificateCheck& result_;
   const Budget& budget_;
   Witnesses witnesses_;
@@ -220,6 +237,18 @@ void require_same_layout(const Problem& problem, const InfeasibilityCertificate&
 
 }  // namespace
 
+std::string fault_of_cut(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                         const InfeasibilityCertificate& cut, const RegionSides& regions,
+                         const std::shared_ptr<StateCheck>& check, const Budget& budget,
+                         CertificateCheck& result) {
+  try {
+    Verifier(lattice, world, rule, cut, regions, result, check, budget).run();
+  } catch (const Refused& refused) {
+    return refused.why;
+  }
+  return "";
+}
+
 CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem,
                                     const InfeasibilityCertificate& certificate,
                                     const Budget& budget,
@@ -239,8 +268,9 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& p
       if (!lattice) throw Refused{"windings: of joints that are told apart anyway"};
     }
     const World world(robot.world(), problem, budget);
-    Verifier(*lattice, world, world.edge_rule(robot.radii()), certificate, result, check, budget)
-        .run();
+    const std::string fault = fault_of_cut(*lattice, world, world.edge_rule(robot.radii()),
+                                           certificate, {}, check, budget, result);
+    if (!fault.empty()) throw Refused{fault};
     result.s = {lattice->path().layer(certificate.first_layer).s,
                 lattice->path()
                     .layer(certificate.first_layer + static_cast<int>(certificate.band.size()) - 1)

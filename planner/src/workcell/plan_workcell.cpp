@@ -24,36 +24,20 @@
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/workcell_view.hpp"
 #include "validity/collision_validity.hpp"
+#include "workcell/arm_in_cell.hpp"
 #include "workcell/between_arms.hpp"
-#include "workcell/given_motion.hpp"
 
 namespace swivel {
 
 namespace {
 
 /// One arm with what its search needs. It is searched by one thread at a time.
-struct PlannedArm {
-  /// `given`: the rows of the arm's motion, if that is given; else null.
-  PlannedArm(const Problem& p, const PreparedRobot& r, const std::vector<TrajectoryRow>* given,
-             const Budget& budget)
-      : problem(p),
-        robot(r),
-        world(r.world(), p, budget),
-        rule(world.edge_rule(r.radii())),
-        path(path_within_scale(p, r.arm().chain, budget)),
-        is_given(given != nullptr),
-        lattice(given != nullptr ? std::make_unique<GivenLattice>(r.arm().chain, path, p, *given)
-                                 : make_lattice(r.arm().chain, r.arm_class(), path, p, budget)) {
-    if (const std::string rest = joints_at_rest(*p.model, r.arm().chain); !rest.empty())
+struct PlannedArm : ArmInCell {
+  PlannedArm(const PreparedWorkcell& prepared, std::size_t arm, const Budget& budget)
+      : ArmInCell(prepared, arm, budget) {
+    if (const std::string rest = joints_at_rest(*problem.model, robot.arm().chain); !rest.empty())
       throw InputError(rest);
   }
-  const Problem& problem;
-  const PreparedRobot& robot;
-  World world;
-  EdgeRule rule;
-  ToolPath path;
-  bool is_given;
-  std::unique_ptr<Lattice> lattice;
   std::unique_ptr<CostToGo> cost_to_go;
   Executor alone{1};
   GivenValidity sound;                        // of an arm whose motion is given
@@ -146,9 +130,7 @@ class WorkcellPlan {
     executor_.for_each(2, [&](int arm, int) {
       const auto k = static_cast<std::size_t>(arm);
       if (given == k) require_sound(prepared_, k, budget_);
-      arms_[k] =
-          std::make_unique<PlannedArm>(prepared_.problem(k), prepared_.robot(k),
-                                       given == k ? &prepared_.given_rows() : nullptr, budget_);
+      arms_[k] = std::make_unique<PlannedArm>(prepared_, k, budget_);
     });
     if (arms_[0]->path.size() != arms_[1]->path.size())  // one of them is cut off
       throw InputError(prepared_.problem(0).source,

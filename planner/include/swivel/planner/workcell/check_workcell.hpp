@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/workcell_certificate.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/verify/check.hpp"
 
@@ -37,5 +38,24 @@ struct WorkcellCheckResult {
     const CheckOptions& options = {});
 /// Throws std::logic_error, with the first failure, if the result has not passed.
 void require_passed(const WorkcellCheckResult& result);
+
+/// The verdict on a certificate that a workcell has no plan.
+struct WorkcellCertificateCheck {
+  bool passed = false;
+  std::string failure;  ///< one line: the first fault; empty if passed
+  /// true: all IK solutions of both arms are known; else the proof covers those that were found
+  bool complete = true;
+  std::int64_t regions = 0, cuts = 0;  ///< sets that are divided, and sets that are empty
+  std::int64_t pairs = 0;              ///< pairs of nodes and of moves in regions
+  std::int64_t nodes = 0, edges = 0;   ///< tests of witnesses in cuts
+};
+
+/// Verifies a certificate that a workcell has no plan, from the workcell alone and without a
+/// planner: that the tree is whole, that no pair of a region is apart, by FCL without distance
+/// proofs, and that every cut leaves its arm no path, as for one arm. Throws InputError if a
+/// lattice differs from the certificate's (resolution, edges, layers), and Stopped.
+[[nodiscard]] WorkcellCertificateCheck verify_certificate(const PreparedWorkcell& prepared,
+                                                          const WorkcellCertificate& certificate,
+                                                          const Budget& budget = {});
 
 }  // namespace swivel

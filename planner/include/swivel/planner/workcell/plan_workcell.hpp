@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/workcell_certificate.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
@@ -70,5 +71,12 @@ class PreparedWorkcell {
 [[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared,
                                            const PlanOptions& options = {},
                                            WorkcellView* view = nullptr);
+
+/// Returns a certificate that a workcell has no plan, which verify_certificate() verifies. It comes
+/// from a search of its own, by regions of conflict alone: where plan_workcell() was decided by
+/// pairs of nodes, this may take much longer. Throws InvalidArgument if the workcell has a plan,
+/// InputError as plan_workcell() does, and Stopped.
+[[nodiscard]] WorkcellCertificate prove_infeasible(const PreparedWorkcell& prepared,
+                                                   const Budget& budget = {});
 
 }  // namespace swivel

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Certificates that two arms have no plan: they are verified, and forged ones are refused.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plain_arm.hpp"
+#include "swivel/collision/arms/inter_arm_world.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+#include "two_arms.hpp"
+
+namespace swivel::test {
+
+namespace {
+
+using Branch = WorkcellCertificate::Branch;
+
+/// Adds to a region of nodes a node of arm 0 that is apart from one of arm 1's. Returns false if
+/// there is none.
+bool add_free_pair(const PreparedWorkcell& prepared, WorkcellCertificate::Region& region) {
+  std::array<std::unique_ptr<Lattice>, 2> lattices;
+  std::vector<ToolPath> paths;
+  for (std::size_t k = 0; k < 2; ++k)
+    paths.push_back(problem_path(prepared.problem(k), prepared.robot(k).arm().chain));
+  for (std::size_t k = 0; k < 2; ++k)
+    lattices[k] = make_lattice(prepared.robot(k).arm().chain, prepared.robot(k).arm_class(),
+                               paths[k], prepared.problem(k));
+  InterArmWorld::Query query(prepared.between(), DistanceProofs::kOff);
+  std::vector<Lattice::Node> nodes;
+  lattices[0]->layer_nodes(region.layer, nodes);
+  for (const Lattice::Node& node : nodes)
+    for (const auto& range : region.slots[1])
+      for (int slot = range.first; slot <= range.last; ++slot) {
+        if (query.find_violating_pair({node.q, *lattices[1]->node(region.layer, slot)},
+                                      ClearanceRule::kNode))
+          continue;
+        auto& ranges = region.slots[0];
+        const auto after =
+            std::find_if(ranges.begin(), ranges.end(),
+                         [&](const auto& other) { return other.first > node.slot; });
+        ranges.insert(after, {node.slot, node.slot});
+        return true;
+      }
+  return false;
+}
+
+/// Returns a number of an inner set, of a set without a path if `leaf`; nothing where there is
+/// none.
+std::optional<std::size_t> some(const WorkcellCertificate& certificate, bool leaf, Random& random) {
+  std::vector<std::size_t> all;
+  for (std::size_t k = 0; k < certificate.tree.size(); ++k)
+    if (certificate.tree[k].region.has_value() != leaf) all.push_back(k);
+  if (all.empty()) return std::nullopt;
+  return all[static_cast<std::size_t>(random.below(static_cast<int>(all.size())))];
+}
+
+/// Ways to forge a certificate. Each returns whether it could.
+using Forgery = std::function<bool(const PreparedWorkcell&, WorkcellCertificate&, Random&)>;
+
+std::vector<Forgery> forgeries() {
+  const auto of_region = [](const auto& change) {
+    return [change](const PreparedWorkcell& prepared, WorkcellCertificate& forged, Random& random) {
+      const auto k = some(forged, false, random);
+      return k && change(prepared, *forged.tree[*k].region);
+    };
+  };
+  const auto of_leaf = [](const auto& change) {
+    return [change](const PreparedWorkcell&, WorkcellCertificate& forged, Random& random) {
+      const auto k = some(forged, true, random);
+      return k && change(forged.tree[*k]);
+    };
+  };
+  return {
+      of_region([](const PreparedWorkcell& prepared, WorkcellCertificate::Region& region) {
+        return region.moves[0].empty() && add_free_pair(prepared, region);
+      }),
+      of_region([](const PreparedWorkcell&, WorkcellCertificate::Region& region) {
+        region.slots[0].clear();
+        region.moves[0].clear();
+        return true;
+      }),
+      of_region([](const PreparedWorkcell&, WorkcellCertificate::Region& region) {
+        if (region.slots[1].empty()) return false;
+        region.slots[1].push_back(region.slots[1].front());
+        return true;
+      }),
+      of_region([](const PreparedWorkcell&, WorkcellCertificate::Region& region) {
+        region.bodies = {"nobody", "else"};
+        return region.moves[0].empty();
+      }),
+      of_region([](const PreparedWorkcell&, WorkcellCertificate::Region& region) {
+        region.layer = -1;
+        return true;
+      }),
+      of_leaf([](Branch& leaf) {
+        leaf.cut.band.clear();
+        return true;
+      }),
+      of_leaf([](Branch& leaf) {
+        leaf.cut.band.back().reached.push_back({0, 0});
+        return true;
+      }),
+      of_leaf([](Branch& leaf) {
+        for (auto& layer : leaf.cut.band)
+          if (!layer.removed.empty()) {
+            layer.removed.pop_back();
+            return true;
+          }
+        return false;
+      }),
+      of_leaf([](Branch& leaf) {
+        leaf.arm_without_path = -1;
+        return true;
+      }),
+      of_leaf([](Branch& leaf) {
+        if (leaf.parent < 0) return false;
+        leaf.arm = 1 - leaf.arm;
+        return true;
+      }),
+      [](const PreparedWorkcell&, WorkcellCertificate& forged, Random&) {
+        forged.tree.pop_back();  // a missing child, or no tree
+        return true;
+      },
+      [](const PreparedWorkcell&, WorkcellCertificate& forged, Random&) {
+        forged.tree.back().parent = static_cast<int>(forged.tree.size()) - 1;  // its own
+        return true;
+      },
+      [](const PreparedWorkcell&, WorkcellCertificate& forged, Random& random) {
+        const auto k = some(forged, false, random);
+        if (!k) return false;
+        forged.tree[*k].region.reset();  // a set that is neither divided nor empty
+        return true;
+      },
+  };
+}
+
+TEST(WorkcellCertificate, IsVerifiedAndForgedOnesAreRefused) {
+  Random random(seed("WorkcellCertificate.IsVerifiedAndForgedOnesAreRefused"));
+  const std::array<TestRobot, 2> robots{data_robot("sda10f"), data_robot("sda5f")};
+  const std::vector<Forgery> ways = forgeries();
+  int verified = 0, divided = 0, forged = 0, of_moves = 0, given = 0;
+  std::vector<int> tried(ways.size());
+  const int count = trials(100);
+  while (verified < count) {
+    SCOPED_TRACE(verified);
+    Workcell cell = random_workcell(robots[random.coin() ? 0 : 1], random);
+    if (random.coin(0.2)) cell.arms[1].limits.edges = EdgeMode::kNodes;
+    if (random.coin(0.3))  // motions conflict where no nodes do
+      for (WorkcellArm& arm : cell.arms) {
+        arm.limits.clearance = 0.002;
+        arm.limits.edge_clearance = 0.01;
+        arm.resolution.dphi = 0.5;
+      }
+    if (random.coin(0.3)) {  // the left arm's own answer is given
+      const PlanResult left = Planner(PreparedWorkcell(cell).problem(0)).plan(lazily());
+      if (left.status != PlanStatus::kSolved) continue;
+      for (const TrajectoryRow& row : left.trajectory) cell.arms[0].given.push_back(row.q);
+      cell.arms[0].waypoints.clear();
+    }
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult found = plan_workcell(prepared, lazily());
+    if (found.status != PlanStatus::kInfeasible) continue;
+    const bool alone = found.least_costs[0] == kNone || found.least_costs[1] == kNone;
+    if (alone && random.coin(0.95)) continue;  // these are many, and of one set
+    const WorkcellCertificate certificate = prove_infeasible(prepared);
+    const WorkcellCertificateCheck check = verify_certificate(prepared, certificate);
+    ASSERT_TRUE(check.passed) << check.failure;
+    EXPECT_EQ(check.cuts, check.regions + 1);
+    ++verified;
+    divided += check.regions > 0;
+    given += !cell.arms[0].given.empty();
+    for (const Branch& branch : certificate.tree)
+      of_moves += branch.region && !branch.region->moves[0].empty();
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      if (k == 0 && prepared.given_arm()) continue;
+      WorkcellCertificate other = certificate;
+      if (!ways[k](prepared, other, random)) continue;
+      ++tried[k];
+      ++forged;
+      const WorkcellCertificateCheck refused = verify_certificate(prepared, other);
+      EXPECT_FALSE(refused.passed) << "forgery " << k;
+      EXPECT_FALSE(refused.failure.empty());
+    }
+  }
+  std::printf("%d certificates, %d of divided sets, %d beside a given motion, %d regions of moves; "
+              "%d forged\n",
+              verified, divided, given, of_moves, forged);
+  EXPECT_GE(divided, at_least(count / 2));
+  EXPECT_GE(given, at_least(count / 10));
+  EXPECT_GE(of_moves, at_least(count));
+  EXPECT_GE(forged, at_least(5 * count));
+  for (std::size_t k = 0; k < ways.size(); ++k)
+    EXPECT_GE(tried[k], at_least(count / 10)) << "forgery " << k;
+}
+
+TEST(WorkcellCertificate, IsOfOneWorkcell) {
+  Random random(seed("WorkcellCertificate.IsOfOneWorkcell"));
+  const TestRobot robot = data_robot("sda10f");
+  int solved = 0, other = 0;
+  const int count = trials(30);
+  for (int trial = 0; trial < count; ++trial) {
+    Workcell cell = random_workcell(robot, random);
+    const PreparedWorkcell prepared(cell);
+    if (plan_workcell(prepared, lazily()).status == PlanStatus::kSolved) {
+      EXPECT_THROW(static_cast<void>(prove_infeasible(prepared)), InvalidArgument);
+      ++solved;
+      continue;
+    }
+    const WorkcellCertificate certificate = prove_infeasible(prepared);
+    cell.arms[0].resolution.dphi *= 0.9;
+    EXPECT_THROW(static_cast<void>(verify_certificate(PreparedWorkcell(cell), certificate)),
+                 InputError);
+    ++other;
+  }
+  EXPECT_GE(solved, at_least(count / 8));
+  EXPECT_GE(other, at_least(count / 8));
+}
+
+}  // namespace
+
+}  // namespace swivel::test
