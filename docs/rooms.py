@@ -94,16 +94,16 @@ class Tree:
         component = name.split("/")[0]
         if include.startswith("swivel/"):
             of = include.split("/")[1]
-            tried = [f"{of}/include/{include}", f"{of}/boost/include/{include}"]
+            tried = [f"{of}/{part}include/{include}" for part in ("", "boost/", "core/")]
         else:
             folder = name.rsplit("/", 1)[0]
-            tried = [f"{folder}/{include}", f"{component}/src/{include}", f"{component}/{include}"]
+            tried = [f"{at}/{include}" for at in (folder, f"{component}/src", component)]
         return next((one for one in tried if one in self.path), None)
 
     def room(self, name):
         parts = self.path[name].split("/")
         component, folders = parts[0], parts[1:-1]
-        if folders[:1] == ["boost"]:
+        if folders[:1] in (["boost"], ["core"]):
             folders = folders[1:]
         if folders[:1] == ["src"]:
             folders = folders[1:]
