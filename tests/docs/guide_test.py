@@ -48,6 +48,9 @@ class Page:
         self.skipped = []
         for name in ("data", "examples"):
             (folder / name).symlink_to(SOURCE / name)
+        if build := os.environ.get("SWIVEL_BUILD"):
+            (folder / "build").mkdir()
+            (folder / "build" / "release").symlink_to(build)
         self.script(
             "swivel", f'[ "$1" != test ] || exit 0  # it runs this test\nexec "{PROGRAM}" "$@"'
         )
