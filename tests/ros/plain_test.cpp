@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The mapping of compute_cartesian_path with plain structs, and what the service does with scenes.
+#include <thread>
+
 #include "rows.hpp"
 
 namespace swivel {
@@ -259,12 +261,84 @@ TEST(Convert, SixJointsNeedARoll) {
   EXPECT_EQ(answer.points[0].positions.size(), 6u);
 }
 
+TEST(Convert, FurtherJointsOfTheGroupAreHeldWhereTheyAre) {
+  std::string urdf = test::data_text("iiwa14.urdf"), srdf = test::data_text("iiwa14.srdf");
+  urdf.insert(urdf.rfind("</robot>"),
+              "<link name='world'/><joint name='rail' type='prismatic'><parent link='world'/>"
+              "<child link='base_link'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' "
+              "velocity='1' effort='0'/></joint>");
+  srdf.replace(srdf.find("base_link=\"base_link\""), 21, "base_link=\"world\"");
+  ros::PathService service(urdf, srdf, {});
+  EXPECT_EQ(service.frame(), "world");
+  service.state(
+      {{"rail", "joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6", "joint_a7"},
+       {0.5, 0, 0.6, 0, -1.5, 0, 1.0, 0}});
+  ros::Query query = line();  // whose poses are in base_link, which stands on the rail
+  const ros::Answer moved = service.answer(query, {}),
+                    fixed = test::iiwa_service()->answer(query, {});
+  ASSERT_EQ(moved.fraction, 1) << moved.words;
+  EXPECT_EQ(moved.frame, "world");
+  ASSERT_EQ(moved.joints.size(), 8u);
+  EXPECT_EQ(moved.joints[0], "rail");
+  for (const ros::Point& point : moved.points) EXPECT_EQ(point.positions[0], 0.5);
+  for (std::size_t j = 0; j < 7; ++j)
+    EXPECT_NEAR(moved.points.back().positions[j + 1], fixed.points.back().positions[j], 1e-3);
+  query.frame = "world";  // half a metre away
+  const ros::Answer other = service.answer(query, {});
+  ASSERT_EQ(other.fraction, 1) << other.words;
+  EXPECT_LT(other.points.back().positions[1], moved.points.back().positions[1] - 0.3);
+}
+
+TEST(Convert, BandsOfJointsThatTurnForEver) {
+  ros::PathService service(test::data_text("fetch_like.urdf"), test::data_text("fetch_like.srdf"),
+                           {});
+  const double turns = 4 * 3.14159265358979323846;
+  service.state({{"joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6", "joint_7"},
+                 {0.1, 0.3, 0.2 + turns, 1.0, 0.1, 1.0, 0.3}});
+  ros::Query query = line();
+  query.frame = "flange";
+  query.waypoints = {{0, 0, -0.05, 1, 0, 0, 0}};
+  query.bands = {{"joint_3", 0.2, 0.3, 0.3}};
+  const ros::Answer answer = service.answer(query, {});
+  ASSERT_EQ(answer.fraction, 1) << answer.words;
+  for (const ros::Point& point : answer.points) {
+    EXPECT_GE(point.positions[2], turns - 0.1 - 1e-9);
+    EXPECT_LE(point.positions[2], turns + 0.5 + 1e-9);
+  }
+  query.bands = {{"joint_3", 1.2, 0.3, 0.3}};
+  EXPECT_EQ(service.answer(query, {}).fraction, 0);
+  EXPECT_EQ(service.answer(query, {}).code, ros::kSuccess);
+}
+
 TEST(Convert, StoppedServicesAnswerAtOnce) {
   const auto service = test::iiwa_service();
   service->stop();
   const ros::Answer answer = service->answer(line(), {});
   EXPECT_EQ(answer.fraction, 0);
   EXPECT_NE(answer.words.find("cancelled"), std::string::npos) << answer.words;
+}
+
+TEST(Convert, ManyThreadsAtOnce) {
+  const auto service = test::iiwa_service();
+  const ros::Answer alone = service->answer(line(), {});
+  std::vector<std::thread> threads;
+  std::vector<int> equal(4);
+  for (int& count : equal)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 10; ++k) {
+        const ros::Answer answer = service->answer(line(), {});
+        bool same = answer.points.size() == alone.points.size();
+        for (std::size_t i = 0; same && i < alone.points.size(); ++i)
+          same = answer.points[i].positions == alone.points[i].positions;
+        count += same ? 1 : 0;
+      }
+    });
+  for (int k = 0; k < 100; ++k) {  // meanwhile, far away
+    send(*service, box_scene(3 + 0.01 * k, ros::Body::kAdd));
+    service->state({{"joint_a1"}, {0}});
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const int count : equal) EXPECT_EQ(count, 10);
 }
 
 TEST(Convert, BadTexts) {
