@@ -3,9 +3,11 @@
 #include <moveit_msgs/GetCartesianPath.h>
 #include <moveit_msgs/PlanningScene.h>
 #include <ros/callback_queue.h>
+#include <ros/poll_manager.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
+#include <sys/resource.h>
 #include <tf2_ros/transform_listener.h>
 
 #include <chrono>
@@ -28,6 +30,16 @@ volatile std::sig_atomic_t interrupted = 0;
 
 void interrupt(int) {
   interrupted = 1;
+}
+
+/// Called by roscpp's thread that waits for sockets. From when an answer is ready until it is sent,
+/// that thread asks whether the socket can be written to, again and again, and where no core is
+/// free it would keep the answer's own thread from sending for a slice of 4 ms: so that one goes
+/// first.
+void go_last() {
+  constexpr int kNice = 19;
+  thread_local const int done = setpriority(PRIO_PROCESS, 0, kNice);  // of this thread
+  static_cast<void>(done);
 }
 
 std::string parameter(ros::NodeHandle& node, const char* name) {
@@ -139,6 +151,7 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, interrupt);
   try {
     Node node;
+    ros::PollManager::instance()->addPollThreadListener(go_last);
     ros::AsyncSpinner spinner(4);
     spinner.start();
     ROS_INFO("compute_cartesian_path is offered");
