@@ -363,7 +363,9 @@ class Request {
       answer_.words = formatted("the whole path: %zu rows", path.rows.size()) +
                       (path.cause.empty() ? "" : "; " + path.cause);
     if (path.motion) {
-      answer_.words += formatted(", %.3f s", path.motion->duration);
+      answer_.words +=
+          formatted(path.fraction == 1 ? ", %.3f s" : "\nthe part that is reached takes %.3f s",
+                    path.motion->duration);
       for (const TimedRow& row : path.motion->rows) add_point(row.row.q, row.v, row.a, row.t);
     } else {
       for (const TrajectoryRow& row : path.rows) add_point(row.q, {}, {}, 0);
