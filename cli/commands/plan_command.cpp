@@ -30,6 +30,7 @@
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/study/advise.hpp"
+#include "swivel/planner/workcell/time_workcell.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
 #include "terminal/progress.hpp"
@@ -136,7 +137,7 @@ LoadedFile load_file(const PlanArguments& arguments) {
 /// refinement. Throws InputError if --out names a format that does not fit.
 void read_motion(PlanRequest& request) {
   const PlanArguments& arguments = request.arguments;
-  request.timing = arguments.motion.asked_timing(request.problem);
+  request.timing = arguments.motion.asked_timing(request.problem.limits);
   if (request.timing) {
     require_motion_format(arguments.out);
     request.problem = with_motion_defaults(std::move(request.problem));
@@ -384,7 +385,6 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
       arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
   refuse_options("workcells", arguments.problem,
                  {{arguments.refine, "--refine"},
-                  {arguments.motion.ask_for_job_motion(), "--speed, --rate"},
                   {arguments.advise.has_value(), "--advise"},
                   {!arguments.certificate.empty(), "--certificate"},
                   {!arguments.trace.empty(), "--trace"},
@@ -393,13 +393,21 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                   {arguments.full_map, "--full-map"},
                   {moved, "--episode and placements"}});
   if (!arguments.report.empty()) require_pages();
-  require_table_name("--out", arguments.out, "the trajectory of a workcell", "a name like X.csv");
   WorkcellRequest request{.cell = std::get<Workcell>(std::move(file.what)),
                           .options = arguments.search.plan_options(),
+                          .out = arguments.out,
                           .report = !arguments.report.empty(),
                           .quiet = arguments.quiet,
                           .load_ms = file.load_ms};
   for (WorkcellArm& arm : request.cell.arms) arguments.search.apply(arm);
+  request.timing = arguments.motion.asked_timing({});
+  if (request.timing) {
+    require_motion_format(arguments.out);
+    request.cell = with_motion_defaults(std::move(request.cell));
+  } else {
+    require_table_name("--out", arguments.out, "the trajectory of a workcell without times",
+                       "--speed, with which motions are written in other formats");
+  }
   require_planner_of("workcells", arguments.search);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   request.options.check = !arguments.no_check;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "commands/time_job_command.hpp"
+#include "commands/workcell_command.hpp"
 #include "options/commands.hpp"
 #include "options/job_options.hpp"
 #include "options/search_options.hpp"
@@ -56,14 +57,33 @@ int run_on_job(const TimeArguments& arguments, const Job& job,
   return time_job_file(request, noted);
 }
 
+int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
+                    std::optional<io::InputFiles>& noted) {
+  const bool moved =
+      arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
+  refuse_options("workcells", file.source,
+                 {{arguments.refine, "--refine"}, {moved, "--episode and placements"}});
+  Workcell cell = file;
+  for (WorkcellArm& arm : cell.arms) arguments.lattice.apply(arm);
+  const WorkcellTimeRequest request{.timing = arguments.motion.timing(limits_of_speeds(cell)),
+                                    .cell = std::move(cell),
+                                    .trajectory = arguments.trajectory,
+                                    .out = arguments.out,
+                                    .quiet = arguments.quiet,
+                                    .check = !arguments.no_check};
+  return time_workcell_file(request, noted);
+}
+
 int run(const TimeArguments& arguments) {
   require_motion_format(arguments.out);
   std::optional<io::InputFiles> noted(std::in_place);
-  const std::variant<Problem, Job> read = io::load_problem_or_job(arguments.problem);
+  const std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
   if (const Job* job = std::get_if<Job>(&read)) return run_on_job(arguments, *job, noted);
+  if (const Workcell* cell = std::get_if<Workcell>(&read))
+    return run_on_workcell(arguments, *cell, noted);
   Problem problem = arguments.episode.apply(std::get<Problem>(read));
   arguments.lattice.apply(problem);
-  const TimingOptions options = arguments.motion.timing(problem);
+  const TimingOptions options = arguments.motion.timing(problem.limits);
   const PreparedRobot robot(problem);
   if (!arguments.quiet) warn_of_held(robot.arm().held);
   const io::JointNames& names = robot.arm().chain.joint_names;
@@ -122,7 +142,7 @@ void add_time(CLI::App& app, int& exit_code) {
       app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
   // shared, so that it lives as long as the callback that reads it
   auto arguments = std::make_shared<TimeArguments>();
-  command->add_option("problem", arguments->problem, "problem file, or job")->required();
+  command->add_option("problem", arguments->problem, "problem file, job or workcell")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile)->required();
   arguments->motion.add_to(*command);
   command->add_flag(

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 #include <utility>
@@ -13,10 +15,12 @@
 #include "output/workcell_output.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
+#include "swivel/planner/workcell/time_workcell.hpp"
 #include "swivel/planner/workcell/workcell_view.hpp"
 #include "swivel/report/workcell_page.hpp"
 #include "terminal/progress.hpp"
@@ -26,11 +30,63 @@ namespace swivel::cli {
 
 namespace {
 
+std::array<io::JointNames, 2> joint_names_of(const PreparedWorkcell& prepared) {
+  return {prepared.robot(0).arm().chain.joint_names, prepared.robot(1).arm().chain.joint_names};
+}
+
+io::WorkcellRows rows_of_file(const PreparedWorkcell& prepared, const std::string& file) {
+  return io::load_workcell_rows(file, {prepared.name(0), prepared.name(1)},
+                                joint_names_of(prepared));
+}
+
+/// Prints the warnings of a motion on standard error.
+void warn_of_motion(const WorkcellMotion& motion) {
+  for (const std::string& warning : motion.warnings)
+    complain("swivel: warning: %s\n", warning.c_str());
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const std::string& warning : motion.arms[k].warnings)
+      complain("swivel: warning: arm '%s': %s\n", motion.names[k].c_str(), warning.c_str());
+}
+
+/// Prints the highest rates of an arm's timed motion.
+void print_rates(const CheckResult::Motion& motion, const io::JointNames& names) {
+  say("    tool at up to %.6g m/s in the base frame", motion.tool_speed);
+  for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
+    const CheckResult::Motion::Peak& peak = motion.peaks[static_cast<std::size_t>(rate)];
+    say("; %s of '%s' at %s of its limit", to_string(rate),
+        names[static_cast<std::size_t>(peak.joint)].c_str(), percent(peak.ratio).c_str());
+  }
+  say("\n");
+}
+
+/// Gives --out its text: the motion where one is asked for, else the trajectory. Marks an earlier
+/// file for removal if there is none.
+void write_rows(const WorkcellRequest& request, const WorkcellMotionPlan& plan,
+                io::OutputFiles& outputs) {
+  const bool motion = plan.timing && plan.timing->motion;
+  if (plan.result.arms[0].trajectory.empty() || (request.timing && !motion)) {
+    outputs.remove("--out");
+    return;
+  }
+  if (!outputs.wants("--out")) return;
+  outputs.write("--out",
+                motion ? io::workcell_motion_text(
+                             *plan.timing->motion,
+                             {plan.result.arms[0].joint_names, plan.result.arms[1].joint_names},
+                             request.cell.arms[0].base_link, request.out)
+                       : io::to_workcell_csv(plan.result));
+}
+
 /// Prints the answer, times and work counts of a workcell; warnings go to standard error.
-void print_workcell(const WorkcellResult& result) {
+void print_workcell(const WorkcellMotionPlan& plan) {
+  const WorkcellResult& result = plan.result;
   say_text(workcell_text(result));
+  if (plan.timing)
+    say_text(workcell_motion_text(
+        *plan.timing, {result.arms[0].joint_names, result.arms[1].joint_names}, result.names));
   std::string stages;
-  for (const char* const stage : {"load", "prepare", "lattice", "search", "check", "report"})
+  for (const char* const stage :
+       {"load", "prepare", "lattice", "search", "check", "time", "report"})
     if (const auto found = result.time_ms.find(stage); found != result.time_ms.end())
       stages += formatted("%s%s %.1f ms", stages.empty() ? "" : ", ", stage, found->second);
   long long nodes = 0, edges = 0, calls = 0;
@@ -51,6 +107,7 @@ void print_workcell(const WorkcellResult& result) {
   };
   warn(result.warnings);
   for (const PlanResult& arm : result.arms) warn(arm.warnings);
+  if (plan.timing && plan.timing->motion) warn_of_motion(*plan.timing->motion);
 }
 
 /// Returns the page of --report; unset where there is neither a plan nor a verdict, or where time
@@ -77,38 +134,99 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   const Budget budget = request.options.budget();  // of the page; the plan has its own
   const PreparedWorkcell prepared(request.cell);
   WorkcellView view;
-  WorkcellResult result =
-      plan_workcell(prepared, request.options, request.report ? &view : nullptr);
-  result.time_ms["load"] = request.load_ms;
-  std::optional<std::string> page = page_of(request, prepared, view, budget, result);
-  progress.clear();
-  if (result.arms[0].trajectory.empty())
-    outputs.remove("--out");
+  WorkcellMotionPlan plan;
+  if (request.timing)
+    plan = plan_workcell_motion(prepared, request.options, *request.timing);
   else
-    outputs.write("--out", io::to_workcell_csv(result));
+    plan.result = plan_workcell(prepared, request.options, request.report ? &view : nullptr);
+  plan.result.time_ms["load"] = request.load_ms;
+  std::optional<std::string> page = page_of(request, prepared, view, budget, plan.result);
+  progress.clear();
+  write_rows(request, plan, outputs);
   if (page)
     outputs.write("--report", std::move(*page));
   else
     outputs.remove("--report");
-  if (outputs.wants("--json")) outputs.write("--json", io::to_workcell_json(result) + "\n");
-  const bool infeasible = result.status == PlanStatus::kInfeasible;
-  deliver(outputs, infeasible ? "there is no plan now" : "the search was stopped", [&] {
-    if (!request.quiet && !outputs.takes_standard_output()) print_workcell(result);
+  if (outputs.wants("--json"))
+    outputs.write("--json",
+                  io::to_workcell_json(plan.result, {plan.timing ? &*plan.timing : nullptr,
+                                                     request.timing.value_or(TimingOptions{})}) +
+                      "\n");
+  const bool infeasible = plan.result.status == PlanStatus::kInfeasible;
+  const bool no_motion = plan.timing && !plan.timing->motion;
+  deliver(outputs,
+          infeasible  ? "there is no plan now"
+          : no_motion ? "there is no motion now"
+                      : "the search was stopped",
+          [&] {
+            if (!request.quiet && !outputs.takes_standard_output()) print_workcell(plan);
+          });
+  if (infeasible || no_motion) return kNo;
+  return plan.result.status == PlanStatus::kSolved && !plan.stopped ? kOk : kStopped;
+}
+
+Limits limits_of_speeds(const Workcell& cell) {
+  Limits limits;
+  for (const WorkcellArm& arm : cell.arms)
+    if (arm.limits.tool_speed)
+      limits.tool_speed =
+          std::min(*arm.limits.tool_speed, limits.tool_speed.value_or(*arm.limits.tool_speed));
+  return limits;
+}
+
+int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::InputFiles>& noted) {
+  const PreparedWorkcell prepared(with_motion_defaults(request.cell));
+  if (!request.quiet)
+    for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared.robot(k).arm().held);
+  const io::WorkcellRows read = rows_of_file(prepared, request.trajectory);
+  if (!read.timed[0].empty())
+    throw InputError(request.trajectory,
+                     "has times: allowed is the trajectory of a workcell without them");
+  io::OutputFiles outputs(noted->files());
+  noted.reset();
+  outputs.add("--out", request.out);
+  catch_interrupts();
+  std::optional<WorkcellTiming> timed;
+  try {
+    timed = in_the_name_of(request.trajectory, [&] {
+      const Budget budget(std::nullopt, &interrupted);
+      WorkcellTiming made = time_workcell(prepared, read.rows, request.timing, budget);
+      if (made.motion && request.check)
+        require_passed(check_workcell_motion(prepared,
+                                             {made.motion->arms[0].rows, made.motion->arms[1].rows},
+                                             {.margins = false, .budget = budget}));
+      return made;
+    });
+  } catch (const Stopped&) {
+  }
+  const bool executable = timed && timed->motion;
+  if (!executable)
+    outputs.remove("--out");
+  else if (outputs.wants("--out"))
+    outputs.write("--out", io::workcell_motion_text(*timed->motion, joint_names_of(prepared),
+                                                    prepared.problem(0).base_link, request.out));
+  deliver(outputs, timed ? "there is no motion now" : "the work was stopped", [&] {
+    if (!timed) return say("stopped\n");
+    if (executable && (request.quiet || outputs.takes_standard_output())) return;
+    say_text(workcell_motion_text(*timed, joint_names_of(prepared),
+                                  {prepared.name(0), prepared.name(1)}));
+    if (executable) warn_of_motion(*timed->motion);
   });
-  if (infeasible) return kNo;
-  return result.status == PlanStatus::kSolved ? kOk : kStopped;
+  return !timed ? kStopped : executable ? kOk : kNo;
 }
 
 int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
-  const PreparedWorkcell prepared(cell);
-  for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared.robot(k).arm().held);
-  const auto rows = io::load_workcell_csv(
-      trajectory, {cell.arms[0].name, cell.arms[1].name},
-      {prepared.robot(0).arm().chain.joint_names, prepared.robot(1).arm().chain.joint_names});
-  const WorkcellCheckResult result = check_workcell(prepared, rows);
+  std::optional<PreparedWorkcell> prepared(cell);
+  for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared->robot(k).arm().held);
+  const io::WorkcellRows read = rows_of_file(*prepared, trajectory);
+  const bool timed = !read.timed[0].empty();
+  if (timed) prepared.emplace(with_motion_defaults(cell));
+  const WorkcellCheckResult result =
+      timed ? check_workcell_motion(*prepared, read.timed) : check_workcell(*prepared, read.rows);
   std::int64_t failures = result.failure_count;
   for (const CheckResult& arm : result.arms) failures += arm.failure_count;
-  say("%s: two arms, %zu rows", result.passed ? "passed" : "failed", rows[0].size());
+  say("%s: two arms, %zu rows", result.passed ? "passed" : "failed", read.rows[0].size());
+  if (timed) say(", %.3f s", read.timed[0].back().t);
   if (!result.passed)
     say(", %lld failure%s", static_cast<long long>(failures), failures == 1 ? "" : "s");
   if (const auto& nearest = result.between)
@@ -126,6 +244,7 @@ int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
       say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *arm.min_clearance,
           1e3 * *arm.min_margin);
     say(", cost %.9g\n", arm.cost);
+    if (arm.motion) print_rates(*arm.motion, prepared->robot(k).arm().chain.joint_names);
     print_failures(arm.failures, arm.failure_count);
   }
   print_failures(result.failures, result.failure_count);

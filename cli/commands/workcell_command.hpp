@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <optional>
 #include <string>
 
+#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
@@ -12,17 +14,36 @@ namespace swivel::cli {
 struct WorkcellRequest {
   Workcell cell{};
   PlanOptions options{};
-  bool report = false;  ///< whether the page of --report is made
+  std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
+  std::string out{};                      ///< --out; its ending tells the format of a motion
+  bool report = false;  ///< whether the page of --report is made; not with `timing`
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took
 };
 
-/// Plans a workcell, writes its trajectories and its result, and prints the answer. `outputs` has
-/// --out, --report and --json. Returns the exit code. Throws InputError.
+/// Plans a workcell, times the plan if asked for, writes its trajectories or its motion, its page
+/// and its result, and prints the answer. `outputs` has --out, --report and --json. Returns the
+/// exit code. Throws InputError.
 int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs);
 
-/// Checks the trajectories of a workcell that a CSV file has, and prints the verdict. Returns the
-/// exit code. Throws InputError.
+/// What `swivel time` is asked to do with a workcell.
+struct WorkcellTimeRequest {
+  TimingOptions timing{};
+  Workcell cell{};
+  std::string trajectory{}, out{};
+  bool quiet = false, check = true;
+};
+
+/// Times the trajectories of a workcell that a CSV file has, writes the motion and prints its
+/// figures. `noted`: the files that were read. Returns the exit code. Throws InputError.
+int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::InputFiles>& noted);
+
+/// Returns limits whose tool speed is the lowest that an arm of a workcell has, for motions whose
+/// speed the command line does not give.
+[[nodiscard]] Limits limits_of_speeds(const Workcell& cell);
+
+/// Checks the trajectories or the motion of a workcell that a CSV file has, and prints the verdict.
+/// Returns the exit code. Throws InputError.
 int check_workcell_file(const Workcell& cell, const std::string& trajectory);
 
 }  // namespace swivel::cli

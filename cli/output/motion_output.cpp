@@ -16,21 +16,21 @@ void MotionOptions::add_to(CLI::App& command) {
                      "slow down where the tool would leave its path by more between samples, m");
 }
 
-std::optional<TimingOptions> MotionOptions::asked_timing(const Problem& problem) const {
-  if (speed) return timing(problem);
+std::optional<TimingOptions> MotionOptions::asked_timing(const Limits& limits) const {
+  if (speed) return timing(limits);
   for (const auto& [given, option] : {std::pair(turn_speed, "--turn-speed"),
                                       std::pair(rate, "--rate"), std::pair(chord, "--chord")})
     if (given) throw InputError(std::string(option) + ": is of motions: allowed with --speed");
   return std::nullopt;
 }
 
-TimingOptions MotionOptions::timing(const Problem& problem) const {
+TimingOptions MotionOptions::timing(const Limits& limits) const {
   TimingOptions options;
-  if (!speed && !problem.limits.tool_speed)
+  if (!speed && !limits.tool_speed)
     throw InputError(
         "--speed: is not given, nor limits.tool_speed: allowed is the speed of the tool in m/s");
-  options.speed = speed ? positive(*speed, "--speed") : *problem.limits.tool_speed;
-  options.turn_speed = problem.limits.tool_turn_speed;
+  options.speed = speed ? positive(*speed, "--speed") : *limits.tool_speed;
+  options.turn_speed = limits.tool_turn_speed;
   if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
   if (chord) options.chord = positive(*chord, "--chord");
   options.rate = checked_rate();

@@ -18,10 +18,10 @@ struct MotionOptions {
   void add_to(CLI::App& command);
   /// Returns the timing that is asked for by --speed; nothing without it. Throws InputError if one
   /// of the other options is given without --speed.
-  [[nodiscard]] std::optional<TimingOptions> asked_timing(const Problem& problem) const;
-  /// Returns the timing that the options ask for, with the problem's tool speeds where none are
+  [[nodiscard]] std::optional<TimingOptions> asked_timing(const Limits& limits) const;
+  /// Returns the timing that the options ask for, with the tool speeds of `limits` where none are
   /// given. Throws InputError if there is no speed.
-  [[nodiscard]] TimingOptions timing(const Problem& problem) const;
+  [[nodiscard]] TimingOptions timing(const Limits& limits) const;
   /// Returns the timing of jobs that the options ask for. Strokes whose speed is not given have
   /// that of the problem file. Throws InputError for --chord, which is of problems with one path.
   [[nodiscard]] JobTimingOptions job_timing() const;

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <string>
 
 #include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/motion/workcell_motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::cli {
 
 /// Returns the answer of a workcell for people: what both arms do together, then a line about each
 /// arm; where there is no plan, why.
 [[nodiscard]] std::string workcell_text(const WorkcellResult& result);
+
+/// Returns the figures of a workcell's motion for people, or why there is none. `joint_names` and
+/// `names` are those of both arms.
+[[nodiscard]] std::string workcell_motion_text(const WorkcellTiming& timing,
+                                               const std::array<io::JointNames, 2>& joint_names,
+                                               const std::array<std::string, 2>& names);
 
 }  // namespace swivel::cli

@@ -311,18 +311,85 @@ class Workcells(unittest.TestCase):
     def test_who_refuses_workcells(self):
         file = self.file(cell())
         for command in (("campaign", file), ("place", file, "--object", "x", "--x", "0:1:0.5"),
-                        ("time", file, "t.csv", "--speed", "0.1")):
+                        ("time", file, "t.csv", "--speed", "0.1", "--refine")):
             done = run(*command)
             self.assertEqual(done.returncode, 2, command)
             self.assertIn("workcell", done.stderr)
         for options in (
-            ("--speed", "0.1"), ("--refine",), ("--map",),
+            ("--refine",), ("--map",),
             ("--advise", "1"), ("--certificate", self.folder / "c.json"),
             ("--planner", "eager"), ("--path", "--x", "0.1"),
         ):
             done = self.plan(cell(), *options)
             self.assertEqual(done.returncode, 2, options)
             self.assertIn("for workcells", done.stderr)
+
+    def test_a_motion_in_time(self):
+        file, motion = self.file(cell()), self.folder / "m.csv"
+        done = run("plan", file, "--speed", "0.1", "--out", motion, "--json", self.result)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"\nmotion: [0-9.]+ s at 100 mm/s \(1\.000 s with the ")
+        rows = list(csv.DictReader(motion.read_text().splitlines()))
+        result = json.loads(self.result.read_text())
+        moved = result["motion"]
+        self.assertTrue(moved["executable"])
+        self.assertEqual(moved["samples"], len(rows))
+        names = [name for one in result["arms"] for name in one["joint_names"]]
+        self.assertEqual(len(set(names)), 14)
+        self.assertEqual(len(rows[0]), 1 + 6 + 3 * 14)
+        step = 1 / moved["rate"]
+        for name in names:
+            q = [float(row[name]) for row in rows]
+            self.assertLess(abs(q[1] - q[0]), 1e-5)  # from rest
+            self.assertLess(abs(q[-1] - q[-2]), 1e-5)
+            for before, row, after in zip(q, rows[1:], q[2:]):
+                self.assertAlmostEqual(float(row[name + "_v"]), (after - before) / (2 * step), 6)
+        for one in moved["arms"]:
+            for rate in ("speed", "acceleration", "jerk"):
+                self.assertLessEqual(max(peak["ratio"] for peak in one["peaks"][rate]), 1)
+        checked = run("check", file, motion)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        self.assertRegex(checked.stdout, rf"^passed: two arms, {len(rows)} rows, [0-9.]+ s; ")
+        spoilt = [dict(row) for row in rows]
+        spoilt[len(rows) // 2][names[9]] = str(float(spoilt[len(rows) // 2][names[9]]) + 1e-3)
+        with motion.open("w", newline="") as out:
+            writer = csv.DictWriter(out, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(spoilt)
+        self.assertEqual(run("check", file, motion).returncode, 1)
+
+    def test_formats_of_motions(self):
+        file = self.file(cell())
+        self.assertEqual(self.plan(cell()).returncode, 0)
+        joints = [
+            name for one in json.loads(self.result.read_text())["arms"]
+            for name in one["joint_names"]
+        ]
+        message = self.folder / "m.json"
+        timed = run("time", file, self.out, "--speed", "0.1", "--out", message)
+        self.assertEqual(timed.returncode, 0, timed.stdout + timed.stderr)
+        text = json.loads(message.read_text())
+        self.assertEqual(text["joint_names"], joints)
+        self.assertEqual({len(point["positions"]) for point in text["points"]}, {14})
+        for ending, begin in ((".yaml", b"header:"), (".mcap", b"\x89MCAP")):
+            other = self.folder / f"m{ending}"
+            done = run("plan", file, "--speed", "0.1", "--out", other, "--quiet")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(other.read_bytes().startswith(begin))
+            self.assertIn(joints[13].encode(), other.read_bytes())
+        motion = self.folder / "m.csv"
+        self.assertEqual(
+            run("plan", file, "--speed", "0.1", "--out", motion, "--quiet").returncode, 0
+        )
+        for options, words in ((("plan", file, "--speed", "0.1", "--out", "m.txt"), ".mcap"),
+                               (("plan", file, "--rate", "100"), "allowed with --speed"),
+                               (("plan", file, "--speed", "0"), "--speed"),
+                               (("time", file, self.out), "--speed: is not given"),
+                               (("time", file, motion, "--speed", "0.1"), "has times")):
+            done = run(*options)
+            self.assertEqual(done.returncode, 2, (options, done.stdout, done.stderr))
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+            self.assertIn(words, done.stderr)
 
     def test_threads_and_planners_agree(self):
         texts = set()

@@ -390,12 +390,21 @@ Reader workcell_reader(const TempFolder& folder) {
                                              io::JointNames{"h", "i", "j", "k", "l", "m", "n"}};
   WorkcellResult result;
   result.names = names;
-  for (std::size_t k = 0; k < 2; ++k) result.arms[k] = short_plan(joints[k]);
+  WorkcellMotion motion;
+  motion.names = names;
+  for (std::size_t k = 0; k < 2; ++k) {
+    result.arms[k] = short_plan(joints[k]);
+    for (const TrajectoryRow& row : result.arms[k].trajectory) {
+      TimedRow& timed = motion.arms[k].rows.emplace_back();
+      timed.t = 0.004 * static_cast<double>(motion.arms[k].rows.size() - 1);
+      timed.row = row;
+    }
+  }
   return {"workcell_rows",
-          {io::to_workcell_csv(result)},
-          {",", "\"", "\n", "1e9,", ",8,", ",0.5,", "branch_left"},
+          {io::to_workcell_csv(result), io::to_workcell_motion_csv(motion, joints)},
+          {",", "\"", "\n", "1e9,", ",8,", ",0.5,", "branch_left", "t,", "0.004,"},
           at(folder, "cell.csv", [names, joints](const fs::path& path) {
-            (void)io::load_workcell_csv(path, names, joints);
+            (void)io::load_workcell_rows(path, names, joints);
           })};
 }
 

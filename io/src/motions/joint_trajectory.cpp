@@ -17,18 +17,27 @@ std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
-/// Returns a list of the values of the joints that controllers move.
-std::string list(const MotionMessages& motion, const Config& values) {
+/// Returns a list of values of a row, of the joints that controllers move.
+template <class Of>
+std::string list(const MotionMessages& motion, std::size_t row, const Of& of) {
   std::string text;
-  for (const double value : moved_joints(motion.roll, values))
+  for (const double value : motion.values(row, of))
     text += (text.empty() ? "[" : ", ") + format_double(value);
   return text + "]";
 }
+const Config& positions(const TimedRow& row) {
+  return row.row.q;
+}
+const Config& speeds(const TimedRow& row) {
+  return row.v;
+}
+const Config& accelerations(const TimedRow& row) {
+  return row.a;
+}
 
-std::string list(const MotionMessages& motion, const JointNames& names) {
+std::string list_of_names(const MotionMessages& motion) {
   std::string text;
-  for (const std::string& name : moved_joints(motion.roll, names))
-    text += (text.empty() ? "[" : ", ") + quoted(name);
+  for (const std::string& name : motion.names()) text += (text.empty() ? "[" : ", ") + quoted(name);
   return text + "]";
 }
 
@@ -43,18 +52,25 @@ std::string event_lines(const MotionMessages& motion, const std::string& before,
 
 }  // namespace
 
+std::vector<std::string> MotionMessages::names() const {
+  const auto own = moved_joints(roll, joint_names);
+  std::vector<std::string> all(own.begin(), own.end());
+  if (second != nullptr)
+    for (std::string& name : second->names()) all.push_back(std::move(name));
+  return all;
+}
+
 std::string trajectory_json(const MotionMessages& motion) {
   std::string text = "{\"header\": {\"stamp\": {\"sec\": 0, \"nanosec\": 0}, \"frame_id\": " +
-                     quoted(motion.frame_id) +
-                     "},\n \"joint_names\": " + list(motion, motion.joint_names) +
+                     quoted(motion.frame_id) + "},\n \"joint_names\": " + list_of_names(motion) +
                      ",\n \"points\": [";
   const char* before = "\n";
-  for (const TimedRow& row : motion.rows) {
-    const Stamp stamp = stamp_of(row.t);
+  for (std::size_t row = 0; row < motion.rows.size(); ++row) {
+    const Stamp stamp = stamp_of(motion.rows[row].t);
     text += before;
-    text += "  {\"positions\": " + list(motion, row.row.q) +
-            ", \"velocities\": " + list(motion, row.v) +
-            ", \"accelerations\": " + list(motion, row.a) +
+    text += "  {\"positions\": " + list(motion, row, positions) +
+            ", \"velocities\": " + list(motion, row, speeds) +
+            ", \"accelerations\": " + list(motion, row, accelerations) +
             ", \"effort\": [], \"time_from_start\": {\"sec\": " + std::to_string(stamp.sec) +
             ", \"nanosec\": " + std::to_string(stamp.nanosec) + "}}";
     before = ",\n";
@@ -67,11 +83,12 @@ std::string trajectory_json(const MotionMessages& motion) {
 std::string trajectory_yaml(const MotionMessages& motion) {
   std::string text =
       "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: " + quoted(motion.frame_id) +
-      "\njoint_names: " + list(motion, motion.joint_names) + "\npoints:\n";
-  for (const TimedRow& row : motion.rows) {
-    const Stamp stamp = stamp_of(row.t);
-    text += "- positions: " + list(motion, row.row.q) + "\n  velocities: " + list(motion, row.v) +
-            "\n  accelerations: " + list(motion, row.a) +
+      "\njoint_names: " + list_of_names(motion) + "\npoints:\n";
+  for (std::size_t row = 0; row < motion.rows.size(); ++row) {
+    const Stamp stamp = stamp_of(motion.rows[row].t);
+    text += "- positions: " + list(motion, row, positions) +
+            "\n  velocities: " + list(motion, row, speeds) +
+            "\n  accelerations: " + list(motion, row, accelerations) +
             "\n  effort: []\n  time_from_start: {sec: " + std::to_string(stamp.sec) +
             ", nanosec: " + std::to_string(stamp.nanosec) + "}\n";
   }

@@ -75,7 +75,7 @@ constexpr const char* kJointState =
 class Cdr {
  public:
   template <class Number>
-  Cdr& add(Number value) {
+  requires std::is_arithmetic_v<Number> Cdr& add(Number value) {
     while (bytes_.size() % sizeof value != 0) bytes_.add(std::uint8_t{0});
     bytes_.add(value);
     return *this;
@@ -99,16 +99,17 @@ class Cdr {
   Bytes bytes_;
 };
 
-std::string joint_state(const MotionMessages& motion, const TimedRow& row) {
-  const Stamp stamp = stamp_of(row.t);
+std::string joint_state(const MotionMessages& motion, std::size_t row) {
+  const Stamp stamp = stamp_of(motion.rows[row].t);
   Cdr cdr;
   cdr.add(stamp.sec).add(stamp.nanosec).add(motion.frame_id);
-  const auto names = moved_joints(motion.roll, motion.joint_names);
+  const auto names = motion.names();
   cdr.add(static_cast<std::uint32_t>(names.size()));
   for (const std::string& name : names) cdr.add(name);
-  cdr.add(moved_joints(motion.roll, row.row.q))
-      .add(moved_joints(motion.roll, row.v))
-      .add(std::uint32_t{0});
+  const auto positions =
+      motion.values(row, [](const TimedRow& r) -> const Config& { return r.row.q; });
+  const auto speeds = motion.values(row, [](const TimedRow& r) -> const Config& { return r.v; });
+  cdr.add(std::span(positions)).add(std::span(speeds)).add(std::uint32_t{0});
   return cdr.message();
 }
 
@@ -193,8 +194,8 @@ Chunk chunk_of(const MotionMessages& motion) {
   for (const Indexed& one : chunk.topics)
     chunk.records += schema_record(*one.topic) + channel_record(*one.topic);
   std::size_t event = 0;
-  for (const TimedRow& row : motion.rows) {
-    const std::uint64_t time = nanoseconds(row.t);
+  for (std::size_t row = 0; row < motion.rows.size(); ++row) {
+    const std::uint64_t time = nanoseconds(motion.rows[row].t);
     chunk.add_message(chunk.topics[0], time, joint_state(motion, row));
     for (; motion.events && event < motion.events->size(); ++event) {
       const EventMessage& due = (*motion.events)[event];

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "motions/moved_joints.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
@@ -21,6 +23,21 @@ struct MotionMessages {
   const JointNames& joint_names;
   const std::string& frame_id;                ///< the arm's base link
   const std::vector<EventMessage>* events{};  ///< of a job, by time; null: no job
+  /// The motion of a second arm by the same clock, with as many rows: its joints come after. Null:
+  /// there is one arm.
+  const MotionMessages* second = nullptr;
+
+  /// Returns the names of the joints that controllers move.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// Returns what `of` makes of a row (positions, speeds or accelerations), of these joints.
+  template <class Of>
+  [[nodiscard]] std::vector<double> values(std::size_t row, const Of& of) const {
+    const auto own = moved_joints(roll, of(rows[row]));
+    std::vector<double> all(own.begin(), own.end());
+    if (second != nullptr)
+      for (const double value : second->values(row, of)) all.push_back(value);
+    return all;
+  }
 };
 
 /// Returns the motion as trajectory_msgs/msg/JointTrajectory in JSON; of a job with the key

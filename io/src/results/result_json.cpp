@@ -41,20 +41,6 @@ Json refinement_json(const Refined& refined) {
           {"edges_asked", refined.edges_asked}, {"second_seed", refined.from_second_seed}};
 }
 
-Json peaks_json(const TimedPath& motion, const JointNames& names) {
-  Json json = Json::object();
-  for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
-    Json joints = Json::array();
-    for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(rate)])
-      joints.push_back({{"joint", names[static_cast<std::size_t>(peak.joint)]},
-                        {"ratio", peak.ratio},
-                        {"t", peak.t},
-                        {"s", peak.s}});
-    json[to_string(rate)] = std::move(joints);
-  }
-  return json;
-}
-
 Json motion_json(const TimingResult& timed, const TimingOptions& asked, const JointNames& names) {
   Json json = {{"executable", timed.motion.has_value()},
                {"reason", timed.failure ? Json(timed.failure->reason) : Json(nullptr)},
@@ -65,31 +51,10 @@ Json motion_json(const TimingResult& timed, const TimingOptions& asked, const Jo
                {"chord", or_null(asked.chord)}};
   if (!timed.motion) return json;
   const TimedPath& motion = *timed.motion;
-  Json slow = Json::array(), stops = Json::array();
-  for (const TimedPath::Slow& stretch : motion.slow)
-    slow.push_back(
-        {{"s", {stretch.from_s, stretch.to_s}},
-         {"t", {stretch.from_t, stretch.to_t}},
-         {"share", stretch.share},
-         {"joint", names[static_cast<std::size_t>(stretch.joint)]},
-         {"reason", to_string(stretch.reason)},
-         {"singular", text_or_null(stretch.singular)},
-         {"singular_angle_deg",
-          stretch.singular.empty() ? Json(nullptr) : Json(stretch.singular_angle * 180 / kPi)}});
-  for (const TimedPath::Stop& stop : motion.stops)
-    stops.push_back({{"waypoint", waypoint_json(stop.waypoint)}, {"s", stop.s}, {"t", stop.t}});
   json["samples"] = motion.rows.size();
   json["duration"] = motion.duration;
   json["ideal"] = motion.ideal;
-  json["peaks"] = peaks_json(motion, names);
-  json["slow"] = std::move(slow);
-  json["corners"] = {{"rounded", motion.rounded},
-                     {"position", motion.rounded_position},
-                     {"angle", motion.rounded_angle},
-                     {"stops", std::move(stops)}};
-  json["between_samples"] = {{"position", motion.between_position},
-                             {"angle", motion.between_angle}};
-  json["warnings"] = motion.warnings;
+  add_motion_measures(json, motion, names);
   return json;
 }
 

@@ -182,6 +182,20 @@ Json dropped_json(const std::vector<SpecialPair>& pairs) {
   for (const SpecialPair& pair : pairs) list.push_back({{"bodies", pair.bodies}});
   return list;
 }
+Json peaks_json(const TimedPath& motion, const JointNames& names) {
+  Json json = Json::object();
+  for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
+    Json joints = Json::array();
+    for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(rate)])
+      joints.push_back({{"joint", names[static_cast<std::size_t>(peak.joint)]},
+                        {"ratio", peak.ratio},
+                        {"t", peak.t},
+                        {"s", peak.s}});
+    json[to_string(rate)] = std::move(joints);
+  }
+  return json;
+}
+
 }  // namespace
 
 Json robot_pairs_json(const std::vector<SpecialPair>& dropped,
@@ -225,6 +239,31 @@ Json advice_json(const std::vector<Advice>& advice) {
                     {"cost", or_null(one.cost)},
                     {"reached_s", or_null(one.reached_s)}});
   return list;
+}
+
+void add_motion_measures(Json& json, const TimedPath& motion, const JointNames& names) {
+  Json slow = Json::array(), stops = Json::array();
+  for (const TimedPath::Slow& stretch : motion.slow)
+    slow.push_back(
+        {{"s", {stretch.from_s, stretch.to_s}},
+         {"t", {stretch.from_t, stretch.to_t}},
+         {"share", stretch.share},
+         {"joint", names[static_cast<std::size_t>(stretch.joint)]},
+         {"reason", to_string(stretch.reason)},
+         {"singular", text_or_null(stretch.singular)},
+         {"singular_angle_deg",
+          stretch.singular.empty() ? Json(nullptr) : Json(stretch.singular_angle * 180 / kPi)}});
+  for (const TimedPath::Stop& stop : motion.stops)
+    stops.push_back({{"waypoint", waypoint_json(stop.waypoint)}, {"s", stop.s}, {"t", stop.t}});
+  json["peaks"] = peaks_json(motion, names);
+  json["slow"] = std::move(slow);
+  json["corners"] = {{"rounded", motion.rounded},
+                     {"position", motion.rounded_position},
+                     {"angle", motion.rounded_angle},
+                     {"stops", std::move(stops)}};
+  json["between_samples"] = {{"position", motion.between_position},
+                             {"angle", motion.between_angle}};
+  json["warnings"] = motion.warnings;
 }
 
 }  // namespace swivel::io

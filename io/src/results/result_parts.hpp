@@ -9,6 +9,8 @@
 
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 
@@ -49,5 +51,8 @@ void add_measures(Json& json, const Measures& measures, bool solved);
 [[nodiscard]] std::string document_of(const Json& json);
 
 [[nodiscard]] Json advice_json(const std::vector<Advice>& advice);
+
+/// Adds the keys that say how good a timed motion of an arm is. `names`: of its joints.
+void add_motion_measures(Json& json, const TimedPath& motion, const JointNames& names);
 
 }  // namespace swivel::io

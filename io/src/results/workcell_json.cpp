@@ -35,9 +35,42 @@ Json arm_json(const WorkcellResult& result, std::size_t arm) {
   return json;
 }
 
+/// Returns the motion of both arms: what they have together, and the measures of each.
+Json workcell_motion_json(const WorkcellTiming& timed, const TimingOptions& asked,
+                          const WorkcellResult& result) {
+  const auto& failure = timed.failure;
+  Json json = {{"executable", timed.motion.has_value()},
+               {"reason", failure ? Json(failure->reason) : Json(nullptr)},
+               {"arm", failure ? Json(result.names[timed.failed_arm]) : Json(nullptr)},
+               {"at_s", failure ? Json(failure->s) : Json(nullptr)},
+               {"speed", asked.speed},
+               {"turn_speed", or_null(asked.turn_speed)},
+               {"rate", asked.rate},
+               {"chord", or_null(asked.chord)}};
+  if (!timed.motion) return json;
+  const WorkcellMotion& motion = *timed.motion;
+  json["samples"] = motion.arms[0].rows.size();
+  json["duration"] = motion.duration;
+  json["ideal"] = motion.ideal;
+  json["blended"] = motion.blended;
+  json["follower"] = nullptr;
+  if (motion.follower)
+    json["follower"] = {{"arm", motion.names[*motion.follower]},
+                        {"position", motion.follower_position},
+                        {"angle", motion.follower_angle}};
+  json["arms"] = Json::array();
+  for (std::size_t k = 0; k < 2; ++k) {
+    Json arm = {{"name", motion.names[k]}, {"speed", motion.arms[k].speed}};
+    add_motion_measures(arm, motion.arms[k], result.arms[k].joint_names);
+    json["arms"].push_back(std::move(arm));
+  }
+  json["warnings"] = motion.warnings;
+  return json;
+}
+
 }  // namespace
 
-std::string to_workcell_json(const WorkcellResult& result) {
+std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras& extras) {
   const bool solved = !result.arms[0].trajectory.empty();
   Json json;
   json["schema_version"] = kResultVersion;
@@ -49,6 +82,8 @@ std::string to_workcell_json(const WorkcellResult& result) {
   json["threads"] = result.threads;
   json["decided_by"] = to_string(result.decided_by);
   json["arms"] = {arm_json(result, 0), arm_json(result, 1)};
+  json["motion"] =
+      extras.motion ? workcell_motion_json(*extras.motion, extras.timing, result) : Json(nullptr);
   json["conflict"] = nullptr;
   if (const auto& conflict = result.conflict)
     json["conflict"] = {{"layer", conflict->layer},

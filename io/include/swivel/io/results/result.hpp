@@ -14,6 +14,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/motion/workcell_motion.hpp"
 
 namespace swivel::io {
 
@@ -35,8 +36,14 @@ struct JobExtras {
 /// rows is null unless there are some, `motion` unless one was asked for.
 [[nodiscard]] std::string to_job_json(const JobResult& result, const Job& job,
                                       const JobExtras& extras = {});
+/// What followed the plan of a workcell.
+struct WorkcellExtras {
+  const WorkcellTiming* motion = nullptr;  ///< null if it was not asked for or does not exist
+  TimingOptions timing;                    ///< the options that the motion was timed with
+};
 /// Returns RESULT.json of a workcell as text, docs/formats.md "Result of a workcell".
-[[nodiscard]] std::string to_workcell_json(const WorkcellResult& result);
+[[nodiscard]] std::string to_workcell_json(const WorkcellResult& result,
+                                           const WorkcellExtras& extras = {});
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.
