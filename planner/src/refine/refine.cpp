@@ -103,6 +103,7 @@ class RefinementChecker {
         lattice_(&redundancy.lattice()),
         extra_(options.extra_clearance),
         check_(options.check, budget),
+        by_layer_(options.by_layer),
         world_(robot.world(), problem, budget),
         rule_(world_.edge_rule(robot.radii())),
         at_(world_, DistanceProofs::kOn),
@@ -121,13 +122,13 @@ class RefinementChecker {
     if (problem_->limits.edges == EdgeMode::kContinuous &&
         at_.find_violating_pair_incremental(q, ClearanceRule::kMidpoint))
       return false;
-    return check_.states({&q, 1})[0];
+    return check_.states({&q, 1})[0] && (by_layer_ == nullptr || by_layer_->node(layer, q, extra_));
   }
   /// Returns true if the node is valid without the margins of refinement.
   [[nodiscard]] bool bare_node(int layer, const Config& q) {
     return valid(layer, q, q, false) &&
            !at_.find_violating_pair_incremental(q, ClearanceRule::kNode) &&
-           check_.states({&q, 1})[0];
+           check_.states({&q, 1})[0] && (by_layer_ == nullptr || by_layer_->node(layer, q, 0));
   }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
@@ -154,6 +155,7 @@ class RefinementChecker {
       return false;
     if (limits.edges == EdgeMode::kContinuous && edge_blocked(between_, rule_, a.q, b.q, budget_))
       return false;
+    if (by_layer_ != nullptr && !by_layer_->edge(layer, a.q, b.q)) return false;
     if (!check_.checks_motions()) return true;
     const StateCheck::Motion motion{a.q, b.q};
     return check_.motions({&motion, 1})[0];
@@ -197,6 +199,7 @@ class RefinementChecker {
   const Lattice* lattice_;
   double extra_;
   AskedCheck check_;
+  LayerCheck* by_layer_;
   World world_;
   EdgeRule rule_;
   World::Query at_, between_;

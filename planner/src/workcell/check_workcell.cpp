@@ -107,6 +107,10 @@ class WorkcellCheck {
   /// tools at their places together.
   bool by_one_clock() {
     const auto& [first, second] = *timed_;
+    if (first.empty() && second.empty()) {
+      fail("no rows: allowed are at least two");
+      return false;
+    }
     if (first.size() != second.size()) {
       fail(formatted("%zu and %zu rows of the two arms: allowed are as many", first.size(),
                      second.size()));

@@ -12,6 +12,18 @@ namespace swivel {
 class PreparedRobot;
 struct Problem;
 
+/// What rows must keep besides the problem's own rules, layer by layer.
+class LayerCheck {
+ public:
+  virtual ~LayerCheck() = default;
+  /// Returns whether the arm may be at joints q (rad) at a layer, with so much more clearance than
+  /// must be kept (m).
+  [[nodiscard]] virtual bool node(int layer, const Config& q, double extra) = 0;
+  /// Returns whether it may move from joints at a layer to others at the next, straight in joint
+  /// space.
+  [[nodiscard]] virtual bool edge(int layer, const Config& from, const Config& to) = 0;
+};
+
 /// Options of refine().
 struct RefineOptions {
   /// Also refine a path of a lattice that is coarse along the path and fine in the arm angle, and
@@ -22,6 +34,8 @@ struct RefineOptions {
   double extra_clearance = 0.1e-3;
   /// The caller's own rule for states at layers and the motions between them, or null.
   std::shared_ptr<StateCheck> check = nullptr;  // shared: with the plan and its caller
+  /// What else rows must keep, or null. The given rows keep it.
+  LayerCheck* by_layer = nullptr;
 };
 
 /// Returns a cheaper and smoother path near a valid path of the lattice: the arm angles of its
