@@ -11,7 +11,7 @@
 #include "validity/collision_validity.hpp"
 #include "workcell/arm_in_cell.hpp"
 #include "workcell/between_arms.hpp"
-#include "workcell/region_pairs.hpp"
+#include "workcell/proof/region_pairs.hpp"
 
 namespace swivel {
 

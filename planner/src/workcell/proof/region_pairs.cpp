@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workcell/region_pairs.hpp"
+#include "workcell/proof/region_pairs.hpp"
 
 namespace swivel {
 
@@ -10,8 +10,8 @@ struct RegionStances {
   std::array<InterArmWorld::Stances, 2> of;
   RegionStances(InterArmWorld::Query& query, const std::array<std::vector<Config>, 2>& q,
                 const std::optional<BodyPair>& pair)
-      : of{query.stances(0, pair ? pair->a : -1, q[0]), query.stances(1, pair ? pair->b : -1, q[1])} {
-  }
+      : of{query.stances(0, pair ? pair->a : -1, q[0]),
+           query.stances(1, pair ? pair->b : -1, q[1])} {}
   [[nodiscard]] bool near(InterArmWorld::Query& query, const std::optional<BodyPair>& pair,
                           std::size_t i, std::size_t j) const {
     return pair ? query.violates(*pair, of[0], i, of[1], j)

@@ -10,7 +10,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "workcell/arm_in_cell.hpp"
-#include "workcell/region_pairs.hpp"
+#include "workcell/proof/region_pairs.hpp"
 
 namespace swivel {
 
@@ -93,8 +93,7 @@ class WorkcellVerifier {
                       ": allowed is a set before it, and none of the first");
       if (!is_root) {
         if (branch.arm < 0 || branch.arm > 1) refuse(k, "it is of no arm");
-        if (!tree[index(branch.parent)].region)
-          refuse(k, "its parent is not divided by a region");
+        if (!tree[index(branch.parent)].region) refuse(k, "its parent is not divided by a region");
         ++children[index(branch.parent)][index(branch.arm)];
       }
       if (!branch.region && (branch.arm_without_path < 0 || branch.arm_without_path > 1))
@@ -103,7 +102,8 @@ class WorkcellVerifier {
     for (std::size_t k = 0; k < tree.size(); ++k)
       if (tree[k].region && children[k] != std::array{1, 1})
         refuse(k, "it is divided, and has " + std::to_string(children[k][0]) + " and " +
-                      std::to_string(children[k][1]) + " sets in which an arm keeps away: allowed "
+                      std::to_string(children[k][1]) +
+                      " sets in which an arm keeps away: allowed "
                       "is one of each");
     regions_.resize(tree.size());
   }
@@ -133,8 +133,10 @@ class WorkcellVerifier {
       for (const WorkcellCertificate::Range& range : said.slots[k]) {
         if (range.first < next || range.last < range.first || range.last >= slots)
           refuse(branch, "slots " + std::to_string(range.first) + " to " +
-                             std::to_string(range.last) + " of its region: allowed are ascending "
-                             "slots up to " + std::to_string(slots - 1));
+                             std::to_string(range.last) +
+                             " of its region: allowed are ascending "
+                             "slots up to " +
+                             std::to_string(slots - 1));
         next = range.last + 1;
         for (int slot = range.first; slot <= range.last; ++slot) {
           region.slots[k].push_back(slot);
@@ -149,8 +151,7 @@ class WorkcellVerifier {
       if (apart = find_pair_apart(query_, rows, pair, budget_); !apart) return;
     refuse(branch, "layer " + std::to_string(said.layer) + ": slot " +
                        std::to_string(region.slots[0][(*apart)[0]]) + " and slot " +
-                       std::to_string(region.slots[1][(*apart)[1]]) +
-                       " of its region are apart");
+                       std::to_string(region.slots[1][(*apart)[1]]) + " of its region are apart");
   }
 
   /// Returns the pairs of bodies of a region's names, or nothing, which stands for all pairs.
@@ -202,8 +203,8 @@ class WorkcellVerifier {
       for (std::size_t j = 0; j < ends[1].size(); ++j, ++result_.pairs)
         if (!query_.find_pair_blocking_motion(radii, {ends[0][i][0], ends[1][j][0]},
                                               {ends[0][i][1], ends[1][j][1]}, 0, budget_))
-          refuse(branch, "two moves of its region from layer " + std::to_string(said.layer) +
-                             " are apart");
+          refuse(branch,
+                 "two moves of its region from layer " + std::to_string(said.layer) + " are apart");
   }
 
   void examine_cut(std::size_t branch) {
@@ -218,15 +219,13 @@ class WorkcellVerifier {
     std::reverse(regions.begin(), regions.end());
     const ArmInCell& arm = *arms_[index(leaf.arm_without_path)];
     CertificateCheck counts;
-    const std::string fault =
-        fault_of_cut(*arm.lattice, arm.world, arm.rule, leaf.cut,
-                     RegionSides(std::move(regions), leaf.arm_without_path), nullptr, budget_,
-                     counts);
+    const std::string fault = fault_of_cut(*arm.lattice, arm.world, arm.rule, leaf.cut,
+                                           RegionSides(std::move(regions), leaf.arm_without_path),
+                                           nullptr, budget_, counts);
     result_.nodes += counts.nodes;
     result_.edges += counts.edges;
     if (!fault.empty())
-      refuse(branch, "the cut of '" + prepared_.name(index(leaf.arm_without_path)) +
-                         "': " + fault);
+      refuse(branch, "the cut of '" + prepared_.name(index(leaf.arm_without_path)) + "': " + fault);
   }
 
   const PreparedWorkcell& prepared_;
