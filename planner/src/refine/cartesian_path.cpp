@@ -168,12 +168,30 @@ class Follower {
     const int last = static_cast<int>(path_.rows.size()) - 1;
     path_.fraction = static_cast<double>(last) / (layers - 1);
     if (last == 0) return;
-    planner_.set_task(path_up_to(path_.problem, chain, last, budget_));
-    path_.problem = planner_.problem();
+    const Problem whole = std::move(path_.problem);
+    const auto end_at = [&](int row) {
+      planner_.set_task(path_up_to(whole, chain, row, budget_));
+      path_.problem = planner_.problem();
+    };
+    end_at(last);
     if (!timed_) return;
+    // Rounded corners are other ones where the path ends beside them, so that the last rows may not
+    // be reached on a path of their own.
     PlanResult part;
-    plan(part, path_.motion);
-    if (part.status == PlanStatus::kSolved) path_.rows = std::move(part.trajectory);
+    int row = last;
+    for (int back = 1;; back *= 2) {
+      plan(part, path_.motion);
+      if (part.status != PlanStatus::kInfeasible || row == 1) break;
+      row = std::max(1, last - back);
+      end_at(row);
+    }
+    if (part.status == PlanStatus::kSolved) {
+      path_.rows = std::move(part.trajectory);
+      path_.fraction = static_cast<double>(row) / (layers - 1);
+    } else {
+      end_at(last);
+      no_motion(one_line(answer_text(part)));
+    }
   }
 
   /// Plans the planner's problem, and makes a motion of it if the options ask for one.
