@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <optional>
 #include <set>
 #include <utility>
@@ -86,7 +87,7 @@ void print_workcell(const WorkcellMotionPlan& plan) {
         *plan.timing, {result.arms[0].joint_names, result.arms[1].joint_names}, result.names));
   std::string stages;
   for (const char* const stage :
-       {"load", "prepare", "lattice", "search", "check", "time", "report"})
+       {"load", "prepare", "lattice", "search", "check", "time", "report", "certificate"})
     if (const auto found = result.time_ms.find(stage); found != result.time_ms.end())
       stages += formatted("%s%s %.1f ms", stages.empty() ? "" : ", ", stage, found->second);
   long long nodes = 0, edges = 0, calls = 0;
@@ -125,13 +126,29 @@ std::optional<std::string> page_of(const WorkcellRequest& request, const Prepare
   }
 }
 
+/// Proves that a workcell has no plan, for --certificate. Adds a warning to the result if the
+/// budget is spent before.
+std::string proof_of(const PreparedWorkcell& prepared, const Budget& budget,
+                     WorkcellResult& result) {
+  const auto start = std::chrono::steady_clock::now();
+  std::string text;
+  try {
+    text = io::to_json(prove_infeasible(prepared, budget));
+  } catch (const Stopped&) {
+    result.warnings.push_back("stopped before the certificate was found: there is none");
+  }
+  result.time_ms["certificate"] =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return text;
+}
+
 }  // namespace
 
 int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  const Budget budget = request.options.budget();  // of the page; the plan has its own
+  const Budget budget = request.options.budget();  // of page and proof; the plan has its own
   const PreparedWorkcell prepared(request.cell);
   WorkcellView view;
   WorkcellMotionPlan plan;
@@ -139,8 +156,12 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
     plan = plan_workcell_motion(prepared, request.options, *request.timing);
   else
     plan.result = plan_workcell(prepared, request.options, request.report ? &view : nullptr);
+  const WorkcellResult& result = plan.result;
   plan.result.time_ms["load"] = request.load_ms;
   std::optional<std::string> page = page_of(request, prepared, view, budget, plan.result);
+  const bool infeasible = result.status == PlanStatus::kInfeasible;
+  std::string proof;
+  if (outputs.wants("--certificate") && infeasible) proof = proof_of(prepared, budget, plan.result);
   progress.clear();
   write_rows(request, plan, outputs);
   if (page)
@@ -149,20 +170,28 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
     outputs.remove("--report");
   if (outputs.wants("--json"))
     outputs.write("--json",
-                  io::to_workcell_json(plan.result, {plan.timing ? &*plan.timing : nullptr,
-                                                     request.timing.value_or(TimingOptions{})}) +
+                  io::to_workcell_json(result, {plan.timing ? &*plan.timing : nullptr,
+                                                request.timing.value_or(TimingOptions{})}) +
                       "\n");
-  const bool infeasible = plan.result.status == PlanStatus::kInfeasible;
+  const std::size_t bytes = proof.size();
+  if (bytes > 0)
+    outputs.write("--certificate", std::move(proof));
+  else
+    outputs.remove("--certificate");
   const bool no_motion = plan.timing && !plan.timing->motion;
+  const bool solved = result.status == PlanStatus::kSolved;
   deliver(outputs,
           infeasible  ? "there is no plan now"
           : no_motion ? "there is no motion now"
+          : solved    ? "there is a plan now"
                       : "the search was stopped",
           [&] {
-            if (!request.quiet && !outputs.takes_standard_output()) print_workcell(plan);
+            if (request.quiet || outputs.takes_standard_output()) return;
+            print_workcell(plan);
+            if (bytes > 0) say("certificate: %zu bytes\n", bytes);
           });
   if (infeasible || no_motion) return kNo;
-  return plan.result.status == PlanStatus::kSolved && !plan.stopped ? kOk : kStopped;
+  return solved && !plan.stopped ? kOk : kStopped;
 }
 
 Limits limits_of_speeds(const Workcell& cell) {
@@ -249,6 +278,33 @@ int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
   }
   print_failures(result.failures, result.failure_count);
   return result.passed ? kOk : kNo;
+}
+
+int check_workcell_proof(const Workcell& cell, const std::string& file) {
+  catch_interrupts();
+  const WorkcellCertificate certificate = io::load_workcell_certificate(file);
+  WorkcellCertificateCheck result;
+  try {
+    const Budget budget(std::nullopt, &interrupted);
+    const PreparedWorkcell prepared(cell, budget);
+    for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared.robot(k).arm().held);
+    result = verify_certificate(prepared, certificate, budget);
+  } catch (const Stopped&) {
+    say("stopped\n");
+    return kStopped;
+  }
+  if (!result.passed) {
+    say("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
+    return kNo;
+  }
+  say("passed: no two paths without conflict at this resolution%s: %lld region%s of conflict, %lld "
+      "cut%s; %lld pairs of nodes or motions of both arms, %lld nodes and %lld edges asked\n",
+      result.complete ? "" : ", among the solutions that were found",
+      static_cast<long long>(result.regions), result.regions == 1 ? "" : "s",
+      static_cast<long long>(result.cuts), result.cuts == 1 ? "" : "s",
+      static_cast<long long>(result.pairs), static_cast<long long>(result.nodes),
+      static_cast<long long>(result.edges));
+  return kOk;
 }
 
 }  // namespace swivel::cli

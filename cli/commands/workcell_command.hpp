@@ -22,8 +22,8 @@ struct WorkcellRequest {
 };
 
 /// Plans a workcell, times the plan if asked for, writes its trajectories or its motion, its page
-/// and its result, and prints the answer. `outputs` has --out, --report and --json. Returns the
-/// exit code. Throws InputError.
+/// and its result, and prints the answer. `outputs` has --out, --report, --json and
+/// --certificate. Returns the exit code. Throws InputError.
 int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs);
 
 /// What `swivel time` is asked to do with a workcell.
@@ -45,5 +45,9 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
 /// Checks the trajectories or the motion of a workcell that a CSV file has, and prints the verdict.
 /// Returns the exit code. Throws InputError.
 int check_workcell_file(const Workcell& cell, const std::string& trajectory);
+
+/// Verifies the certificate that a workcell has no plan, and prints the verdict. Returns the exit
+/// code. Throws InputError.
+int check_workcell_proof(const Workcell& cell, const std::string& certificate);
 
 }  // namespace swivel::cli

@@ -105,6 +105,54 @@ class Workcells(unittest.TestCase):
         self.assertEqual(len(result["conflict"]["bodies"]), 2)
         self.assertFalse(self.out.exists())
 
+    def test_certificate(self):
+        proof = self.folder / "proof.json"
+        done = self.plan(cell(gap=0.02), "--certificate", proof)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"\ncertificate: [0-9]+ bytes\n$")
+        file = self.folder / "cell.yaml"
+        checked = run("check", file, "--certificate", proof)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        self.assertRegex(
+            checked.stdout, "^passed: no two paths without conflict at this resolution: [0-9]+ "
+            "regions? of conflict, [0-9]+ cuts; [0-9]+ pairs of nodes or motions of both arms, "
+        )
+        told = json.loads(proof.read_text())
+        self.assertEqual(told["format"], "swivel certificate of a workcell 1")
+        divided = [one for one in told["sets"] if "region" in one]
+        self.assertEqual(len(told["sets"]), 2 * len(divided) + 1)
+        for change, words in (
+            (lambda c: c["sets"].pop(), "it is divided, and has"),
+            (lambda c: c["sets"][0]["region"].update(bodies=["nobody", "else"]), "are no pair"),
+            (lambda c: c["sets"][-1].update(layers=[]), "the cut of "),
+        ):
+            forged = copy.deepcopy(told)
+            change(forged)
+            other = self.folder / "forged.json"
+            other.write_text(json.dumps(forged))
+            done = run("check", file, "--certificate", other)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertIn(words, done.stdout)
+            self.assertTrue(
+                done.stdout.endswith("\nfailed: this certificate proves nothing\n")
+            )
+        for change, words in (
+            (lambda c: c.update(format="swivel certificate 1"), "format: is another"),
+            (lambda c: c["sets"][0].update(region=3), "sets[0].region."),
+            (lambda c: c["sets"][1].update(arm=2), "sets[1].arm"),
+            (lambda c: c["arms"].pop(), "arms: is no list of 2"),
+            (lambda c: c["arms"][0]["resolution"].update(ds=0.01), "resolution"),
+        ):
+            forged = copy.deepcopy(told)
+            change(forged)
+            other.write_text(json.dumps(forged))
+            done = run("check", file, "--certificate", other)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(words, done.stderr)
+        done = self.plan(cell(), "--certificate", proof)  # there is a plan now
+        self.assertEqual(done.returncode, 0)
+        self.assertFalse(proof.exists())
+
     def test_an_arm_without_a_path(self):
         problem = cell()
         problem["arms"][1] = arm("right", -2.5)
@@ -317,7 +365,7 @@ class Workcells(unittest.TestCase):
             self.assertIn("workcell", done.stderr)
         for options in (
             ("--refine",), ("--map",),
-            ("--advise", "1"), ("--certificate", self.folder / "c.json"),
+            ("--advise", "1"), ("--trace", self.folder / "t.json"),
             ("--planner", "eager"), ("--path", "--x", "0.1"),
         ):
             done = self.plan(cell(), *options)

@@ -496,6 +496,33 @@ Reader certificate_reader(const TempFolder& folder) {
              [](const fs::path& file) { (void)io::load_certificate(file); })};
 }
 
+/// Returns the reader of certificates that a workcell has no plan.
+Reader workcell_certificate_reader(const TempFolder& folder) {
+  WorkcellCertificate certificate;
+  certificate.layers = 9;
+  certificate.windings[1] = {{false, true}};
+  certificate.tree.resize(5);
+  certificate.tree[0].region = {{2, {"a", "b"}, {{{{0, 3}, {5, 5}}, {{1, 2}}}}, {}}};
+  certificate.tree[1].region = {{4, {}, {}, {{{{0, 3}}, {{7, 6}, {7, 7}}}}}};
+  for (int k = 1; k < 5; ++k) {
+    WorkcellCertificate::Branch& set = certificate.tree[static_cast<std::size_t>(k)];
+    set.parent = k < 3 ? 0 : 1;
+    set.arm = 1 - k % 2;
+    if (k == 1) continue;
+    set.arm_without_path = set.arm;
+    set.cut.first_layer = 3;
+    set.cut.witnesses.resize(1);
+    set.cut.witnesses[0].kind = Cause::Kind::kReach;
+    set.cut.band = {{8, {{0, 3}}, {{{4, 7}, 0}}, {}},
+                    {8, {}, {{{0, 5}, 1}}, {{{0, 3}, {6, 7}, 1, 8}}}};
+  }
+  return {"workcell_certificate",
+          {io::to_json(certificate)},
+          {"0", "1", "[", "]", "null", "-1", "1e999", "[0,1],", "\"moves\":", "\"sets\":["},
+          at(folder, "proof.json",
+             [](const fs::path& file) { (void)io::load_workcell_certificate(file); })};
+}
+
 /// Returns the readers of meshes.
 std::vector<Reader> mesh_readers(const TempFolder& folder) {
   const auto mesh = [](const fs::path& file) {
@@ -535,6 +562,7 @@ std::vector<Reader> readers(const TempFolder& folder) {
   all.push_back(campaign_reader(folder, settings));
   all.push_back(shard_reader(folder, settings));
   all.push_back(certificate_reader(folder));
+  all.push_back(workcell_certificate_reader(folder));
   std::ranges::move(mesh_readers(folder), std::back_inserter(all));
   return all;
 }

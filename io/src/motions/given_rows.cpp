@@ -23,7 +23,7 @@ namespace {
 bool begins_with(const std::string& text, const std::vector<std::string>& columns) {
   std::string header;
   for (const std::string& column : columns)
-    header += (header.empty() ? "" : ",") + csv_field(column);
+    header.append(header.empty() ? "" : ",").append(csv_field(column));
   return text.starts_with(header + "\n") || text.starts_with(header + "\r\n");
 }
 

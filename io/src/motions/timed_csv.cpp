@@ -26,7 +26,7 @@ std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names)
   const bool roll = std::any_of(motion.rows.begin(), motion.rows.end(),
                                 [](const TimedRow& row) { return row.row.roll != 0; });
   for (const std::string& name : csv_header(motion_schema(), joint_names, roll))
-    text += (text.empty() ? "" : ",") + csv_field(name);
+    text.append(text.empty() ? "" : ",").append(csv_field(name));
   text += '\n';
   for (const TimedRow& row : motion.rows) {
     text += format_double(row.t) + ',' + trajectory_fields(row.row, roll);

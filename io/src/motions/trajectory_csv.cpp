@@ -61,7 +61,7 @@ std::string to_csv(const PlanResult& result) {
   std::string text;
   const bool roll = any_rolls(result.trajectory);
   for (const std::string& name : csv_header(trajectory_schema(), result.joint_names, roll))
-    text += (text.empty() ? "" : ",") + csv_field(name);
+    text.append(text.empty() ? "" : ",").append(csv_field(name));
   text += '\n';
   for (const TrajectoryRow& row : result.trajectory) text += trajectory_fields(row, roll) + '\n';
   return text;

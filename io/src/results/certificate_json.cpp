@@ -16,6 +16,7 @@ namespace {
 using Parsed = nlohmann::json;  // ordered_json looks for each key among all before it
 
 constexpr const char* kFormat = "swivel certificate 1";
+constexpr const char* kWorkcellFormat = "swivel certificate of a workcell 1";
 
 Json witness_json(const Cause& cause) {
   Json json = {{"cause", to_string(cause.kind)}};
@@ -151,47 +152,82 @@ InfeasibilityCertificate::Layer layer_of(const Reader& read, const Parsed& json,
   return layer;
 }
 
-}  // namespace
-
-std::string to_json(const InfeasibilityCertificate& certificate) {
-  Json windings = Json::array(), witnesses = Json::array();
-  for (const auto& joints : certificate.windings) {
+/// Returns what says of which lattice a certificate is: resolution, edges and windings.
+Json layout_json(const Resolution& resolution, EdgeMode edges,
+                 const std::vector<std::array<bool, kDof>>& windings) {
+  Json told_apart = Json::array();
+  for (const auto& joints : windings) {
     Json told = Json::array();
     for (std::size_t j = 0; j < kDof; ++j)
       if (joints[j]) told.push_back(j);
-    windings.push_back(std::move(told));
+    told_apart.push_back(std::move(told));
   }
-  for (const Cause& cause : certificate.witnesses) witnesses.push_back(witness_json(cause));
-  const Resolution& resolution = certificate.resolution;
-  Json head = {{"format", kFormat}};
-  if (!certificate.stroke.empty()) {
-    head["stroke"] = certificate.stroke;
-    head["reversed"] = certificate.reversed;
-  }
-  head["resolution"] = {{"ds", resolution.ds},
-                        {"dphi", resolution.dphi},
-                        {"dalpha", resolution.dalpha},
-                        {"arc", resolution.arc},
-                        {"arcs", resolution.arcs}};
-  head["edges"] = certificate.edges == EdgeMode::kContinuous ? "continuous" : "nodes";
-  head["windings"] = std::move(windings);
-  head["path_layers"] = certificate.layers;
-  head["witnesses"] = std::move(witnesses);
-  const auto line = [](const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
-  std::string text = line(head);
-  text.back() = ',';
-  text += "\n\"layers\":[";
-  for (std::size_t k = 0; k < certificate.band.size(); ++k)
-    text += (k == 0 ? "\n" : ",\n") +
-            line(layer_json(certificate.first_layer + static_cast<int>(k), certificate.band[k]));
-  return text + "\n]}\n";
+  return {{"resolution",
+           {{"ds", resolution.ds},
+            {"dphi", resolution.dphi},
+            {"dalpha", resolution.dalpha},
+            {"arc", resolution.arc},
+            {"arcs", resolution.arcs}}},
+          {"edges", edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
+          {"windings", std::move(told_apart)}};
 }
 
-InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
+Json witnesses_json(const InfeasibilityCertificate& cut) {
+  Json witnesses = Json::array();
+  for (const Cause& cause : cut.witnesses) witnesses.push_back(witness_json(cause));
+  return witnesses;
+}
+
+std::string line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Reads what layout_json() writes.
+void read_layout(const Reader& read, const Parsed& json, const std::string& key,
+                 Resolution& resolution, EdgeMode& mode,
+                 std::vector<std::array<bool, kDof>>& windings) {
+  const std::string within = key + "resolution.";
+  const Parsed& steps = read.at(json, "resolution", key);
+  const auto real = [&](const char* name) {
+    return read.real(read.at(steps, name, within), within + name);
+  };
+  resolution.ds = real("ds");
+  resolution.dphi = real("dphi");
+  resolution.dalpha = real("dalpha");
+  resolution.arc = real("arc");
+  resolution.arcs = read.truth(read.at(steps, "arcs", within), within + "arcs");
+  const std::string edges = read.text(read.at(json, "edges", key), key + "edges");
+  if (edges != "continuous" && edges != "nodes")
+    read.fail(key + "edges", "'" + edges + "' is unknown", "continuous or nodes");
+  mode = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
+  for (const Parsed& told : read.list(read.at(json, "windings", key), key + "windings")) {
+    auto& joints = windings.emplace_back();
+    for (const Parsed& joint : read.list(told, key + "windings"))
+      joints[static_cast<std::size_t>(read.whole(joint, key + "windings", kDof - 1))] = true;
+    if (windings.size() > kDof) read.fail(key + "windings", "has too many lists", "at most 7");
+  }
+}
+
+/// Reads witnesses and layers of a cut.
+void read_cut(const Reader& read, const Parsed& json, const std::string& key,
+              InfeasibilityCertificate& cut) {
+  for (const Parsed& witness : read.list(read.at(json, "witnesses", key), key + "witnesses"))
+    cut.witnesses.push_back(witness_of(
+        read, witness, key + "witnesses[" + std::to_string(cut.witnesses.size()) + "]."));
+  for (const Parsed& layer : read.list(read.at(json, "layers", key), key + "layers")) {
+    const std::string at = key + "layers[" + std::to_string(cut.band.size()) + "].";
+    const int number = read.small(read.at(layer, "layer", at), at + "layer");
+    if (cut.band.empty()) cut.first_layer = number;
+    if (number != cut.first_layer + static_cast<int>(cut.band.size()))
+      read.fail(at + "layer", "is " + std::to_string(number), "layers one after the other");
+    cut.band.push_back(layer_of(read, layer, at));
+  }
+}
+
+/// Reads the JSON of a certificate of a format.
+Parsed parsed_certificate(const Reader& read, const std::filesystem::path& file,
+                          const char* format) {
   const std::string text = read_file(file, "certificate (JSON)", kMostCertificateBytes);
-  const Reader read(file.string());
   constexpr int kMostDepth = 8;
   if (depth_of(text) > kMostDepth)
     bad_input(file.string(), "is nested too deep",
@@ -202,46 +238,142 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   } catch (const Parsed::exception& error) {
     bad_input(file.string(), error.what(), "what plan --certificate writes");
   }
-  if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
-    read.fail("format", "is another", std::string("'") + kFormat + "'");
+  if (!json.is_object() || !json.contains("format") || json["format"] != format)
+    read.fail("format", "is another", std::string("'") + format + "'");
+  return json;
+}
+
+Json region_json(const WorkcellCertificate::Region& region) {
+  Json json = {{"layer", region.layer}};
+  Json sides = Json::array();
+  const bool of_moves = !region.moves[0].empty();
+  for (std::size_t k = 0; k < 2; ++k) {
+    Json side = Json::array();
+    for (const auto& range : region.slots[k]) side.push_back({range.first, range.last});
+    for (const auto& move : region.moves[k]) side.push_back({move.from, move.to});
+    sides.push_back(std::move(side));
+  }
+  json[of_moves ? "moves" : "nodes"] = std::move(sides);
+  if (!region.bodies[0].empty()) json["bodies"] = region.bodies;
+  return json;
+}
+
+WorkcellCertificate::Region region_of(const Reader& read, const Parsed& json,
+                                      const std::string& key) {
+  WorkcellCertificate::Region region;
+  region.layer = read.small(read.at(json, "layer", key), key + "layer");
+  const bool of_moves = json.contains("moves");
+  const std::string name = of_moves ? "moves" : "nodes", where = key + name;
+  const Parsed& sides = read.list(read.at(json, name.c_str(), key), where, 2);
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const Parsed& two : read.list(sides[k], where)) {
+      read.list(two, where, 2);
+      const int first = read.small(two[0], where), last = read.small(two[1], where);
+      if (of_moves)
+        region.moves[k].push_back({first, last});
+      else
+        region.slots[k].push_back({first, last});
+    }
+  if (json.contains("bodies")) {
+    const Parsed& bodies = read.list(json["bodies"], key + "bodies", 2);
+    region.bodies = {read.text(bodies[0], key + "bodies"), read.text(bodies[1], key + "bodies")};
+  }
+  return region;
+}
+
+Json set_json(const WorkcellCertificate::Branch& set) {
+  Json json;
+  if (set.parent >= 0) json = {{"parent", set.parent}, {"arm", set.arm}};
+  if (set.region) {
+    json["region"] = region_json(*set.region);
+    return json;
+  }
+  json["without_path"] = set.arm_without_path;
+  json["witnesses"] = witnesses_json(set.cut);
+  Json layers = Json::array();
+  for (std::size_t k = 0; k < set.cut.band.size(); ++k)
+    layers.push_back(layer_json(set.cut.first_layer + static_cast<int>(k), set.cut.band[k]));
+  json["layers"] = std::move(layers);
+  return json;
+}
+
+WorkcellCertificate::Branch set_of(const Reader& read, const Parsed& json, const std::string& key) {
+  WorkcellCertificate::Branch set;
+  if (!json.is_object()) read.fail(key, "is no object", "what plan --certificate writes");
+  if (json.contains("parent")) {
+    set.parent = read.small(json["parent"], key + "parent");
+    set.arm = static_cast<int>(read.whole(read.at(json, "arm", key), key + "arm", 1));
+  }
+  if (json.contains("region")) {
+    set.region = region_of(read, json["region"], key + "region.");
+    return set;
+  }
+  set.arm_without_path =
+      static_cast<int>(read.whole(read.at(json, "without_path", key), key + "without_path", 1));
+  read_cut(read, json, key, set.cut);
+  return set;
+}
+
+}  // namespace
+
+std::string to_json(const InfeasibilityCertificate& certificate) {
+  Json head = {{"format", kFormat}};
+  if (!certificate.stroke.empty()) {
+    head["stroke"] = certificate.stroke;
+    head["reversed"] = certificate.reversed;
+  }
+  head.update(layout_json(certificate.resolution, certificate.edges, certificate.windings));
+  head["path_layers"] = certificate.layers;
+  head["witnesses"] = witnesses_json(certificate);
+  std::string text = line(head);
+  text.back() = ',';
+  text += "\n\"layers\":[";
+  for (std::size_t k = 0; k < certificate.band.size(); ++k)
+    text += (k == 0 ? "\n" : ",\n") +
+            line(layer_json(certificate.first_layer + static_cast<int>(k), certificate.band[k]));
+  return text + "\n]}\n";
+}
+
+InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
+  const Reader read(file.string());
+  const Parsed json = parsed_certificate(read, file, kFormat);
   InfeasibilityCertificate certificate;
   if (json.contains("stroke")) {
     certificate.stroke = read.text(json["stroke"], "stroke");
     certificate.reversed = read.truth(read.at(json, "reversed", ""), "reversed");
   }
-  const Parsed& resolution = read.at(json, "resolution", "");
-  certificate.resolution.ds = read.real(read.at(resolution, "ds", "resolution."), "resolution.ds");
-  certificate.resolution.dphi =
-      read.real(read.at(resolution, "dphi", "resolution."), "resolution.dphi");
-  certificate.resolution.dalpha =
-      read.real(read.at(resolution, "dalpha", "resolution."), "resolution.dalpha");
-  certificate.resolution.arc =
-      read.real(read.at(resolution, "arc", "resolution."), "resolution.arc");
-  certificate.resolution.arcs =
-      read.truth(read.at(resolution, "arcs", "resolution."), "resolution.arcs");
-  const std::string edges = read.text(read.at(json, "edges", ""), "edges");
-  if (edges != "continuous" && edges != "nodes")
-    read.fail("edges", "'" + edges + "' is unknown", "continuous or nodes");
-  certificate.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
-  for (const Parsed& told : read.list(read.at(json, "windings", ""), "windings")) {
-    auto& joints = certificate.windings.emplace_back();
-    for (const Parsed& joint : read.list(told, "windings"))
-      joints[static_cast<std::size_t>(read.whole(joint, "windings", kDof - 1))] = true;
-    if (certificate.windings.size() > kDof)
-      read.fail("windings", "has too many lists", "at most 7");
-  }
+  read_layout(read, json, "", certificate.resolution, certificate.edges, certificate.windings);
   certificate.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
-  for (const Parsed& witness : read.list(read.at(json, "witnesses", ""), "witnesses"))
-    certificate.witnesses.push_back(witness_of(
-        read, witness, "witnesses[" + std::to_string(certificate.witnesses.size()) + "]."));
-  for (const Parsed& layer : read.list(read.at(json, "layers", ""), "layers")) {
-    const std::string key = "layers[" + std::to_string(certificate.band.size()) + "].";
-    const int number = read.small(read.at(layer, "layer", key), key + "layer");
-    if (certificate.band.empty()) certificate.first_layer = number;
-    if (number != certificate.first_layer + static_cast<int>(certificate.band.size()))
-      read.fail(key + "layer", "is " + std::to_string(number), "layers one after the other");
-    certificate.band.push_back(layer_of(read, layer, key));
-  }
+  read_cut(read, json, "", certificate);
+  return certificate;
+}
+
+std::string to_json(const WorkcellCertificate& certificate) {
+  Json arms = Json::array();
+  for (std::size_t k = 0; k < 2; ++k)
+    arms.push_back(
+        layout_json(certificate.resolution[k], certificate.edges[k], certificate.windings[k]));
+  std::string text =
+      line({{"format", kWorkcellFormat}, {"arms", arms}, {"path_layers", certificate.layers}});
+  text.back() = ',';
+  text += "\n\"sets\":[";
+  for (std::size_t k = 0; k < certificate.tree.size(); ++k)
+    text += (k == 0 ? "\n" : ",\n") + line(set_json(certificate.tree[k]));
+  return text + "\n]}\n";
+}
+
+WorkcellCertificate load_workcell_certificate(const std::filesystem::path& file) {
+  const Reader read(file.string());
+  const Parsed json = parsed_certificate(read, file, kWorkcellFormat);
+  WorkcellCertificate certificate;
+  const Parsed& arms = read.list(read.at(json, "arms", ""), "arms", 2);
+  for (std::size_t k = 0; k < 2; ++k)
+    read_layout(read, arms[k], "arms[" + std::to_string(k) + "].", certificate.resolution[k],
+                certificate.edges[k], certificate.windings[k]);
+  certificate.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
+  for (const Parsed& set : read.list(read.at(json, "sets", ""), "sets"))
+    certificate.tree.push_back(
+        set_of(read, set, "sets[" + std::to_string(certificate.tree.size()) + "]."));
   return certificate;
 }
 

@@ -10,6 +10,7 @@
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
+#include "swivel/core/answer/workcell_certificate.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/motion/job_motion.hpp"
@@ -26,6 +27,11 @@ namespace swivel::io {
 /// Loads CERTIFICATE.json. Throws InputError for a file that is none. verify_certificate() verifies
 /// what it says.
 [[nodiscard]] InfeasibilityCertificate load_certificate(const std::filesystem::path& json);
+/// Returns the certificate of a workcell as text, docs/formats.md, with a line for each set.
+[[nodiscard]] std::string to_json(const WorkcellCertificate& certificate);
+/// Loads the certificate of a workcell. Throws InputError for a file that is none.
+/// verify_certificate() verifies what it says.
+[[nodiscard]] WorkcellCertificate load_workcell_certificate(const std::filesystem::path& json);
 /// What followed the plan of a job.
 struct JobExtras {
   const JobTimingResult* motion = nullptr;  ///< null if it was not asked for or does not exist
