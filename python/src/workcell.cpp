@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <variant>
 
 #include "interruptible.hpp"
@@ -15,6 +17,7 @@
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
+#include "swivel/planner/workcell/time_workcell.hpp"
 
 namespace swivel::python {
 
@@ -26,7 +29,9 @@ struct Workcell {
 };
 
 struct WorkcellPlan {
-  std::shared_ptr<const WorkcellResult> result;  // shared with trajectories
+  std::shared_ptr<const WorkcellMotionPlan> plan;  // shared with trajectories
+  TimingOptions timing = {};
+  std::string frame = {};  // name of the base link
 };
 
 struct WorkcellCheck {
@@ -134,42 +139,93 @@ std::array<std::string, 2> names_of(const swivel::Workcell& cell) {
 }
 
 Trajectory trajectory_of(const WorkcellPlan& plan, std::size_t arm) {
-  const PlanResult& result = plan.result->arms[arm];
-  return {std::shared_ptr<const std::vector<TrajectoryRow>>(plan.result, &result.trajectory),
+  const PlanResult& result = plan.plan->result.arms[arm];
+  return {std::shared_ptr<const std::vector<TrajectoryRow>>(plan.plan, &result.trajectory),
           result.joint_names};
 }
 
-WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options) {
+/// Returns the motion of the plan. Throws ValueError if there is none.
+const WorkcellMotion& motion_of(const WorkcellPlan& plan) {
+  const auto& timing = plan.plan->timing;
+  if (!timing || !timing->motion)
+    throw py::value_error(!timing ? "there is no motion: it was not asked for, or there is no plan"
+                                  : "not executable: " + timing->failure->reason);
+  return *timing->motion;
+}
+
+/// Returns the motions of both arms by name; none where there is no motion.
+py::dict motions_of(const WorkcellPlan& plan) {
+  py::dict all;
+  if (!plan.plan->timing || !plan.plan->timing->motion) return all;
+  const WorkcellMotion& motion = motion_of(plan);
+  for (std::size_t k = 0; k < 2; ++k)
+    all[motion.names[k].c_str()] = py::cast(
+        Motion{std::make_shared<const TimingResult>(TimingResult{motion.arms[k], std::nullopt}),
+               plan.plan->result.arms[k].joint_names, plan.frame});
+  return all;
+}
+
+WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
+                  const std::optional<TimingOptions>& timing) {
   const auto cell = to_core(of);
-  return {std::make_shared<const WorkcellResult>(interruptible([&](const std::stop_token& stop) {
-    options.stop = stop;
-    const PreparedWorkcell prepared(*cell, Budget({}, nullptr, stop));
-    return plan_workcell(prepared, options);
-  }))};
+  WorkcellPlan made{.frame = cell->arms[0].base_link};
+  if (timing) made.timing = *timing;
+  made.plan =
+      std::make_shared<const WorkcellMotionPlan>(interruptible([&](const std::stop_token& stop) {
+        options.stop = stop;
+        const Budget budget({}, nullptr, stop);
+        if (timing)
+          return plan_workcell_motion(PreparedWorkcell(with_motion_defaults(*cell), budget),
+                                      options, *timing);
+        return WorkcellMotionPlan{plan_workcell(PreparedWorkcell(*cell, budget), options), {}};
+      }));
+  return made;
+}
+
+/// Returns the timing that keywords ask for; none without a speed.
+std::optional<TimingOptions> timing_of(std::optional<double> speed,
+                                       std::optional<double> turn_speed,
+                                       std::optional<double> rate) {
+  if (!speed) {
+    for (const auto& [given, name] : {std::pair(turn_speed, "turn_speed"), std::pair(rate, "rate")})
+      if (given) throw py::value_error(std::string(name) + ": is of motions: allowed with speed");
+    return std::nullopt;
+  }
+  TimingOptions timing{.speed = *speed, .turn_speed = turn_speed};
+  if (rate) timing.rate = *rate;
+  return timing;
 }
 
 using Checked = std::variant<WorkcellPlan, py::dict, std::filesystem::path>;
 WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
   const auto cell = to_core(of);
   const auto names = names_of(*cell);
-  std::array<std::vector<TrajectoryRow>, 2> given;
+  io::WorkcellRows given;
   if (const auto* dict = std::get_if<py::dict>(&rows))
     for (std::size_t k = 0; k < 2; ++k) {
       if (!dict->contains(names[k])) throw py::key_error("'" + names[k] + "': is missing");
-      given[k] = *(*dict)[names[k].c_str()].cast<const Trajectory&>().rows;
+      const py::object one = (*dict)[names[k].c_str()];
+      if (py::isinstance<Motion>(one))
+        given.timed[k] = *one.cast<const Motion&>().rows();
+      else
+        given.rows[k] = *one.cast<const Trajectory&>().rows;
     }
+  if (given.timed[0].empty() != given.timed[1].empty())
+    throw py::value_error("rows: one is a motion, the other one is none: allowed are two alike");
   if (const auto* made = std::get_if<WorkcellPlan>(&rows))
-    for (std::size_t k = 0; k < 2; ++k) given[k] = made->result->arms[k].trajectory;
+    for (std::size_t k = 0; k < 2; ++k) given.rows[k] = made->plan->result.arms[k].trajectory;
   const auto* file = std::get_if<std::filesystem::path>(&rows);
   return interruptible([&](const std::stop_token& stop) -> WorkcellCheck {
     CheckOptions options;
     options.budget = Budget({}, nullptr, stop);
-    const PreparedWorkcell prepared(*cell, options.budget);
+    std::optional<PreparedWorkcell> prepared(std::in_place, *cell, options.budget);
     if (file != nullptr)
-      given = io::load_workcell_csv(
+      given = io::load_workcell_rows(
           *file, names,
-          {prepared.robot(0).arm().chain.joint_names, prepared.robot(1).arm().chain.joint_names});
-    return {check_workcell(prepared, given, options)};
+          {prepared->robot(0).arm().chain.joint_names, prepared->robot(1).arm().chain.joint_names});
+    if (given.timed[0].empty()) return {check_workcell(*prepared, given.rows, options)};
+    prepared.emplace(with_motion_defaults(*cell), options.budget);
+    return {check_workcell_motion(*prepared, given.timed, options)};
   });
 }
 
@@ -206,81 +262,112 @@ void bind_cell(py::module_& m) {
 void bind_plan(py::module_& m) {
   py::class_<WorkcellPlan>(m, "WorkcellPlan",
                            "What was planned for two arms. None: does not apply.")
-      .def_property_readonly("status", [](const WorkcellPlan& p) { return p.result->status; })
+      .def_property_readonly("status", [](const WorkcellPlan& p) { return p.plan->result.status; })
       .def_property_readonly(
-          "solved", [](const WorkcellPlan& p) { return p.result->status == PlanStatus::kSolved; })
-      .def_property_readonly("names", [](const WorkcellPlan& p) { return p.result->names; })
+          "solved",
+          [](const WorkcellPlan& p) { return p.plan->result.status == PlanStatus::kSolved; })
+      .def_property_readonly("names", [](const WorkcellPlan& p) { return p.plan->result.names; })
       .def_property_readonly(
           "given",
           [](const WorkcellPlan& p) -> std::optional<std::string> {
-            if (!p.result->given_arm) return {};
-            return p.result->names[*p.result->given_arm];
+            const WorkcellResult& result = p.plan->result;
+            if (!result.given_arm) return {};
+            return result.names[*result.given_arm];
           },
           "Name of the arm whose motion was given.")
       .def_property_readonly(
-          "cost", [](const WorkcellPlan& p) { return p.result->cost; }, "Of both paths together.")
+          "cost", [](const WorkcellPlan& p) { return p.plan->result.cost; },
+          "Of both paths together.")
       .def_property_readonly(
-          "bound", [](const WorkcellPlan& p) { return p.result->bound; },
+          "bound", [](const WorkcellPlan& p) { return p.plan->result.bound; },
           "No two paths without conflict cost less; inf: there are none.")
       .def_property_readonly(
-          "least_costs", [](const WorkcellPlan& p) { return p.result->least_costs; },
+          "least_costs", [](const WorkcellPlan& p) { return p.plan->result.least_costs; },
           "Of the arms by themselves; inf: it has no path.")
       .def_property_readonly(
-          "decided_by", [](const WorkcellPlan& p) { return to_string(p.result->decided_by); },
+          "decided_by", [](const WorkcellPlan& p) { return to_string(p.plan->result.decided_by); },
           "'arms alone', 'regions', 'pairs of nodes', or 'none' where time was up.")
       .def_property_readonly(
           "trajectories",
           [](const WorkcellPlan& p) {
             py::dict all;
-            if (!p.result->arms[0].trajectory.empty())
+            if (!p.plan->result.arms[0].trajectory.empty())
               for (std::size_t k = 0; k < 2; ++k)
-                all[p.result->names[k].c_str()] = py::cast(trajectory_of(p, k));
+                all[p.plan->result.names[k].c_str()] = py::cast(trajectory_of(p, k));
             return all;
           },
           "Name of the arm -> Trajectory; rows of one number are simultaneous. Empty: no plan.")
       .def_property_readonly(
           "conflict",
           [](const WorkcellPlan& p) -> std::optional<std::array<std::string, 2>> {
-            if (!p.result->conflict) return {};
-            return p.result->conflict->bodies;
+            if (!p.plan->result.conflict) return {};
+            return p.plan->result.conflict->bodies;
           },
           "Two bodies that meet on the cheapest paths, where each arm has a path and both together "
           "have none.")
       .def(
           "diagnosis",
           [](const WorkcellPlan& p, const std::string& arm) -> std::optional<Diagnosis> {
-            const std::size_t k = number_of(p.result->names, arm);
-            if (p.result->status != PlanStatus::kInfeasible ||
-                std::isfinite(p.result->least_costs[k]))
+            const std::size_t k = number_of(p.plan->result.names, arm);
+            if (p.plan->result.status != PlanStatus::kInfeasible ||
+                std::isfinite(p.plan->result.least_costs[k]))
               return {};
-            return p.result->arms[k].diagnosis;
+            return p.plan->result.arms[k].diagnosis;
           },
           py::arg("arm"), "Why this arm has no path by itself.")
       .def_property_readonly(
           "clearance",
           [](const WorkcellPlan& p) -> std::optional<double> {
-            if (!p.result->between_arms) return {};
-            return p.result->between_arms->clearance;
+            if (!p.plan->result.between_arms) return {};
+            return p.plan->result.between_arms->clearance;
           },
           "Between bodies of both arms at rows, m, with evidence=True.")
-      .def_property_readonly("time_ms", [](const WorkcellPlan& p) { return p.result->time_ms; })
-      .def_property_readonly("warnings", [](const WorkcellPlan& p) { return p.result->warnings; })
+      .def_property_readonly("time_ms",
+                             [](const WorkcellPlan& p) { return p.plan->result.time_ms; })
+      .def_property_readonly("warnings",
+                             [](const WorkcellPlan& p) { return p.plan->result.warnings; })
       .def(
-          "to_json", [](const WorkcellPlan& p) { return io::to_workcell_json(*p.result); },
+          "to_json",
+          [](const WorkcellPlan& p) {
+            const auto& timing = p.plan->timing;
+            return io::to_workcell_json(p.plan->result, {timing ? &*timing : nullptr, p.timing});
+          },
           "As `swivel plan --json` writes it.")
       .def(
           "save",
           [](const WorkcellPlan& p, const std::filesystem::path& file) {
-            if (p.result->arms[0].trajectory.empty()) throw py::value_error("there is no plan");
-            io::write_file(file, io::to_workcell_csv(*p.result));
+            if (p.plan->result.arms[0].trajectory.empty())
+              throw py::value_error("there is no plan");
+            io::write_file(file, io::to_workcell_csv(p.plan->result));
           },
           py::arg("file"), "The trajectories of both arms as CSV, docs/formats.md.")
+      .def_property_readonly("motions", &motions_of,
+                             "Name of the arm -> Motion, with speed=; samples of one number are "
+                             "simultaneous. Empty: there is none.")
+      .def_property_readonly(
+          "not_executable",
+          [](const WorkcellPlan& p) -> std::optional<std::string> {
+            const auto& timing = p.plan->timing;
+            if (!timing || !timing->failure) return {};
+            return timing->failure->reason;
+          },
+          "Why the plan has no motion, with speed=; None: it has one, or none was asked for.")
+      .def(
+          "save_motion",
+          [](const WorkcellPlan& p, const std::filesystem::path& file) {
+            const auto& arms = p.plan->result.arms;
+            io::write_file(
+                file, io::workcell_motion_text(
+                          motion_of(p), {arms[0].joint_names, arms[1].joint_names}, p.frame, file));
+          },
+          py::arg("file"),
+          "The motion of both arms as .csv, .json or .yaml (JointTrajectory), or .mcap.")
       .def("__repr__", [](const WorkcellPlan& p) {
-        return p.result->arms[0].trajectory.empty()
-                   ? std::string("<WorkcellPlan ") + to_string(p.result->status) + ">"
+        return p.plan->result.arms[0].trajectory.empty()
+                   ? std::string("<WorkcellPlan ") + to_string(p.plan->result.status) + ">"
                    : formatted("<WorkcellPlan %s: %zu rows, cost %.6g>",
-                               to_string(p.result->status), p.result->arms[0].trajectory.size(),
-                               p.result->cost);
+                               to_string(p.plan->result.status),
+                               p.plan->result.arms[0].trajectory.size(), p.plan->result.cost);
       });
 }
 
@@ -320,26 +407,32 @@ void bind_workcell(py::module_& m) {
   m.def(
       "plan_workcell",
       [](const WorkcellOrFile& workcell, const py::object& planner, int threads,
-         std::optional<double> timeout, bool evidence, const py::object& progress) {
+         std::optional<double> timeout, bool evidence, const py::object& progress,
+         std::optional<double> speed, std::optional<double> turn_speed,
+         std::optional<double> rate) {
         PlanOptions options = to_plan_options(planner, threads, timeout);
         options.check = true;
         if (evidence) options.evidence = Evidence::all();
         options.progress = to_progress(progress);
-        return plan(workcell, options);
+        return plan(workcell, options, timing_of(speed, turn_speed, rate));
       },
       py::arg("workcell").none(false), py::kw_only(), py::arg("planner") = "parallel",
       py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("evidence") = false,
-      py::arg("progress") = py::none(),
+      py::arg("progress") = py::none(), py::arg("speed") = py::none(),
+      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(),
       "Plans two arms that work at one time: the cheapest two paths without conflict. No plan is a "
       "WorkcellPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops it.\n\n"
       "workcell: a Workcell, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
       "for all cores. timeout: s, for everything. evidence: find all measures. progress(stage, "
-      "done, of): now and then. Raises InputError, InvalidArgument, and what progress raised.");
+      "done, of): now and then. speed: m/s of the faster tool (a follower's on its leader's); "
+      "makes "
+      "a motion of both arms by one clock, with turn_speed (rad/s) and rate (samples a second, "
+      "default 250) if given. Raises InputError, InvalidArgument, and what progress raised.");
   m.def("check_workcell", &check, py::arg("workcell").none(false), py::arg("rows").none(false),
         "Proves the trajectories of two arms from the workcell alone, or says what is wrong with "
         "them: WorkcellCheck.\n\n"
-        "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, name -> Trajectory, "
-        "or the name of a CSV file. Raises InputError and InvalidArgument.");
+        "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, name -> Trajectory "
+        "or Motion, or the name of a CSV file. Raises InputError and InvalidArgument.");
 }
 
 }  // namespace swivel::python

@@ -1186,6 +1186,11 @@ class WorkcellPlan:
     def warnings(self) -> list[str]: ...
     def to_json(self) -> str: ...
     def save(self, file: _File) -> None: ...
+    @property
+    def motions(self) -> dict[str, Motion]: ...
+    @property
+    def not_executable(self) -> str | None: ...
+    def save_motion(self, file: _File) -> None: ...
 
 class WorkcellCheck:
     @property
@@ -1205,9 +1210,13 @@ def plan_workcell(
     timeout: float | None = None,
     evidence: bool = False,
     progress: _Progress | None = None,
+    speed: float | None = None,
+    turn_speed: float | None = None,
+    rate: float | None = None,
 ) -> WorkcellPlan: ...
 def check_workcell(
-    workcell: Workcell | _File, rows: WorkcellPlan | dict[str, Trajectory] | _File
+    workcell: Workcell | _File,
+    rows: WorkcellPlan | dict[str, Trajectory] | dict[str, Motion] | _File,
 ) -> WorkcellCheck: ...
 
 # --- many plans of one problem

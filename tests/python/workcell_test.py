@@ -118,6 +118,33 @@ class Workcells(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "has other joints"):
             swivel.Workcell({"left": arms["left"], "right": (arms["right"].robot, left)})
 
+    def test_a_motion_in_time(self):
+        cell = swivel.Workcell(self.arms(0.5))
+        plan = swivel.plan_workcell(cell, speed=0.1, rate=125)
+        self.assertIsNone(plan.not_executable)
+        left, right = plan.motions["left"], plan.motions["right"]
+        np.testing.assert_array_equal(left.t, right.t)
+        self.assertEqual(left.rate, 125)
+        self.assertAlmostEqual(left.ideal, 1)
+        for motion in (left, right):
+            for rate in motion.peaks.values():
+                self.assertLessEqual(np.max(rate), 1)
+        self.assertTrue(swivel.check_workcell(cell, plan.motions))
+        file = self.folder / "motion.csv"
+        plan.save_motion(file)
+        self.assertTrue(swivel.check_workcell(cell, file))
+        self.assertTrue(json.loads(plan.to_json())["motion"]["executable"])
+        spoilt = {"left": left, "right": swivel.plan_workcell(cell, speed=0.05).motions["right"]}
+        self.assertFalse(swivel.check_workcell(cell, spoilt))
+        untimed = swivel.plan_workcell(cell)
+        self.assertEqual(untimed.motions, {})
+        with self.assertRaisesRegex(ValueError, "there is no motion"):
+            untimed.save_motion(file)
+        with self.assertRaisesRegex(ValueError, "allowed with speed"):
+            swivel.plan_workcell(cell, rate=100)
+        with self.assertRaisesRegex(ValueError, "allowed are two alike"):
+            swivel.check_workcell(cell, {"left": left, "right": untimed.trajectories["right"]})
+
     def test_bad_input(self):
         with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
             swivel.load_workcell(DATA / "problems" / "experiment_c.yaml")
