@@ -6,6 +6,7 @@
 
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -67,6 +68,11 @@ RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,
   const TraceSpan span("refine workcell");
   constexpr int kMostRepeats = 4;
   constexpr double kWorthIt = 1 - 1e-3;
+  if (const auto given = prepared.given_arm())
+    throw InputError(prepared.problem(*given).source,
+                     "arm '" + prepared.name(*given) +
+                         "': its motion is given, beside which nothing is refined yet: allowed are "
+                         "two arms that are planned");
   RefinedWorkcell result;
   for (std::size_t k = 0; k < 2; ++k) result.arms[k].rows = rows[k];
   for (int turn = 0; turn < kMostRepeats; ++turn) {

@@ -20,7 +20,8 @@ struct RefinedWorkcell {
 /// Returns cheaper and smoother trajectories near valid ones of both arms: each is refined as
 /// refine() does while the other one moves as it is given, in turns until one gains less than a
 /// thousandth. The result is valid, between the arms as well, and never dearer. `rows` are those of
-/// plan_workcell(). Throws as refine() does, and Stopped.
+/// plan_workcell(). Throws as refine() does, InputError where the motion of an arm is given, and
+/// Stopped.
 [[nodiscard]] RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,
                                               const std::array<std::vector<TrajectoryRow>, 2>& rows,
                                               const Budget& budget = {});
