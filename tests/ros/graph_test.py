@@ -6,7 +6,9 @@ graph_test.py NODE REFERENCE DATA       NODE: the node's program; REFERENCE: tha
 Starts Debian's rosmaster on 127.0.0.1 and a free port, sets URDF and SRDF of the iiwa14, and asks:
 answers equal the library's bit for bit, one by one and from four clients at once, a call takes
 little more than its plan, a client that is killed in a call harms nobody, rosservice knows the
-service, and the node ends soon after it is told to.
+service, and the node ends soon after it is told to. Times are judged where SWIVEL_TEST_TIMES is
+set, since other work on the machine lengthens them; else they are printed alone, and the node has
+ten times as long.
 """
 import os
 import pathlib
@@ -25,7 +27,8 @@ NODE, REFERENCE, DATA = sys.argv[1:4]
 ROBOT = [pathlib.Path(DATA) / "robots" / name for name in ("iiwa14.urdf", "iiwa14.srdf")]
 JOINTS = [f"joint_a{k}" for k in range(1, 8)]
 SUM = "c54b9430d97ea6816e0f7c7ffd3779b8"
-MOST_ADDED, MOST_SHUTDOWN = 2.0, 0.2  # ms, s
+SLACK = 1 if os.environ.get("SWIVEL_TEST_TIMES") else 10
+MOST_ADDED, MOST_SHUTDOWN = 2.0 * SLACK, 0.2 * SLACK  # ms, s
 BATCH = 50
 LONG = 0.00002  # m: a step with which a plan takes seconds
 
