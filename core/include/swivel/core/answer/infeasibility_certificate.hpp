@@ -52,8 +52,8 @@ struct InfeasibilityCertificate {
   bool reversed = false;  ///< of a stroke: it is run from its last waypoint to its first
   Resolution resolution;
   EdgeMode edges = EdgeMode::kContinuous;
-  /// For lattices where bounded joints of more than a turn count as circles:
-  /// ArcLattice::windings().
+  /// For lattices where bounded joints of more than a turn count as circles: the joints told apart
+  /// (Lattice::joints_with_windings()).
   std::vector<std::array<bool, kDof>> windings;
   int layers = 0;  ///< layers of the whole lattice
   int first_layer = 0;
