@@ -215,9 +215,9 @@ class Verifier {
   Layer before_, here_;
 };
 
-/// Throws InputError if the certificate is for another lattice than the problem's.
-void require_same_layout(const Problem& problem, const InfeasibilityCertificate& certificate,
-                         int layers) {
+}  // namespace
+
+void require_same_layout(const Problem& problem, const StatedLayout& stated, int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
       throw InputError(
@@ -225,17 +225,15 @@ void require_same_layout(const Problem& problem, const InfeasibilityCertificate&
           std::string(what) +
               " is another than the certificate's: allowed is what it was planned with");
   };
-  const Resolution &own = problem.resolution, &other = certificate.resolution;
+  const Resolution &own = problem.resolution, &other = *stated.resolution;
   require(own.ds == other.ds, "resolution.ds (--ds)");
   require(own.dphi == other.dphi, "resolution.dphi (--dphi)");
   require(own.dalpha == other.dalpha, "resolution.dalpha");
   require(own.arc == other.arc, "resolution.arc");
   require(own.arcs == other.arcs, "resolution.arcs (--arcs, --no-arcs)");
-  require(problem.limits.edges == certificate.edges, "limits.edges (--edges)");
-  require(layers == certificate.layers, "the number of layers");
+  require(problem.limits.edges == stated.edges, "limits.edges (--edges)");
+  require(layers == stated.layers, "the number of layers");
 }
-
-}  // namespace
 
 std::string fault_of_cut(const Lattice& lattice, const World& world, const EdgeRule& rule,
                          const InfeasibilityCertificate& cut, const RegionSides& regions,
@@ -259,7 +257,8 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& p
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
   std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
-  require_same_layout(problem, certificate, lattice->layers());
+  require_same_layout(problem, {&certificate.resolution, certificate.edges, certificate.layers},
+                      lattice->layers());
   CertificateCheck result;
   result.complete = robot.arm_class().complete();
   try {

@@ -33,14 +33,17 @@ class WorkcellVerifier {
               std::make_unique<ArmInCell>(prepared, 1, budget)} {}
 
   WorkcellCertificateCheck run() {
-    require_same_layout();
+    for (std::size_t k = 0; k < 2; ++k)
+      require_same_layout(prepared_.problem(k),
+                          {&certificate_.resolution[k], certificate_.edges[k], certificate_.layers},
+                          arms_[k]->lattice->layers());
     try {
       for (std::size_t k = 0; k < 2; ++k) {
         result_.complete = result_.complete && arms_[k]->robot.arm_class().complete();
         for (const auto& joints : certificate_.windings[k]) {
           arms_[k]->lattice = arms_[k]->lattice->with_windings(joints);
           if (!arms_[k]->lattice)
-            throw CellRefused{"windings: are of arms that are planned on arcs"};
+            throw CellRefused{"windings: of joints that are told apart anyway"};
         }
       }
       require_whole_tree();
@@ -56,25 +59,6 @@ class WorkcellVerifier {
   }
 
  private:
-  void require_same_layout() const {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Problem& problem = prepared_.problem(k);
-      const auto require = [&](bool holds, const char* what) {
-        if (!holds)
-          throw InputError(
-              problem.source,
-              std::string(what) +
-                  " is another than the certificate's: allowed is what it was planned with");
-      };
-      const Resolution &own = problem.resolution, &other = certificate_.resolution[k];
-      require(own.ds == other.ds && own.dphi == other.dphi && own.dalpha == other.dalpha &&
-                  own.arc == other.arc && own.arcs == other.arcs,
-              "resolution (--ds, --dphi, --arcs)");
-      require(problem.limits.edges == certificate_.edges[k], "limits.edges");
-      require(arms_[k]->lattice->layers() == certificate_.layers, "the number of layers");
-    }
-  }
-
   [[noreturn]] static void refuse(std::size_t branch, const std::string& why) {
     throw CellRefused{"set " + std::to_string(branch) + ": " + why};
   }
