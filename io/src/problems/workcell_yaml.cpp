@@ -5,6 +5,7 @@
 #include "files/csv.hpp"
 #include "motions/given_rows.hpp"
 #include "problems/problem_reader.hpp"
+#include "robots/joints_to.hpp"
 #include "schema/schema.hpp"
 #include "swivel/io/problems/workcell.hpp"
 
@@ -139,12 +140,9 @@ class WorkcellReader : ProblemReader {
   [[nodiscard]] std::vector<std::string> joints_before(const std::string& link) const {
     std::vector<std::string> names{"roll"};
     const RobotModel& robot = *problem_.model;
-    for (int at = robot.find_link(link);;) {
-      const int joint = robot.links[static_cast<std::size_t>(at)].parent_joint;
-      if (joint < 0) return names;
+    for (const int joint : joints_to(robot, robot.find_link(link)))
       names.push_back(robot.joints[static_cast<std::size_t>(joint)].name);
-      at = robot.joints[static_cast<std::size_t>(joint)].parent_link;
-    }
+    return names;
   }
 
   [[nodiscard]] bool is_given(std::size_t k) const {

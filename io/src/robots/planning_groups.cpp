@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <tinyxml2.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "files/bad_input.hpp"
 #include "files/xml.hpp"
+#include "robots/joints_to.hpp"
 #include "swivel/io/robots/robot.hpp"
 
 namespace swivel::io {
@@ -71,19 +71,6 @@ class GroupJoints {
   std::map<std::string, const tinyxml2::XMLElement*> groups_;
   std::map<std::string, std::set<int>> joints_;
 };
-
-/// Returns the joints that carry a link, from the root on.
-std::vector<int> joints_to(const RobotModel& robot, int link) {
-  std::vector<int> joints;
-  for (;;) {
-    const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
-    if (joint < 0) break;
-    joints.push_back(joint);
-    link = robot.joints[static_cast<std::size_t>(joint)].parent_link;
-  }
-  std::reverse(joints.begin(), joints.end());
-  return joints;
-}
 
 PlanningGroup group_of(const std::string& name, const std::set<int>& joints,
                        const RobotModel& robot) {
