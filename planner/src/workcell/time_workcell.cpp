@@ -325,7 +325,7 @@ class WorkcellTimer {
   InterArmWorld world_;
   std::array<std::unique_ptr<ArmToTime>, 2> arms_;
   double reach_ = kReach;
-  // Of the last motion that was tried.
+  // What the last motion that was tried is like.
   std::array<bool, 2> all_rows_{};
   int blended_ = 0;
   std::vector<TimedPath> samples_;

@@ -36,14 +36,14 @@ struct WorkcellCertificate {
     int parent = -1;  ///< index in `tree`; -1: the root
     int arm = -1;     ///< the arm that keeps away from its side of the parent's region
     std::optional<Region> region;
-    /// Of a set that is not divided: the arm that has no path. Witness r of its cut is the r-th
+    /// The arm that has no path in a set that is not divided. Witness r of its cut is the r-th
     /// region, from the root on, whose side this arm keeps away from; causes follow.
     int arm_without_path = -1;
     InfeasibilityCertificate cut;
     bool operator==(const Branch&) const = default;
   };
 
-  /// Of either arm, as in InfeasibilityCertificate.
+  /// The joints told apart in the lattice of either arm, as in InfeasibilityCertificate.
   std::array<std::vector<std::array<bool, kDof>>, 2> windings;
   std::array<Resolution, 2> resolution;
   std::array<EdgeMode, 2> edges{EdgeMode::kContinuous, EdgeMode::kContinuous};

@@ -80,8 +80,8 @@ struct PairSearchOptions {
   /// Rounds after which Between is asked for thorough regions.
   std::int64_t quick_rounds = 8;
   ParallelFor work;  ///< shares the two arms among threads; the result is the same
-  /// Of each arm: verdicts of its lattice, without any, into which all that was found out about its
-  /// nodes is written at the end; or null.
+  /// Verdicts of each arm's lattice, empty at the begin: the search writes into them at its end
+  /// what it found out about nodes. Null: it does not.
   std::array<Verdicts*, 2> noted{};
 };
 

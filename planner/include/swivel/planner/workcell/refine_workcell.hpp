@@ -10,8 +10,7 @@ namespace swivel {
 
 /// The refined trajectories of two arms, and how they changed.
 struct RefinedWorkcell {
-  /// Of each arm: its rows, refined or not, with the cost before and now, and the work of all
-  /// turns.
+  /// The rows of each arm, refined or not, with the cost before and now, and the work of all turns.
   std::array<Refined, 2> arms;
   int turns = 0;                     ///< times that both arms were refined, one after the other
   double cost_before = 0, cost = 0;  ///< of both paths together

@@ -20,9 +20,9 @@ struct RegionOfConflict {
 /// What the plan of a workcell found out about its arms, for those who draw or measure it. Valid
 /// while the PreparedWorkcell of the plan lives; copies share what they refer to.
 struct WorkcellView {
-  /// Of each arm. Its path is that of the answer. Where there is no plan: that of the arm by
-  /// itself, and of an arm that has none the view of its own plan. Empty if the plan was stopped
-  /// before there was an answer or a verdict.
+  /// The view of each arm with the path of the answer. Where there is no plan, the path is that of
+  /// the arm by itself; an arm without one has the view of its own plan. Empty if the plan was
+  /// stopped before there was an answer or a verdict.
   std::vector<PlanView> arms;
   /// The cheapest path of each arm by itself, slots of its lattice; empty where it has none.
   std::array<std::vector<int>, 2> alone;
