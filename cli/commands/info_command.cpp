@@ -11,6 +11,7 @@
 #include "options/commands.hpp"
 #include "options/known_name.hpp"
 #include "options/packages_option.hpp"
+#include "output/first_problem.hpp"
 #include "output/pairs_report.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -18,6 +19,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/study/first_path.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
@@ -28,6 +30,7 @@ namespace {
 struct InfoArguments {
   std::string urdf, srdf, base, tip;
   std::vector<std::string> hold, packages, without;
+  std::filesystem::path write;
   bool pairs = false, roll = false;
 };
 
@@ -251,6 +254,43 @@ void print_warnings(const RobotModel& robot, const ArmModel& arm) {
     say("warning    %s\n", rest.c_str());
 }
 
+/// Writes the start of a problem file for an arm, with a path that it can follow. Throws InputError
+/// if there is none among those tried.
+void write_problem(const InfoArguments& arguments, const ArmGuess& chosen, const ArmModel& arm,
+                   const std::map<std::string, double>& hold) {
+  constexpr double kTime = 30;  // s, for all paths together
+  const auto packages = parse_packages(arguments.packages);
+  io::InputFiles inputs;
+  Robot robot;
+  robot.model = io::load_robot(arguments.urdf, arguments.srdf, packages, {arguments.without, true});
+  robot.base_link = chosen.base, robot.tip_link = chosen.tip, robot.hold = hold;
+  if (chosen.joints == 6) robot.roll = Roll{};
+  io::OutputFiles outputs(inputs.files());
+  outputs.add("--write", arguments.write);
+  PlanOptions options;
+  options.timeout_s = kTime;
+  const FirstPath found = find_first_path(robot, options);
+  if (found.waypoints.empty())
+    throw InputError("--write", "none of " + std::to_string(found.tried) +
+                                    " straight paths tried can be followed" +
+                                    (found.tried == 0 ? ""
+                                     : found.plan.status == PlanStatus::kInfeasible
+                                         ? "; of the last one: " + words(found.plan.diagnosis.cause)
+                                         : " in time") +
+                                    ": allowed is an arm that can move");
+  outputs.write("--write",
+                first_problem({arguments.urdf, arguments.srdf, packages, arguments.without}, robot,
+                              arm, found.waypoints, arguments.write));
+  outputs.stage();
+  if (!outputs.takes_standard_output())
+    say("written    %s: a path of %.3f m, planned with cost %.4f; next: swivel plan %s\n",
+        arguments.write.string().c_str(),
+        (found.waypoints[1].position - found.waypoints[0].position).norm(), found.plan.cost,
+        arguments.write.string().c_str());
+  flush_standard_output();
+  static_cast<void>(outputs.commit());
+}
+
 /// Describes the arm of the command line, or with --pairs the pairs of bodies of a problem. Returns
 /// the exit code. Throws InputError.
 int run(const InfoArguments& arguments) {
@@ -274,11 +314,14 @@ int run(const InfoArguments& arguments) {
                      chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
   });
   const ArmClass kind = classify(arm.chain, robot->source);
-  print_robot(*robot, shapes);
-  print_arm(*robot, chosen, arm, hold, others);
-  print_class(arm.chain, kind);
-  print_joints(arm.chain);
-  print_warnings(*robot, arm);
+  if (arguments.write != "-") {
+    print_robot(*robot, shapes);
+    print_arm(*robot, chosen, arm, hold, others);
+    print_class(arm.chain, kind);
+    print_joints(arm.chain);
+    print_warnings(*robot, arm);
+  }
+  if (!arguments.write.empty()) write_problem(arguments, chosen, arm, hold);
   return kOk;
 }
 
@@ -308,6 +351,10 @@ void add_info(CLI::App& app, int& exit_code) {
       ->add_flag("--pairs", arguments->pairs,
                  "which bodies of the robot are kept apart, and how far")
       ->excludes("--srdf", "--packages", "--without", "--base", "--tip", "--hold");
+  command
+      ->add_option("--write", arguments->write,
+                   "problem file to begin with: the arm, and a first path that it can follow")
+      ->excludes("--pairs");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -864,5 +864,72 @@ class Honoured(WithFolder):
         self.refused(run("plan", problem), "problem.yaml:1: robot.urdf", "is a problem file")
 
 
+class FirstProblem(WithFolder):
+    """`swivel info --write`: the file that it writes is planned without an edit."""
+
+    def write(self, urdf, *options, file="first.yaml"):
+        return run("info", urdf, *options, "--write", self.folder / file)
+
+    def plans(self, urdf, *options, file="first.yaml"):
+        done = self.write(urdf, *options, file=file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), urdf)
+        self.assertIn("\nwritten    ", done.stdout)
+        done = run("plan", self.folder / file)
+        self.assertEqual(done.returncode, 0, f"{urdf}: {done.stdout}{done.stderr}")
+        return (self.folder / file).read_text()
+
+    def test_every_robot(self):
+        robots = sorted((DATA / "robots").glob("*.urdf"))
+        for urdf in robots:
+            with self.subTest(urdf=urdf.name):
+                srdf = urdf.with_suffix(".srdf")
+                self.plans(urdf, *(("--srdf", srdf) if srdf.exists() else ()))
+        self.assertGreaterEqual(len(robots), 10)
+
+    def test_options_are_kept(self):
+        text = IIWA.replace("</robot>", joint("finger", "revolute", "tool0", "gripper")
+                            + "</robot>")
+        (self.folder / "sub dir").mkdir()
+        urdf = self.folder / "sub dir" / "r.urdf"
+        urdf.write_text(text)
+        written = self.plans(urdf, "--tip", "link_7", "--without", "gripper")
+        self.assertIn('  urdf: "sub dir/r.urdf"\n', written)
+        self.assertIn("  without:\n    - gripper\n", written)
+        self.assertIn("  tip_link: link_7\n", written)
+        written = self.plans(urdf, "--hold", "finger=0.25", file="sub dir/held.yaml")
+        self.assertIn("  urdf: r.urdf\n", written)
+        self.assertIn("  hold:\n    finger: 0.25\n", written)
+        written = self.plans(DATA / "robots/kr6_like.urdf")
+        self.assertIn("  roll: free\n", written)
+
+    def test_odd_names(self):
+        names = ["1", "true", "a: b", "#c", "- d", "~", "null", "1e3", "e\\f", "{g}", "é", "y"]
+        for name in names:
+            with self.subTest(name=name):
+                urdf = self.folder / "robot.urdf"
+                urdf.write_text(IIWA.replace('"tool0"', f'"{name}"'))
+                self.plans(urdf, "--tip", name)
+
+    def test_standard_output(self):
+        done = run("info", DATA / "robots/iiwa14.urdf", "--write", "-")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue(done.stdout.startswith("# A problem to begin with"), done.stdout)
+
+    def test_refused(self):
+        urdf = self.folder / "robot.urdf"
+        urdf.write_text(IIWA)
+        for file in ("robot.urdf", "no/such/first.yaml"):
+            done = self.write(urdf, file=file)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), file)
+        self.assertEqual(urdf.read_text(), IIWA)
+        # An arm that hardly moves follows no path.
+        narrow = 'lower="0.5" upper="0.501"'
+        urdf.write_text(re.sub(r'lower="[^"]*" upper="[^"]*"', narrow, IIWA))
+        done = self.write(urdf)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn("--write: none of ", done.stderr)
+        self.assertFalse((self.folder / "first.yaml").exists())
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=1)
