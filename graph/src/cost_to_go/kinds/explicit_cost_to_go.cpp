@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "cost_to_go/kernels/relax_task.hpp"
-#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 
@@ -27,12 +26,9 @@ ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget)
   }
 }
 
-void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others,
-                             Values& out) {
-  const auto& from = joints_[static_cast<std::size_t>(layer)];
-  const auto& to = joints_[static_cast<std::size_t>(other_layer)];
+void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints& to,
+                                     const Values& others, Values& out) {
   const std::size_t count = from[0].size(), partners = others.size();
-  out.assign(count, kUnreachable);
   if (partners == 0 || count == 0) return;
   RelaxTask<double> task = relax_task(*lattice_, step);
   task.n = static_cast<int>(count);
@@ -45,6 +41,30 @@ void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values&
   task.best = out.data();
   edges_ += static_cast<std::int64_t>(count * partners);
   relax_kernels().relax_all(task);
+}
+
+void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others,
+                             Values& out) {
+  const Joints& from = joints_[static_cast<std::size_t>(layer)];
+  out.assign(from[0].size(), kUnreachable);
+  relax_between(step, from, joints_[static_cast<std::size_t>(other_layer)], others, out);
+}
+
+void ExplicitCostToGo::gather(int layer, const std::vector<int>& slots, Joints& out) const {
+  for (std::size_t k = 0; k < kDof; ++k) {
+    out[k].clear();
+    for (const int slot : slots)
+      out[k].push_back(joints_[static_cast<std::size_t>(layer)][k][static_cast<std::size_t>(slot)]);
+  }
+}
+
+void ExplicitCostToGo::relax_some(int layer, const std::vector<int>& slots, Values& out) {
+  const auto next = static_cast<std::size_t>(layer) + 1;
+  gather(layer, slots, some_);
+  out.assign(slots.size(), kUnreachable);
+  relax_between(layer, some_, joints_[next], value_[next], out);
+  for (std::size_t k = 0; k < slots.size(); ++k)
+    if (lost_best_edge(layer, slots[k], out[k])) out[k] = relax_one(layer, slots[k]);
 }
 
 double ExplicitCostToGo::relax_one(int layer, int slot) {
@@ -78,20 +98,31 @@ double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& be
   return best;
 }
 
-void ExplicitCostToGo::compute_removals() {
-  const TraceSpan span("repair");
-  bool changed = false;  // in the layer after
-  Values settled;
-  for (int layer = goal_; layer >= 0 && (changed || !verdicts_.pending.empty()); --layer) {
-    budget_.poll();
-    if (!changed && verdicts_.pending.rbegin()->first < layer) continue;
-    if (!verdicts_.pending.empty() && verdicts_.pending.rbegin()->first >= layer)
-      verdicts_.pending.erase(verdicts_.pending.lower_bound(layer), verdicts_.pending.end());
-    solve_layer(layer, settled);
-    Values& values = value_[static_cast<std::size_t>(layer)];
-    changed = settled != values;
-    values.swap(settled);
+std::size_t ExplicitCostToGo::many(int layer) const {
+  return static_cast<std::size_t>(lattice_->slots(layer)) / 2;
+}
+
+void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
+                                  std::vector<int>& stale) {
+  if (ahead.empty()) return;
+  slots_.clear();
+  before_.clear();
+  for (const Change& change : ahead) {
+    slots_.push_back(change.slot);
+    before_.push_back(change.before);
   }
+  gather(layer + 1, slots_, some_);
+  // A value came from `ahead` if it is reached from there: that is, if the values, raised a little,
+  // are lowered.
+  const Values& values = value_[static_cast<std::size_t>(layer)];
+  const double* own = verdicts_.costs(layer);
+  const double little = 1e-9 * lattice_->cost_unit();  // far above the rounding
+  least_ = values;
+  for (std::size_t a = 0; a < values.size(); ++a) least_[a] += little - (own ? own[a] : 0.0);
+  raised_ = least_;
+  relax_between(layer, joints_[static_cast<std::size_t>(layer)], some_, before_, least_);
+  for (std::size_t a = 0; a < values.size(); ++a)
+    if (least_[a] < raised_[a]) stale.push_back(static_cast<int>(a));
 }
 
 Config ExplicitCostToGo::config(int layer, int slot) {

@@ -8,8 +8,7 @@
 namespace swivel {
 
 /// The cost-to-go of a lattice whose layers list their nodes: every node of a layer against every
-/// node of the next, in vector code. Removals are repaired backwards from the last one, layer by
-/// layer, for as long as values change. Memory: 64 bytes a node.
+/// node of the next, in vector code. Memory: 64 bytes a node.
 class ExplicitCostToGo final : public LayerValues {
  public:
   explicit ExplicitCostToGo(const Lattice& lattice, const Budget& budget = {});
@@ -19,7 +18,9 @@ class ExplicitCostToGo final : public LayerValues {
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
  private:
-  void compute_removals() override;
+  /// The joints of some nodes, by joint.
+  using Joints = std::array<Values, kDof>;
+
   void begin(int layer, Values& out) override {
     out.assign(static_cast<std::size_t>(lattice_->slots(layer)), 0.0);
   }
@@ -28,8 +29,22 @@ class ExplicitCostToGo final : public LayerValues {
   [[nodiscard]] double relax_one(int layer, int slot) override;
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
 
+  void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale) override;
+  [[nodiscard]] std::size_t many(int layer) const override;
+  void relax_some(int layer, const std::vector<int>& slots, Values& out) override;
+  /// Replaces `out` by the joints of some nodes of a layer.
+  void gather(int layer, const std::vector<int>& slots, Joints& out) const;
+  /// Lowers `out`, for nodes with joints `from` of the layer before `step`, to the least of edge
+  /// cost plus value over nodes with joints `to`, whose values are `others`.
+  void relax_between(int step, const Joints& from, const Joints& to, const Values& others,
+                     Values& out);
+
   const Lattice* lattice_;
-  std::vector<std::array<Values, kDof>> joints_;  // [layer][joint][slot]
+  std::vector<Joints> joints_;  // [layer][joint][slot]
+  // What a repair works with, kept for the next one.
+  Joints some_;
+  Values before_, least_, raised_;
+  std::vector<int> slots_;
 };
 
 }  // namespace swivel

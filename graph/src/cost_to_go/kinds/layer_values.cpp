@@ -30,6 +30,14 @@ void LayerValues::leave_out_removed(int layer, Values& values) const {
     if (removed(layer, slot)) values[static_cast<std::size_t>(slot)] = kUnreachable;
 }
 
+bool LayerValues::lost_best_edge(int layer, int slot, double value) const {
+  const auto* edges = verdicts_.removed_edges(layer);
+  if (edges == nullptr || value == kUnreachable) return false;
+  const auto heads = edges->tails.find(slot);
+  return heads != edges->tails.end() &&
+         gives(heads->second, value_[static_cast<std::size_t>(layer) + 1], value);
+}
+
 void LayerValues::solve_layer(int layer, Values& out) {
   if (layer == goal_) {
     begin(layer, out);
@@ -59,6 +67,68 @@ void LayerValues::compute(int goal_layer) {
     budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
     solve_layer(layer, value_[static_cast<std::size_t>(layer)]);
     if (layer < goal_layer) done_with(layer + 1);
+  }
+}
+
+void LayerValues::renew_layer(int layer, std::vector<Change>& changed) {
+  Values& values = value_[static_cast<std::size_t>(layer)];
+  const Values before = values;
+  solve_layer(layer, values);
+  for (std::size_t slot = 0; slot < values.size(); ++slot)
+    if (values[slot] != before[slot]) changed.push_back({static_cast<int>(slot), before[slot]});
+}
+
+void LayerValues::relax_some(int layer, const std::vector<int>& slots, Values& out) {
+  out.clear();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    if (k % 64 == 0) budget_.poll();
+    out.push_back(relax_one(layer, slots[k]));
+  }
+}
+
+void LayerValues::renew_nodes(int layer, std::vector<int>& stale, std::vector<Change>& changed) {
+  Values& values = value_[static_cast<std::size_t>(layer)];
+  const double* own = verdicts_.costs(layer);
+  std::erase_if(stale, [&](int a) { return values[static_cast<std::size_t>(a)] == kUnreachable; });
+  if (stale.empty()) return;
+  if (layer == goal_)
+    fresh_.assign(stale.size(), 0.0);
+  else
+    relax_some(layer, stale, fresh_);
+  for (std::size_t k = 0; k < stale.size(); ++k) {
+    const int slot = stale[k];
+    double& value = values[static_cast<std::size_t>(slot)];
+    double fresh = removed(layer, slot) ? kUnreachable : fresh_[k];
+    if (own) fresh += own[slot];
+    if (fresh == value) continue;
+    changed.push_back({slot, value});
+    value = fresh;
+  }
+}
+
+void LayerValues::compute_removals() {
+  const TraceSpan span("repair");
+  std::vector<Change> changed, ahead;  // in this layer, in the next one to repair
+  std::vector<int> stale;
+  for (int layer = goal_; layer >= 0 && (!ahead.empty() || !verdicts_.pending.empty()); --layer) {
+    budget_.poll();
+    stale.clear();
+    changed.clear();
+    if (const auto found = verdicts_.pending.find(layer); found != verdicts_.pending.end()) {
+      for (const auto* slots : {&found->second.nodes, &found->second.tails})
+        stale.insert(stale.end(), slots->begin(), slots->end());
+      for (const auto& raise : found->second.raised) stale.push_back(raise.slot);
+      verdicts_.pending.erase(found);
+    }
+    if (ahead.size() + stale.size() > many(layer)) {
+      renew_layer(layer, changed);
+    } else {
+      find_stale(layer, ahead, stale);
+      std::sort(stale.begin(), stale.end());
+      stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
+      renew_nodes(layer, stale, changed);
+    }
+    ahead.swap(changed);
   }
 }
 

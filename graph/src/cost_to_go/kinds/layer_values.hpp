@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cstddef>
 #include <tuple>
 #include <vector>
 
@@ -9,7 +10,8 @@ namespace swivel {
 
 /// A cost-to-go that keeps the values of all nodes, a list for each layer: what lattices that list
 /// their nodes and grids of rolls have in common. Derived classes decide which nodes of
-/// neighbouring layers are joined.
+/// neighbouring layers are joined. A removal is repaired backwards, node by node where few change,
+/// for as long as values change.
 class LayerValues : public CostToGo {
  public:
   [[nodiscard]] double at(int layer, int slot) const override {
@@ -34,6 +36,20 @@ class LayerValues : public CostToGo {
   /// Returns the least of edge cost plus value over the layer before, whose values are `before`,
   /// for one node, over what is not removed.
   [[nodiscard]] virtual double relax_one_forward(int layer, int slot, const Values& before) = 0;
+  /// Replaces `out`, for each of some nodes, by the least of edge cost plus at() over the next
+  /// layer, over what is not removed; `layer` is not the goal.
+  virtual void relax_some(int layer, const std::vector<int>& slots, Values& out);
+  /// A node whose value has changed, and the value before.
+  struct Change {
+    int slot;
+    double before;
+  };
+  /// Appends the nodes of a layer whose values may come from nodes `ahead` of the next one, by the
+  /// values that these had before they changed.
+  virtual void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale) = 0;
+  /// Returns the number of nodes, stale or changed in the next layer, beyond which a layer is
+  /// solved as a whole in less time than node by node.
+  [[nodiscard]] virtual std::size_t many(int layer) const = 0;
   /// Says that what has been solved of a layer is not wanted again soon.
   virtual void done_with(int layer) { static_cast<void>(layer); }
 
@@ -43,13 +59,25 @@ class LayerValues : public CostToGo {
     return verdicts_.node(layer, slot) == Verdict::kRemoved;
   }
 
+  /// Returns true if removing an edge from a node can have changed the value that the node would
+  /// have without removals.
+  [[nodiscard]] bool lost_best_edge(int layer, int slot, double value) const;
+
   std::vector<Values> value_;  // [layer]
 
  private:
   void compute(int goal_layer) final;
+  void compute_removals() final;
+  /// Solves a layer as a whole. Appends the nodes whose values change to `changed`.
+  void renew_layer(int layer, std::vector<Change>& changed);
+  /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
+  /// to `changed`.
+  void renew_nodes(int layer, std::vector<int>& stale, std::vector<Change>& changed);
   void save() final { saved_ = {goal_, value_}; }
   void restore() final { std::tie(goal_, value_) = saved_; }
   void leave_out_removed(int layer, Values& values) const;
+
+  Values fresh_;  // what renew_nodes() computes
 
   std::tuple<int, std::vector<Values>> saved_;
 };

@@ -239,14 +239,6 @@ void RollCostToGo::begin(int layer, Values& out) {
   }
 }
 
-void RollCostToGo::renew_layer(int layer, std::vector<Change>& changed) {
-  Values& values = value_[static_cast<std::size_t>(layer)];
-  const Values before = values;
-  solve_layer(layer, values);
-  for (std::size_t slot = 0; slot < values.size(); ++slot)
-    if (values[slot] != before[slot]) changed.push_back({static_cast<int>(slot), before[slot]});
-}
-
 void RollCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
                               std::vector<int>& stale) {
   const Values& values = value_[static_cast<std::size_t>(layer)];
@@ -265,53 +257,6 @@ void RollCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
           if (values[static_cast<std::size_t>(a)] == (own ? rest + own[a] : rest))
             stale.push_back(a);
         });
-  }
-}
-
-void RollCostToGo::renew_nodes(int layer, const std::vector<int>& stale,
-                               std::vector<Change>& changed) {
-  Values& values = value_[static_cast<std::size_t>(layer)];
-  const double* own = verdicts_.costs(layer);
-  for (std::size_t k = 0; k < stale.size(); ++k) {
-    if (k % 64 == 0) budget_.poll();
-    const int slot = stale[k];
-    double& value = values[static_cast<std::size_t>(slot)];
-    if (value == kUnreachable) continue;
-    double fresh = removed(layer, slot) ? kUnreachable
-                   : layer == goal_     ? 0.0
-                                        : relax_one(layer, slot);
-    if (own) fresh += own[slot];
-    if (fresh == value) continue;
-    changed.push_back({slot, value});
-    value = fresh;
-  }
-}
-
-void RollCostToGo::compute_removals() {
-  // Vector code takes as long for all nodes of a layer as plain loops do for those around so many.
-  constexpr std::size_t kMany = 256;
-  const TraceSpan span("repair");
-  std::vector<Change> changed, ahead;  // in this layer, in the next one to repair
-  std::vector<int> stale;
-  for (int layer = goal_; layer >= 0 && (!ahead.empty() || !verdicts_.pending.empty()); --layer) {
-    budget_.poll();
-    stale.clear();
-    changed.clear();
-    if (const auto found = verdicts_.pending.find(layer); found != verdicts_.pending.end()) {
-      for (const auto* slots : {&found->second.nodes, &found->second.tails})
-        stale.insert(stale.end(), slots->begin(), slots->end());
-      for (const auto& raise : found->second.raised) stale.push_back(raise.slot);
-      verdicts_.pending.erase(found);
-    }
-    if (ahead.size() + stale.size() > kMany) {
-      renew_layer(layer, changed);
-    } else {
-      find_stale(layer, ahead, stale);
-      std::sort(stale.begin(), stale.end());
-      stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
-      renew_nodes(layer, stale, changed);
-    }
-    ahead.swap(changed);
   }
 }
 

@@ -10,9 +10,8 @@
 namespace swivel {
 
 /// The cost-to-go of a grid of rolls and arm angles, in vector code: the circle of arm angles of
-/// each roll and IK solution against those of the rolls nearby, of the same branch. A removal is
-/// repaired backwards, node by node, for as long as values change. Memory: 9 bytes a node, and some
-/// 40 bytes for the joints of each node of the layers that are kept.
+/// each roll and IK solution against those of the rolls nearby, of the same branch. Memory: 9 bytes
+/// a node, and some 40 bytes for the joints of each node of the layers that are kept.
 class RollCostToGo final : public LayerValues {
  public:
   explicit RollCostToGo(const RollLattice& lattice, const Budget& budget = {});
@@ -22,11 +21,15 @@ class RollCostToGo final : public LayerValues {
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
  private:
-  void compute_removals() override;
   void begin(int layer, Values& out) override;
   void relax(int step, int layer, int other_layer, const Values& others, Values& out) override;
   [[nodiscard]] double relax_one(int layer, int slot) override;
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
+  void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale) override;
+  [[nodiscard]] std::size_t many(int layer) const override {
+    static_cast<void>(layer);
+    return 256;
+  }
   // solving it again takes less than fresh pages
   void done_with(int layer) override { forget(layer); }
 
@@ -46,19 +49,6 @@ class RollCostToGo final : public LayerValues {
   template <class Visit>
   void each_beside_given(int step, int layer, int other, const Visit& visit);
   void take_around(const Values& values);
-  /// A node whose value has changed, and the value before.
-  struct Change {
-    int slot;
-    double before;
-  };
-  /// Solves a layer as a whole. Appends the nodes whose values change to `changed`.
-  void renew_layer(int layer, std::vector<Change>& changed);
-  /// Appends the nodes of a layer whose values may come from nodes `ahead` of the next one, by the
-  /// values that these had before they changed.
-  void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale);
-  /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
-  /// to `changed`.
-  void renew_nodes(int layer, const std::vector<int>& stale, std::vector<Change>& changed);
   /// Calls visit(slot b, its joints) for the nodes b of a neighbouring layer that a node may be
   /// joined to, removed or not, whose worth(b) is true. worth() must be false for slots without a
   /// node.
