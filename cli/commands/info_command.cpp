@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "options/commands.hpp"
 #include "options/known_name.hpp"
@@ -50,17 +51,39 @@ std::map<std::string, double> parse_hold(const std::vector<std::string>& items) 
   return hold;
 }
 
-/// Returns the number of joints between two links that move on their own; nullopt if the tip is not
-/// below the base.
-std::optional<int> joints_between(const RobotModel& robot, const std::string& base,
-                                  const std::string& tip) {
-  int link = robot.find_link(tip), count = 0;
-  while (link >= 0 && robot.links[link].name != base) {
-    const int joint = robot.links[link].parent_joint;
-    if (joint >= 0) count += robot.joints[joint].movable() && !robot.joints[joint].mimic;
-    link = joint < 0 ? -1 : robot.joints[joint].parent_link;
+/// Returns true if a link is another, or lies on the way from the root to it.
+bool is_above(const RobotModel& robot, const std::string& upper, const std::string& lower) {
+  int link = robot.find_link(lower);
+  while (link >= 0 && robot.links[static_cast<std::size_t>(link)].name != upper) {
+    const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
+    link = joint < 0 ? -1 : robot.joints[static_cast<std::size_t>(joint)].parent_link;
   }
-  return link < 0 ? std::nullopt : std::optional(count);
+  return link >= 0;
+}
+
+/// The joints that move on their own on the way between two links, down the tree from one and up to
+/// the other.
+struct JointsBetween {
+  int turning = 0, sliding = 0;
+  [[nodiscard]] int all() const { return turning + sliding; }
+};
+JointsBetween joints_between(const RobotModel& robot, const std::string& base,
+                             const std::string& tip) {
+  std::set<int> between;  // those on the way from one of the links to the root alone
+  for (const std::string& end : {base, tip})
+    for (int link = robot.find_link(end); link >= 0;) {
+      const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
+      if (joint < 0) break;
+      if (!between.insert(joint).second) between.erase(joint);
+      link = robot.joints[static_cast<std::size_t>(joint)].parent_link;
+    }
+  JointsBetween count;
+  for (const int number : between) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(number)];
+    if (!joint.movable() || joint.mimic) continue;
+    ++(joint.type == Joint::Type::kPrismatic ? count.sliding : count.turning);
+  }
+  return count;
 }
 
 /// Returns base and tip as the command line names them; guesses what it does not name. Sets
@@ -72,17 +95,27 @@ ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments,
   if (!tip.empty()) {
     require_known("--tip", tip, robot.links, "link", robot.source);
     ArmGuess named{base.empty() ? robot.links[robot.root_link].name : base, tip};
-    if (arguments.roll || joints_between(robot, named.base, tip) == 6) named.joints = 6;
+    if (arguments.roll || joints_between(robot, named.base, tip).all() == 6) named.joints = 6;
     return named;
   }
   ArmGuesses guesses = guess_arms(robot);
   if (arguments.roll)
     std::erase_if(guesses.arms, [](const ArmGuess& arm) { return arm.joints != 6; });
   if (!base.empty()) {
+    // Arms below the base; where there are none, those that stand beside it, as a table does.
+    const bool below = std::ranges::any_of(
+        guesses.arms, [&](const ArmGuess& arm) { return is_above(robot, base, arm.tip); });
     std::erase_if(guesses.arms, [&](const ArmGuess& arm) {
-      return joints_between(robot, base, arm.tip).value_or(0) < arm.joints;
+      return is_above(robot, base, arm.tip) != below ||
+             joints_between(robot, base, arm.tip).all() < arm.joints;
     });
-    for (ArmGuess& arm : guesses.arms) arm.base = base;
+    for (ArmGuess& arm : guesses.arms) {
+      arm.base = base;
+      // A table under the part is a seventh joint.
+      const JointsBetween between = joints_between(robot, base, arm.tip);
+      if (!below && !arguments.roll && between.turning == kDof && between.sliding == 0)
+        arm.joints = kDof;
+    }
   }
   if (guesses.arms.empty()) {
     const auto& row = guesses.longest_row;
@@ -165,6 +198,25 @@ std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
                       joint.type == Joint::Type::kPrismatic, given != hold.end(), ""});
   }
   return beside;
+}
+
+/// Prints which joints beside an arm of six joints may be its seventh: turntables, whose plate is
+/// then the base.
+void print_tables(const RobotModel& robot, const ArmGuess& chosen) {
+  for (const Joint& joint : robot.joints) {
+    if (joint.mimic ||
+        (joint.type != Joint::Type::kRevolute && joint.type != Joint::Type::kContinuous))
+      continue;
+    const std::string& plate = robot.links[static_cast<std::size_t>(joint.child_link)].name;
+    try {
+      const ArmModel with_table = build_arm(robot, plate, chosen.tip, {}, Pose::Identity());
+      if (with_table.chain.joint_names[0] == joint.name && with_table.held.empty())
+        say("table      %s turns %s: --base %s makes it the first of seven joints\n",
+            joint.name.c_str(), plate.c_str(), plate.c_str());
+    } catch (const InputError&) {
+      // not a row of seven joints
+    }
+  }
 }
 
 /// Calls `work` and returns its result. Throws InputError in the name of the option that stands for
@@ -317,6 +369,7 @@ int run(const InfoArguments& arguments) {
   if (arguments.write != "-") {
     print_robot(*robot, shapes);
     print_arm(*robot, chosen, arm, hold, others);
+    if (arm.chain.roll) print_tables(*robot, chosen);
     print_class(arm.chain, kind);
     print_joints(arm.chain);
     print_warnings(*robot, arm);

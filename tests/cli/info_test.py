@@ -864,6 +864,36 @@ class Honoured(WithFolder):
         self.refused(run("plan", problem), "problem.yaml:1: robot.urdf", "is a problem file")
 
 
+class Tables(WithFolder):
+    """What `swivel info` says of turntables beside arms of six joints."""
+
+    def test_found(self):
+        done = run("info", DATA / "robots/kr6_turntable_like.urdf")
+        self.assertIn(
+            "table      table_joint turns plate: --base plate makes it the first of seven joints\n",
+            done.stdout,
+        )
+        with_it = run("info", DATA / "robots/kr6_turntable_like.urdf", "--base", "plate").stdout
+        self.assertRegex(with_it, r"joint 1 +table_joint ")
+        self.assertNotIn("\ntable ", with_it)
+
+    def test_none(self):
+        kr6 = (DATA / "robots/kr6_like.urdf").read_text()
+        for more in (
+            "",
+            joint("finger", "revolute", "flange", "f"),
+            joint("torso", "fixed", "base_link", "t") + joint("rail", "prismatic", "t", "r"),
+            joint("a", "revolute", "base_link", "p") + joint("b", "revolute", "p", "q"),
+        ):
+            urdf = self.folder / "robot.urdf"
+            urdf.write_text(kr6.replace("</robot>", more + "</robot>"))
+            done = run("info", urdf, "--tip", "flange", "--roll")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            tilts = re.findall(r"^table +(\S+)", done.stdout, re.M)
+            # Of a table on a table the lower one alone is an axis that turns about one line.
+            self.assertEqual(tilts, ["a"] if '"q"' in more else [], done.stdout)
+
+
 class FirstProblem(WithFolder):
     """`swivel info --write`: the file that it writes is planned without an edit."""
 
