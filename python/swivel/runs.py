@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes many plans of one problem or job (placements, campaigns), here or on workers of a Dask
 cluster."""
+import contextlib
 import functools
 import os
 import threading
@@ -53,7 +54,8 @@ def place(
     Returns Placements in the order of their numbers; the rows are the same at any number of
     threads, workers and batches. Clearances, margins and speeds of a job's rows are those of its
     strokes. Rows have no trajectories: plan(problem.placed(row.offset, base=True)), or plan_job()
-    of a job placed so, has that of a row. Raises InvalidArgument, InputError and TypeError.
+    of a job placed so, has that of a row. Raises InvalidArgument, InputError and TypeError; Ctrl-C
+    raises KeyboardInterrupt, whose attribute `rows` is the Placements known so far.
     """
     problem = _loaded(problem)
     cells = _swivel._Cells([x, y, z, roll, pitch, yaw], sample, seed)
@@ -89,8 +91,8 @@ def place(
         if progress is not None:
             progress(placements, sum(map(len, parts)), total)
 
-    with _Here(make, _plan_cells) if here else _Workers(
-        client, make, _plan_cells, deadline
+    with _known_rows(_swivel.Placements, parts), (
+        _Here(make, _plan_cells) if here else _Workers(client, make, _plan_cells, deadline)
     ) as workers:
         for numbers in wanted():
             total += len(numbers)
@@ -118,7 +120,8 @@ def campaign(
     as for place().
 
     Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any
-    number of threads and workers. Raises InvalidArgument, InputError and TypeError.
+    number of threads and workers. Raises InvalidArgument, InputError and TypeError; Ctrl-C raises
+    KeyboardInterrupt, whose attribute `rows` is the Episodes known so far.
     """
     here = client is None
     make = functools.partial(
@@ -132,12 +135,22 @@ def campaign(
         if progress is not None:
             progress(rows, sum(map(len, parts)), episodes)
 
-    with _Here(make, _plan_episodes) if here else _Workers(
-        client, make, _plan_episodes, None
+    with _known_rows(_swivel.Episodes, parts), (
+        _Here(make, _plan_episodes) if here else _Workers(client, make, _plan_episodes, None)
     ) as workers:
         count = 1 if here else -(-episodes // workers.batch(episodes))
         workers.plan(((index, count) for index in range(count)), arrived)
     return _swivel.Episodes._joined(parts)
+
+
+@contextlib.contextmanager
+def _known_rows(table, parts):
+    """Gives a KeyboardInterrupt that passes through the rows that have arrived, joined."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        interrupt.rows = table._joined(parts)
+        raise
 
 
 def _loaded(problem):

@@ -471,6 +471,28 @@ class Interrupts(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             swivel.plan(endless(), check=check, planner=LONG)
 
+    def test_ctrl_c_gives_the_rows_so_far(self):
+        problem = experiment("c", ds=0.02, dphi=0.1)
+        for run, whole in (
+            (swivel.place, {"object": "rail", "x": (-0.02, 0.02, 0.002), "timeout": 60}),
+            (swivel.campaign, {"episodes": 21}),
+        ):
+            def progress(rows, done, of):
+                if done == 5:
+                    interrupt()
+
+            with self.assertRaises(KeyboardInterrupt) as caught:
+                run(problem, **whole, threads=1, progress=progress)
+            rows = caught.exception.rows
+            self.assertGreaterEqual(len(rows), 5)
+            self.assertLess(len(rows), 21)
+            every = run(problem, **whole)
+            self.assertEqual(len(every), 21)
+            self.assertIs(type(rows), type(every))
+            number = "cell" if run is swivel.place else "episode"
+            chosen = np.isin(getattr(every, number), getattr(rows, number))
+            np.testing.assert_array_equal(rows.cost, every.cost[chosen])
+
     def test_a_handler_that_does_not_raise_does_not_stop(self):
         rung = []
         before = signal.signal(signal.SIGUSR1, lambda *_: rung.append(None))
