@@ -73,7 +73,7 @@ Tool paths into joint trajectories for redundant arms (library)
 Headers and static libraries, found by find_package(swivel) of CMake and by
 pkg-config."
   # What swivelConfig.cmake finds for static libraries.
-  "libeigen3-dev, libfcl-dev, libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev")
+  "libeigen3-dev, libfcl-dev, libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS libboost-dev)
 
 get_directory_property(minor DIRECTORY ${PROJECT_SOURCE_DIR}/python DEFINITION Python_VERSION_MINOR)

@@ -8,6 +8,7 @@ import { createHash } from 'node:crypto';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { deflateSync } from 'node:zlib';
 
 const sources = dirname(fileURLToPath(import.meta.url)),
   folder = resolve(process.argv[2]);
@@ -48,16 +49,12 @@ for (const [place, { version, dev }] of Object.entries(
 
 const read = new Set([
     source('../../LICENSE'),
-    ...['page.css', 'head.html', 'view.html'].map(source),
+    ...['page.css', 'head.html', 'view.html', 'packed.html'].map(source),
   ]),
   pages = [];
-for (const [frame, entry, result, title] of [
-  ['page.html', 'main.js', 'report.html', 'Swivel report'],
-  ['campaign.html', 'campaign.js', 'overview.html', 'Swivel campaign'],
-  ['placement.html', 'placement.js', 'placements.html', 'Swivel placements'],
-  ['job.html', 'job.js', 'job.html', 'Swivel job'],
-  ['workcell.html', 'workcell.js', 'workcell.html', 'Swivel workcell'],
-]) {
+
+/** The program that begins with a source, as one script. */
+async function bundled(entry) {
   const bundle = await build({
     entryPoints: [source(entry)],
     absWorkingDir: folder,
@@ -73,20 +70,30 @@ for (const [frame, entry, result, title] of [
   for (const input of Object.keys(bundle.metafile.inputs).map((path) => resolve(folder, path))) {
     if (dirname(input) === sources) read.add(input);
   }
-  const script = bundle.outputFiles[0].text.replaceAll('</script', '<\\/script');
+  return bundle.outputFiles[0].text.replaceAll('</script', '<\\/script');
+}
+const hash = (script) => `'sha256-${createHash('sha256').update(script).digest('base64')}'`,
+  starter = await bundled('starter.js');
+for (const [frame, entry, result, title] of [
+  ['page.html', 'main.js', 'report.html', 'Swivel report'],
+  ['campaign.html', 'campaign.js', 'overview.html', 'Swivel campaign'],
+  ['placement.html', 'placement.js', 'placements.html', 'Swivel placements'],
+  ['job.html', 'job.js', 'job.html', 'Swivel job'],
+  ['workcell.html', 'workcell.js', 'workcell.html', 'Swivel workcell'],
+]) {
+  const program = await bundled(entry);
   read.add(source(frame));
   pages.push([
     result,
     (readFileSync(source('head.html'), 'utf8') + readFileSync(source(frame), 'utf8'))
       .replace('  <!-- view.html -->\n', () => readFileSync(source('view.html'), 'utf8'))
       .replace('@@TITLE@@', () => title)
+      .replace('<!-- packed.html -->\n', () => readFileSync(source('packed.html'), 'utf8'))
       .replace('/* page.css */', () => readFileSync(source('page.css'), 'utf8'))
       // Nothing else runs in the page.
-      .replace(
-        '@@SCRIPT-HASH@@',
-        () => `'sha256-${createHash('sha256').update(script).digest('base64')}'`,
-      )
-      .replace('/* script */', () => script),
+      .replace('@@SCRIPT-HASHES@@', () => `${hash(starter)} ${hash(program)}`)
+      .replace('/* program */', () => deflateSync(program, { level: 9 }).toString('base64'))
+      .replace('/* starter */', () => starter),
   ]);
 }
 

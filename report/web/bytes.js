@@ -19,12 +19,31 @@ export function varints(text) {
   }
   return result;
 }
+/** The number that a varint stands for whose lowest bit is the sign. */
+const signed = (value) => (value % 2 ? -(value + 1) / 2 : value / 2);
+
+/**
+ * Samples of `width` values each that a base64 text of varints stands for: one value of all samples
+ * after the other, as what each adds to the line through the two samples before.
+ */
+export function samples(text, width) {
+  const bends = varints(text),
+    count = bends.length / width,
+    result = new Int16Array(bends.length);
+  for (let k = 0, from = 0; k < width; ++k, from += count)
+    for (let n = 0, value = 0, step = 0; n < count; ++n) {
+      step += signed(bends[from + n]);
+      value += step;
+      result[n * width + k] = value;
+    }
+  return result;
+}
 /** Triangles of a mesh: { points: x, y, z of each, m; corners: numbers of points }. */
 export function triangles({ grain, points, corners }) {
   const steps = varints(points),
     at = [0, 0, 0];
   const places = Float32Array.from(steps, (step, k) => {
-    at[k % 3] += step % 2 ? -(step + 1) / 2 : step / 2;
+    at[k % 3] += signed(step);
     return grain * at[k % 3];
   });
   let next = 0;

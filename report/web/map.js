@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the search knows of the lattice: the cells of the (s, phi) map, decoded.
-import { bytes } from './bytes.js';
+import { bytes, samples } from './bytes.js';
 import { number } from './page.js';
 import { kKnown, kObjects } from './palette.js';
 
@@ -21,7 +21,7 @@ export class Cells {
     this.jointNames = joints.map(({ name }) => name);
     this.states = new Uint8Array(bytes(map.states));
     this.causes = new Uint8Array(bytes(map.causes));
-    this.poses = new Int16Array(bytes(map.joints));
+    this.poses = samples(map.joints, joints.length);
     this.clearances = new Uint16Array(bytes(map.clearances));
     this.poseLayers = new Uint16Array(bytes(map.pose_layers)); // counted from the cell's first
     this.posePhis = new Float32Array(bytes(map.pose_phis));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the pages share: their data, numbers, light and dark, tables.
-export const data = JSON.parse(document.getElementById('data').textContent);
+export const { data } = window.swivelPage; // starter.js
 export const $ = (id) => document.getElementById(id);
 export const number = (v, digits = 4) =>
   v === null || v === undefined ? '–' : Number(v.toPrecision(digits)).toString();

@@ -6,12 +6,12 @@ import csv
 import json
 import os
 import pathlib
-import re
 import subprocess
 import tempfile
 import unittest
 
 from motion_test import Mcap
+from pages import data_of
 
 SWIVEL = os.environ["SWIVEL"]
 DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
@@ -225,8 +225,7 @@ class Jobs(WithFolder):
             self.skipTest(done.stderr)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue(done.stdout.startswith("solved: 2 strokes, "), done.stdout)
-        data = re.search(r'<script id="data"[^>]*>(.*?)</script>', page.read_text(), re.DOTALL)
-        strokes = json.loads(data.group(1))["strokes"]
+        strokes = data_of(page)["strokes"]
         self.assertEqual([stroke["name"] for stroke in strokes], ["left", "right"])
         done = run("plan", file, "--report", page, "--timeout", 1e-9)
         self.assertEqual(done.returncode, 3)

@@ -7,10 +7,11 @@ import csv
 import json
 import os
 import pathlib
-import re
 import subprocess
 import tempfile
 import unittest
+
+from pages import data_of
 
 SWIVEL = os.environ["SWIVEL"]
 DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
@@ -171,8 +172,7 @@ class Workcells(unittest.TestCase):
         if "built without reports" in done.stderr:
             self.skipTest("built without reports")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        html = page.read_text()
-        data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', html, re.S)[1])
+        data = data_of(page)
         result = json.loads(self.result.read_text())
         for key in ("arms", "between_arms", "cost", "decided_by"):
             self.assertEqual(data["result"][key], result[key])

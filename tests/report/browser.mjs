@@ -6,6 +6,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { inflateSync } from 'node:zlib';
 
 const browserFile = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
@@ -22,6 +23,17 @@ export function some(variants) {
     first = Number(seed % BigInt(variants.length));
   return Array.from({ length: count }, (_, k) => variants[(first + k) % variants.length]);
 }
+
+/** The data that a page holds. */
+export const dataOf = (html) =>
+  JSON.parse(
+    inflateSync(
+      Buffer.from(
+        readFileSync(html, 'utf8').match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1],
+        'base64',
+      ),
+    ),
+  );
 
 /** Ends with code 77 (skipped), but where CI is set with 1. */
 export function skip(why) {
@@ -89,6 +101,8 @@ export async function withBrowser({ packages, shots }, test) {
     await page.setViewportSize(viewport);
     await page.emulateMedia({ colorScheme });
     await page.goto(`file://${html}${hash}`);
+    // The program starts when it is unpacked, perhaps after the page is loaded.
+    if (javaScriptEnabled) await until(page, () => 'swivelPage' in window);
     return {
       page,
       close: async ({ withErrors = false } = {}) => {

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { assertFits, press, until, withBrowser } from './browser.mjs';
+import { assertFits, dataOf, press, until, withBrowser } from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
 const wide = { width: 1280, height: 800 },
@@ -39,13 +39,12 @@ function planned(folder, file, ...options) {
     ...options,
   ]);
   assert.ok(done.status <= 1, String(done.stderr));
-  const text = readFileSync(html, 'utf8'),
-    lines = done.status === 0 ? readFileSync(csv, 'utf8').trim().split('\n') : [];
+  const lines = done.status === 0 ? readFileSync(csv, 'utf8').trim().split('\n') : [];
   return {
     html,
     status: done.status,
     bytes: statSync(html).size,
-    data: JSON.parse(text.match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]),
+    data: dataOf(html),
     result: JSON.parse(readFileSync(json, 'utf8')),
     columns: lines[0]?.split(','),
     rows: lines.slice(1).map((line) => line.split(',')),

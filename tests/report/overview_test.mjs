@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { assertFits, elements, saved, withBrowser } from './browser.mjs';
+import { assertFits, dataOf, elements, saved, withBrowser } from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
 const problem = join(problems, 'experiment_c.yaml'),
@@ -51,10 +51,7 @@ function campaign(csv, html, ...options) {
   return { html, csv, rows, bytes: statSync(html).size };
 }
 /** The page's data without the time of planning. */
-const told = (html) =>
-  readFileSync(html, 'utf8')
-    .match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]
-    .replaceAll(/"plan_ms":[^,]*/g, '');
+const told = (html) => JSON.stringify(dataOf(html), (key, v) => (key === 'plan_ms' ? 0 : v));
 const column = (page, k) =>
   page.$$eval(
     '#scroll tbody tr',

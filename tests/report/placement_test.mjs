@@ -5,7 +5,16 @@ import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { readFileSync, statSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { assertFits, elements, saved, scale, some, until, withBrowser } from './browser.mjs';
+import {
+  assertFits,
+  dataOf,
+  elements,
+  saved,
+  scale,
+  some,
+  until,
+  withBrowser,
+} from './browser.mjs';
 
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
 const problem = join(problems, 'experiment_c.yaml'),
@@ -162,8 +171,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     ],
     { cwd: folder },
   );
-  const own = readFileSync(join(folder, `placement_${ended[cell]}.html`), 'utf8'),
-    { cut } = JSON.parse(own.match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]);
+  const { cut } = dataOf(join(folder, `placement_${ended[cell]}.html`));
   partial.get(ended).forEach((q, j) => assert.ok(Math.abs(q - cut.q[j]) < 1e-6, `joint ${j}`));
   assert.ok((await page.textContent('#readout')).endsWith(cut.what));
   // The arrows pick the placement beside it.

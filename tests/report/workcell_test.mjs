@@ -8,6 +8,7 @@ import { join, resolve } from 'node:path';
 import {
   assertFits,
   assertPrints,
+  dataOf,
   elements,
   press,
   saved,
@@ -73,12 +74,11 @@ function planned(folder, file, ...options) {
     ...options,
   ]);
   assert.ok(done.status <= 1, String(done.stderr));
-  const text = readFileSync(html, 'utf8');
   return {
     html,
     status: done.status,
     bytes: statSync(html).size,
-    data: JSON.parse(text.match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]),
+    data: dataOf(html),
     result: JSON.parse(readFileSync(json, 'utf8')),
   };
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "map_cells.hpp"
+#include "page/packed.hpp"
 #include "swivel/core/base/angle.hpp"
 
 namespace swivel::detail {
@@ -236,7 +237,7 @@ class MapWriter {
             {"panels", std::move(panels_)},
             {"states", base64(states_)},
             {"causes", base64(causes_)},
-            {"joints", base64(joints)},
+            {"joints", encode_samples(joints, kDof)},
             {"clearances", base64(clearances_.values)},
             {"joint_unit", reach / 32767},
             {"pose_layers", base64(layers)},

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "drawing.hpp"
+#include "page/packed.hpp"
 #include "swivel/core/messages/bounds.hpp"
 
 #ifdef SWIVEL_PAGES
@@ -97,8 +98,7 @@ std::string fill(std::string_view page, const std::string& json,
   }
   copy_up_to("@@DATA@@");
   // What turns the direction of writing would turn that of the page as well.
-  // "</script" would end the element that holds the data, "<!--" and "<script" hide its end.
-  for (const char c : printable(json)) filled += c == '<' ? "\\u003c" : std::string(1, c);
+  filled += compressed(printable(json));
   return filled += page;
 }
 

@@ -18,8 +18,9 @@ namespace swivel::detail {
 /// Returns the text with its lines escaped for HTML.
 [[nodiscard]] std::string escaped_lines(const std::string& text);
 
-/// Returns the page with its data, a JSON text, in place of "@@DATA@@". `besides`: other marks, in
-/// the order of the page and all before the data, each with the HTML that takes its place.
+/// Returns the page with its data, a JSON text, compressed in place of "@@DATA@@". `besides`: other
+/// marks, in the order of the page and all before the data, each with the HTML that takes its
+/// place.
 [[nodiscard]] std::string fill(
     std::string_view page, const std::string& json,
     const std::vector<std::pair<std::string_view, std::string>>& besides = {});

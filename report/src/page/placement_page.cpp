@@ -4,6 +4,7 @@
 #include <optional>
 #include <tuple>
 
+#include "page/packed.hpp"
 #include "page/page_parts.hpp"
 #include "page/page_template.hpp"
 #include "page/scene_json.hpp"

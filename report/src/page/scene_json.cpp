@@ -4,23 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <variant>
 
-namespace swivel::detail {
+#include "page/packed.hpp"
 
-std::string base64(const unsigned char* bytes, std::size_t count) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve(4 * (count / 3 + 1));
-  for (std::size_t k = 0; k < count; k += 3) {
-    const std::size_t rest = std::min<std::size_t>(3, count - k);
-    unsigned word = 0;
-    for (std::size_t j = 0; j < 3; ++j) word = word << 8 | (j < rest ? bytes[k + j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j)
-      text += j <= rest ? kDigits[word >> (18 - 6 * j) & 63] : '=';
-  }
-  return text;
-}
+namespace swivel::detail {
 
 Json vector_json(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -99,13 +88,6 @@ void Bodies::add(const std::string& name, const char* kind, int group, const Sha
 
 namespace {
 
-/// Appends a number in groups of seven bits, the lowest first; a group that others follow has its
-/// eighth bit set.
-void append_varint(std::vector<unsigned char>& bytes, std::uint64_t value) {
-  for (; value > 127; value >>= 7) bytes.push_back(static_cast<unsigned char>(value | 128));
-  bytes.push_back(static_cast<unsigned char>(value));
-}
-
 /// Writes a mesh for drawing. Corners are rounded to 10 um; they are numbered in the order in which
 /// triangles use them, equal ones alike. `points`: of each the differences from the one before, x,
 /// y, z, with their signs in the lowest bits. `corners`: of each corner of the triangles how far
@@ -124,11 +106,7 @@ Json mesh_json(const TriangleMesh& mesh) {
       const auto [known, is_new] = numbers.emplace(at, next);
       append_varint(corners, next - known->second);
       if (!is_new) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::int64_t step = at[k] - before[k];
-        append_varint(points, step < 0 ? ~(static_cast<std::uint64_t>(step) << 1)
-                                       : static_cast<std::uint64_t>(step) << 1);
-      }
+      for (std::size_t k = 0; k < 3; ++k) append_signed(points, at[k] - before[k]);
       before = at;
     }
   return {{"grain", kGrain}, {"points", base64(points)}, {"corners", base64(corners)}};

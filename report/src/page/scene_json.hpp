@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An arm among its scene as the pages' view in three dimensions reads it (report/web/scene.js).
 #pragma once
-#include <cstdint>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,16 +13,6 @@
 namespace swivel::detail {
 
 using Json = nlohmann::ordered_json;
-
-/// Encodes bytes in base 64 (RFC 4648).
-[[nodiscard]] std::string base64(const unsigned char* bytes, std::size_t count);
-/// Encodes the values of an array in the machine's byte order; the page reads little-endian.
-template <class T>
-[[nodiscard]] std::string base64(const std::vector<T>& values) {
-  std::vector<unsigned char> bytes(values.size() * sizeof(T));
-  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  return base64(bytes.data(), bytes.size());
-}
 
 [[nodiscard]] Json vector_json(const Vector3d& v);
 /// Writes the upper three rows of the pose's matrix, row by row.
