@@ -99,7 +99,8 @@ double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& be
 }
 
 std::size_t ExplicitCostToGo::many(int layer) const {
-  return static_cast<std::size_t>(lattice_->slots(layer)) / 2;
+  constexpr std::size_t kPart = 2;
+  return static_cast<std::size_t>(lattice_->slots(layer)) / kPart;
 }
 
 void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,

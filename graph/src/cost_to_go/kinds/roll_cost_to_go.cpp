@@ -239,6 +239,12 @@ void RollCostToGo::begin(int layer, Values& out) {
   }
 }
 
+std::size_t RollCostToGo::many(int layer) const {
+  static_cast<void>(layer);
+  constexpr std::size_t kMany = 256;
+  return kMany;
+}
+
 void RollCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
                               std::vector<int>& stale) {
   const Values& values = value_[static_cast<std::size_t>(layer)];

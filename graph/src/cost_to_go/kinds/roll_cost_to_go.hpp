@@ -26,10 +26,7 @@ class RollCostToGo final : public LayerValues {
   [[nodiscard]] double relax_one(int layer, int slot) override;
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
   void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale) override;
-  [[nodiscard]] std::size_t many(int layer) const override {
-    static_cast<void>(layer);
-    return 256;
-  }
+  [[nodiscard]] std::size_t many(int layer) const override;
   // solving it again takes less than fresh pages
   void done_with(int layer) override { forget(layer); }
 
