@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """swivel merge from outside: shards of campaigns and placements against runs that were not split,
 and what it refuses."""
+import json
 import os
 import random
 import re
@@ -10,6 +11,7 @@ import subprocess
 import unittest
 
 from cli_test import DATA, PROBLEMS, SWIVEL, WithFolder, run
+from pages import data_of
 from trials import seed
 
 PROBLEM = PROBLEMS / "experiment_c.yaml"
@@ -17,9 +19,21 @@ QUICK = ("--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
 MARK = "# swivel "
 
 
-def without_scene(page):
+def unpacked(file):
+    """The text of a file, of a page with its data as JSON in place of what it holds packed."""
+    text = file.read_text()
+    if file.suffix != ".html":
+        return text
+    data = json.dumps(data_of(file), separators=(",", ":"), ensure_ascii=False)
+    return re.sub(
+        r'(<script id="data"[^>]*>).*?(?=</script>)', lambda m: m.group(1) + data, text,
+        flags=re.DOTALL,
+    )
+
+
+def without_scene(text):
     """A page of placements without its view in three dimensions, which is not a shard's to know."""
-    return re.sub(rb'"scene":.*?</script>', b"", page, count=1, flags=re.DOTALL)
+    return re.sub(r'"scene":.*?</script>', "", text, count=1, flags=re.DOTALL)
 
 
 def without_times(text):
@@ -76,7 +90,7 @@ class Merge(WithFolder):
                 summary,
                 *[word for option in page for word in (option, html)],
             )
-            whole = [file.read_text() for file in (out, summary, html) if file.exists()]
+            whole = [unpacked(file) for file in (out, summary, html) if file.exists()]
             files = self.shards(count, *command)
             draw.shuffle(files)
             again = self.ran(
@@ -88,7 +102,7 @@ class Merge(WithFolder):
                 *[word for option in page for word in (option, html)],
             )
             for before, after in zip(
-                whole, [file.read_text() for file in (out, summary, html) if file.exists()]
+                whole, [unpacked(file) for file in (out, summary, html) if file.exists()]
             ):
                 self.assertEqual(without_times(after), without_times(before))
                 joined += 1
@@ -116,7 +130,7 @@ class Merge(WithFolder):
             told = self.ran(
                 *command, *[word for name, file in files.items() for word in ("--" + name, file)]
             )
-            whole = {name: file.read_bytes() for name, file in files.items()}
+            whole = {name: unpacked(file) for name, file in files.items()}
             shards = self.shards(draw.randint(2, 4), *command)
             draw.shuffle(shards)
             out = files.pop("out")
@@ -130,11 +144,11 @@ class Merge(WithFolder):
             # Not assertEqual, which would draw the difference of two pages.
             for name, file in files.items():
                 self.assertTrue(
-                    without_scene(file.read_bytes()) == without_scene(whole[name]), name
+                    without_scene(unpacked(file)) == without_scene(whole[name]), name
                 )
                 self.assertEqual(
-                    name == "report" and file.read_bytes() != whole[name],
-                    name == "report" and b'"scene":{' in whole[name],
+                    name == "report" and unpacked(file) != whole[name],
+                    name == "report" and '"scene":{' in whole[name],
                 )
             self.assertEqual(again.stdout, re.sub("; [0-9.]+ s, [0-9]+ a second", "", told.stdout))
 

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import unittest
 
+from pages import data_of
 from trials import trials
 
 SWIVEL = os.environ["SWIVEL"]
@@ -345,7 +346,7 @@ class Motion(unittest.TestCase):
         if "built without reports" in done.stderr:
             self.skipTest("built without reports")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn('"tool_mm_s":[', page.read_text())
+        self.assertIn('"tool_mm_s": [', json.dumps(data_of(page)))
 
     def worst_rates(self, file, joints=7):
         """Largest differences of the joints over what they can do, at rest before and after."""

@@ -31,8 +31,8 @@ void append_signed(std::vector<unsigned char>& bytes, std::int64_t value);
 [[nodiscard]] std::string encode_samples(const std::vector<std::int16_t>& values,
                                          std::size_t width);
 
-/// Compresses a text to a zlib stream (RFC 1950), in base 64. The same text always gives the same
-/// result with the same version of zlib.
+/// Compresses a text to a zlib stream (RFC 1950), in base 64. Equal texts give equal results with
+/// one version of zlib.
 [[nodiscard]] std::string compressed(std::string_view text);
 
 }  // namespace swivel::detail
