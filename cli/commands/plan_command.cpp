@@ -384,16 +384,20 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
   const bool moved =
       arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
   refuse_options("workcells", arguments.problem,
-                 {{arguments.refine, "--refine"},
-                  {arguments.advise.has_value(), "--advise"},
+                 {{arguments.advise.has_value(), "--advise"},
                   {!arguments.trace.empty(), "--trace"},
                   {arguments.map, "--map"},
                   {!arguments.map_svg.empty(), "--map-svg"},
                   {arguments.full_map, "--full-map"},
                   {moved, "--episode and placements"}});
   if (!arguments.report.empty()) require_pages();
+  if (!arguments.certificate.empty() && (arguments.refine || arguments.motion.speed))
+    throw InputError(
+        "--certificate: is of the workcell as its file has it: allowed without --refine and "
+        "--speed, which ask for more");
   WorkcellRequest request{.cell = std::get<Workcell>(std::move(file.what)),
                           .options = arguments.search.plan_options(),
+                          .refine = arguments.refine,
                           .out = arguments.out,
                           .report = !arguments.report.empty(),
                           .quiet = arguments.quiet,
@@ -406,6 +410,8 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
   } else {
     require_table_name("--out", arguments.out, "the trajectory of a workcell without times",
                        "--speed, with which motions are written in other formats");
+    for (WorkcellArm& arm : request.cell.arms)
+      if (arguments.refine) keep_clearance_between_layers(arm.limits);
   }
   require_planner_of("workcells", arguments.search);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");

@@ -78,16 +78,30 @@ void write_rows(const WorkcellRequest& request, const WorkcellMotionPlan& plan,
                        : io::to_workcell_csv(plan.result));
 }
 
+/// Returns the answer of a workcell for people, with its refinement and its motion.
+std::string plan_text(const WorkcellMotionPlan& plan) {
+  const WorkcellResult& result = plan.result;
+  std::string text = workcell_text(result);
+  if (plan.refinement) text += refined_workcell_text(*plan.refinement, result.names);
+  if (plan.timing)
+    text += workcell_motion_text(
+        *plan.timing, {result.arms[0].joint_names, result.arms[1].joint_names}, result.names);
+  return text;
+}
+
+/// Returns what followed the plan, for the result file. It points into `plan`.
+io::WorkcellExtras extras_of(const WorkcellRequest& request, const WorkcellMotionPlan& plan) {
+  return {plan.refinement ? &*plan.refinement : nullptr, plan.timing ? &*plan.timing : nullptr,
+          request.timing.value_or(TimingOptions{})};
+}
+
 /// Prints the answer, times and work counts of a workcell; warnings go to standard error.
 void print_workcell(const WorkcellMotionPlan& plan) {
   const WorkcellResult& result = plan.result;
-  say_text(workcell_text(result));
-  if (plan.timing)
-    say_text(workcell_motion_text(
-        *plan.timing, {result.arms[0].joint_names, result.arms[1].joint_names}, result.names));
+  say_text(plan_text(plan));
   std::string stages;
   for (const char* const stage :
-       {"load", "prepare", "lattice", "search", "check", "time", "report", "certificate"})
+       {"load", "prepare", "lattice", "search", "refine", "time", "check", "report", "certificate"})
     if (const auto found = result.time_ms.find(stage); found != result.time_ms.end())
       stages += formatted("%s%s %.1f ms", stages.empty() ? "" : ", ", stage, found->second);
   long long nodes = 0, edges = 0, calls = 0;
@@ -115,13 +129,14 @@ void print_workcell(const WorkcellMotionPlan& plan) {
 /// is up first, of which a warning tells.
 std::optional<std::string> page_of(const WorkcellRequest& request, const PreparedWorkcell& prepared,
                                    const WorkcellView& view, const Budget& budget,
-                                   WorkcellResult& result) {
+                                   WorkcellMotionPlan& plan) {
   if (!request.report || view.arms.empty()) return std::nullopt;
   try {
-    return to_workcell_page({prepared, request.cell, result, view}, io::to_workcell_json(result),
-                            budget, {.which = "", .answer = workcell_text(result)});
+    return to_workcell_page({prepared, request.cell, plan.result, view},
+                            io::to_workcell_json(plan.result, extras_of(request, plan)), budget,
+                            {.which = "", .answer = plan_text(plan)});
   } catch (const Stopped&) {
-    result.warnings.push_back("stopped before the page was made: there is no report");
+    plan.result.warnings.push_back("stopped before the page was made: there is no report");
     return std::nullopt;
   }
 }
@@ -151,14 +166,11 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   const Budget budget = request.options.budget();  // of page and proof; the plan has its own
   const PreparedWorkcell prepared(request.cell);
   WorkcellView view;
-  WorkcellMotionPlan plan;
-  if (request.timing)
-    plan = plan_workcell_motion(prepared, request.options, *request.timing);
-  else
-    plan.result = plan_workcell(prepared, request.options, request.report ? &view : nullptr);
+  WorkcellMotionPlan plan = plan_workcell_motion(prepared, request.options, request.refine,
+                                                 request.timing, request.report ? &view : nullptr);
   const WorkcellResult& result = plan.result;
   plan.result.time_ms["load"] = request.load_ms;
-  std::optional<std::string> page = page_of(request, prepared, view, budget, plan.result);
+  std::optional<std::string> page = page_of(request, prepared, view, budget, plan);
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   std::string proof;
   if (outputs.wants("--certificate") && infeasible) proof = proof_of(prepared, budget, plan.result);
@@ -169,10 +181,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   else
     outputs.remove("--report");
   if (outputs.wants("--json"))
-    outputs.write("--json",
-                  io::to_workcell_json(result, {plan.timing ? &*plan.timing : nullptr,
-                                                request.timing.value_or(TimingOptions{})}) +
-                      "\n");
+    outputs.write("--json", io::to_workcell_json(result, extras_of(request, plan)) + "\n");
   const std::size_t bytes = proof.size();
   if (bytes > 0)
     outputs.write("--certificate", std::move(proof));

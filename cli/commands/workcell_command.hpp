@@ -15,8 +15,9 @@ struct WorkcellRequest {
   Workcell cell{};
   PlanOptions options{};
   std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
+  bool refine = false;                    ///< --refine
   std::string out{};                      ///< --out; its ending tells the format of a motion
-  bool report = false;  ///< whether the page of --report is made; not with `timing`
+  bool report = false;                    ///< page of --report; not with `timing`
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took
 };

@@ -25,15 +25,19 @@ std::string given_words(const WorkcellResult& result) {
 std::string alone_text(const WorkcellResult& result) {
   const auto given = result.given_arm;
   const std::size_t planned = given ? 1 - *given : 0;
+  // What the search found: refined paths may cost less than the arms' cheapest nodes alone.
+  const auto found = [&](std::size_t arm) { return result.arms[arm].lattice.cost; };
+  const bool refined = result.arms[0].cost != found(0) || result.arms[1].cost != found(1);
   const double least = given ? result.least_costs[planned]
                              : result.least_costs[0] + result.least_costs[1],
-               cost = given ? result.arms[planned].cost : result.cost;
+               cost = given ? found(planned) : found(0) + found(1);
+  const std::string colon = refined ? ": before refining " : ": ";
   const std::string who =
       given ? "'" + result.names[planned] + "' alone, which " : "both arms alone, which ";
   if (result.decided_by == WorkcellSearch::kArmsAlone)
-    return ": that of " + who + (given ? "keeps clear of it" : "do not meet");
+    return colon + "that of " + who + (given ? "keeps clear of it" : "do not meet");
   if (least <= 0) return "";
-  return formatted(": %.2g %% more than ", 100 * (cost / least - 1)) + who +
+  return colon + formatted("%.2g %% more than ", 100 * (cost / least - 1)) + who +
          (given ? "would not keep clear of it" : "would meet");
 }
 
@@ -107,6 +111,23 @@ std::string peaks_text(const TimedPath& motion, const io::JointNames& names) {
 }
 
 }  // namespace
+
+std::string refined_workcell_text(const RefinedWorkcell& refined,
+                                  const std::array<std::string, 2>& names) {
+  std::string text =
+      formatted("refined: cost %.6g before, %.6g now, in ", refined.cost_before, refined.cost) +
+      plural(static_cast<std::size_t>(refined.turns), "turn") + "\n";
+  if (!refined.arms[0].refined && !refined.arms[1].refined) text = "";
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Refined& arm = refined.arms[k];
+    text += "  " + names[k] + ": ";
+    text += arm.refined ? formatted("joints bend by at most %.3g rad/m^2 before, %.3g now",
+                                    arm.bend_before, arm.bend)
+                        : "not refined: " + arm.reason;
+    text += "\n";
+  }
+  return text;
+}
 
 std::string workcell_motion_text(const WorkcellTiming& timing,
                                  const std::array<io::JointNames, 2>& joint_names,

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "swivel/core/answer/refined.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/io/motions/motion.hpp"
@@ -12,6 +13,11 @@ namespace swivel::cli {
 /// Returns the answer of a workcell for people: what both arms do together, then a line about each
 /// arm; where there is no plan, why.
 [[nodiscard]] std::string workcell_text(const WorkcellResult& result);
+
+/// Returns what refining the arms of a workcell brought, for people. `names` are those of both
+/// arms.
+[[nodiscard]] std::string refined_workcell_text(const RefinedWorkcell& refined,
+                                                const std::array<std::string, 2>& names);
 
 /// Returns the figures of a workcell's motion for people, or why there is none. `joint_names` and
 /// `names` are those of both arms.

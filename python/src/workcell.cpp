@@ -14,6 +14,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -144,6 +145,17 @@ Trajectory trajectory_of(const WorkcellPlan& plan, std::size_t arm) {
           result.joint_names};
 }
 
+/// Returns the refinement of both arms by name; none where it was not asked for.
+py::dict refinements_of(const WorkcellPlan& plan) {
+  py::dict all;
+  if (!plan.plan->refinement) return all;
+  for (std::size_t k = 0; k < 2; ++k)
+    all[plan.plan->result.names[k].c_str()] = py::cast(
+        RefinedPath{std::shared_ptr<const Refined>(plan.plan, &plan.plan->refinement->arms[k]),
+                    plan.plan->result.arms[k].joint_names});
+  return all;
+}
+
 /// Returns the motion of the plan. Throws ValueError if there is none.
 const WorkcellMotion& motion_of(const WorkcellPlan& plan) {
   const auto& timing = plan.plan->timing;
@@ -166,7 +178,7 @@ py::dict motions_of(const WorkcellPlan& plan) {
 }
 
 WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
-                  const std::optional<TimingOptions>& timing) {
+                  const std::optional<TimingOptions>& timing, bool refine) {
   const auto cell = to_core(of);
   WorkcellPlan made{.frame = cell->arms[0].base_link};
   if (timing) made.timing = *timing;
@@ -174,10 +186,10 @@ WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
       std::make_shared<const WorkcellMotionPlan>(interruptible([&](const std::stop_token& stop) {
         options.stop = stop;
         const Budget budget({}, nullptr, stop);
-        if (timing)
-          return plan_workcell_motion(PreparedWorkcell(with_motion_defaults(*cell), budget),
-                                      options, *timing);
-        return WorkcellMotionPlan{plan_workcell(PreparedWorkcell(*cell, budget), options), {}};
+        swivel::Workcell completed = timing ? with_motion_defaults(*cell) : *cell;
+        for (WorkcellArm& arm : completed.arms)
+          if (refine) keep_clearance_between_layers(arm.limits);
+        return plan_workcell_motion(PreparedWorkcell(completed, budget), options, refine, timing);
       }));
   return made;
 }
@@ -329,8 +341,9 @@ void bind_plan(py::module_& m) {
       .def(
           "to_json",
           [](const WorkcellPlan& p) {
-            const auto& timing = p.plan->timing;
-            return io::to_workcell_json(p.plan->result, {timing ? &*timing : nullptr, p.timing});
+            const auto& [result, refinement, timing, stopped] = *p.plan;
+            return io::to_workcell_json(result, {refinement ? &*refinement : nullptr,
+                                                 timing ? &*timing : nullptr, p.timing});
           },
           "As `swivel plan --json` writes it.")
       .def(
@@ -341,6 +354,11 @@ void bind_plan(py::module_& m) {
             io::write_file(file, io::to_workcell_csv(p.plan->result));
           },
           py::arg("file"), "The trajectories of both arms as CSV, docs/formats.md.")
+      .def_property_readonly("refinements", &refinements_of,
+                             "Name of the arm -> Refined, with refine=True and a plan.")
+      .def_property_readonly(
+          "stopped", [](const WorkcellPlan& p) { return p.plan->stopped; },
+          "With a plan: time ran out before all that was asked for was done.")
       .def_property_readonly("motions", &motions_of,
                              "Name of the arm -> Motion, with speed=; samples of one number are "
                              "simultaneous. Empty: there is none.")
@@ -408,18 +426,18 @@ void bind_workcell(py::module_& m) {
       "plan_workcell",
       [](const WorkcellOrFile& workcell, const py::object& planner, int threads,
          std::optional<double> timeout, bool evidence, const py::object& progress,
-         std::optional<double> speed, std::optional<double> turn_speed,
-         std::optional<double> rate) {
+         std::optional<double> speed, std::optional<double> turn_speed, std::optional<double> rate,
+         bool refine) {
         PlanOptions options = to_plan_options(planner, threads, timeout);
         options.check = true;
         if (evidence) options.evidence = Evidence::all();
         options.progress = to_progress(progress);
-        return plan(workcell, options, timing_of(speed, turn_speed, rate));
+        return plan(workcell, options, timing_of(speed, turn_speed, rate), refine);
       },
       py::arg("workcell").none(false), py::kw_only(), py::arg("planner") = "parallel",
       py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("evidence") = false,
       py::arg("progress") = py::none(), py::arg("speed") = py::none(),
-      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(),
+      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(), py::arg("refine") = false,
       "Plans two arms that work at one time: the cheapest two paths without conflict. No plan is a "
       "WorkcellPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops it.\n\n"
       "workcell: a Workcell, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
@@ -427,7 +445,9 @@ void bind_workcell(py::module_& m) {
       "done, of): now and then. speed: m/s of the faster tool (a follower's on its leader's); "
       "makes "
       "a motion of both arms by one clock, with turn_speed (rad/s) and rate (samples a second, "
-      "default 250) if given. Raises InputError, InvalidArgument, and what progress raised.");
+      "default 250) if given. refine: move both paths off the lattices' nodes, one arm while the "
+      "other one moves as it does: cheaper and smoother, never dearer. Raises InputError, "
+      "InvalidArgument, and what progress raised.");
   m.def("check_workcell", &check, py::arg("workcell").none(false), py::arg("rows").none(false),
         "Proves the trajectories of two arms from the workcell alone, or says what is wrong with "
         "them: WorkcellCheck.\n\n"

@@ -364,7 +364,7 @@ class Workcells(unittest.TestCase):
             self.assertEqual(done.returncode, 2, command)
             self.assertIn("workcell", done.stderr)
         for options in (
-            ("--refine",), ("--map",),
+            ("--map",),
             ("--advise", "1"), ("--trace", self.folder / "t.json"),
             ("--planner", "eager"), ("--path", "--x", "0.1"),
         ):
@@ -405,6 +405,50 @@ class Workcells(unittest.TestCase):
             writer.writeheader()
             writer.writerows(spoilt)
         self.assertEqual(run("check", file, motion).returncode, 1)
+
+    def test_refined_paths(self):
+        file = self.file(cell())
+        done = self.plan(cell())
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        before = json.loads(self.result.read_text())
+        self.assertIsNone(before["refinement"])
+        done = self.plan(cell(), "--refine")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        result = json.loads(self.result.read_text())
+        refined = result["refinement"]
+        self.assertAlmostEqual(refined["cost_before"], before["cost"], 9)
+        self.assertLess(refined["cost"], before["cost"])
+        self.assertEqual(result["cost"], refined["cost"])
+        self.assertTrue(result["checked"])
+        self.assertEqual([one["name"] for one in refined["arms"]], ["left", "right"])
+        for one, arm in zip(refined["arms"], result["arms"]):
+            self.assertTrue(one["refined"])
+            self.assertEqual(one["cost"], arm["cost"])
+            self.assertEqual(one["cost_before"], arm["lattice"]["cost"])
+            self.assertIsNotNone(arm["min_clearance"])
+        self.assertRegex(done.stdout, r"cost [0-9.]+: before refining that of both arms alone")
+        self.assertRegex(done.stdout, r"\nrefined: cost [0-9.]+ before, [0-9.]+ now, in 1 turn")
+        self.assertRegex(done.stdout, r"\n  left: joints bend by at most ")
+        checked = run("check", file, self.out)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        # Refined and timed, it passes as a motion does.
+        motion = self.folder / "m.csv"
+        done = run("plan", file, "--refine", "--speed", "0.1", "--out", motion, "--json",
+                   self.result)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        result = json.loads(self.result.read_text())
+        self.assertTrue(result["motion"]["executable"])
+        self.assertLess(result["refinement"]["cost"], result["refinement"]["cost_before"])
+        checked = run("check", file, motion)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        for more in (("--refine",), ("--speed", "0.1")):
+            done = run("plan", file, "--certificate", self.folder / "c.json", *more)
+            self.assertEqual(done.returncode, 2)
+            self.assertRegex(done.stderr, "^swivel: --certificate: .*: allowed without --refine")
+        (self.folder / "rows.csv").write_text(self.out.read_text())
+        done = self.plan(self.given(), "--refine")
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("beside which nothing is refined yet", done.stderr)
 
     def test_formats_of_motions(self):
         file = self.file(cell())

@@ -145,6 +145,25 @@ class Workcells(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "allowed are two alike"):
             swivel.check_workcell(cell, {"left": left, "right": untimed.trajectories["right"]})
 
+    def test_refines(self):
+        cell = swivel.Workcell(self.arms(0.5))
+        plain = swivel.plan_workcell(cell)
+        self.assertEqual(plain.refinements, {})
+        plan = swivel.plan_workcell(cell, refine=True)
+        self.assertEqual(list(plan.refinements), ["left", "right"])
+        self.assertLess(plan.cost, plain.cost)
+        self.assertFalse(plan.stopped)
+        for name, arm in plan.refinements.items():
+            self.assertTrue(arm.refined)
+            self.assertLess(arm.cost, arm.cost_before)
+            np.testing.assert_array_equal(
+                arm.trajectory.joints, plan.trajectories[name].joints
+            )
+        self.assertTrue(swivel.check_workcell(cell, plan))
+        self.assertAlmostEqual(json.loads(plan.to_json())["refinement"]["cost"], plan.cost)
+        timed = swivel.plan_workcell(cell, refine=True, speed=0.1)
+        self.assertTrue(swivel.check_workcell(cell, timed.motions))
+
     def test_bad_input(self):
         with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
             swivel.load_workcell(DATA / "problems" / "experiment_c.yaml")

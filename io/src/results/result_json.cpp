@@ -33,14 +33,6 @@ Json certificate_json(const InfeasibilityCertificate& certificate, std::size_t b
           {"bytes", bytes}};
 }
 
-Json refinement_json(const Refined& refined) {
-  return {{"refined", refined.refined},         {"reason", text_or_null(refined.reason)},
-          {"cost_before", refined.cost_before}, {"cost", refined.cost},
-          {"bend_before", refined.bend_before}, {"bend", refined.bend},
-          {"rounds", refined.rounds},           {"nodes_asked", refined.nodes_asked},
-          {"edges_asked", refined.edges_asked}, {"second_seed", refined.from_second_seed}};
-}
-
 Json motion_json(const TimingResult& timed, const TimingOptions& asked, const JointNames& names) {
   Json json = {{"executable", timed.motion.has_value()},
                {"reason", timed.failure ? Json(timed.failure->reason) : Json(nullptr)},

@@ -224,6 +224,14 @@ std::string document_of(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+Json refinement_json(const Refined& refined) {
+  return {{"refined", refined.refined},         {"reason", text_or_null(refined.reason)},
+          {"cost_before", refined.cost_before}, {"cost", refined.cost},
+          {"bend_before", refined.bend_before}, {"bend", refined.bend},
+          {"rounds", refined.rounds},           {"nodes_asked", refined.nodes_asked},
+          {"edges_asked", refined.edges_asked}, {"second_seed", refined.from_second_seed}};
+}
+
 Json advice_json(const std::vector<Advice>& advice) {
   Json list = Json::array();
   for (const Advice& one : advice)

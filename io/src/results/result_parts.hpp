@@ -9,6 +9,7 @@
 
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/refined.hpp"
 #include "swivel/core/motion/timed_path.hpp"
 #include "swivel/io/motions/motion.hpp"
 
@@ -50,6 +51,7 @@ void add_measures(Json& json, const Measures& measures, bool solved);
 /// replaced.
 [[nodiscard]] std::string document_of(const Json& json);
 
+[[nodiscard]] Json refinement_json(const Refined& refined);
 [[nodiscard]] Json advice_json(const std::vector<Advice>& advice);
 
 /// Adds the keys that say how good a timed motion of an arm is. `names`: of its joints.

@@ -35,6 +35,20 @@ Json arm_json(const WorkcellResult& result, std::size_t arm) {
   return json;
 }
 
+/// Returns the refinement of both arms: what they have together, and that of each.
+Json refinement_of_both(const RefinedWorkcell& refined, const std::array<std::string, 2>& names) {
+  Json json = {{"cost_before", refined.cost_before},
+               {"cost", refined.cost},
+               {"turns", refined.turns},
+               {"arms", Json::array()}};
+  for (std::size_t k = 0; k < 2; ++k) {
+    Json arm = {{"name", names[k]}};
+    arm.update(refinement_json(refined.arms[k]));
+    json["arms"].push_back(std::move(arm));
+  }
+  return json;
+}
+
 /// Returns the motion of both arms: what they have together, and the measures of each.
 Json workcell_motion_json(const WorkcellTiming& timed, const TimingOptions& asked,
                           const WorkcellResult& result) {
@@ -82,6 +96,8 @@ std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras&
   json["threads"] = result.threads;
   json["decided_by"] = to_string(result.decided_by);
   json["arms"] = {arm_json(result, 0), arm_json(result, 1)};
+  json["refinement"] =
+      extras.refinement ? refinement_of_both(*extras.refinement, result.names) : Json(nullptr);
   json["motion"] =
       extras.motion ? workcell_motion_json(*extras.motion, extras.timing, result) : Json(nullptr);
   json["conflict"] = nullptr;

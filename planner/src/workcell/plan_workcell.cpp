@@ -10,6 +10,7 @@
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/supported_options.hpp"
+#include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -26,6 +27,7 @@
 #include "validity/collision_validity.hpp"
 #include "workcell/arm_in_cell.hpp"
 #include "workcell/between_arms.hpp"
+#include "workcell/measure_workcell.hpp"
 
 namespace swivel {
 
@@ -285,7 +287,7 @@ class WorkcellPlan {
         measure_rows(arms_[k]->robot, arms_[k]->path, arms_[k]->world, arm.trajectory,
                      options_.evidence, budget_, arm);
       }
-      if (options_.evidence.postures) measure_between();
+      if (options_.evidence.postures) measure_between_arms(prepared_, budget_, result_);
       return;
     }
     for (std::size_t k = 0; k < 2; ++k) {
@@ -327,18 +329,6 @@ class WorkcellPlan {
     }
     view_->owner = owner;
   }
-  void measure_between() {
-    InterArmWorld::Query query(prepared_.between());
-    const auto& rows = result_.arms;
-    for (std::size_t row = 0; row < rows[0].trajectory.size(); ++row) {
-      budget_.poll();
-      const auto found = query.clearance({rows[0].trajectory[row].q, rows[1].trajectory[row].q});
-      if (!found) return;
-      if (result_.between_arms && found->margin() >= result_.between_arms->margin) continue;
-      result_.between_arms = {found->margin(), found->distance, found->required,
-                              prepared_.between().names(found->pair), static_cast<int>(row)};
-    }
-  }
 
   const PreparedWorkcell& prepared_;
   const PlanOptions& options_;
@@ -350,6 +340,35 @@ class WorkcellPlan {
 };
 
 }  // namespace
+
+void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
+                      const Budget& budget, WorkcellResult& result) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PreparedRobot& robot = prepared.robot(k);
+    const Problem& problem = prepared.problem(k);
+    const ToolPath path = path_within_scale(problem, robot.arm().chain, budget);
+    PlanResult& arm = result.arms[k];
+    measure_margins(robot.arm().chain, path, arm.trajectory, arm);
+    measure_rows(robot, path, World(robot.world(), problem, budget), arm.trajectory, wanted, budget,
+                 arm);
+  }
+  if (wanted.postures) measure_between_arms(prepared, budget, result);
+}
+
+void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget,
+                          WorkcellResult& result) {
+  InterArmWorld::Query query(prepared.between());
+  result.between_arms.reset();
+  const auto& rows = result.arms;
+  for (std::size_t row = 0; row < rows[0].trajectory.size(); ++row) {
+    budget.poll();
+    const auto found = query.clearance({rows[0].trajectory[row].q, rows[1].trajectory[row].q});
+    if (!found) return;
+    if (result.between_arms && found->margin() >= result.between_arms->margin) continue;
+    result.between_arms = {found->margin(), found->distance, found->required,
+                           prepared.between().names(found->pair), static_cast<int>(row)};
+  }
+}
 
 WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
                              WorkcellView* view) {

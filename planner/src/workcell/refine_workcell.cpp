@@ -9,6 +9,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "workcell/timed_workcell.hpp"
 
 namespace swivel {
 
@@ -62,17 +63,21 @@ class BesideOther final : public LayerCheck {
 
 }  // namespace
 
-RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,
-                                const std::array<std::vector<TrajectoryRow>, 2>& rows,
-                                const Budget& budget) {
-  const TraceSpan span("refine workcell");
-  constexpr int kMostRepeats = 4;
-  constexpr double kWorthIt = 1 - 1e-3;
+void require_refinable(const PreparedWorkcell& prepared) {
   if (const auto given = prepared.given_arm())
     throw InputError(prepared.problem(*given).source,
                      "arm '" + prepared.name(*given) +
                          "': its motion is given, beside which nothing is refined yet: allowed are "
                          "two arms that are planned");
+}
+
+RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,
+                                const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                                const Budget& budget, double extra_clearance) {
+  const TraceSpan span("refine workcell");
+  constexpr int kMostRepeats = 4;
+  constexpr double kWorthIt = 1 - 1e-3;
+  require_refinable(prepared);
   RefinedWorkcell result;
   for (std::size_t k = 0; k < 2; ++k) result.arms[k].rows = rows[k];
   for (int turn = 0; turn < kMostRepeats; ++turn) {
@@ -81,6 +86,7 @@ RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,
       BesideOther beside(prepared, k, result.arms[1 - k].rows, budget);
       RefineOptions options;
       options.second_seed = false;  // it is planned without the other arm
+      options.extra_clearance = extra_clearance;
       options.by_layer = &beside;
       Refined found =
           refine(prepared.robot(k), prepared.problem(k), result.arms[k].rows, options, budget);

@@ -357,29 +357,4 @@ WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
   return WorkcellTimer(prepared, rows, options, budget).run();
 }
 
-WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
-                                        const PlanOptions& options, const TimingOptions& timing) {
-  require_positive(timing);
-  require_motion_defaults(prepared);
-  const Budget budget = options.budget();
-  WorkcellMotionPlan plan{plan_workcell(prepared, options), {}};
-  WorkcellResult& result = plan.result;
-  if (result.status != PlanStatus::kSolved) return plan;
-  try {
-    plan.timing = time_workcell(prepared, {result.arms[0].trajectory, result.arms[1].trajectory},
-                                timing, budget);
-    result.time_ms["time"] = plan.timing->time_ms + plan.timing->check_ms;
-    if (!options.check || !plan.timing->motion) return plan;
-    Stopwatch watch;
-    const auto& arms = plan.timing->motion->arms;
-    require_passed(check_workcell_motion(prepared, {arms[0].rows, arms[1].rows},
-                                         {.margins = false, .budget = budget}));
-    result.time_ms["check"] += watch.lap();
-  } catch (const Stopped&) {
-    plan.timing.reset();
-    plan.stopped = true;
-  }
-  return plan;
-}
-
 }  // namespace swivel

@@ -5,6 +5,8 @@
 
 namespace swivel {
 
+/// Throws InputError where the motion of an arm is given, beside which nothing is refined.
+void require_refinable(const PreparedWorkcell& prepared);
 /// Throws InvalidArgument unless a workcell was completed by with_motion_defaults() before it was
 /// prepared.
 void require_motion_defaults(const PreparedWorkcell& prepared);

@@ -20,6 +20,7 @@
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/refine_workcell.hpp"
+#include "swivel/planner/workcell/workcell_view.hpp"
 #include "two_arms.hpp"
 #include "worst_rates.hpp"
 
@@ -478,6 +479,81 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
   EXPECT_GE(solved, at_least(count / 4));
   EXPECT_GE(cheaper, at_least(count / 8));
   EXPECT_GE(timed, at_least(count / 5));
+}
+
+TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
+  Random random(seed("RefineWorkcell.IsPlannedTimedAndProvedInOneCall"));
+  const TestRobot robot = data_robot("sda10f");
+  const int count = trials(48);
+  int solved = 0, timed = 0, cheaper = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    SCOPED_TRACE(trial);
+    const Workcell cell = workcell_to_time(robot, static_cast<Kind>(trial % 4), random);
+    std::optional<PreparedWorkcell> prepared;
+    try {
+      prepared.emplace(cell);
+    } catch (const InputError&) {
+      continue;  // a follower whose tool stands still
+    }
+    PlanOptions options = lazily();
+    options.check = true;
+    options.evidence = Evidence::all();
+    const WorkcellResult plain = plan_workcell(*prepared, options);
+    WorkcellView view;
+    const TimingOptions timing{.speed = 0.25};
+    const WorkcellMotionPlan plan = plan_workcell_motion(*prepared, options, true, timing, &view);
+    ASSERT_EQ(plan.result.status, plain.status);
+    EXPECT_EQ(plan.refinement.has_value(), plain.status == PlanStatus::kSolved);
+    if (plain.status != PlanStatus::kSolved) continue;
+    ++solved;
+    EXPECT_FALSE(plan.stopped);
+    EXPECT_LE(plan.result.cost, plain.cost * (1 + 1e-12));
+    EXPECT_EQ(plan.refinement->cost_before, plain.cost);
+    cheaper += plan.result.cost < plain.cost;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const PlanResult& arm = plan.result.arms[k];
+      EXPECT_EQ(arm.lattice.cost, plain.arms[k].cost);
+      EXPECT_EQ(arm.evidence.postures, plain.arms[k].evidence.postures);
+      const std::vector<TrajectoryRow>& rows = plan.refinement->arms[k].rows;
+      ASSERT_EQ(arm.trajectory.size(), rows.size());
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        EXPECT_EQ(arm.trajectory[row].q, rows[row].q);
+    }
+    const WorkcellCheckResult check =
+        check_workcell(*prepared, {plan.result.arms[0].trajectory, plan.result.arms[1].trajectory});
+    EXPECT_TRUE(check.passed);
+    ASSERT_EQ(plan.result.between_arms.has_value(), check.between.has_value());
+    if (check.between) {
+      EXPECT_NEAR(plan.result.between_arms->margin, check.between->margin, 1e-9);
+    }
+    ASSERT_TRUE(plan.timing);
+    if (!plan.timing->motion) continue;
+    ++timed;
+    EXPECT_TRUE(
+        check_workcell_motion(*prepared, rows_of(*plan.timing->motion), {.margins = false}).passed);
+  }
+  std::printf("%d solved, %d cheaper, %d timed\n", solved, cheaper, timed);
+  EXPECT_GE(solved, at_least(count / 4));
+  EXPECT_GE(cheaper, at_least(count / 6));
+  EXPECT_GE(timed, at_least(count / 6));
+}
+
+TEST(RefineWorkcell, LeavesUnrefinedPlansAsTheyAre) {
+  Random random(seed("RefineWorkcell.LeavesUnrefinedPlansAsTheyAre"));
+  const TestRobot robot = data_robot("sda10f");
+  for (int trial = 0; trial < trials(12); ++trial) {
+    const Workcell cell = random_workcell(robot, random);
+    const PreparedWorkcell prepared(cell);
+    const WorkcellResult plain = plan_workcell(prepared, lazily());
+    const WorkcellMotionPlan plan = plan_workcell_motion(prepared, lazily(), false, std::nullopt);
+    EXPECT_FALSE(plan.refinement || plan.timing || plan.stopped);
+    EXPECT_EQ(plan.result.cost, plain.cost);
+    for (std::size_t k = 0; k < 2; ++k) {
+      ASSERT_EQ(plan.result.arms[k].trajectory.size(), plain.arms[k].trajectory.size());
+      for (std::size_t row = 0; row < plain.arms[k].trajectory.size(); ++row)
+        EXPECT_EQ(plan.result.arms[k].trajectory[row].q, plain.arms[k].trajectory[row].q);
+    }
+  }
 }
 
 TEST(WorkcellMotion, RefusesWhatIsNoTiming) {

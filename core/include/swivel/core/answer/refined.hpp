@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,6 +20,14 @@ struct Refined {
   int rounds = 0;  ///< rounds of optimising and asking
   std::int64_t nodes_asked = 0, edges_asked = 0;
   bool from_second_seed = false;
+};
+
+/// The refined trajectories of two arms, and how they changed.
+struct RefinedWorkcell {
+  /// The rows of each arm, refined or not, with the cost before and now, and the work of all turns.
+  std::array<Refined, 2> arms;
+  int turns = 0;                     ///< times that both arms were refined, one after the other
+  double cost_before = 0, cost = 0;  ///< of both paths together
 };
 
 }  // namespace swivel

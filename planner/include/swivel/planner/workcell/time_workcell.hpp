@@ -8,6 +8,7 @@
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
+#include "swivel/planner/workcell/refine_workcell.hpp"
 
 namespace swivel {
 
@@ -38,20 +39,27 @@ namespace swivel {
                                            const std::array<std::vector<TrajectoryRow>, 2>& rows,
                                            const TimingOptions& options, const Budget& budget = {});
 
-/// A plan of a workcell and its motion in time.
+/// A plan of a workcell, and if asked for, its refinement and its motion in time.
 struct WorkcellMotionPlan {
+  /// The plan. If it is solved, trajectories, costs and measures describe the paths that are
+  /// executed; lattice.cost of each arm and the bound stay those of the lattices' paths.
   WorkcellResult result;
-  /// Set if there is a plan and time was left; has a failure where it has no motion.
+  std::optional<RefinedWorkcell> refinement;  ///< set if asked for and there is a plan
+  /// Set if asked for, there is a plan and time was left; has a failure where it has no motion.
   std::optional<WorkcellTiming> timing;
-  bool stopped = false;  ///< there is a plan, but time ran out before its motion
+  bool stopped = false;  ///< there is a plan, but time ran out before the rest was done
 };
-/// Plans a workcell and times the plan, both within the time-out of `options`, and proves both if
-/// options.check. `prepared` is that of a workcell with_motion_defaults(). Throws as
-/// plan_workcell() and time_workcell() do, std::logic_error if options.check finds an answer
-/// invalid.
+/// Plans a workcell, then refines the plan if `refined` is true, and times it if `timing` is set:
+/// all within the time-out of `options`, and proved if options.check. Where bodies come too near
+/// between rows of a refined plan that is timed, it is refined again with more clearance at rows.
+/// `prepared` is that of a workcell with_motion_defaults() where it is timed; where it is refined
+/// alone, keep_clearance_between_layers() should have been applied to the limits of its arms.
+/// `view`: as of plan_workcell(). Throws as plan_workcell(), refine_workcell() and time_workcell()
+/// do, std::logic_error if options.check finds an answer invalid.
 [[nodiscard]] WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
-                                                      const PlanOptions& options,
-                                                      const TimingOptions& timing);
+                                                      const PlanOptions& options, bool refined,
+                                                      const std::optional<TimingOptions>& timing,
+                                                      WorkcellView* view = nullptr);
 
 /// Proves a timed motion of two arms from the workcell alone, or tells what is wrong with it. The
 /// workcell is one with_motion_defaults(). Each arm passes check_motion() by itself; rows are at

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "swivel/core/base/budget.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+
+namespace swivel {
+
+/// Measures the trajectories of a result, of each arm by itself and between both, as far as
+/// `wanted` asks for it. Throws Stopped.
+void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
+                      const Budget& budget, WorkcellResult& result);
+/// Finds the row and the bodies of both arms with the least margin. Throws Stopped.
+void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget,
+                          WorkcellResult& result);
+
+}  // namespace swivel
