@@ -159,6 +159,26 @@ def made_problem(attached=(), walls=(), touched=(), **path):
     }
 
 
+def made_workcell(gap, up=1.0):
+    """Two arms whose tools move 0.1 m up, so far from each other (m)."""
+    arms = [
+        {
+            "name": name, "tip_link": f"arm_{name}_link_tool0", "tool": {"xyz": [0, 0, 0.1]},
+            "path": {
+                "waypoints": [
+                    {"xyz": [0.72, y, z], "rpy": [0, 1.5707963, 0]} for z in (up, up + 0.1)
+                ]
+            }
+        } for name, y in (("left", gap / 2), ("right", -gap / 2))
+    ]
+    robots = PROBLEMS.parent / "robots"
+    robot = {
+        "urdf": str(robots / "sda10f.urdf"), "srdf": str(robots / "sda10f.srdf"),
+        "base_link": "base_link", "hold": {"torso_joint_b1": 0}
+    }
+    return {"robot": robot, "arms": arms, "resolution": {"ds": 0.02, "dphi": 0.2}}
+
+
 class Results(unittest.TestCase):
     # Every key appears: an answer, none, motions with slow stretches and stops, advice, proofs,
     # robots that touch themselves.
@@ -211,9 +231,12 @@ class Results(unittest.TestCase):
 
     def test_results_have_the_keys_of_the_schema_and_no_others(self):
         free = {".diagnosis.removed", ".time_ms.stages"}
-        # Those of jobs are compared in tests/io/job_result_test.cpp.
+        # Those of jobs are compared in tests/io/job_result_test.cpp, those of workcells below.
         of_plans = {
-            "anyOf": [one for one in self.schema["anyOf"] if "parts" not in one["properties"]]
+            "anyOf": [
+                one for one in self.schema["anyOf"]
+                if not {"parts", "decided_by"} & set(one["properties"])
+            ]
         }
         known, seen, statuses = set(keys_of_schema(of_plans)), {".message"}, set()
         for problem, result in self.results():
@@ -237,6 +260,38 @@ class Results(unittest.TestCase):
             + ("" if jsonschema else "; values not judged: python3-jsonschema is missing"),
             file=sys.stderr,
         )
+
+    def test_results_of_workcells_too(self):
+        (of_workcells,) = [
+            one for one in self.schema["anyOf"] if "decided_by" in one["properties"]
+        ]
+        known, seen, statuses = set(keys_of_schema(of_workcells)), set(), set()
+        plate = PROBLEMS / "sda10f_plate_workcell.yaml"
+        folder = pathlib.Path(self.folder.name)
+        for cell, *more in (
+            (plate, "--refine", "--speed", "0.05"), (plate,), (plate, "--timeout", "1e-9"),
+            (made_workcell(gap=0.02),), (made_workcell(gap=0.5, up=3),),
+        ):
+            if isinstance(cell, dict):
+                (folder / "cell.yaml").write_text(json.dumps(cell))
+                cell = folder / "cell.yaml"
+            done = swivel("plan", cell, *more, "--quiet", "--json", folder / "result.json")
+            self.assertIn(done.returncode, (0, 1, 3), done.stderr)
+            result = json.loads((folder / "result.json").read_text())
+            statuses.add((result["status"], result["decided_by"]))
+            free = {".arms[].diagnosis.removed", ".time_ms.stages"}
+            seen |= set(keys_of(result, free))
+            if jsonschema:
+                validator(of_workcells).validate(result)
+                validator(self.schema).validate(result)
+        self.assertEqual(seen - known, set())
+        # What arms have as plans have it need not appear here once more.
+        alike = (
+            ".arms[].diagnosis.", ".arms[].deepest_contact.", ".arms[].lattice.",
+            ".arms[].trajectory[].roll", ".motion.arms[].slow[]", ".motion.arms[].corners.stops[]",
+        )
+        self.assertEqual({key for key in known - seen if not key.startswith(alike)}, set())
+        self.assertEqual(len(statuses), 4, statuses)
 
     def test_summaries_of_campaigns_too(self):
         of_campaigns = schema("campaign")

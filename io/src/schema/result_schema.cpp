@@ -646,6 +646,122 @@ Schema job_result() {
   return section("job_result", join(join(job_answer_keys(), parts), last));
 }
 
+Schema refinement_of_workcell() {
+  std::vector<Schema::Key> of_arm{key("name", text(), "of the arm")};
+  return section(
+      "workcell_refinement",
+      {key("cost_before", number(), "of both paths as the search found them"),
+       key("cost", number(), "of both now; never more"),
+       key("turns", integer(), "times that both arms were refined, one after the other"),
+       key("arms", list(section("", join(of_arm, refinement().keys)), 2),
+           "of each arm `name` and what refining it brought, as of [results](#refinement)")});
+}
+
+Schema motion_of_workcell() {
+  const Schema follower =
+      section("", {key("arm", text(), "its name"), key("position", number(), "the most", "m"),
+                   key("angle", number(), "the most", "rad")});
+  std::vector<Schema::Key> of_arm{key("name", text(), "of the arm"),
+                                  key("speed", number(), "that its tool may have", "m/s")};
+  for (const char* const name : {"peaks", "slow", "corners", "between_samples", "warnings"})
+    of_arm.push_back(*motion().find(name));
+  return section(
+      "workcell_motion",
+      {key("executable", boolean(),
+           "whether there is one; else the keys from `samples` on are missing"),
+       key("reason", or_null(text()), "why there is none"),
+       key("arm", or_null(text()), "which arm has none"),
+       key("at_s", or_null(number()), "where, of that arm", "m"),
+       key("speed", number(), "asked for, of the faster tool", "m/s"),
+       key("turn_speed", or_null(number()), "asked for", "rad/s"),
+       key("rate", number(), "samples a second", "1/s"),
+       key("chord", or_null(number()), "asked for, as of [motions](#motion-in-the-result)", "m"),
+       key_of_some("samples", integer(), "rows"),
+       key_of_some("duration", number(), "until both tools rest at the end", "s"),
+       key_of_some("ideal", number(), "the same with the faster tool at its speed throughout", "s"),
+       key_of_some("blended", integer(), "waypoints passed at a changing ratio of speeds"),
+       key_of_some("follower", or_null(follower),
+                   "of a leader and its follower: the `arm` that follows, and how far its tool is "
+                   "off its path on the leader's tool, `position`, `angle`"),
+       key_of_some(
+           "arms", list(section("", of_arm), 2),
+           "of each arm `name`, `speed`, and `peaks`, `slow` (the stretches that its joints "
+           "cause), `corners`, `between_samples`, `warnings` as of "
+           "[motions](#motion-in-the-result)"),
+       key_of_some("warnings", list(text()), "of both together")});
+}
+
+Schema arms_of_workcell() {
+  const std::vector<Schema::Key> first{
+      key("name", text(), "of the arm"),
+      key("given", boolean(), "whether its motion was"),
+      key("least_cost", or_null(number()), "of it by itself; `null`: it has no path"),
+      key("cost", or_null(number()),
+          "of its path; like all that describes its rows, `null` where there is no plan"),
+      key("summary", summary(), "the arm at a glance, as of [results](#summary)"),
+      key("lattice", lattice(), "its size, as of [results](#lattice)")};
+  std::vector<Schema::Key> last = part_keys();
+  std::erase_if(last, [](const Schema::Key& one) {
+    return one.name != "held" && one.name != "warnings" && one.name != "joint_names";
+  });
+  const std::vector<Schema::Key> middle{
+      key("counters", counters(), "work done for it, as of [results](#counters)"),
+      key("diagnosis", or_null(diagnosis()),
+          "of an arm that has no path by itself, as of [results](#diagnosis); else `null`"),
+      key("trajectory", or_null(rows()), "its rows; row k of both arms are simultaneous")};
+  std::vector<Schema::Key> measures = measure_keys();
+  for (Schema::Key& one : measures) one.group = "result";
+  for (Schema::Key& one : last) one.group = "result";
+  return list(section("workcell_arm", join(join(first, measures), join(middle, last))), 2);
+}
+
+Schema workcell_result() {
+  const Schema conflict = section(
+      "", {key("layer", integer(), "of both paths"),
+           key("on_motion", boolean(), "whether they meet on the way to the next layer"),
+           key("s", numbers(2), "of both arms", "m"), key("bodies", bodies(), "one of each arm")});
+  const Schema between =
+      section("", {key("clearance_mm", number(), "of these", "mm"),
+                   key("margin_mm", number(), "more than they must keep", "mm"),
+                   key("bodies", bodies(), "one of each arm"), key("row", integer(), "from 0")});
+  const Schema asked = section("", {key("rounds", integer(), "regions of conflict"),
+                                    key("pops", integer(), "pairs of nodes taken"),
+                                    key("node_pairs", integer(), "asked about"),
+                                    key("move_pairs", integer(), "asked about")});
+  return section(
+      "workcell_result",
+      {key("schema_version", integer(kResultVersions), "as of [results](#result-json)"),
+       key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}), "as of results"),
+       key("cost", or_null(number()), "of both paths together; `null` where there is no plan"),
+       key("bound", or_null(number()),
+           "no two paths of nodes without conflict cost less (refined ones may); `null` where "
+           "there "
+           "are none"),
+       key("checked", or_null(boolean()), "whether the answer passed what `check` asks"),
+       key("planner", text(), "which of the planners"), key("threads", integer(), "that worked"),
+       key("decided_by", one_of({"arms alone", "regions", "pairs of nodes", "none"}),
+           "`arms alone`: the arms' own answers, which do not meet, or an arm that has none; "
+           "`regions` or `pairs of nodes`: the search that ended first ([theory](theory.md)); "
+           "`none`: stopped"),
+       key("arms", arms_of_workcell(), "of each arm its part, [below](#arm-of-a-workcell)"),
+       key("refinement", or_null(refinement_of_workcell()),
+           "`null` without `--refine`; [below](#refinement-of-a-workcell)"),
+       key("motion", or_null(motion_of_workcell()),
+           "`null` without `--speed`; [below](#motion-in-the-result-of-a-workcell)"),
+       key("conflict", or_null(conflict),
+           "where each arm has a path and both together have none: the first conflict met, "
+           "`layer`, "
+           "`on_motion`, `s` of both arms and the two `bodies`; else `null`"),
+       key("between_arms", or_null(between),
+           "the `row` and the `bodies` of both arms with the least margin, `clearance_mm` and "
+           "`margin_mm`; `null` unless measured"),
+       key("counters", asked,
+           "`rounds` of regions, `pops` of pairs of nodes, `node_pairs` and `move_pairs` asked "
+           "about"),
+       key("time_ms", time_ms(), "where time went, as of [results](#times)", "ms"),
+       key("warnings", list(text()), "of both; each arm has its own besides")});
+}
+
 Schema campaign_summary() {
   const auto spread = [] {
     return section("",
@@ -682,6 +798,7 @@ Schema error_result() {
 const Schema& result_schema() {
   static const Schema schema = [] {
     Schema any = either(plan_result(), job_result());
+    any.others.push_back(workcell_result());
     any.others.push_back(error_result());
     return any;
   }();
