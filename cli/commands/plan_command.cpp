@@ -377,10 +377,6 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
 /// Plans a workcell and writes and prints the answer.
 int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                      std::optional<io::OutputFiles>& outputs) {
-  if (!arguments.report.empty() && arguments.motion.ask_for_job_motion())
-    throw InputError(
-        "--report: the page of a workcell shows its paths without times: allowed without --speed "
-        "and --rate");
   const bool moved =
       arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
   refuse_options("workcells", arguments.problem,

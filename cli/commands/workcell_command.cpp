@@ -132,7 +132,9 @@ std::optional<std::string> page_of(const WorkcellRequest& request, const Prepare
                                    WorkcellMotionPlan& plan) {
   if (!request.report || view.arms.empty()) return std::nullopt;
   try {
-    return to_workcell_page({prepared, request.cell, plan.result, view},
+    const auto& timing = plan.timing;
+    const WorkcellMotion* motion = timing && timing->motion ? &*timing->motion : nullptr;
+    return to_workcell_page({prepared, request.cell, plan.result, view, motion},
                             io::to_workcell_json(plan.result, extras_of(request, plan)), budget,
                             {.which = "", .answer = plan_text(plan)});
   } catch (const Stopped&) {

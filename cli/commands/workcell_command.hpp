@@ -17,7 +17,7 @@ struct WorkcellRequest {
   std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
   bool refine = false;                    ///< --refine
   std::string out{};                      ///< --out; its ending tells the format of a motion
-  bool report = false;                    ///< page of --report; not with `timing`
+  bool report = false;                    ///< whether the page of --report is made
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two arms at one time: the poses of both at a row, what is between them, and what the view shows.
 import { number } from './page.js';
-import { offPath, poseAt, rowOf, stepsOf } from './poses.js';
+import { indexAt, offPath, poseAt, rowOf, stepsOf, valueAt } from './poses.js';
 
 /** The arms of a workcell with their rows, of which those of one number are simultaneous. */
 export class Pair {
@@ -10,15 +10,31 @@ export class Pair {
     Object.assign(this, { between, conflict });
     this.arms = arms.map((arm) => ({ ...arm, steps: stepsOf(arm.rows) }));
     this.last = Math.max(...arms.map(({ rows }) => rows.length - 1));
+    this.timed = arms.every(({ motion }) => motion);
+    this.end = this.timed ? arms[0].motion.t.at(-1) : null;
+  }
+  /** The place of an arm in its rows at a time of the motion. */
+  placeAt(arm, t) {
+    const { motion } = this.arms[arm];
+    return valueAt(motion.layers, indexAt(motion.t, t));
+  }
+  /** The time at which the first arm is at a place in its rows. */
+  timeOf(k) {
+    const { t, layers } = this.arms[0].motion;
+    return valueAt(t, indexAt(layers, k));
   }
   /** Whether there is anything to play. */
   get moves() {
     return this.last >= 0;
   }
-  /** Both arms at row k, not always whole; an arm whose path has ended rests there. */
-  posesAt(k) {
-    return this.arms.map(({ rows, steps, cut, chain }) => {
-      if (rows.length) return poseAt(rows, steps, Math.min(k, rows.length - 1));
+  /**
+   * Both arms at row k, not always whole; an arm whose path has ended rests there. t: of the
+   * motion, at which the arms may be at places that differ a little, or null.
+   */
+  posesAt(k, t = null) {
+    return this.arms.map(({ rows, steps, cut, chain }, arm) => {
+      const at = t === null ? k : this.placeAt(arm, t);
+      if (rows.length) return poseAt(rows, steps, Math.min(at, rows.length - 1));
       if (cut) return offPath(cut, null);
       const q = chain.joints.map(() => 0),
         note = 'no pose: drawn with all joints at 0';

@@ -2,16 +2,25 @@
 // The report of a workcell: two arms that work at one time, a map of each; one cursor moves both.
 import { sheet, savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { $, data, isDark, tell, themes, whenResized } from './page.js';
+import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
 import { Pair } from './pair.js';
 import { kDark, kLight, kLines } from './palette.js';
 import { Panels, showLegend } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
 import { Plots } from './plots.js';
-import { cellBeside, cellWords, offPath, placeWords, rowOf, shading } from './poses.js';
+import {
+  cellBeside,
+  cellWords,
+  indexAt,
+  offPath,
+  placeWords,
+  rowOf,
+  shading,
+  valueAt,
+} from './poses.js';
 import { tellPose } from './readout.js';
 import { startView } from './scene.js';
-import { alongRows } from './series.js';
+import { alongRows, overTime } from './series.js';
 import { armTable, verdict, workcellSummary } from './workcelltables.js';
 
 const pair = new Pair(data),
@@ -26,6 +35,7 @@ document.title = `${data.problem} – Swivel`;
 // off its path, or shown at the hovered cell of its map.
 let view = null,
   cursor = 0,
+  time = 0,
   active = 0,
   kept = null,
   hovered = null,
@@ -33,11 +43,14 @@ let view = null,
   told = 0,
   begun = false,
   noting = 0;
-/** For those who test the page: joints of both arms and line shown now, row, pictures drawn. */
-window.swivel = { joints: null, frames: 0, line: null, row: null, active };
+/**
+ * For those who test the page: joints of both arms and line shown now, row, pictures drawn, and
+ * what goes to a time of the motion.
+ */
+window.swivel = { joints: null, frames: 0, line: null, row: null, active, toTime };
 
 const player = new Player(() => {
-  if (pair.moves && cursor >= pair.last) go(0);
+  if (pair.moves && cursor >= pair.last) go((time = 0));
   return pair.moves;
 });
 /** To a row of the user's choice. */
@@ -93,6 +106,30 @@ const gap =
         `s of ${arms[0].name}, m`,
       )
     : null;
+// In time, where there is a motion: a cursor along the paths stands for a moment, and the other
+// way round.
+const timed = pair.timed
+  ? arms.map(({ name, leader, motion }, k) => {
+      const box = document.createElement('div'),
+        title = document.createElement('h3'),
+        { speed } = data.result.motion.arms[k];
+      title.textContent = name;
+      $('motion').append(title, box);
+      // The speed of a follower's tool is bounded on its leader's; the plot is of the base frame.
+      return new Plots(
+        box,
+        motion.t,
+        overTime(motion, leader === null ? 1e3 * speed : null),
+        (index) => toTime(valueAt(motion.t, index)),
+        `t of ${name}, s`,
+      );
+    })
+  : [];
+function toTime(t) {
+  player.pause();
+  time = t;
+  go(pair.placeAt(0, t));
+}
 /** Plots below a heading, over s of the rows, which `axis` names; null where there are none. */
 function plotsOf(name, rows, series, axis) {
   if (!rows.length) return null;
@@ -156,7 +193,10 @@ function showCut(arm) {
 function shown() {
   const off = hovered ?? kept;
   if (off) return { poses: pair.posesBeside(active, off), between: null };
-  return { poses: pair.posesAt(cursor), between: pair.betweenAt(cursor) };
+  return {
+    poses: pair.posesAt(cursor, pair.timed ? time : null),
+    between: pair.betweenAt(cursor),
+  };
 }
 /** What the view marks: the pose off a path, where the arms meet, or the line of one's choice. */
 function marked({ poses, between }) {
@@ -204,19 +244,26 @@ function go(k) {
   if (pair.moves) {
     noteAddress();
     cursor = Math.min(pair.last, Math.max(0, k));
+    if (pair.timed && Math.abs(pair.placeAt(0, time) - cursor) > 1e-9) time = pair.timeOf(cursor);
   }
   kept = hovered = turned = null;
   const late = player.playing && performance.now() - told < 60;
   present();
   if (late) return;
   $('slider').value = cursor;
-  $('where').textContent = `${Math.round(cursor)} / ${pair.last}`;
+  $('where').textContent =
+    `${Math.round(cursor)} / ${pair.last}` +
+    (pair.timed ? `, ${time.toFixed(2)} / ${number(pair.end)} s` : '');
+  timed.forEach((plot, arm) => plot.draw(indexAt(arms[arm].motion.t, time)));
 }
-/** Plays on, both paths in eight seconds; true while it plays. now: ms. */
+/** Plays on; true while it plays. now: ms. */
 function step(now) {
   if (!player.playing) return false;
-  go(cursor + (player.passed(now) / 8) * pair.last);
-  if (cursor >= pair.last) to(pair.last);
+  // A motion takes its own time at speed 1, paths without one eight seconds.
+  const passed = player.passed(now);
+  time += passed;
+  go(pair.timed ? pair.placeAt(0, time) : cursor + (passed / 8) * pair.last);
+  if (pair.timed ? time >= pair.end : cursor >= pair.last) to(pair.last);
   return player.playing;
 }
 
@@ -240,7 +287,7 @@ const everyRow = arms.flatMap(({ rows }) => rows);
 
 function paint() {
   view?.paint();
-  for (const one of [...maps, ...plots, gap]) one?.paint();
+  for (const one of [...maps, ...plots, gap, ...timed]) one?.paint();
   paintLegend();
 }
 /** One legend for both maps, whose colours mean the same. */
@@ -281,6 +328,7 @@ function addLineChoice() {
 addLineChoice();
 
 $('controls').hidden = $('plots-section').hidden = !pair.moves;
+$('motion-section').hidden = !pair.timed;
 $('slider').max = Math.max(0, pair.last);
 $('slider').addEventListener('input', ({ target }) => to(Number(target.value)));
 $('scene').ariaLabel = $('scene').ariaLabel.replace('The arm', 'Both arms');
@@ -318,12 +366,18 @@ function mapNotes() {
   );
   const own = notes.map((note, k) => `${arms[k].name}: ${note.trim()}`).join(' ');
   const empty = arms.filter(({ cells }) => !cells.panels.length).map(({ name }) => name),
-    dashed = arms.filter(({ beside }) => beside.length).map(({ name }) => name);
+    dashed = (of) =>
+      arms.filter(({ beside, refined }) => beside.length && refined === of).map(({ name }) => name),
+    before = dashed(true),
+    alone = dashed(false);
   return (
     (notes[0] === notes[1] ? notes[0].trim() : own) +
     (empty.length ? ` No pose of ${empty.join(' and ')} exists, so that it has no map.` : '') +
-    (dashed.length
-      ? ` The thin dashed line is the path that ${dashed.join(' and ')} would take alone.`
+    (alone.length
+      ? ` The thin dashed line is the path that ${alone.join(' and ')} would take alone.`
+      : '') +
+    (before.length
+      ? ` The thin dashed line is the path of ${before.join(' and ')} before it was refined.`
       : '') +
     (solved || barredArm >= 0 || !conflict
       ? ''
@@ -337,6 +391,10 @@ const stem = data.problem.replace(/\.[^.]*$/, '');
 savers(document.querySelector('#plots-section h2'), `${stem}_plots`, () =>
   sheet([...plots, gap].filter((one) => one).map((one) => one.figure())),
 );
+if (pair.timed)
+  savers(document.querySelector('#motion-section h2'), `${stem}_motion`, () =>
+    sheet(timed.map((one) => one.figure())),
+  );
 savers(document.querySelector('#map-section h2'), `${stem}_maps`, () =>
   sheet(maps.map((one) => one.figure())),
 );

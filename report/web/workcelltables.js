@@ -43,26 +43,41 @@ export function verdict({ answer, result, arms }, pair, go, showCut) {
       if (/^ {2}(without|no single)/.test(second ?? '')) say(second.trim());
     });
   }
-  const warnings = new Set([...result.warnings, ...result.arms.flatMap((arm) => arm.warnings)]);
+  const { motion } = result;
+  const warnings = new Set([
+    ...result.warnings,
+    ...result.arms.flatMap((arm) => arm.warnings),
+    ...(motion?.warnings ?? []),
+    ...(motion?.arms ?? []).flatMap((arm) => arm.warnings.map((one) => `${arm.name}: ${one}`)),
+  ]);
   warn(host, { warnings: [...warnings] });
 }
 
 /** What a plan costs and keeps. */
 function sayFound(result, arms, say, go) {
   const alone = result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
-    solved = result.status === 'solved';
+    solved = result.status === 'solved',
+    found = costOfNodes(result),
+    before = result.refinement ? 'before refining ' : '';
   say(
     `${solved ? 'Solved' : 'Stopped'}: two arms, ${arms[0].rows.length} rows, cost ` +
-      `${number(result.cost)}: ` +
+      `${number(result.cost)}: ${before}` +
       (result.decided_by === 'arms alone'
         ? 'that of both arms alone, which do not meet'
-        : `${number(100 * (result.cost / alone - 1), 2)} % more than both arms alone, which ` +
+        : `${number(100 * (found / alone - 1), 2)} % more than both arms alone, which ` +
           'would meet') +
       (solved || !(result.bound > 0)
         ? ''
         : `, at most ${number(100 * (result.cost / result.bound - 1), 2)} % from the best`),
   );
-  const near = result.between_arms;
+  const { motion, between_arms: near } = result;
+  if (motion?.executable)
+    say(
+      `motion ${number(motion.duration)} s at ` +
+        `${number(1e3 * Math.max(...motion.arms.map(({ speed }) => speed)))} mm/s`,
+    );
+  else if (motion)
+    say(`not executable: ${motion.arm} at s ${number(motion.at_s)}: ${motion.reason}`);
   if (near)
     say(
       `arms nearest to each other ${number(near.clearance_mm, 3)} mm (asked ` +
@@ -96,16 +111,20 @@ function sayFound(result, arms, say, go) {
   if (held.size) say(`held: ${heldWords([...held.values()])}`);
 }
 
+/** What both paths of the lattices cost, before they were refined. */
+const costOfNodes = ({ arms }) => arms.reduce((sum, { lattice }) => sum + lattice.cost, 0);
+
 const millimetres = (value) => (value === undefined ? null : number(1e3 * value));
 const kColumns = [
   ['arm', ({ name }) => name],
   ['path', ({ path, least_cost }) => path ?? (least_cost === null ? 'none' : 'by itself')],
   ['cost', ({ cost }) => number(cost, 5)],
+  ['before refining', ({ before }) => number(before, 5)],
   ['least cost by itself', ({ least_cost }) => number(least_cost, 5)],
   [
     'dearer for the other',
-    ({ cost, least_cost }) =>
-      cost === null || !least_cost ? null : `${number(100 * (cost / least_cost - 1), 2)} %`,
+    ({ found, least_cost }) =>
+      found === null || !least_cost ? null : `${number(100 * (found / least_cost - 1), 2)} %`,
   ],
   ['clearance, mm', ({ summary }) => millimetres(summary?.clearance?.value)],
   ['from a limit', ({ summary }) => limitWords(summary?.joint_limit)],
@@ -116,15 +135,23 @@ const limitWords = (limit) => (limit ? `${number(limit.margin_deg, 3)}° (${limi
 
 /** The table of arms; choose: called with the number of one. */
 export function armTable({ result, arms }, choose) {
+  const { refinement } = result,
+    own = result.arms.map((arm, k) => ({
+      ...arm,
+      found: arm.cost === null ? null : arm.lattice.cost,
+      before: refinement?.arms[k].cost_before ?? null,
+    }));
   const both = {
     name: 'both',
     path: 'none',
     cost: result.cost,
+    found: result.cost === null ? null : costOfNodes(result),
+    before: refinement?.cost_before ?? null,
     least_cost: result.arms.some(({ least_cost }) => least_cost === null)
       ? null
       : result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
   };
-  const told = (value) => [...result.arms, both].some((arm) => ![null, '–'].includes(value(arm))),
+  const told = (value) => [...own, both].some((arm) => ![null, '–'].includes(value(arm))),
     columns = kColumns.filter(([name, value]) =>
       name === 'path' ? result.cost === null : told(value),
     ),
@@ -134,7 +161,7 @@ export function armTable({ result, arms }, choose) {
     cell.textContent = name;
     host.querySelector('thead tr').append(cell);
   }
-  [...result.arms, both].forEach((arm, k) => {
+  [...own, both].forEach((arm, k) => {
     const line = host.querySelector('tbody').insertRow();
     for (const [, value] of columns) line.insertCell().textContent = value(arm) ?? '–';
     if (!arms[k]) return;
@@ -170,6 +197,13 @@ export function workcellSummary({ answer, result, arms }) {
   // Workcells have stages of their own in place of these two.
   const { prepare, plan, stages, ...rest } = result.time_ms;
   add('Times, ms', [...words(rest), ...words(stages)]);
+  const { refinement, motion } = result;
+  if (motion) {
+    const { arms, ...both } = motion;
+    add('Motion', words(both));
+    arms?.forEach(({ name, ...arm }) => add(`Motion of ${name}`, words(arm)));
+  }
+  refinement?.arms.forEach(({ name, ...arm }) => add(`Refinement of ${name}`, words(arm)));
   result.arms.forEach(({ name, counters, lattice }, k) => {
     add(`Counters of ${name}`, words(counters));
     add(`Lattice of ${name}`, words(lattice));

@@ -187,10 +187,24 @@ class Workcells(unittest.TestCase):
         done = self.plan(cell(), "--report", page, "--timeout", "1e-9")
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         self.assertFalse(page.exists())
-        done = self.plan(cell(), "--report", page, "--speed", "0.1")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--report: the page of a workcell shows its paths without times", done.stderr)
-        self.assertEqual(len(done.stderr.splitlines()), 1)
+        # A timed plan has its times on the page, and a refined one the rows that are run.
+        done = run("plan", self.file(cell()), "--report", page, "--speed", "0.1", "--refine",
+                   "--json", self.result)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        html = page.read_text()
+        data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', html, re.S)[1])
+        result = json.loads(self.result.read_text())
+        for one, found in zip(data["arms"], result["arms"]):
+            self.assertTrue(one["refined"])
+            self.assertEqual(len(one["beside"]), len(found["trajectory"]))
+            self.assertEqual(
+                [row["q"] for row in one["rows"]], [row["joints"] for row in found["trajectory"]]
+            )
+            self.assertEqual(one["motion"]["t"], data["arms"][0]["motion"]["t"])
+            self.assertAlmostEqual(one["motion"]["t"][-1], result["motion"]["duration"], 2)
+            self.assertEqual(one["motion"]["layers"][0], 0)
+            self.assertEqual(one["motion"]["layers"], sorted(one["motion"]["layers"]))
+            self.assertAlmostEqual(one["motion"]["layers"][-1], len(one["rows"]) - 1)
 
     def test_check_refuses_spoilt_rows(self):
         self.assertEqual(self.plan(cell()).returncode, 0)

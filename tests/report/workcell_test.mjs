@@ -141,6 +141,56 @@ async function checkMotion(page, { data, result }) {
   await slide(page, 0.5);
   assertNear((await shown(page)).joints, between(a, b), 1e-9, 'between two rows');
 }
+/** Slider, plots, table and play of a motion in time. */
+async function checkTimes(page, { data, result }) {
+  const { t } = data.arms[0].motion,
+    { rows } = data.arms[0],
+    n = t.length,
+    where = () => page.textContent('#where'),
+    seconds = async () => Number((await where()).match(/([0-9.]+) \/ [0-9.]+ s/)[1]);
+  assert.ok(Math.abs(t[n - 1] - result.motion.duration) < 0.01);
+  assert.ok(await page.isVisible('#motion-section'));
+  const heads = await page.$$eval('#motion > h3', (all) => all.map((one) => one.textContent));
+  assert.deepEqual(heads, kNames);
+  assert.equal(await page.locator('#motion .chart').count(), 8);
+  const names = await page.$$eval('.chart', (all) => all.map((one) => one.ariaLabel));
+  assert.equal(new Set(names).size, names.length, 'charts of one name');
+  assert.match(await page.textContent('#verdict'), /motion 3\.\d+ s at 50 mm\/s/);
+  assert.match(await page.textContent('#verdict'), /: before refining that of both arms alone/);
+  assert.match(
+    await page.textContent('#map-note'),
+    /the path of left and right before it was refined/,
+  );
+  // Both arms are where their samples are, each at its own place in its rows.
+  for (const share of [0.2, 0.5, 0.9]) {
+    const index = Math.round(share * (n - 1));
+    await page.evaluate((to) => window.swivel.toTime(to), t[index]);
+    assert.ok(Math.abs((await seconds()) - t[index]) < 0.006);
+    const joints = data.arms.flatMap(({ motion, rows: own }) => {
+      const at = motion.layers[index],
+        from = own[Math.floor(at)].q,
+        next = own[Math.min(Math.floor(at) + 1, own.length - 1)].q;
+      return from.map((q, k) => q + (at - Math.floor(at)) * (next[k] - q));
+    });
+    assertNear((await shown(page)).joints, joints, 1e-6, `at ${t[index]} s`);
+  }
+  await press(page, 'Home');
+  assert.equal(await seconds(), 0);
+  await page.click('#play');
+  const begin = [await seconds(), Date.now()];
+  await page.waitForTimeout(1500);
+  const end = [await seconds(), Date.now()];
+  await page.click('#play');
+  const pace = (1000 * (end[0] - begin[0])) / (end[1] - begin[1]);
+  assert.ok(pace > 0.6 && pace < 1.4, `${pace} s of the motion in a second`);
+  const middle = Math.floor(rows.length / 2);
+  await slide(page, middle);
+  const at = data.arms[0].motion.layers.findIndex((layer) => layer >= middle);
+  assert.ok(Math.abs((await seconds()) - t[at]) < 0.05);
+  const svg = await saved(page, page.locator('#motion-section h2 button', { hasText: 'SVG' }));
+  assert.equal(svg.name, 'sda10f_plate_workcell_motion.svg');
+}
+
 /** The follower's path, which the leader's tool carries, runs through the follower's tool. */
 async function checkCarried(page, { data }) {
   const { on_leader, leader } = data.arms[1];
@@ -320,6 +370,20 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.equal(await still.page.locator('noscript > svg:visible').count(), 2);
   assert.deepEqual(await still.page.locator('noscript h2').allTextContents(), kNames);
   await still.close();
+
+  // Refined and timed: the page plays in the motion's own time.
+  const timed = planned(
+    folder,
+    join(problems, 'sda10f_plate_workcell.yaml'),
+    '--refine',
+    '--speed',
+    '0.05',
+  );
+  const run = await open(timed.html, { viewport: wide });
+  await drawn(run.page);
+  await checkTimes(run.page, timed);
+  await assertFits(run.page, wide.width);
+  await run.close();
 
   // The cheapest paths would meet.
   const crossing = planned(folder, lines(folder, 'crossing', kCrossing));

@@ -10,6 +10,7 @@
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
@@ -118,6 +119,7 @@ class WorkcellPage {
     const std::vector<PageRow> rows =
         placed(lattice, map, answer.empty() ? rows_of(lattice, of.path) : answer, of.path);
     for (const PageRow& row : rows) shown_[k].push_back(row.at.q);
+    refined_[k] = !answer.empty() && result_.arms[k].cost != result_.arms[k].lattice.cost;
     const int leader = planned_.cell.leader_of(k);
     const Json& diagnosis = json_["arms"][k]["diagnosis"];
     Json json = {
@@ -130,6 +132,8 @@ class WorkcellPage {
         {"on_leader", leader >= 0 ? on_tool(k, static_cast<std::size_t>(leader)) : Json(nullptr)},
         {"rows", rows_json(of.world, lattice, rows, budget_)},
         {"beside", beside(k, map)},
+        {"refined", refined_[k]},
+        {"motion", planned_.motion ? motion(k, rows) : Json(nullptr)},
         {"cut", diagnosis.is_object() ? cut_json(map, lattice, of.world, of.path, rows, diagnosis)
                                       : Json(nullptr)},
         {"region", region(k, map)}};
@@ -147,10 +151,24 @@ class WorkcellPage {
           vector_json(carrying.layer(layer).tool.inverse() * path.layer(layer).tool.translation()));
     return points;
   }
-  /// Returns the path of an arm by itself, where the answer is another one.
+  /// Returns the motion in time of an arm, with the place of each sample in its rows.
+  [[nodiscard]] Json motion(std::size_t k, const std::vector<PageRow>& rows) const {
+    const PlanView& of = view(k);
+    const TimedPath& timed = planned_.motion->arms[k];
+    std::vector<TrajectoryRow> at;
+    for (const PageRow& row : rows) at.push_back(row.at);
+    SampleFinder finder(at, &of.lattice.path_of_rows());
+    const JointRates rates = joint_rates(of.lattice.chain(), of.problem.limits, of.problem.source);
+    return motion_json(timed.rows, timed.rate, rates, of.lattice.chain(),
+                       [&](std::size_t sample) { return finder.place(timed.rows[sample].row); });
+  }
+  /// Returns the path of the lattice, where the answer was refined; else the path of an arm by
+  /// itself, where the answer is another one.
   [[nodiscard]] Json beside(std::size_t k, const LatticeMap& map) const {
     const std::vector<int>& alone = planned_.view.alone[k];
     const PlanView& of = view(k);
+    if (refined_[k])
+      return beside_json(placed(of.lattice, map, rows_of(of.lattice, of.path), of.path));
     if (alone.empty() || alone == of.path) return Json::array();
     LatticeMap own = map;
     own.path.clear();
@@ -262,6 +280,7 @@ class WorkcellPage {
   const Budget& budget_;
   Json json_;                                   ///< the result
   std::array<std::vector<Config>, 2> shown_{};  ///< joints of the rows of each arm
+  std::array<bool, 2> refined_{};               ///< whether the rows are off the lattice's nodes
   std::string maps_;
 };
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/workcell_view.hpp"
 #include "swivel/report/page.hpp"
@@ -15,13 +16,15 @@ struct PlannedWorkcell {
   const Workcell& cell;
   const WorkcellResult& result;
   const WorkcellView& view;
+  const WorkcellMotion* motion = nullptr;  ///< of the result's trajectories; null if there is none
 };
 
 /// Returns one HTML file that needs nothing else: both arms among the scene in three dimensions,
-/// moved together, the (s, phi) map of each, plots, tables. Where each arm has a path by itself and
-/// both together have none, it shows these paths and where they meet. `result_json`: the result in
-/// the format of `--json`. The file is made after planning: clearances along the paths are asked
-/// for again. page_available() says whether this build can make the file. Throws Stopped.
+/// moved together, in time where there is a motion, the (s, phi) map of each, plots, tables. Where
+/// each arm has a path by itself and both together have none, it shows these paths and where they
+/// meet. `result_json`: the result in the format of `--json`. The file is made after planning:
+/// clearances along the paths are asked for again. page_available() says whether this build can
+/// make the file. Throws Stopped.
 [[nodiscard]] std::string to_workcell_page(const PlannedWorkcell& planned,
                                            const std::string& result_json,
                                            const Budget& budget = {}, const PageWords& words = {});
