@@ -34,6 +34,9 @@ struct Mesh {
 [[nodiscard]] Pose to_pose(py::handle source);
 [[nodiscard]] std::vector<Waypoint> to_waypoints(py::handle source);
 [[nodiscard]] py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints);
+/// Lets a tool that `robot` may turn freely about its z axis pass half turns between waypoints, as
+/// files do (io::choose_sides).
+void pass_half_turns(const Robot& robot, std::vector<Waypoint>& waypoints);
 /// Returns the joints of one posture, rad; nothing for None. Throws ValueError, with `name` as that
 /// of the argument, for another shape than (7,).
 [[nodiscard]] std::optional<Config> to_posture(py::handle joints, const char* name);
@@ -124,8 +127,8 @@ void make_copyable(py::class_<T, Bases...>& type) {
       "__deepcopy__", [](const T& self, const py::dict&) { return T(self); }, py::arg("memo"));
 }
 
-/// Binds a plain struct: it is made from keywords, its members are attributes, and its repr names
-/// the members that do not have their default value.
+/// Binds a plain struct: it is made from keywords, its members are attributes, and its repr is the
+/// call that makes it, with all members.
 template <class T>
 class PlainStruct {
  public:
@@ -161,12 +164,12 @@ class PlainStruct {
       return made;
     }));
     class_.def("__repr__", [names, type](const T& self) {
-      const py::object own = py::cast(self), plain = py::cast(T());
+      const py::object own = py::cast(self);
       std::string text;
       for (const std::string& name : *names) {
-        const py::object value = own.attr(name.c_str());
-        if (!value.equal(plain.attr(name.c_str())))
-          text += (text.empty() ? "" : ", ") + name + "=" + py::repr(value).cast<std::string>();
+        py::object value = own.attr(name.c_str());
+        if (py::hasattr(value, "__members__")) value = py::str(value);
+        text += (text.empty() ? "" : ", ") + name + "=" + py::repr(value).cast<std::string>();
       }
       return type + "(" + text + ")";
     });

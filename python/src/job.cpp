@@ -202,6 +202,7 @@ swivel::Job to_core(const Job& job) {
   for (Stroke& stroke : job.all_strokes()) {
     swivel::Stroke& made = core.strokes.emplace_back();
     made.name = std::move(stroke.name), made.waypoints = std::move(stroke.waypoints);
+    pass_half_turns(core, made.waypoints);
     made.path_frame = std::move(stroke.frame), made.smooth = stroke.smooth;
     made.limits = stroke.limits.value_or(job.limits);
     made.resolution = stroke.resolution.value_or(job.resolution);

@@ -351,6 +351,13 @@ py::array placed_column(const JobMotion& motion, Number TrajectoryRow::*member) 
   return column(rows, rows->empty() ? nullptr : &(rows->front().row.*member));
 }
 
+/// Returns the last joint of all rows, which is the roll of arms of six joints.
+py::array last_joint(const JobMotion& motion) {
+  const auto m = motion.motion();
+  const std::shared_ptr<const std::vector<TimedRow>> rows(m, &m->rows);
+  return column(rows, rows->empty() ? nullptr : &rows->front().row.q[kDof - 1]);
+}
+
 py::array_t<bool> process_of(const JobMotion& motion) {
   const auto m = motion.motion();
   py::array_t<bool> process(static_cast<py::ssize_t>(m->rows.size()));
@@ -445,6 +452,13 @@ void bind_motion(py::module_& m) {
       .def_property_readonly(
           "branch", [](const JobMotion& x) { return placed_column(x, &TrajectoryRow::branch); },
           "(m,), 0 to 7.")
+      .def_property_readonly(
+          "roll",
+          [](const JobMotion& x) {
+            if (x.joint_names[kDof - 1] == "roll") return last_joint(x);
+            return placed_column(x, &TrajectoryRow::roll);
+          },
+          "(m,), by how much the tool is turned about its z axis, rad; 0 where it may not turn.")
       .def_property_readonly(
           "joints",
           [](const JobMotion& x) {

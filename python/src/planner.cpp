@@ -171,6 +171,7 @@ Problem problem_of(const Robot& robot, const std::optional<Task>& task, const py
   Problem problem;
   static_cast<Robot&>(problem) = robot;
   if (task) static_cast<Task&>(problem) = *task;
+  pass_half_turns(problem, problem.waypoints);
   for (const py::handle object : scene) problem.scene.push_back(object.cast<const SceneObject&>());
   return problem;
 }
@@ -222,8 +223,9 @@ class SharedPlanner {
     planner_.set_task(task_);
     return std::make_unique<SharedPlanner>(planner_.clone());
   }
-  void set_task(const Task& task) {
+  void set_task(Task task) {
     const Use use(*this);
+    pass_half_turns(planner_.problem(), task.waypoints);
     planner_.set_task(task);
     task_ = planner_.problem();
   }

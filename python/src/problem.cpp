@@ -775,6 +775,10 @@ std::vector<Waypoint> to_waypoints(py::handle source) {
   return waypoints;
 }
 
+void pass_half_turns(const Robot& robot, std::vector<Waypoint>& waypoints) {
+  if (robot.roll && robot.roll->circle()) io::choose_sides(waypoints);
+}
+
 py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints) {
   const bool rolls = !waypoints.empty() && waypoints.front().roll;
   py::array_t<double> array(
@@ -816,14 +820,25 @@ void bind_problem(py::module_& m) {
       m, "Problem", "A robot, its task and the scene: what a problem file says.");
   make_copyable(type);
   type.def(pickling<Problem>());
-  type.def(py::init([](const Robot& robot, const Task& task, const py::iterable& scene) {
-             Problem problem;
-             static_cast<Robot&>(problem) = robot;
-             static_cast<Task&>(problem) = task;
-             problem.scene = to_scene(scene);
-             return problem;
-           }),
-           py::arg("robot"), py::arg("task"), py::arg("scene") = py::tuple())
+  type.def(
+          py::init([](const Robot& robot, const Task& task, const py::iterable& scene) {
+            Problem problem;
+            static_cast<Robot&>(problem) = robot;
+            static_cast<Task&>(problem) = task;
+            problem.scene = to_scene(scene);
+            pass_half_turns(problem, problem.waypoints);
+            return problem;
+          }),
+          py::arg("robot"), py::arg("task"), py::arg("scene") = py::tuple(),
+          "A tool that may turn freely about its z axis passes half turns between waypoints: those "
+          "behind a half turn about another axis are turned by 180 deg about z.")
+      .def_property(
+          "waypoints", [](const Problem& problem) { return problem.waypoints; },
+          [](Problem& problem, std::vector<Waypoint> waypoints) {
+            pass_half_turns(problem, waypoints);
+            problem.waypoints = std::move(waypoints);
+          },
+          "As of a Task. A copy; assign to change it.")
       .def_readonly("source", &Problem::source, "The file; empty of problems made in memory.")
       .def_readwrite("scene", &Problem::scene, "Scene, changed in place.")
       .def_property_readonly(

@@ -48,8 +48,12 @@ io::JointNames to_joint_names(const std::vector<std::string>& names) {
   return all;
 }
 
+bool last_joint_is_roll(const io::JointNames& names) {
+  return names[kDof - 1] == "roll";
+}
+
 Trajectory make_trajectory(py::handle joints, py::handle s, py::handle phi, py::handle branch,
-                           const std::vector<std::string>& names) {
+                           const std::vector<std::string>& names, py::handle roll) {
   const auto q = to_joints(joints, "joints");
   using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
   const auto numbers = [&](py::handle source, const char* name) {
@@ -63,13 +67,15 @@ Trajectory make_trajectory(py::handle joints, py::handle s, py::handle phi, py::
   };
   const Doubles along = numbers(s, "s");
   const Doubles angle = phi.is_none() ? Doubles() : numbers(phi, "phi"),
-                label = branch.is_none() ? Doubles() : numbers(branch, "branch");
+                label = branch.is_none() ? Doubles() : numbers(branch, "branch"),
+                turn = roll.is_none() ? Doubles() : numbers(roll, "roll");
   auto rows = std::make_shared<Rows>(static_cast<std::size_t>(q.shape(0)));
   for (py::ssize_t k = 0; k < q.shape(0); ++k) {
     TrajectoryRow& row = (*rows)[static_cast<std::size_t>(k)];
     row.q = Eigen::Map<const Config>(q.data(k, 0));
     row.s = along.at(k);
     if (!phi.is_none()) row.phi = angle.at(k);
+    if (!roll.is_none()) row.roll = turn.at(k);
     if (!branch.is_none()) {
       const double value = label.at(k);
       if (!(value >= 0 && value <= 7) || value != static_cast<int>(value))
@@ -78,7 +84,10 @@ Trajectory make_trajectory(py::handle joints, py::handle s, py::handle phi, py::
       row.branch = static_cast<int>(value);
     }
   }
-  return {std::move(rows), to_joint_names(names)};
+  Trajectory made{std::move(rows), to_joint_names(names)};
+  if (!roll.is_none() && last_joint_is_roll(made.joint_names))
+    throw py::value_error("roll: is the last joint of these rows already: allowed is None");
+  return made;
 }
 
 void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& csv) {
@@ -438,9 +447,10 @@ void bind_trajectory(py::module_& m) {
       .def(pickling<Trajectory>())
       .def(py::init(&make_trajectory), py::arg("joints"), py::arg("s"), py::arg("phi") = py::none(),
            py::arg("branch") = py::none(), py::arg("joint_names") = std::vector<std::string>{},
+           py::arg("roll") = py::none(),
            "joints: (n, 7), rad. s: (n,), m along the path. phi: carried arm angle, rad, and "
-           "branch: 0 to 7, of S-R-S arms; "
-           "default 0.")
+           "branch: 0 to 7, of S-R-S arms. roll: of seven-joint arms whose tool may turn, rad; the "
+           "roll of six-joint arms is the last of the joints. All of these are 0 by default.")
       .def_property_readonly(
           "s", [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::s); },
           "(n,), m along the path.")
@@ -451,6 +461,14 @@ void bind_trajectory(py::module_& m) {
           "branch",
           [](const Trajectory& t) { return member_column(t.rows, &TrajectoryRow::branch); },
           "(n,), 0 to 7.")
+      .def_property_readonly(
+          "roll",
+          [](const Trajectory& t) {
+            if (last_joint_is_roll(t.joint_names))
+              return column(t.rows, t.rows->empty() ? nullptr : &t.rows->front().q[kDof - 1]);
+            return member_column(t.rows, &TrajectoryRow::roll);
+          },
+          "(n,), by how much the tool is turned about its z axis, rad; 0 where it may not turn.")
       .def_property_readonly(
           "joints", [](const Trajectory& t) { return joints_of(t.rows); },
           "(n, 7) float64, rad, base to tip.")
@@ -521,6 +539,15 @@ void bind_trajectory(py::module_& m) {
       .def_property_readonly(
           "branch", [](const Motion& x) { return timed_column(x, &TrajectoryRow::branch); },
           "(m,), 0 to 7.")
+      .def_property_readonly(
+          "roll",
+          [](const Motion& x) {
+            const auto rows = x.rows();
+            if (last_joint_is_roll(x.joint_names))
+              return column(rows, rows->empty() ? nullptr : &rows->front().row.q[kDof - 1]);
+            return timed_column(x, &TrajectoryRow::roll);
+          },
+          "(m,), by how much the tool is turned about its z axis, rad; 0 where it may not turn.")
       .def_property_readonly(
           "joints",
           [](const Motion& x) {

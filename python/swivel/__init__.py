@@ -3,7 +3,9 @@
 
 Units are metres, radians and seconds. Arguments that are poses may be (4, 4) arrays or
 [x y z qw qx qy qz], w first; results are (4, 4) arrays. Joints are (n, 7) float64 arrays, base to
-tip. Arrays in results are read-only views, which keep alive what they show.
+tip. Arrays in results are read-only views, which keep alive what they show. Trajectories and
+motions are sequences of rows; numpy.asarray() takes their joints, and pandas.DataFrame() all
+columns.
 
     problem = swivel.load_problem("problem.yaml")
     plan = swivel.plan(problem)
@@ -22,6 +24,8 @@ import numpy as _np
 from . import _swivel
 from ._swivel import *  # noqa: F401,F403
 from ._swivel import __version__  # noqa: F401
+from . import rows as _rows
+from .rows import TrajectoryRow  # noqa: F401
 from .runs import campaign, place  # noqa: F401
 
 __all__ = [name for name in vars(_swivel) if not name.startswith("_")]
@@ -44,8 +48,13 @@ for _name in __all__:
         _thing.__reduce__ = lambda member: (getattr, (type(member), member.name))
     elif hasattr(_thing, "__setstate__") and not issubclass(_thing, Exception):
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
-campaign.__module__ = place.__module__ = __name__
+for _thing in (TrajectoryRow, campaign, place):
+    _thing.__module__ = __name__
+_rows.extend()
+# A planner is its problem: what it remembers of earlier plans only saves time.
+Planner.__reduce__ = lambda planner: (Planner, (planner.problem,))  # noqa: F405
 __all__ += [
+    "TrajectoryRow",
     "advise",
     "campaign",
     "check",

@@ -95,9 +95,4 @@ struct AxisPoint {
     const std::vector<AxisPoint>& points, bool either_side,
     const std::function<std::string(std::size_t)>& where);
 
-/// Turns waypoints of a tool that may turn freely about its z axis by half a turn about that axis
-/// where they would turn by 180 deg from the one before, about another axis: which way such a turn
-/// leads is undefined, and half a turn about the tool's axis changes nothing for the work.
-void choose_sides(std::vector<Waypoint>& waypoints);
-
 }  // namespace swivel::io

@@ -4,6 +4,7 @@
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
 #include "problems/path_file.hpp"
+#include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
 

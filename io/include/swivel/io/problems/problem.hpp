@@ -17,6 +17,13 @@ namespace swivel::io {
 /// unknown key it names the nearest known key.
 [[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
 
+/// Turns waypoints of a tool that may turn freely about its z axis by half a turn about that axis
+/// where they would turn by 180 deg from the one before, about another axis: which way such a turn
+/// leads is undefined, and half a turn about the tool's axis changes nothing for the work. Readers
+/// of files do this; problems that are made in memory may need it. Waypoints that make no such turn
+/// stay, bit for bit.
+void choose_sides(std::vector<Waypoint>& waypoints);
+
 /// Returns the text of a problem file with the scene objects at the poses that they have in
 /// `placed` and nothing else changed: comments, order and layout stay. Loading it gives the poses
 /// of `placed` bit for bit. `text` is the text that `problem` was loaded from. Throws InputError,
