@@ -439,10 +439,11 @@ void serialize(A& archive, RefinedPath& x) {
   auto& [refined, joint_names] = x;
   archive(refined, joint_names);
 }
+/// Leaves out the problem, which would be most of a plan.
 template <class A>
 void serialize(A& archive, Plan& x) {
-  auto& [plan, timing, frame] = x;
-  archive(plan, timing, frame);
+  auto& [plan, timing, frame, refined, own_functions, problem] = x;
+  archive(plan, timing, frame, refined, own_functions);
 }
 template <class A>
 void serialize(A& archive, Check& x) {

@@ -193,6 +193,8 @@ void bind_planner(py::module_& m);
 void bind_runs(py::module_& m);
 void bind_workcell(py::module_& m);
 void bind_states(py::module_& m);
+void bind_drawings(py::module_& m);
+void bind_certificates(py::module_& m);
 
 }  // namespace swivel::python
 

@@ -23,6 +23,8 @@ PYBIND11_MODULE(_swivel, m) {
   swivel::python::bind_job_results(m);
   swivel::python::bind_job_functions(m);
   swivel::python::bind_workcell(m);
+  swivel::python::bind_drawings(m);
+  swivel::python::bind_certificates(m);
   py::module_::import("atexit").attr("register")(
       py::cpp_function(&swivel::python::UnderWay::end_all));
 }

@@ -264,6 +264,10 @@ class SharedPlanner {
       planner_.set_task(task);
     }
     plan.frame = planner_.problem().base_link;
+    plan.refined = refined;
+    plan.own_functions =
+        !keywords.check.is_none() || !keywords.check_motions.is_none() || !keywords.cost.is_none();
+    plan.problem = std::make_shared<const Problem>(planner_.problem());
     plan.plan = std::make_shared<const MotionPlan>(interruptible([&](const std::stop_token& stop) {
       options.stop = stop;
       return plan_motion(planner_, options, refined, plan.timing);

@@ -37,6 +37,10 @@ struct Plan {
   std::shared_ptr<const MotionPlan> plan;
   std::optional<TimingOptions> timing;
   std::string frame;
+  bool refined = false;        ///< a refinement was asked for
+  bool own_functions = false;  ///< it depends on checks or costs that are functions of Python
+  /// The problem as it was planned, of which reports are made. Null after unpickling.
+  std::shared_ptr<const Problem> problem = nullptr;
   [[nodiscard]] const PlanResult& result() const { return plan->result; }
 };
 

@@ -24,7 +24,9 @@ import numpy as _np
 from . import _swivel
 from ._swivel import *  # noqa: F401,F403
 from ._swivel import __version__  # noqa: F401
+from . import drawings as _drawings
 from . import rows as _rows
+from .drawings import certificate, check_certificate, map_svg, report  # noqa: F401
 from .rows import TrajectoryRow  # noqa: F401
 from .runs import campaign, place  # noqa: F401
 
@@ -48,21 +50,26 @@ for _name in __all__:
         _thing.__reduce__ = lambda member: (getattr, (type(member), member.name))
     elif hasattr(_thing, "__setstate__") and not issubclass(_thing, Exception):
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
-for _thing in (TrajectoryRow, campaign, place):
+for _thing in (TrajectoryRow, campaign, certificate, check_certificate, map_svg, place, report):
     _thing.__module__ = __name__
 _rows.extend()
+_drawings.extend()
 # A planner is its problem: what it remembers of earlier plans only saves time.
 Planner.__reduce__ = lambda planner: (Planner, (planner.problem,))  # noqa: F405
 __all__ += [
     "TrajectoryRow",
     "advise",
     "campaign",
+    "certificate",
     "check",
+    "check_certificate",
     "compute_cartesian_path",
+    "map_svg",
     "measure",
     "place",
     "plan",
     "refine",
+    "report",
     "time",
 ]
 

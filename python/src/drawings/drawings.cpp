@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Maps and pages of plans. A plan keeps its problem, not its lattice, so it is planned again.
+#include <algorithm>
+
+#include "bindings.hpp"
+#include "interruptible.hpp"
+#include "results.hpp"
+#include "swivel/core/answer/answer_text.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/refine/motion.hpp"
+#include "swivel/report/page.hpp"
+
+namespace swivel::python {
+
+namespace {
+
+/// What is drawn of a plan.
+struct Drawing {
+  std::string map;   ///< SVG
+  std::string page;  ///< HTML; empty if it was not asked for
+};
+
+/// Returns the problem that a plan is of, as it was planned: `given`, or the one that the plan
+/// keeps. Throws ValueError if there is none, and for plans that functions of Python decided.
+Problem problem_of(const Plan& plan, const Problem* given) {
+  if (plan.own_functions)
+    throw py::value_error(
+        "the plan depends on check, check_motions or cost: allowed are plans of the problem alone");
+  if (given == nullptr && !plan.problem)
+    throw py::value_error(
+        "problem: a plan that was unpickled has none: allowed is the problem that was planned");
+  Problem problem = given != nullptr ? *given : *plan.problem;
+  if (plan.timing)
+    problem = with_motion_defaults(std::move(problem));
+  else if (plan.refined)
+    keep_clearance_between_layers(problem.limits);
+  return problem;
+}
+
+bool same_rows(const std::vector<TrajectoryRow>& a, const std::vector<TrajectoryRow>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const TrajectoryRow& x, const TrajectoryRow& y) {
+                      return x.s == y.s && x.phi == y.phi && x.branch == y.branch && x.q == y.q &&
+                             x.roll == y.roll;
+                    });
+}
+
+/// Returns the page of a plan that a planner has just found.
+std::string page_of(const PlanView& view, const LatticeMap& map, const MotionPlan& plan,
+                    const TimingOptions& timing, const Budget& budget) {
+  PageMotion motion;
+  if (plan.refinement && plan.refinement->refined) motion.refined = &plan.result.trajectory;
+  if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
+  const io::PlanExtras extras{plan.refinement ? &*plan.refinement : nullptr,
+                              plan.motion ? &*plan.motion : nullptr, timing, nullptr};
+  return to_page(view, map, io::to_json(plan.result, extras), motion, budget,
+                 {"", answer_text(plan.result)});
+}
+
+/// Plans again what a plan is of, and draws it. `full`: the clearance of every node is asked.
+/// Throws ValueError for plans without a verdict, and if another path is found.
+Drawing draw(const Plan& plan, const Problem* given, bool with_page, bool full) {
+  if (with_page && !page_available())
+    throw py::value_error("report: this build has no pages: allowed is one with SWIVEL_REPORT");
+  const PlanStatus status = plan.result().status;
+  if (status != PlanStatus::kSolved && status != PlanStatus::kInfeasible)
+    throw py::value_error("the plan has no verdict: allowed are those that were not stopped");
+  const Problem problem = problem_of(plan, given);
+  PlanOptions options;
+  for (const auto& [name, kind] : EnumNames<PlannerKind>::names)
+    if (name == plan.result().planner) options.planner = kind;
+  options.check = true;
+  if (with_page) options.evidence = Evidence::all();
+  return interruptible([&](const std::stop_token& stop) {
+    options.stop = stop;
+    Planner planner(problem);
+    const MotionPlan again = plan_motion(planner, options, plan.refined, plan.timing);
+    if (again.result.status != status ||
+        !same_rows(again.result.trajectory, plan.result().trajectory))
+      throw py::value_error("problem: has another answer than the plan: allowed is its own");
+    const Budget budget({}, nullptr, stop);
+    const PlanView view = planner.view();
+    const LatticeMap map = make_map(view, full, budget);
+    Drawing drawing{to_svg(map), ""};
+    if (with_page)
+      drawing.page = page_of(view, map, again, plan.timing.value_or(TimingOptions{}), budget);
+    return drawing;
+  });
+}
+
+}  // namespace
+
+void bind_drawings(py::module_& m) {
+  m.def("_page_available", &page_available);
+  m.def(
+      "_draw",
+      [](const Plan& plan, const Problem* problem, bool page, bool full) {
+        const Drawing drawing = draw(plan, problem, page, full);
+        return py::make_tuple(drawing.map, drawing.page);
+      },
+      py::arg("plan"), py::arg("problem"), py::arg("page"), py::arg("full"),
+      "(map as SVG, page as HTML or '') of a plan; used by the package's map_svg() and report().");
+}
+
+}  // namespace swivel::python

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Maps, pages and notebook views of plans, and certificates that there is no path."""
+import base64
+import gzip
+import html
+import os
+import pathlib
+import sys
+import tempfile
+import webbrowser
+
+from . import _swivel
+
+# Bytes of a compressed page that is put into a notebook; a larger one is only named.
+_MOST_IN_A_NOTEBOOK = 4_000_000
+
+# Opens the compressed page beside the button in a window of its own.
+_OPEN = (
+    "const c=Uint8Array.from(atob(this.dataset.page),x=>x.charCodeAt(0));"
+    "new Response(new Blob([c]).stream().pipeThrough(new DecompressionStream('gzip'))).text()"
+    ".then(t=>window.open(URL.createObjectURL(new Blob([t],{type:'text/html'}))))"
+)
+
+
+def _loaded(problem):
+    if isinstance(problem, (str, os.PathLike)):
+        return _swivel.load_problem(problem)
+    return problem
+
+
+def _written(text, file):
+    if file is None:
+        return text
+    pathlib.Path(file).write_text(text, encoding="utf-8")
+    return None
+
+
+def report(problem, plan, file=None):
+    """Makes the page of a plan: what `swivel plan --report` writes, one HTML file.
+
+    problem: the Problem that was planned, or the name of its file; None for the one that the plan
+    keeps, which it does until it is pickled. plan: Plan. file: where the page is written.
+
+    Returns the page as text, or None where it was written. The problem is planned again, which
+    gives the same path, in the time of one plan. Raises ValueError for plans without a verdict, for
+    those that depend on functions of Python, for a problem with another answer, and where the
+    package was built without pages.
+    """
+    return _written(_swivel._draw(plan, _loaded(problem), True, False)[1], file)
+
+
+def map_svg(problem, plan, file=None, *, full=False):
+    """Draws the lattice map of a plan as SVG: what `swivel plan --map-svg` writes.
+
+    problem, plan, file: as for report(). full: ask the clearance of every node, not only of those
+    that the search asked about.
+
+    Returns the SVG as text, or None where it was written. Raises as report() does.
+    """
+    return _written(_swivel._draw(plan, _loaded(problem), False, full)[0], file)
+
+
+def certificate(problem, *, planner="parallel", threads=0, timeout=None):
+    """Proves that a problem has no path, as `swivel plan --certificate` does.
+
+    problem: a Problem, or the name of its file. The others are those of Planner.plan().
+
+    Returns a Certificate; None where the problem has a path. Raises TimeoutError.
+    """
+    return _swivel._certificate(_loaded(problem), planner, threads, timeout)
+
+
+def check_certificate(problem, certificate, *, timeout=None):
+    """Verifies a certificate from the problem alone, as `swivel check --certificate` does.
+
+    problem: a Problem, or the name of its file. certificate: a Certificate, or the name of its
+    file. timeout: s, or None.
+
+    Returns a CertificateCheck. Raises InputError for the certificate of another problem, and
+    TimeoutError.
+    """
+    if isinstance(certificate, (str, os.PathLike)):
+        certificate = _swivel.load_certificate(certificate)
+    return _swivel._check_certificate(_loaded(problem), certificate, timeout)
+
+
+class _Frame:
+    """A page within a cell of a notebook."""
+
+    def __init__(self, page, height):
+        self._page, self._height = page, height
+
+    def _repr_html_(self):
+        return (
+            f'<iframe srcdoc="{html.escape(self._page)}" style="width:100%;height:{self._height}px;'
+            'border:0" allowfullscreen></iframe>'
+        )
+
+
+def _in_a_notebook():
+    shell = sys.modules.get("IPython") and sys.modules["IPython"].get_ipython()
+    return shell is not None and hasattr(shell, "kernel")
+
+
+def _plan_report(self, file=None):
+    """Makes the page of the plan: what `swivel plan --report` writes. See swivel.report()."""
+    return report(None, self, file)
+
+
+def _plan_map_svg(self, file=None, *, full=False):
+    """Draws the lattice map of the plan as SVG. See swivel.map_svg()."""
+    return map_svg(None, self, file, full=full)
+
+
+def _plan_show(self, *, height=720):
+    """Shows the page of the plan: in the cell of a notebook, else in the web browser.
+
+    height: of the cell, pixels. Raises as report() does.
+    """
+    page = report(None, self)
+    if _in_a_notebook():
+        from IPython.display import display
+
+        display(_Frame(page, height))
+        return
+    with tempfile.NamedTemporaryFile(
+        "w", suffix=".html", prefix="swivel-", encoding="utf-8", delete=False
+    ) as file:
+        file.write(page)
+    webbrowser.open(pathlib.Path(file.name).as_uri())
+
+
+def _plan_html(self):
+    """Returns what a notebook shows: the answer, its map, and a button that opens the page."""
+    answer = f"<pre>{html.escape(repr(self)[1:-1])}</pre>"
+    try:
+        image, page = _swivel._draw(self, None, _swivel._page_available(), False)
+    except ValueError:  # there is nothing to draw, or nothing to draw it from
+        return answer
+    data = base64.b64encode(image.encode()).decode()
+    drawn = (
+        f'<img alt="Lattice map" style="max-width:32em" src="data:image/svg+xml;base64,{data}"/>'
+    )
+    if not page:
+        return answer + drawn
+    packed = gzip.compress(page.encode(), mtime=0)
+    if len(packed) > _MOST_IN_A_NOTEBOOK:
+        return f"{answer}{drawn}<p>The page is large: plan.report(file) writes it.</p>"
+    button = (
+        f'<p><button onclick="{html.escape(_OPEN)}" '
+        f'data-page="{base64.b64encode(packed).decode()}">Open the page</button></p>'
+    )
+    return answer + drawn + button
+
+
+def extend():
+    """Gives the class Plan what is written in this file."""
+    for name, method in (
+        ("report", _plan_report),
+        ("map_svg", _plan_map_svg),
+        ("show", _plan_show),
+        ("_repr_html_", _plan_html),
+    ):
+        setattr(_swivel.Plan, name, method)
