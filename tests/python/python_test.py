@@ -479,6 +479,8 @@ class Interrupts(unittest.TestCase):
             def progress(rows, done, of):
                 if done == 5:
                     interrupt()
+                if done >= 5:
+                    time.sleep(0.5)  # the thread that handles signals looks for them meanwhile
 
             with self.assertRaises(KeyboardInterrupt) as caught:
                 run(problem, **whole, threads=1, progress=progress)
