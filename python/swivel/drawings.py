@@ -14,11 +14,12 @@ from . import _swivel
 # Bytes of a compressed page that is put into a notebook; a larger one is only named.
 _MOST_IN_A_NOTEBOOK = 4_000_000
 
-# Opens the compressed page beside the button in a window of its own.
+# Opens the compressed page beside the button in a window of its own. In an element's handler URL
+# alone would be the address of the document.
 _OPEN = (
     "const c=Uint8Array.from(atob(this.dataset.page),x=>x.charCodeAt(0));"
     "new Response(new Blob([c]).stream().pipeThrough(new DecompressionStream('gzip'))).text()"
-    ".then(t=>window.open(URL.createObjectURL(new Blob([t],{type:'text/html'}))))"
+    ".then(t=>window.open(window.URL.createObjectURL(new Blob([t],{type:'text/html'}))))"
 )
 
 
@@ -132,14 +133,16 @@ def _plan_show(self, *, height=720):
 
 def _plan_html(self):
     """Returns what a notebook shows: the answer, its map, and a button that opens the page."""
-    answer = f"<pre>{html.escape(repr(self)[1:-1])}</pre>"
+    words = html.escape(repr(self).removeprefix("<Plan ").removesuffix(">"))
+    answer = f'<pre style="white-space:pre-wrap">{words}</pre>'
     try:
         image, page = _swivel._draw(self, None, _swivel._page_available(), False)
     except ValueError:  # there is nothing to draw, or nothing to draw it from
         return answer
     data = base64.b64encode(image.encode()).decode()
     drawn = (
-        f'<img alt="Lattice map" style="max-width:32em" src="data:image/svg+xml;base64,{data}"/>'
+        '<img alt="Lattice map" style="max-width:100%;max-height:36em" '
+        f'src="data:image/svg+xml;base64,{data}"/>'
     )
     if not page:
         return answer + drawn

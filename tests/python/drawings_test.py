@@ -105,6 +105,8 @@ class Drawings(unittest.TestCase):
             page = gzip.decompress(packed).decode()
             self.assertEqual(without_times(page), without_times(plan.report()))
             self.assertLess(len(shown), 2_500_000)
+            # In a handler of an element URL is the document's address, not the class.
+            self.assertIn("window.URL.createObjectURL", shown)
         with mock.patch("webbrowser.open") as opened:
             if PAGES:
                 plan.show()
