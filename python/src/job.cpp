@@ -217,7 +217,19 @@ swivel::Job to_core(const Job& job) {
   return core;
 }
 
+namespace {
+
+/// Throws InputError for what jobs have in files and in C++, and not in Python.
+void require_known_to_python(const swivel::Job& job) {
+  if (job.lift)
+    throw InputError(job.source,
+                     "lift: is not supported in Python: allowed are the program `swivel` and C++");
+}
+
+}  // namespace
+
 Job from_core(swivel::Job core) {
+  require_known_to_python(core);
   Job job;
   static_cast<Robot&>(job) = core;
   job.source = std::move(core.source), job.scene = std::move(core.scene);
@@ -245,7 +257,11 @@ Job from_core(swivel::Job core) {
 swivel::Job to_core(const JobOrFile& job) {
   if (const auto* made = std::get_if<const Job*>(&job)) return to_core(**made);
   const std::filesystem::path& file = std::get<std::filesystem::path>(job);
-  return interruptible([&](const std::stop_token&) { return io::load_job(file); });
+  return interruptible([&](const std::stop_token&) {
+    swivel::Job read = io::load_job(file);
+    require_known_to_python(read);
+    return read;
+  });
 }
 
 void bind_job(py::module_& m) {

@@ -6,6 +6,16 @@
 
 namespace swivel {
 
+template <class A>
+void serialize(A& archive, StrokePiece& x) {
+  auto& [stroke, begin, before] = x;
+  archive(stroke, begin, before);
+}
+template <class A>
+void serialize(A& archive, LiftOffs& x) {
+  auto& [cost, overlap] = x;
+  archive(cost, overlap);
+}
 /// Lists the members of a Stroke and of its base, which no structured binding takes apart together.
 template <class A>
 void serialize(A& archive, Stroke& x) {
@@ -15,10 +25,11 @@ void serialize(A& archive, Stroke& x) {
     Vector3d approach, retract;
     std::optional<double> process_speed, approach_speed;
     std::vector<double> feed;
+    std::optional<StrokePiece> piece;
   };
   static_assert(sizeof(Listed) == sizeof(Stroke));
   archive(static_cast<Task&>(x), x.name, x.reversible, x.approach, x.retract, x.process_speed,
-          x.approach_speed, x.feed);
+          x.approach_speed, x.feed, x.piece);
 }
 /// Lists the members of a Job and of its base.
 template <class A>
@@ -33,10 +44,11 @@ void serialize(A& archive, Job& x) {
     StrokeOrder order;
     std::optional<double> process_speed, approach_speed;
     double rapid;
+    std::optional<LiftOffs> lift;
   };
   static_assert(sizeof(Listed) == sizeof(Job));
   archive(static_cast<Robot&>(x), x.source, x.scene, x.vary, x.strokes, x.limits, x.home, x.order,
-          x.process_speed, x.approach_speed, x.rapid);
+          x.process_speed, x.approach_speed, x.rapid, x.lift);
 }
 template <class A>
 void serialize(A& archive, StrokeRun& x) {
@@ -63,13 +75,25 @@ void serialize(A& archive, NoTransition& x) {
   auto& [to, where, bodies] = x;
   archive(to, where, bodies);
 }
+/// Lists the members of a LiftOffResult and of its base, which no structured binding takes apart
+/// together.
+template <class A>
+void serialize(A& archive, LiftOffResult& x) {
+  struct Listed : LiftOff {
+    double reached;
+    Cause cause;
+  };
+  static_assert(sizeof(Listed) == sizeof(LiftOffResult));
+  archive(x.stroke, x.end, x.resumed, x.reached, x.cause);
+}
 template <class A>
 void serialize(A& archive, JobResult& x) {
-  auto& [status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters,
-         transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs, warnings] =
-      x;
-  archive(status, cost, bound, bound_any, parts, runs, no_transition, planner, threads, counters,
-          transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs, warnings);
+  auto& [status, cost, bound, bound_any, lift_offs, parts, runs, no_transition, planner, threads,
+         counters, transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs,
+         warnings] = x;
+  archive(status, cost, bound, bound_any, lift_offs, parts, runs, no_transition, planner, threads,
+          counters, transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs,
+          warnings);
 }
 template <class A>
 void serialize(A& archive, ProcessEvent& x) {

@@ -21,6 +21,10 @@ std::vector<bool> process_of_rows(const JobPart& part, const Job& job) {
   return process;
 }
 
+Job executed_job(const Job& job, const JobResult& result) {
+  return with_lift_offs(job, {result.lift_offs.begin(), result.lift_offs.end()});
+}
+
 const char* to_string(NoTransition::Where where) {
   switch (where) {
     case NoTransition::Where::kBetween:

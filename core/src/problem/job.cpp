@@ -43,7 +43,109 @@ void validate(const Stroke& stroke) {
   for (const double feed : stroke.feed) require_speed(feed, name + "feed");
 }
 
+void validate(const LiftOffs& lift, const Job& job) {
+  for (const double value : {lift.cost, lift.overlap})
+    if (!(std::isfinite(value) && value >= 0))
+      throw InvalidArgument("lift: cost, overlap: allowed are numbers from 0 on");
+  if (job.order != StrokeOrder::kGiven)
+    throw InvalidArgument("lift: allowed is the order of strokes that is given");
+  for (const Stroke& stroke : job.strokes)
+    if (!stroke.piece && stroke.name.find('/') != std::string::npos)
+      throw InvalidArgument("strokes: name '" + stroke.name +
+                            "': with lift-offs allowed are names without a slash");
+}
+
+constexpr double kSamePlace = 1e-9;  // m
+
+/// Returns the arc length of each waypoint, m.
+std::vector<double> lengths_to(const std::vector<Waypoint>& waypoints) {
+  std::vector<double> s{0};
+  for (std::size_t k = 1; k < waypoints.size(); ++k)
+    s.push_back(s.back() + (waypoints[k].position - waypoints[k - 1].position).norm());
+  return s;
+}
+
+/// Returns the waypoint that lies at a share t of the way from `a` to `b`.
+Waypoint between(const Waypoint& a, const Waypoint& b, double t) {
+  Waypoint found = a;
+  found.position += t * (b.position - a.position);
+  found.orientation = a.orientation.normalized().slerp(t, b.orientation.normalized());
+  if (a.roll && b.roll)
+    found.roll = Roll{a.roll->lower + t * (b.roll->lower - a.roll->lower),
+                      a.roll->upper + t * (b.roll->upper - a.roll->upper)};
+  return found;
+}
+
+/// Returns the run of a stroke from one arc length to another, m.
+Stroke piece_of(const Stroke& stroke, double from, double to, std::size_t number) {
+  const std::vector<double> s = lengths_to(stroke.waypoints);
+  if (!(from >= 0 && from + kSamePlace < to && to <= s.back() + kSamePlace))
+    throw InvalidArgument("stroke '" + stroke.name + "': lift-offs: allowed are runs forwards");
+  Stroke piece = stroke;
+  piece.name += '/' + std::to_string(number);
+  piece.reversible = false;
+  piece.piece = StrokePiece{stroke.name, from, {}};
+  piece.waypoints.clear();
+  piece.feed.clear();
+  if (to < s.back() - kSamePlace) piece.end.reset();
+  const auto add = [&](const Waypoint& waypoint, std::size_t k) {
+    piece.waypoints.push_back(waypoint);
+    if (!stroke.feed.empty()) piece.feed.push_back(stroke.feed[k]);
+  };
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const auto cut = [&](double at) {  // between waypoint k - 1 and waypoint k
+      return k > 0 && s[k - 1] < at - kSamePlace && at + kSamePlace < s[k];
+    };
+    const auto on_way = [&](double at) {
+      return between(stroke.waypoints[k - 1], stroke.waypoints[k],
+                     (at - s[k - 1]) / (s[k] - s[k - 1]));
+    };
+    if (cut(from)) add(on_way(from), k - 1);
+    if (cut(to)) add(on_way(to), k - 1);
+    if (s[k] < from - kSamePlace)
+      piece.piece->before.push_back(stroke.waypoints[k]);
+    else if (s[k] <= to + kSamePlace)
+      add(stroke.waypoints[k], k);
+  }
+  return piece;
+}
+
 }  // namespace
+
+Job with_lift_offs(const Job& job, const std::vector<LiftOff>& lift_offs) {
+  Job made = job;
+  made.strokes.clear();
+  auto next = lift_offs.begin();
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
+    const Stroke& stroke = job.strokes[k];
+    if (next == lift_offs.end() || next->stroke != k) {
+      made.strokes.push_back(stroke);
+      continue;
+    }
+    double from = 0;
+    std::size_t number = 1;
+    for (; next != lift_offs.end() && next->stroke == k; ++next, ++number) {
+      made.strokes.push_back(piece_of(stroke, from, next->end, number));
+      if (!(next->resumed <= next->end + kSamePlace))
+        throw InvalidArgument("stroke '" + stroke.name +
+                              "': lift-offs: allowed are runs that leave nothing out");
+      from = next->resumed;
+    }
+    made.strokes.push_back(piece_of(stroke, from, lengths_to(stroke.waypoints).back(), number));
+  }
+  if (next != lift_offs.end())
+    throw InvalidArgument("lift-offs: allowed are those of the job's strokes, in their order");
+  return made;
+}
+
+std::size_t lift_off_count(const Job& job) {
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < job.strokes.size(); ++k) {
+    const auto &before = job.strokes[k - 1].piece, &own = job.strokes[k].piece;
+    count += before && own && before->stroke == own->stroke ? 1 : 0;
+  }
+  return count;
+}
 
 std::optional<std::size_t> find_stroke(const Job& job, const std::string& name) {
   for (std::size_t k = 0; k < job.strokes.size(); ++k)
@@ -102,6 +204,7 @@ void validate(const Job& job) {
     throw InvalidArgument("home: allowed are finite numbers, rad");
   require_speed(job.process_speed, "process_speed");
   require_speed(job.approach_speed, "approach_speed");
+  if (job.lift) validate(*job.lift, job);
   if (!(job.rapid > 0 && job.rapid <= 1))
     throw InvalidArgument("rapid: allowed are numbers above 0 and at most 1");
 }

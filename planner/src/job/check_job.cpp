@@ -48,6 +48,7 @@ class JobCheck {
     if (examine_order())
       for (std::size_t k = 0; k < parts_.size(); ++k)
         parts_[k].run ? examine_run(k) : examine_transition(k);
+    if (job_.lift) result_.cost += static_cast<double>(lift_off_count(job_)) * job_.lift->cost;
     result_.passed = result_.failure_count == 0;
     return std::move(result_);
   }

@@ -12,6 +12,7 @@
 
 #include "job/job_lift.hpp"
 #include "job/order/order_estimate.hpp"
+#include "job/plan_lift_offs.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/keeps_branch.hpp"
@@ -19,9 +20,13 @@
 #include "plan/stopwatch.hpp"
 #include "plan/supported_options.hpp"
 #include "plan/told_turns.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -39,21 +44,68 @@ namespace swivel {
 
 namespace {
 
+/// Returns the planes from which a run of a stroke in several runs measures arm angles on a grid,
+/// by layer of its path: those of the whole stroke, carried along the approach and the retract as
+/// well, so that the run has the nodes of the stroke's lattice. Empty where the run's own planes
+/// are these, or where the arm has no grid.
+std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const Problem& problem,
+                                      const PreparedRobot& robot, const ToolPath& path,
+                                      const Budget& budget) {
+  const std::optional<SrsArm>& arm = robot.arm_class().srs;
+  if (robot.arm_class().kind != ArmKind::kSrs || robot.arm().chain.free_roll || !stroke.piece ||
+      (stroke.piece->before.empty() && stroke.approach.isZero(0)))
+    return {};
+  Problem before = problem;
+  before.end.reset();
+  before.smooth.reset();
+  before.waypoints = stroke.piece->before;
+  before.waypoints.push_back(stroke.waypoints.front());
+  if (stroke.piece->before.empty()) before.waypoints = stroke.waypoints;
+  const std::vector<ArmPlane> known =
+      carried_planes(*arm, problem_path(before, robot.arm().chain, budget), budget);
+  const ArmPlane& begin = stroke.piece->before.empty() ? known.front() : known.back();
+  int first = 0;
+  while (first + 1 < path.size() && path.layer(first).s < stroke.approach.norm() - 1e-9) ++first;
+  std::vector<ArmPlane> planes(static_cast<std::size_t>(path.size()));
+  const auto carry = [&](const ArmPlane& from, int layer) {
+    ArmPlane& to = planes[static_cast<std::size_t>(layer)];
+    to = carry_plane(*arm, from, path.layer(layer).tool);
+    return to;
+  };
+  const ArmPlane middle = carry(begin, first);
+  ArmPlane last = middle;
+  for (int layer = first + 1; layer < path.size(); ++layer) last = carry(last, layer);
+  last = middle;
+  for (int layer = first - 1; layer >= 0; --layer) last = carry(last, layer);
+  return planes;
+}
+
 /// A run with what its search needs. Each is searched by one thread at a time.
 struct PlannedRun {
-  PlannedRun(const StrokeRun& of, Problem p, const PreparedRobot& robot, const World& w,
-             const Budget& budget)
+  PlannedRun(const StrokeRun& of, const Stroke& stroke, Problem p, const PreparedRobot& robot,
+             const World& w, const Budget& budget)
       : run(of),
         problem(std::move(p)),
         world(&w),
         rule(w.edge_rule(robot.radii())),
-        path(path_within_scale(problem, robot.arm().chain, budget)),
-        lattice(make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget)) {}
+        path(path_within_scale(problem, robot.arm().chain, budget)) {
+    std::vector<ArmPlane> planes = planes_of_piece(stroke, problem, robot, path, budget);
+    other_planes = !planes.empty();
+    if (planes.empty()) {
+      lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
+      return;
+    }
+    const SrsArm& arm = *robot.arm_class().srs;
+    lattice = std::make_unique<SrsLattice>(
+        robot.arm().chain, arm, path, problem, budget, std::move(planes), std::nullopt,
+        SrsLattice::possible_circles(robot.arm().chain, arm, path, problem));
+  }
   StrokeRun run;
   Problem problem;
   const World* world;
   EdgeRule rule;
   ToolPath path;
+  bool other_planes = false;  ///< arm angles are not measured from the path's own planes
   std::unique_ptr<Lattice> lattice;
   /// The run's cost-to-go in the job that was searched last. What it knows of nodes and edges holds
   /// in every job.
@@ -95,8 +147,9 @@ class JobRuns {
     std::vector<std::shared_ptr<PlannedRun>> made(missing.size());
     executor.for_each(static_cast<int>(missing.size()), [&](int k, int) {
       const auto i = static_cast<std::size_t>(k);
-      made[i] = std::make_shared<PlannedRun>(missing[i].first, std::move(missing[i].second), robot_,
-                                             *worlds[i], budget_);
+      made[i] =
+          std::make_shared<PlannedRun>(missing[i].first, job_.strokes[missing[i].first.stroke],
+                                       std::move(missing[i].second), robot_, *worlds[i], budget_);
     });
     known_.insert(known_.end(), made.begin(), made.end());
     std::vector<std::shared_ptr<PlannedRun>> runs;
@@ -106,7 +159,8 @@ class JobRuns {
   /// Returns a run like `run` with another lattice, which is no other job's.
   [[nodiscard]] std::shared_ptr<PlannedRun> with_lattice(const PlannedRun& run,
                                                          std::unique_ptr<Lattice> lattice) const {
-    auto other = std::make_shared<PlannedRun>(run.run, run.problem, robot_, *run.world, budget_);
+    auto other = std::make_shared<PlannedRun>(run.run, job_.strokes[run.run.stroke], run.problem,
+                                              robot_, *run.world, budget_);
     other->lattice = std::move(lattice);
     return other;
   }
@@ -421,11 +475,23 @@ class JobPlan {
       part.run = runs_[k]->run;
       part.cost = outcome.run_costs[k];
       part.rows = lattice.path_rows(path);
+      if (runs_[k]->other_planes) measure_arm_angles(*runs_[k], part.rows);
       parts.push_back(std::move(part));
       end = *lattice.exact_config(lattice.layers() - 1, path.back());
     }
     if (job_.home) add_transition(runs_.size(), *job_.home);
     return parts;
+  }
+
+  /// Measures the arm angles of a run's rows from the planes of its own path, as everyone does who
+  /// knows the run alone.
+  void measure_arm_angles(const PlannedRun& run, std::vector<TrajectoryRow>& rows) const {
+    const SrsArm& arm = *robot_.arm_class().srs;
+    const std::vector<ArmPlane> planes = carried_planes(arm, run.path, budget_);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const double before = k > 0 ? rows[k - 1].phi : 0;
+      rows[k].phi = before + wrap_angle(arm_angle(arm, planes[k], rows[k].q) - before);
+    }
   }
 
   /// Measures the runs of a job, or finds out why there is none.
@@ -642,7 +708,11 @@ JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions
   validate(job);
   require_supported(options, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
-  return plan_in_order(robot, job, options, options.budget(), view);
+  const Budget budget = options.budget();
+  return plan_with_lift_offs(robot, job, options, budget, view,
+                             [&](const Job& one, JobView* its_view) {
+                               return plan_in_order(robot, one, options, budget, its_view);
+                             });
 }
 
 JobResult plan_job(const Job& job, const PlanOptions& options) {
@@ -661,16 +731,20 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
   robot.require_prepared_for(problem_of_run(completed, {0, false}));
   const Budget budget = options.budget();
   JobMotionPlan plan;
-  plan.result = plan_executable(robot, completed, options, budget, view);
+  plan.result = plan_with_lift_offs(robot, completed, options, budget, view,
+                                    [&](const Job& one, JobView* its_view) {
+                                      return plan_executable(robot, one, options, budget, its_view);
+                                    });
   if (plan.result.parts.empty()) return plan;
+  const Job executed = executed_job(completed, plan.result);
   try {
     Stopwatch watch;
-    plan.timing = time_job(robot, completed, plan.result.parts, timing, budget);
+    plan.timing = time_job(robot, executed, plan.result.parts, timing, budget);
     plan.result.time_ms["time"] = watch.lap();
     if (options.check && plan.timing->motion) {
       std::vector<StrokeRun> order;
       for (const RunResult& run : plan.result.runs) order.push_back(run.run);
-      require_passed(check_job_motion(robot, completed, order, *plan.timing->motion,
+      require_passed(check_job_motion(robot, executed, order, *plan.timing->motion,
                                       {.margins = false, .budget = budget}));
       plan.result.time_ms["check motion"] = watch.lap();
     }

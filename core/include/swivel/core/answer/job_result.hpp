@@ -66,16 +66,27 @@ struct NoTransition {
 /// "stroke 'ring' backwards".
 [[nodiscard]] std::string words(const NoTransition& none, const std::vector<std::string>& runs);
 
+/// A lift-off of an answer, and why the run before it does not go on to the stroke's end.
+struct LiftOffResult : LiftOff {
+  /// Arc length of the stroke, m, that the longest run from the begin of the one before reaches.
+  double reached = 0;
+  Cause cause;  ///< what ends every run there; Kind::kNone where no single cause is known
+};
+
 /// The result of planning a job.
 struct JobResult {
   PlanStatus status = PlanStatus::kInfeasible;
   /// Cost of all parts: of the nodes of runs in their lattices, and of the joint moves of
-  /// transitions in the same metric.
+  /// transitions in the same metric; and of lift-offs.
   double cost = 0;
   /// No job in this order costs less, if its transitions are those that the planner finds.
   double bound = 0;
-  /// No job in this order costs less, whatever its transitions.
+  /// No job in this order costs less, whatever its transitions. Both bounds are of jobs with the
+  /// same lift-offs.
   double bound_any = 0;
+  /// Where the tool lifts off within strokes: with_lift_offs() makes of these the job of which
+  /// `parts` and `runs` are.
+  std::vector<LiftOffResult> lift_offs;
   /// Transitions and runs in the order in which they are executed: of the answer, or of
   /// the cheapest job known where time was up; empty if there is none.
   std::vector<JobPart> parts;
@@ -92,5 +103,8 @@ struct JobResult {
   std::vector<SpecialPair> dropped_pairs, reduced_pairs;
   std::vector<std::string> warnings;
 };
+
+/// Returns the job of which the parts and runs of a result are: `job`, with the result's lift-offs.
+[[nodiscard]] Job executed_job(const Job& job, const JobResult& result);
 
 }  // namespace swivel

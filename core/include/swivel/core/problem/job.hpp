@@ -9,6 +9,15 @@
 
 namespace swivel {
 
+/// Where a run of a stroke belongs that is done in several runs, because no single one finishes it.
+struct StrokePiece {
+  std::string stroke;  ///< name of the stroke
+  double begin = 0;    ///< arc length of the stroke at which this run of it begins, m
+  /// Waypoints of the stroke before that place: arm angles of grids are measured along all of it.
+  std::vector<Waypoint> before;
+  bool operator==(const StrokePiece&) const = default;
+};
+
 /// One run of the tool on the workpiece, as a job has many of them: a task with a name. Its
 /// `start`, `start_at`, `rolls` and `steps` are unset. Its `end` is the posture in which the run
 /// ends, after the retract; a reversible stroke has none.
@@ -26,6 +35,18 @@ struct Stroke : Task {
   std::optional<double> approach_speed;
   /// Speed of the tool from each waypoint to the next, m/s, instead of process_speed; empty: none.
   std::vector<double> feed;
+  /// Set by with_lift_offs() alone.
+  std::optional<StrokePiece> piece;
+};
+
+/// Lift-offs: a stroke that no single run finishes may be done in several, between which the tool
+/// leaves the workpiece.
+struct LiftOffs {
+  double cost = 0;  ///< of each lift-off, in units of the metric; >= 0
+  /// m along the stroke: the next run begins at least so much before the end of the one before it,
+  /// at a layer of the path, but not before the stroke itself; >= 0.
+  double overlap = 0;
+  bool operator==(const LiftOffs&) const = default;
 };
 
 /// In which order the strokes of a job are run: as they are listed, or in the cheapest order that
@@ -52,7 +73,32 @@ struct Job : Robot {
   std::optional<double> approach_speed;
   /// The share of the joints' speeds that transitions may use, more than 0 and at most 1.
   double rapid = 1;
+  /// Unset: each stroke is done in one run. Only with StrokeOrder::kGiven.
+  std::optional<LiftOffs> lift;
 };
+
+/// A place at which the tool lifts off.
+struct LiftOff {
+  std::size_t stroke = 0;       ///< index in Job::strokes
+  double end = 0, resumed = 0;  ///< arc lengths of the stroke, m, where a run ends, the next begins
+  bool operator==(const LiftOff&) const = default;
+};
+
+/// Returns the job whose strokes are the runs between lift-offs, in order: those of stroke "ring"
+/// are named "ring/1", "ring/2", and so on. A run keeps approach, retract, speeds and limits of its
+/// stroke, the last one also its `end`. `lift_offs` are in the order of the job. Throws
+/// InvalidArgument for places that are not, that are beyond a stroke's ends, or that resume behind
+/// the end of the run before.
+[[nodiscard]] Job with_lift_offs(const Job& job, const std::vector<LiftOff>& lift_offs);
+
+/// Returns the number of lift-offs of a job that with_lift_offs() made.
+[[nodiscard]] std::size_t lift_off_count(const Job& job);
+
+/// Returns the arc length, m, that is added to the s of a run's rows to be that of its whole
+/// stroke; 0 unless the stroke is done in several runs.
+[[nodiscard]] inline double s_of_piece(const Stroke& stroke) {
+  return stroke.piece ? stroke.piece->begin : 0;
+}
 
 /// Returns the index in Job::strokes of the stroke with this name; none if the job has no such
 /// stroke.
@@ -86,7 +132,8 @@ struct ProcessWaypoints {
 /// Throws InvalidArgument for a job that makes no sense whatever the robot: what validate(Problem)
 /// refuses of any of its runs, no strokes, names that are empty or taken, a start in a stroke, an
 /// end in a reversible one, a home that is not finite, speeds that are not positive, feeds that are
-/// not one per waypoint.
+/// not one per waypoint, lift-offs that cost less than nothing or overlap by less, in an order that
+/// is to be found, or with names that have a slash.
 void validate(const Job& job);
 
 }  // namespace swivel

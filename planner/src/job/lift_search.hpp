@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/problem/job.hpp"
+#include "swivel/graph/eager/cut_program.hpp"
+#include "swivel/parallel/executor.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+
+/// Finds places at which the tool lifts off from a stroke of a job, the cheapest first: the least
+/// cost of its runs with straight moves between them that nothing bars. Runs begin and end with the
+/// stroke's approach and retract.
+class LiftSearch {
+ public:
+  /// Asks about all nodes and edges of the stroke's lattice. Both references must outlive this.
+  /// Throws InputError for an arm whose roll and arm angle are both free and for a stroke of more
+  /// than 5000 layers, and Stopped.
+  LiftSearch(const PreparedRobot& robot, const Job& job, std::size_t stroke, DistanceProofs proofs,
+             int threads, const Budget& budget);
+
+  /// Returns the least number of lift-offs; none where no number suffices.
+  [[nodiscard]] std::optional<int> least() const { return least_; }
+  /// Places, and the cost of the runs with the moves between them.
+  struct Places {
+    std::vector<LiftOff> lift_offs;
+    double cost = 0;
+  };
+  /// Returns the cheapest places of a number of lift-offs that are not left out; none if there are
+  /// none. Throws Stopped.
+  [[nodiscard]] std::optional<Places> next(int count);
+  /// Leaves out a place that next() has returned last, lift-off number `k`, from 0, and as many
+  /// layers as `around` on both sides of it.
+  void leave_out(std::size_t k, int around);
+  /// Returns the arc length, m, that the longest run from an arc length reaches, whatever lines it
+  /// begins and ends with.
+  [[nodiscard]] double reach(double from) const;
+  /// Returns what a straight move of the joints costs.
+  [[nodiscard]] double distance(const Config& from, const Config& to) const;
+
+ private:
+  void find_places(double overlap);
+  bool find_lines(int begin, int end);
+  [[nodiscard]] std::optional<CutPath> best(int count);
+  [[nodiscard]] std::vector<double> line_costs(int layer, const Vector3d& offset);
+  [[nodiscard]] bool turns_on_the_spot(int layer) const;
+
+  const PreparedRobot* robot_;
+  const Job* job_;
+  std::size_t stroke_;
+  DistanceProofs proofs_;
+  Budget budget_;
+  Problem problem_;  // of the stroke without approach and retract, with sharp corners
+  World world_;
+  Executor executor_;
+  ToolPath path_;
+  std::unique_ptr<Lattice> lattice_;
+  std::optional<CutProgram> program_;
+  std::vector<CutPlace> places_;
+  std::vector<std::uint8_t> begin_known_, end_known_;  // by layer: whether lines were asked about
+  std::optional<int> least_;
+  std::vector<CutProgram::Cut> without_;
+  std::vector<int> last_;  // layers of the places returned last
+};
+
+}  // namespace swivel

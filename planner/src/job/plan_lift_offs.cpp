@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "job/plan_lift_offs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "job/lift_search.hpp"
+#include "plan/search.hpp"
+#include "plan/stopwatch.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr int kMostTries = 24;  // jobs planned to choose the places of one stroke
+
+/// A stroke that is done in several runs.
+struct CutStroke {
+  std::unique_ptr<LiftSearch> search;
+  int count = 0;  ///< of lift-offs
+  LiftSearch::Places places;
+};
+
+class LiftPlan {
+ public:
+  LiftPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+           const Budget& budget, JobView* view,
+           const std::function<JobResult(const Job&, JobView*)>& plan)
+      : robot_(robot), job_(job), options_(options), budget_(budget), view_(view), plan_(plan) {}
+
+  JobResult run() {
+    uncut_ = std::make_shared<Job>(job_);
+    uncut_->lift.reset();
+    JobResult first = plan_(*uncut_, view_);
+    keep(uncut_);
+    const bool cut = std::any_of(job_.strokes.begin(), job_.strokes.end(),
+                                 [](const Stroke& stroke) { return stroke.piece.has_value(); });
+    if (!job_.lift || cut || first.status != PlanStatus::kInfeasible) return first;
+    try {
+      Stopwatch watch;
+      if (!find_cuts(first)) return first;
+      for (CutStroke& stroke : strokes_) choose(stroke);
+      first.time_ms["lift"] = watch.lap();
+    } catch (const Stopped&) {
+      if (!best_) {
+        first.status = budget_.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
+        first.runs.clear();
+        return first;
+      }
+    }
+    return best_ && !best_->parts.empty() ? finish(std::move(first)) : first;
+  }
+
+ private:
+  /// Lets a view live as long as the job to which it refers.
+  void keep(const std::shared_ptr<Job>& job) {
+    if (view_ != nullptr)
+      view_->owner = std::make_shared<std::pair<std::shared_ptr<Job>, std::shared_ptr<const void>>>(
+          job, view_->owner);
+  }
+  /// Finds the least number of lift-offs of each stroke that has no path by itself. Returns false,
+  /// and says so in the result, where one cannot be done in any number of runs.
+  bool find_cuts(JobResult& first) {
+    for (const RunResult& run : first.runs) {
+      if (run.status != PlanStatus::kInfeasible) continue;
+      CutStroke& stroke = strokes_.emplace_back();
+      stroke.search = std::make_unique<LiftSearch>(
+          robot_, job_, run.run.stroke,
+          options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn,
+          options_.planner == PlannerKind::kLazy ? 1 : options_.threads, budget_);
+      const std::optional<int> least = stroke.search->least();
+      stroke.count = std::max(1, least.value_or(1));
+      const auto places = least ? stroke.search->next(stroke.count) : std::nullopt;
+      if (!places) {
+        first.warnings.push_back("stroke '" + job_.strokes[run.run.stroke].name +
+                                 "': no number of lift-offs suffices: some place on it cannot be "
+                                 "passed by any run");
+        return false;
+      }
+      stroke.places = *places;
+    }
+    return !strokes_.empty();
+  }
+
+  [[nodiscard]] std::vector<LiftOff> lift_offs() const {
+    std::vector<LiftOff> all;
+    for (const CutStroke& stroke : strokes_)
+      all.insert(all.end(), stroke.places.lift_offs.begin(), stroke.places.lift_offs.end());
+    return all;
+  }
+  /// Plans the job with the places chosen now, and keeps it if it is the best so far.
+  JobResult evaluate() {
+    const std::vector<LiftOff> places = lift_offs();
+    const auto job = std::make_shared<Job>(with_lift_offs(job_, places));
+    JobView view;
+    JobResult found = plan_(*job, view_ == nullptr ? nullptr : &view);
+    add_counters(found.counters, counters_);
+    const bool better =
+        !best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost));
+    if (better) {
+      best_ = found;
+      best_lift_offs_ = places;
+      if (view_ != nullptr) {
+        std::swap(*view_, view);
+        keep(job);
+      }
+    }
+    return found;
+  }
+
+  /// Chooses the places of a stroke: plans the job with the cheapest ones, as long as others may be
+  /// cheaper with their moves around obstacles.
+  void choose(CutStroke& stroke) {
+    const bool alone = job_.strokes.size() == 1 && !job_.home;
+    std::optional<double> rest;  // cost of everything but the stroke
+    std::optional<LiftSearch::Places> kept;
+    double least = std::numeric_limits<double>::infinity();
+    int failures = 0;
+    for (int k = 0; k < kMostTries; ++k) {
+      const JobResult found = evaluate();
+      const std::vector<std::size_t> faults = faults_of(found, stroke);
+      if (found.parts.empty()) {
+        ++failures;
+      } else {
+        if (!rest) rest = alone ? 0 : found.cost - stroke.places.cost - detours(found, stroke);
+        if (found.cost < least) least = found.cost, kept = stroke.places;
+      }
+      if (faults.empty() || found.status == PlanStatus::kTimeout ||
+          found.status == PlanStatus::kCancelled)
+        break;
+      const int around = found.parts.empty() ? (1 << std::min(failures - 1, 6)) - 1 : 0;
+      for (const std::size_t fault : faults) stroke.search->leave_out(fault, around);
+      const auto next = stroke.search->next(stroke.count);
+      if (!next || (rest && *rest + next->cost >= least)) break;
+      stroke.places = *next;
+    }
+    if (kept) stroke.places = *kept;
+  }
+
+  /// Returns the numbers of a stroke's lift-offs, from 0, beside which a run has no path or a
+  /// transition has none or is a detour.
+  [[nodiscard]] std::vector<std::size_t> faults_of(const JobResult& found,
+                                                   const CutStroke& stroke) const {
+    std::set<std::size_t> faults;
+    const Job job = with_lift_offs(job_, lift_offs());
+    const std::string& name = job_.strokes[stroke.places.lift_offs.front().stroke].name;
+    const auto count = static_cast<std::size_t>(stroke.count);
+    // number of the run among those of this stroke
+    const auto number = [&](std::size_t run) -> std::optional<std::size_t> {
+      if (run >= job.strokes.size() || !job.strokes[run].piece ||
+          job.strokes[run].piece->stroke != name)
+        return std::nullopt;
+      std::size_t before = 0;
+      while (before < run && job.strokes[run - 1 - before].piece &&
+             job.strokes[run - 1 - before].piece->stroke == name)
+        ++before;
+      return before;
+    };
+    for (std::size_t run = 0; run < found.runs.size(); ++run)
+      if (const auto k = number(run); k && found.runs[run].status == PlanStatus::kInfeasible) {
+        if (*k > 0) faults.insert(*k - 1);
+        if (*k < count) faults.insert(*k);
+      }
+    if (found.no_transition)
+      if (const auto k = number(found.no_transition->to); k && *k > 0) faults.insert(*k - 1);
+    for (std::size_t part = 1; part + 1 < found.parts.size(); ++part) {
+      if (found.parts[part].run || found.parts[part].rows.size() <= 2) continue;
+      const auto k = number(found.parts[part + 1].run->stroke);
+      if (k && *k > 0) faults.insert(*k - 1);
+    }
+    return {faults.begin(), faults.end()};
+  }
+  /// Returns by how much the transitions of a stroke's lift-offs are dearer than straight ones.
+  [[nodiscard]] double detours(const JobResult& found, const CutStroke& stroke) const {
+    const Job job = with_lift_offs(job_, lift_offs());
+    const std::string& name = job_.strokes[stroke.places.lift_offs.front().stroke].name;
+    double sum = 0;
+    for (std::size_t part = 1; part + 1 < found.parts.size(); ++part) {
+      if (found.parts[part].run) continue;
+      const auto &before = job.strokes[found.parts[part - 1].run->stroke].piece,
+                 &after = job.strokes[found.parts[part + 1].run->stroke].piece;
+      if (!before || !after || before->stroke != name || after->stroke != name) continue;
+      const std::vector<TrajectoryRow>& rows = found.parts[part].rows;
+      sum += found.parts[part].cost - stroke.search->distance(rows.front().q, rows.back().q);
+    }
+    return sum;
+  }
+
+  /// Returns the best job with what its lift-offs cost and why each is there.
+  JobResult finish(JobResult first) {
+    JobResult found = std::move(*best_);
+    const double cost = static_cast<double>(best_lift_offs_.size()) * job_.lift->cost;
+    found.cost += cost;
+    found.bound += cost;
+    found.bound_any += cost;
+    found.counters = first.counters;
+    add_counters(counters_, found.counters);
+    if (const auto lift = first.time_ms.find("lift"); lift != first.time_ms.end())
+      found.time_ms["lift"] = lift->second;
+    for (std::size_t k = 0; k < best_lift_offs_.size(); ++k)
+      found.lift_offs.push_back(explained(k, first));
+    return found;
+  }
+  /// Returns lift-off number k of the answer with what ends the run before it, were it longer.
+  [[nodiscard]] LiftOffResult explained(std::size_t k, const JobResult& first) const {
+    LiftOffResult lift{best_lift_offs_[k], 0, {}};
+    const bool first_of_stroke = k == 0 || best_lift_offs_[k - 1].stroke != lift.stroke;
+    const double begin = first_of_stroke ? 0 : best_lift_offs_[k - 1].resumed;
+    std::optional<Diagnosis> diagnosis;
+    if (first_of_stroke) {
+      for (const RunResult& run : first.runs)
+        if (run.run.stroke == lift.stroke) diagnosis = run.diagnosis;
+    } else {
+      diagnosis = diagnosis_after(k - 1);
+    }
+    for (const CutStroke& stroke : strokes_)
+      if (stroke.places.lift_offs.front().stroke == lift.stroke)
+        lift.reached = stroke.search->reach(begin);
+    // The cause is that of this place only if the run by itself, whose nodes may differ, ends here.
+    constexpr double kSamePlace = 1e-6;  // m
+    if (!diagnosis || !diagnosis->reached_s) return lift;
+    const double there = begin + *diagnosis->reached_s - job_.strokes[lift.stroke].approach.norm();
+    if (std::abs(there - lift.reached) <= kSamePlace) lift.cause = diagnosis->cause;
+    return lift;
+  }
+  /// Returns what ends every run that begins at lift-off number k and goes on to the stroke's end.
+  [[nodiscard]] std::optional<Diagnosis> diagnosis_after(std::size_t k) const {
+    const LiftOff& begin = best_lift_offs_[k];
+    const Job job = with_lift_offs(job_, {begin});
+    PlanOptions alone = options_;
+    alone.check = false;
+    Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot_),
+                    problem_of_run(job, {begin.stroke + 1, false}));
+    const PlanResult found = planner.plan(alone);
+    if (found.status != PlanStatus::kInfeasible) return std::nullopt;
+    return found.diagnosis;
+  }
+
+  const PreparedRobot& robot_;
+  const Job& job_;
+  const PlanOptions& options_;
+  const Budget& budget_;
+  JobView* view_;
+  const std::function<JobResult(const Job&, JobView*)>& plan_;
+  std::shared_ptr<Job> uncut_;
+  std::vector<CutStroke> strokes_;
+  std::optional<JobResult> best_;
+  std::vector<LiftOff> best_lift_offs_;
+  Counters counters_;  // of all jobs with lift-offs
+};
+
+}  // namespace
+
+JobResult plan_with_lift_offs(const PreparedRobot& robot, const Job& job,
+                              const PlanOptions& options, const Budget& budget, JobView* view,
+                              const std::function<JobResult(const Job&, JobView*)>& plan) {
+  if (!job.lift) return plan(job, view);
+  return LiftPlan(robot, job, options, budget, view, plan).run();
+}
+
+}  // namespace swivel

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <functional>
+
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/problem/job.hpp"
+#include "swivel/planner/job/job_view.hpp"
+#include "swivel/planner/plan/plan_options.hpp"
+
+namespace swivel {
+
+class PreparedRobot;
+
+/// Plans a job by `plan`; where Job::lift allows it and strokes have no path by themselves, with
+/// the least number of lift-offs of these strokes, at the cheapest places found. `plan` gets a job
+/// without strokes to be cut, and a view to fill or null.
+[[nodiscard]] JobResult plan_with_lift_offs(
+    const PreparedRobot& robot, const Job& job, const PlanOptions& options, const Budget& budget,
+    JobView* view, const std::function<JobResult(const Job&, JobView*)>& plan);
+
+}  // namespace swivel
