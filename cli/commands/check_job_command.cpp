@@ -80,11 +80,14 @@ void print_verdict(const JobCheckResult& result, const std::vector<HeldJoint>& h
 
 }  // namespace
 
-int check_job_file(const Job& job, const std::string& trajectory) {
-  const PreparedRobot robot(problem_of_run(job, {0, false}));
+int check_job_file(const Job& given, const std::string& trajectory) {
+  const PreparedRobot robot(problem_of_run(given, {0, false}));
   const std::vector<HeldJoint>& held = robot.arm().held;
   warn_of_held(held);
-  const auto file = io::load_job_rows(trajectory, job, robot.arm().chain.joint_names);
+  const io::ExecutedJobRows executed =
+      io::load_executed_rows(trajectory, given, robot.arm().chain.joint_names);
+  const Job& job = executed.job;
+  const auto& file = executed.rows;
   JobCheckResult result;
   if (const auto* read = std::get_if<io::JobTrajectory>(&file)) {
     const std::vector<JobPart> parts =

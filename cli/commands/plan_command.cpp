@@ -360,6 +360,10 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
     require_table_name("--out", arguments.out, "a job without times",
                        "--speed or --rate, with which motions are written in other formats");
   }
+  if (!arguments.certificate.empty() && request.job.lift)
+    throw InputError(
+        "--certificate: proves that one run of a stroke has no path, and the job allows several "
+        "by `lift`: allowed without lift-offs");
   if (!arguments.certificate.empty() && request.timing)
     throw InputError(
         "--certificate: is of the job as its file has it: allowed without --speed and --rate, "

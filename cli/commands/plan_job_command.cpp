@@ -32,7 +32,7 @@ namespace {
 std::string stages_text(const JobResult& result) {
   std::string text;
   for (const char* const stage :
-       {"load", "lattice", "find", "order", "report", "check", "time", "check motion"})
+       {"load", "lattice", "find", "order", "lift", "report", "check", "time", "check motion"})
     if (const auto found = result.time_ms.find(stage); found != result.time_ms.end())
       text += formatted("%s%s %.1f ms", text.empty() ? "" : ", ", stage, found->second);
   return text;
@@ -113,10 +113,11 @@ JobMotionPlan planned(const JobRequest& request, const PreparedRobot& robot, con
 /// Returns the page of --report; unset where there is neither a job nor a verdict, or where time is
 /// up first, of which a warning tells.
 std::optional<std::string> page_of(const JobRequest& request, const PreparedRobot& robot,
-                                   const Job& job, const JobView& view, const Budget& budget,
+                                   const Job& given, const JobView& view, const Budget& budget,
                                    JobAnswer& answer) {
   const JobMotionPlan& plan = answer.plan;
   const JobResult& result = plan.result;
+  const Job job = executed_job(given, result);
   if (!request.report || (result.parts.empty() && result.status != PlanStatus::kInfeasible))
     return std::nullopt;
   try {
@@ -135,16 +136,17 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
 
 /// Gives --out its text: the motion where one is asked for, else the trajectory. Marks an earlier
 /// file for removal if there is none.
-void write_rows(const JobRequest& request, const JobMotionPlan& plan, io::OutputFiles& outputs) {
+/// `job` is the one of which the parts of the plan are.
+void write_rows(const JobRequest& request, const JobMotionPlan& plan, const Job& job,
+                io::OutputFiles& outputs) {
   const bool motion = plan.timing && plan.timing->motion;
   if (plan.result.parts.empty() || (request.timing && !motion))
     outputs.remove("--out");
   else if (!request.timing)
-    outputs.write("--out", io::to_job_csv(plan.result, request.job));
+    outputs.write("--out", io::to_job_csv(plan.result, job));
   else if (outputs.wants("--out"))
-    outputs.write("--out",
-                  io::job_motion_text(*plan.timing->motion, request.job, plan.result.joint_names,
-                                      request.job.base_link, request.out));
+    outputs.write("--out", io::job_motion_text(*plan.timing->motion, job, plan.result.joint_names,
+                                               job.base_link, request.out));
 }
 
 /// Returns the reason for which earlier files are removed.
@@ -178,7 +180,8 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   std::optional<std::string> page = page_of(request, robot, job, view, budget, answer);
   progress.clear();
 
-  write_rows(request, plan, outputs);
+  const Job executed = executed_job(request.job, result);
+  write_rows(request, plan, executed, outputs);
   const std::size_t certificate_bytes = answer.certificate.size();
   if (answer.proof)
     outputs.write("--certificate", std::move(answer.certificate));
@@ -190,12 +193,12 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
     outputs.remove("--report");
   const io::JobExtras extras = extras_of(answer);
   if (outputs.wants("--json"))
-    outputs.write("--json", io::to_job_json(result, request.job, extras) + "\n");
+    outputs.write("--json", io::to_job_json(result, executed, extras) + "\n");
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   const bool no_motion = plan.timing && !plan.timing->motion;
   deliver(outputs, reason_of_removal(plan, outputs), [&] {
     if (request.quiet || outputs.takes_standard_output()) return;
-    print_job(plan, request.job);
+    print_job(plan, executed);
     if (answer.proof)
       say_text("  stroke '" + answer.proof->stroke +
                (answer.proof->reversed ? "' backwards: " : "': ") +

@@ -18,12 +18,18 @@ namespace swivel::cli {
 
 namespace {
 
-io::JobTrajectory untimed(const JobTimeRequest& request, const io::JointNames& joint_names) {
-  auto read = io::load_job_rows(request.trajectory, request.job, joint_names);
-  if (std::holds_alternative<io::JobMotionFile>(read))
+/// A job, with its lift-offs if it has any, and its rows.
+struct Untimed {
+  Job job;
+  io::JobTrajectory rows;
+};
+
+Untimed untimed(const JobTimeRequest& request, const io::JointNames& joint_names) {
+  auto read = io::load_executed_rows(request.trajectory, request.job, joint_names);
+  if (std::holds_alternative<io::JobMotionFile>(read.rows))
     throw InputError(request.trajectory,
                      "has times: allowed is the trajectory of a job without them");
-  return std::get<io::JobTrajectory>(std::move(read));
+  return {std::move(read.job), std::get<io::JobTrajectory>(std::move(read.rows))};
 }
 
 /// Returns the parts of a job in a file, with rows at the layers of each run. Throws InputError
@@ -55,10 +61,9 @@ struct Timed {
   std::string fault = {};  ///< what the check of the motion found; empty: it is proved
 };
 
-Timed timed(const PreparedRobot& robot, const JobTimeRequest& request,
+Timed timed(const PreparedRobot& robot, const JobTimeRequest& request, const Job& job,
             const io::JobTrajectory& read) {
   const Budget budget(std::nullopt, &interrupted);
-  const Job& job = request.job;
   Timed made{proved_parts(robot, job, read, budget), {}};
   made.timing = time_job(robot, job, made.parts, request.timing, budget);
   if (!made.timing.motion || !request.check) return made;
@@ -76,14 +81,16 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
   const PreparedRobot robot(problem_of_run(request.job, {0, false}));
   if (!request.quiet) warn_of_held(robot.arm().held);
   const io::JointNames& names = robot.arm().chain.joint_names;
-  const io::JobTrajectory read = untimed(request, names);
+  const Untimed read = untimed(request, names);
+  const Job& job = read.job;
+  const io::JobTrajectory& rows = read.rows;
   io::OutputFiles outputs(noted->files());
   noted.reset();
   outputs.add("--out", request.out);
   catch_interrupts();
   std::optional<Timed> made;
   try {
-    made = in_the_name_of(request.trajectory, [&] { return timed(robot, request, read); });
+    made = in_the_name_of(request.trajectory, [&] { return timed(robot, request, job, rows); });
   } catch (const Stopped&) {
     outputs.remove("--out");
   }
@@ -91,13 +98,13 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
   if (!executable)
     outputs.remove("--out");
   else if (outputs.wants("--out"))
-    outputs.write("--out", io::job_motion_text(*made->timing.motion, request.job, names,
-                                               request.job.base_link, request.out));
+    outputs.write(
+        "--out", io::job_motion_text(*made->timing.motion, job, names, job.base_link, request.out));
   deliver(outputs, made ? "there is no motion now" : "the work was stopped", [&] {
     if (!made) return say("stopped\n");
     if (!made->fault.empty()) return say("not executable: %s\n", made->fault.c_str());
     if (executable && (request.quiet || outputs.takes_standard_output())) return;
-    say_text(job_motion_text(made->timing, made->parts, request.job));
+    say_text(job_motion_text(made->timing, made->parts, job));
     if (!executable) return;
     for (const std::string& warning : made->timing.motion->warnings)
       complain("swivel: warning: %s\n", warning.c_str());

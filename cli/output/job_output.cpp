@@ -110,15 +110,48 @@ std::string transitions_text(const JobResult& result, const Job& job) {
   return text;
 }
 
+/// Returns a line for each stroke in several runs: where the tool lifts off, and why no run goes
+/// on.
+std::string lift_offs_text(const JobResult& result, const Job& job) {
+  std::string text;
+  for (std::size_t k = 0, run = 0; k < result.lift_offs.size();) {
+    const std::size_t stroke = result.lift_offs[k].stroke;
+    std::size_t end = k;
+    while (end < result.lift_offs.size() && result.lift_offs[end].stroke == stroke) ++end;
+    while (!job.strokes[run].piece) ++run;
+    const std::string& name = job.strokes[run].piece->stroke;
+    text += "  stroke '" + name + "': " + std::to_string(end - k) + " lift-off" +
+            (end - k == 1 ? "" : "s") + ", at s";
+    for (std::size_t i = k; i < end; ++i)
+      text += (i == k        ? " "
+               : i + 1 < end ? ", "
+                             : " and ") +
+              formatted("%.3f", result.lift_offs[i].end);
+    text += " m\n";
+    for (std::size_t i = k; i < end; ++i) {
+      const LiftOffResult& lift = result.lift_offs[i];
+      if (lift.cause.kind == Cause::Kind::kNone) continue;
+      const std::string by = figures(lift.cause);
+      text += formatted("    no run from s %.3f gets beyond s %.3f m: ",
+                        i == k ? 0.0 : result.lift_offs[i - 1].resumed, lift.reached) +
+              words(lift.cause) + (by.empty() ? "" : " (" + by + ")") + '\n';
+    }
+    run += end - k + 1;
+    k = end;
+  }
+  return text;
+}
+
 /// Returns the answer where there is a motion, which is the cheapest known if time was up.
 std::string motion_text(const JobResult& result, const Job& job) {
+  const std::size_t strokes = job.strokes.size() - result.lift_offs.size();
   std::string text =
       result.status == PlanStatus::kSolved
           ? std::string("solved: ")
           : std::string("stopped: ") + to_string(result.status) + ", the cheapest job known: ";
-  text += formatted("%zu stroke%s, cost %.6g: ", job.strokes.size(),
-                    job.strokes.size() == 1 ? "" : "s", result.cost) +
-          bounds_text(result, job);
+  text += formatted("%zu stroke%s, cost %.6g: ", strokes, strokes == 1 ? "" : "s", result.cost) +
+          bounds_text(result, job) +
+          (result.lift_offs.empty() ? "" : ", with the lift-offs at these places");
   if (!result.held.empty()) text += " | held: " + words(result.held);
   text += '\n';
   if (job.order == StrokeOrder::kBest) {
@@ -128,6 +161,7 @@ std::string motion_text(const JobResult& result, const Job& job) {
               (result.runs[k].run.reversed ? " (backwards)" : "");
     text += '\n';
   }
+  text += lift_offs_text(result, job);
   return text + table_of_runs(result, job) + transitions_text(result, job);
 }
 

@@ -256,11 +256,93 @@ class Jobs(WithFolder):
         )
 
     def test_bad_jobs(self):
-        for key, value in (("order", "fastest"), ("lift", {"allowed": True}), ("rapid", 2)):
+        for key, value in (("order", "fastest"), ("lift", True), ("rapid", 2)):
             with self.subTest(key):
                 done = run("plan", self.file(one_job(**{key: value})))
                 self.assertEqual((done.returncode, done.stdout), (2, ""))
                 self.assertRegex(done.stderr, rf"^swivel: .*job.yaml:1: {key}: .*allowed.*\n$")
+
+
+class LiftOffs(WithFolder):
+    """A ring that no single run finishes."""
+
+    def ring(self, **changes):
+        text = (DATA / "problems" / "iiwa14_ring_job.yaml").read_text()
+        text = text.replace("../", f"{DATA}/")
+        text = text.replace("ds: 0.005, dphi: 0.05", "ds: 0.01, dphi: 0.1")
+        for key, value in changes.items():
+            text = re.sub(rf"(?m)^{key}:.*$", f"{key}: {value}" if value else "", text)
+        file = self.folder / "ring.yaml"
+        file.write_text(text)
+        return file
+
+    def test_answer_and_rows(self):
+        ring, rows, out = self.ring(), self.folder / "r.csv", self.folder / "r.json"
+        answer = run("plan", ring, "--out", rows, "--json", out)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertRegex(answer.stdout, r"stroke 'ring': 1 lift-off, at s 0\.\d{3} m\n")
+        self.assertIn("with the lift-offs at these places", answer.stdout)
+        result = json.loads(out.read_text())
+        lift, = result["lift_offs"]
+        self.assertEqual(lift["stroke"], "ring")
+        self.assertLessEqual(lift["resumed_s"], lift["s"] - 0.01 + 1e-9)
+        self.assertGreaterEqual(lift["reached_s"], lift["s"])
+        self.assertEqual([one["stroke"] for one in result["order"]], ["ring/1", "ring/2"])
+        table = list(csv.DictReader(rows.read_text().splitlines()))
+        first = [row for row in table if row["stroke"] == "ring/1"]
+        second = [row for row in table if row["stroke"] == "ring/2"]
+        self.assertEqual(float(first[0]["s"]), 0)
+        self.assertEqual(float(second[0]["s"]), lift["resumed_s"])
+        self.assertAlmostEqual(float(first[-1]["s"]), lift["s"] + 0.1, 9)  # both lines are 50 mm
+        checked = run("check", ring, rows)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        self.assertAlmostEqual(
+            float(re.search(r"cost ([\d.]+)", checked.stdout)[1]), result["cost"], 5
+        )
+        motion = self.folder / "m.csv"
+        timed = run("time", ring, rows, "--speed", "0.05", "--out", motion)
+        self.assertEqual(timed.returncode, 0, timed.stdout + timed.stderr)
+        self.assertEqual(run("check", ring, motion).returncode, 0)
+        # a gap between the runs, less overlap than asked for, another order, no lift-offs allowed
+        gap = table[: len(first) - 12] + table[len(first) :]
+        self.refused(ring, gap, rows, ["s: is ", "at most"])
+        names = {"ring/1": "ring/2", "ring/2": "ring/1"}
+        turned = [row | {"stroke": names.get(row["stroke"], "")} for row in table]
+        self.refused(ring, turned, rows, ["stroke: is 'ring/2'", "'ring/1'"])
+        more = self.ring(lift="{allowed: true, overlap: 0.1}")
+        self.refused(more, table, rows, ["data row", "s: is ", "lift.overlap"])
+        self.refused(self.ring(lift=""), table, rows, ["'ring/1' is no stroke of the job"])
+
+    def refused(self, ring, table, file, needles):
+        with file.open("w") as out:
+            writer = csv.DictWriter(out, table[0].keys(), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(table)
+        answer = run("check", ring, file)
+        self.assertEqual(answer.returncode, 2, answer.stdout)
+        for needle in needles:
+            self.assertIn(needle, answer.stderr)
+
+    def test_one_path(self):
+        text = self.ring().read_text()
+        path = re.search(r"path: (\{.*\})\}", text)[1]
+        text = re.sub(r"(?m)^(strokes|  - {name: ring|approach|retract|process_speed|rapid).*\n", "", text)
+        file = self.folder / "path.yaml"
+        file.write_text(text + f"path: {path}\n")
+        answer = run("plan", file)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("stroke 'path': 1 lift-off", answer.stdout)
+
+    def test_without_them_there_is_no_job(self):
+        for lift in ("", "{allowed: false}"):
+            answer = run("plan", self.ring(lift=lift))
+            self.assertEqual(answer.returncode, 1, answer.stderr)
+            self.assertIn("has no path by itself", answer.stdout)
+
+    def test_no_certificate(self):
+        answer = run("plan", self.ring(), "--certificate", self.folder / "c.json")
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("--certificate: proves that one run", answer.stderr)
 
 
 class Timed(WithFolder):

@@ -115,7 +115,8 @@ class Problems(unittest.TestCase):
             "a misspelt key": lambda p: p["strokes"][0].update(reversable=True),
             "a word for true": lambda p: p["strokes"][0].update(reversible="yes"),
             "soft limits of one": lambda p: p["strokes"][0]["limits"].update(soft_limits="false"),
-            "a lift": lambda p: p.update(lift={"allowed": True}),
+            "a negative cost": lambda p: p.update(lift={"allowed": True, "cost": -1}),
+            "lift-offs neither allowed nor not": lambda p: p.update(lift={"cost": 1}),
         }
         self.refuse(good, changes)
         problem = made_problem()

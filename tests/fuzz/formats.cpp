@@ -353,6 +353,7 @@ std::vector<Reader> motion_readers(const TempFolder& folder) {
 Reader job_reader(const TempFolder& folder) {
   const io::JointNames joints{"a", "b", "c", "d", "e", "f", "g"};
   Job job;
+  job.lift.emplace();
   JobMotion motion;
   PlanResult rows = short_plan(joints);
   JobResult result;
@@ -376,11 +377,12 @@ Reader job_reader(const TempFolder& folder) {
     motion.events.push_back({timed[timed.size() - 4].t, part / 2, 0.1, true});
     motion.events.push_back({timed[timed.size() - 2].t, part / 2, 0.3, false});
   }
-  return {"job_rows",
-          {io::to_job_csv(result, job), io::to_job_motion_csv(motion, job, joints)},
-          {",", "\"", "\n", "1e9,", ",left,1\n", ",right,0\n", ",,0\n"},
-          at(folder, "job.csv",
-             [joints, job](const fs::path& path) { (void)io::load_job_rows(path, job, joints); })};
+  return {
+      "job_rows",
+      {io::to_job_csv(result, job), io::to_job_motion_csv(motion, job, joints)},
+      {",", "\"", "\n", "1e9,", ",left,1\n", ",right,0\n", ",left/1,1\n", ",left/2,1\n", ",,0\n"},
+      at(folder, "job.csv",
+         [joints, job](const fs::path& path) { (void)io::load_job_rows(path, job, joints); })};
 }
 
 /// Returns the reader of the rows of two arms.

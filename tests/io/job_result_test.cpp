@@ -354,6 +354,9 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
     add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
   const JobTimingResult timed = timed_plan(true);
   add_keys(Json::parse(to_job_json(plan_of_two(), two_strokes(), {&timed})), "", seen);
+  JobResult lifted = plan_of_two();
+  lifted.lift_offs.push_back({{0, 0.05, 0.05}, 0.06, {.kind = Cause::Kind::kSingular}});
+  add_keys(Json::parse(to_job_json(lifted, executed_job(two_strokes(), lifted))), "", seen);
   AdviceOnJob advice;
   advice.job.push_back({.change = JobAdvice::Change::kHome, .strokes = {}, .home = Config::Zero()});
   advice.strokes.push_back({"left", {Advice{}}});

@@ -205,6 +205,29 @@ TEST(JobFile, ProblemsAreNoJobs) {
                    {key + ": is given without strokes"});
 }
 
+TEST(JobFile, LiftOffs) {
+  const JobFolder folder;
+  EXPECT_FALSE(folder.load({}).lift);
+  EXPECT_FALSE(folder.load({{"lift", "{allowed: false, cost: 2}"}}).lift);
+  EXPECT_EQ(folder.load({{"lift", "{allowed: true}"}}).lift, LiftOffs());
+  EXPECT_EQ(folder.load({{"lift", "{allowed: true, cost: 2, overlap: 0.01}"}}).lift,
+            (LiftOffs{2, 0.01}));
+  expect_message(input_error([&] {
+                   (void)folder.load({{"lift", "{allowed: true}"}, {"order", "best"}});
+                 }),
+                 {"lift: is given with `order: best`", "`order: given`"});
+  // one path with lift-offs is a job of one stroke
+  const auto one = [&](const char* lift) { return folder.folder().write({{"lift", lift}}); };
+  const auto read = load_problem_or_job(one("{allowed: true}"));
+  ASSERT_TRUE(std::holds_alternative<Job>(read));
+  EXPECT_EQ(std::get<Job>(read).strokes.size(), 1u);
+  EXPECT_TRUE(is_job(one("{allowed: true}")));
+  EXPECT_FALSE(is_job(one("{allowed: false}")));
+  EXPECT_TRUE(std::holds_alternative<Problem>(load_problem_or_job(one("{allowed: false}"))));
+  expect_message(input_error([&] { (void)load_problem(one("{allowed: true}")); }),
+                 {"lift: makes this file a job", "no `lift`"});
+}
+
 TEST(JobFile, LoadedByItsKey) {
   const JobFolder folder;
   EXPECT_TRUE(std::holds_alternative<Job>(load_problem_or_job(folder.write({}))));
@@ -248,7 +271,11 @@ TEST(JobFile, WhatJobsMayNotHave) {
     std::vector<std::string> needles;
   };
   const Case cases[] = {
-      {"lift", "{allowed: true}", {"lift: is not supported yet"}},
+      {"lift", "{}", {"lift.allowed: is missing"}},
+      {"lift", "{allowed: 1}", {"lift.allowed: '1' is neither", "true or false"}},
+      {"lift", "{allowed: true, cost: -1}", {"lift.cost: is -1", ">= 0"}},
+      {"lift", "{allowed: true, overlap: -0.01}", {"lift.overlap: is -0.01", ">= 0"}},
+      {"lift", "{allowed: true, retract: 1}", {"lift.retract: unknown key"}},
       {"order", "fastest", {"order: is 'fastest'", "given, best"}},
       {"rapid", "0", {"rapid: is 0", "at most 1"}},
       {"rapid", "1.01", {"rapid: is 1.01", "at most 1"}},

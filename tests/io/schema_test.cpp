@@ -42,6 +42,7 @@ Json whole_job() {
   Json job = whole_problem();
   for (const char* const key : {"path", "start"}) job.erase(key);
   job["strokes"] = strokes();
+  job["lift"] = {{"allowed", true}};
   return job;
 }
 
@@ -133,7 +134,8 @@ struct Walk {
       static const Json kSections = Json::parse(
           R"({"cylinder": {"radius": 0.1, "length": 0.1}, "capsule": {"radius": 0.1, "length": 0.1},
               "sphere": {"radius": 0.1}, "approach": {"xyz": [0, 0, 0]},
-              "retract": {"xyz": [0, 0, 0]}, "home": {"joints": [0, 0, 0, 0, 0, 0, 0]}})");
+              "retract": {"xyz": [0, 0, 0]}, "home": {"joints": [0, 0, 0, 0, 0, 0, 0]},
+              "lift": {"allowed": true}})");
       visit_object(problem, at);
       for (const auto& [key, value] : option["properties"].items()) {
         Place place{problem, at, key, value};
@@ -298,6 +300,7 @@ TEST(ProblemSchema, DefaultsOfJobs) {
   const Job plain = load_as_job(folder, whole_job()), explicitly = load_as_job(folder, said);
   EXPECT_EQ(plain.order, explicitly.order);
   EXPECT_EQ(plain.rapid, explicitly.rapid);
+  EXPECT_EQ(plain.lift, explicitly.lift);
   Stroke without = plain.strokes[0], with = explicitly.strokes[0];
   EXPECT_EQ(without.reversible, with.reversible);
   EXPECT_EQ(without.approach, with.approach);

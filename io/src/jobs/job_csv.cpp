@@ -86,7 +86,8 @@ std::string to_job_csv(const JobResult& result, const Job& job) {
     const std::string stroke = part.run ? csv_line_field(job.strokes[part.run->stroke].name) : "";
     const std::vector<bool> process = process_of_rows(part, job);
     for (std::size_t k = 0; k < part.rows.size(); ++k) {
-      const TrajectoryRow& row = part.rows[k];
+      TrajectoryRow row = part.rows[k];
+      if (part.run) row.s += s_of_piece(job.strokes[part.run->stroke]);
       text += part.run ? trajectory_fields(row, roll) : placeless_fields(row, roll);
       text += ',' + stroke + (process[k] ? ",1\n" : ",0\n");
     }

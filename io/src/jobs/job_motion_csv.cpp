@@ -12,6 +12,8 @@
 #include "motions/joint_rows.hpp"
 #include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 
 namespace swivel::io {
 
@@ -75,7 +77,9 @@ std::string to_job_motion_csv(const JobMotion& motion, const Job& job,
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const TimedRow& row = motion.rows[k];
     text += format_double(row.t) + ',';
-    text += placed(k) ? trajectory_fields(row.row, roll) : placeless_fields(row.row, roll);
+    TrajectoryRow place = row.row;
+    if (placed(k)) place.s += s_of_piece(job.strokes[stroke(k) ? *stroke(k) : *stroke(k + 1)]);
+    text += placed(k) ? trajectory_fields(place, roll) : placeless_fields(place, roll);
     for (const Config* values : {&row.v, &row.a})
       for (const double value : *values) text += ',' + format_double(value);
     text += ',' + (stroke(k) ? csv_line_field(job.strokes[*stroke(k)].name) : "");
@@ -281,18 +285,137 @@ JobMotionFile load_job_motion(const std::filesystem::path& csv, const Job& job,
                          joint_names);
 }
 
-std::variant<JobTrajectory, JobMotionFile> load_job_rows(const std::filesystem::path& csv,
-                                                         const Job& job,
+namespace {
+
+/// Reads the text of a file by its first column.
+std::variant<JobTrajectory, JobMotionFile> read_job_rows(const std::string& file,
+                                                         std::string_view text, const Job& job,
                                                          const JointNames& joint_names) {
-  const std::string text = read_file(csv, "trajectory file", kMostTableBytes);
   std::string_view first = text;
   if (first.starts_with("\xef\xbb\xbf")) first.remove_prefix(3);
   first.remove_prefix(std::min(first.size(), first.find_first_not_of(" \t\r\n")));
   first = first.substr(0, first.find('\n'));
   const std::vector<std::string> fields = csv_fields(first, 1);
   if (!fields.empty() && fields.front() == "t")
-    return read_job_motion(csv.string(), text, job, joint_names);
-  return read_job_trajectory(csv.string(), text, joint_names);
+    return read_job_motion(file, text, job, joint_names);
+  return read_job_trajectory(file, text, joint_names);
+}
+
+/// Reads where the tool lifts off from the rows of a file.
+class LiftOffRows {
+ public:
+  explicit LiftOffRows(const Job& job) : job_(job) {}
+
+  void header(const std::vector<std::string>& columns) {
+    const auto s = std::find(columns.begin(), columns.end(), "s");
+    s_ = static_cast<std::size_t>(s - columns.begin());
+    known_ = s != columns.end() && columns.size() > 2;
+  }
+  void add(const CsvPlace& place, const std::vector<std::string>& fields) {
+    if (!known_) return;
+    const std::string& name = fields[fields.size() - 2];
+    const std::optional<double> s =
+        fields[s_].empty() ? std::nullopt : std::optional(number_field(place, "s", fields[s_]));
+    const std::size_t slash = name.rfind('/');
+    if (slash != std::string::npos && s) {
+      // a run of a motion begins with the last row of the transition before it
+      if (name != name_) begin(place, name, slash, name_.empty() && before_ ? *before_ : *s);
+      end_ = *s;
+    }
+    name_ = name;
+    before_ = s;
+  }
+  [[nodiscard]] std::vector<LiftOff> lift_offs() const { return lift_offs_; }
+
+ private:
+  void begin(const CsvPlace& place, const std::string& name, std::size_t slash, double s) {
+    const auto stroke = find_stroke(job_, name.substr(0, slash));
+    if (!stroke) return;  // refused by who reads the rows
+    const std::size_t number = stroke == stroke_ ? number_ + 1 : 1;
+    if (name.substr(slash + 1) != std::to_string(number))
+      bad_input(place.where() + ": stroke", "is '" + name + "'",
+                "'" + name.substr(0, slash + 1) + std::to_string(number) +
+                    "': runs of a stroke in their order");
+    if (number > 1) {
+      const Stroke& of = job_.strokes[*stroke];
+      const double end = end_ - of.approach.norm() - of.retract.norm(),
+                   most = std::max(0.0, end - job_.lift->overlap);
+      if (s > most + kSamePlace)
+        bad_input(
+            place.where() + ": s",
+            formatted("is %.9g where the run begins, and the one before it ends at %.9g", s, end),
+            formatted("at most %.9g, so that nothing of the stroke is left out and runs "
+                      "overlap as lift.overlap says",
+                      most));
+      lift_offs_.push_back({*stroke, end, s});
+    }
+    stroke_ = stroke;
+    number_ = number;
+  }
+
+  static constexpr double kSamePlace = 1e-9;  // m
+  const Job& job_;
+  bool known_ = false;
+  std::size_t s_ = 0, number_ = 0;
+  std::optional<std::size_t> stroke_;
+  std::string name_;
+  std::optional<double> before_;
+  double end_ = 0;
+  std::vector<LiftOff> lift_offs_;
+};
+
+/// Returns the job whose strokes the rows of a file are: with its lift-offs, where it has any.
+Job job_of_rows(const std::string& file, std::string_view text, const Job& job) {
+  if (!job.lift) return job;
+  LiftOffRows rows(job);
+  read_csv_rows(file, text,
+                {"the header of a job's rows", [&](const std::vector<std::string>& columns,
+                                                   const std::string&) { rows.header(columns); }},
+                [&](const CsvPlace& place, const std::vector<std::string>& fields) {
+                  rows.add(place, fields);
+                });
+  try {
+    return with_lift_offs(job, rows.lift_offs());
+  } catch (const InvalidArgument& error) {
+    throw InputError(file, error.what());
+  }
+}
+
+/// Lets s of rows begin at 0 in each run, as it does in the problem of the run.
+void begin_at_runs(JobTrajectory& read, const Job& job) {
+  for (JobTrajectoryPart& part : read.parts)
+    if (const auto stroke = find_stroke(job, part.stroke))
+      for (TrajectoryRow& row : part.rows) row.s -= s_of_piece(job.strokes[*stroke]);
+}
+void begin_at_runs(JobMotionFile& read, const Job& job) {
+  JobMotion& motion = read.motion;
+  const auto begin_of = [&](std::size_t part) -> double {
+    if ((part % 2 == 1) != job.home.has_value()) return 0;
+    return s_of_piece(job.strokes[read.strokes.at(part / 2)]);
+  };
+  for (std::size_t k = 0; k < motion.rows.size(); ++k) {
+    const bool begins = k + 1 < motion.rows.size() && motion.part[k + 1] != motion.part[k];
+    const double own = begin_of(motion.part[k]);
+    motion.rows[k].row.s -= own != 0 || !begins ? own : begin_of(motion.part[k + 1]);
+  }
+  for (ProcessEvent& event : motion.events) event.s -= s_of_piece(job.strokes[event.stroke]);
+}
+
+}  // namespace
+
+ExecutedJobRows load_executed_rows(const std::filesystem::path& csv, const Job& job,
+                                   const JointNames& joint_names) {
+  const std::string text = read_file(csv, "trajectory file", kMostTableBytes);
+  ExecutedJobRows read{job_of_rows(csv.string(), text, job), {}};
+  read.rows = read_job_rows(csv.string(), text, read.job, joint_names);
+  std::visit([&](auto& rows) { begin_at_runs(rows, read.job); }, read.rows);
+  return read;
+}
+
+std::variant<JobTrajectory, JobMotionFile> load_job_rows(const std::filesystem::path& csv,
+                                                         const Job& job,
+                                                         const JointNames& joint_names) {
+  return load_executed_rows(csv, job, joint_names).rows;
 }
 
 }  // namespace swivel::io

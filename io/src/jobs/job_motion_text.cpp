@@ -13,10 +13,11 @@ namespace {
 std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job) {
   std::vector<EventMessage> messages;
   for (const ProcessEvent& event : motion.events)
-    messages.push_back({event.t, "{\"t\": " + format_double(event.t) + ", \"stroke\": " +
-                                     nlohmann::json(job.strokes[event.stroke].name).dump() +
-                                     ", \"s\": " + format_double(event.s) + ", \"process\": \"" +
-                                     (event.on ? "on" : "off") + "\"}"});
+    messages.push_back(
+        {event.t, "{\"t\": " + format_double(event.t) +
+                      ", \"stroke\": " + nlohmann::json(job.strokes[event.stroke].name).dump() +
+                      ", \"s\": " + format_double(event.s + s_of_piece(job.strokes[event.stroke])) +
+                      ", \"process\": \"" + (event.on ? "on" : "off") + "\"}"});
   return messages;
 }
 

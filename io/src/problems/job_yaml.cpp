@@ -225,6 +225,21 @@ class JobReader : ProblemReader {
     if (const auto value = root_.find("process_speed")) job_.process_speed = speed(*value);
     if (const auto value = root_.find("approach_speed")) job_.approach_speed = speed(*value);
     if (const auto rapid = root_.find("rapid")) job_.rapid = rapid->number();
+    read_lift();
+  }
+
+  void read_lift() {
+    const auto lift = root_.find_filled("lift");
+    job_.lift = lift_offs_of(root_);
+    if (!job_.lift) return;
+    if (job_.order != StrokeOrder::kGiven)
+      lift->fail("is given with `order: best`, and strokes in several runs are ordered as given",
+                 "`order: given`, or no lift-offs");
+    for (const Stroke& stroke : job_.strokes)
+      if (stroke.name.find('/') != std::string::npos)
+        lift->fail("is given with a stroke named '" + stroke.name +
+                       "', and runs of strokes are named by a slash and a number",
+                   "names without a slash");
   }
 
   Job job_;
@@ -244,8 +259,20 @@ Job read_job(const fs::path& file, YamlSection root) {
   return JobReader(file, std::move(root)).read();
 }
 
+std::optional<LiftOffs> lift_offs_of(const YamlSection& root) {
+  const auto lift = root.find_filled("lift");
+  if (!lift) return std::nullopt;
+  LiftOffs read;
+  const YamlSection section = lift->section();
+  const bool allowed = section.require("allowed").boolean();
+  if (const auto cost = section.find("cost")) read.cost = cost->number();
+  if (const auto overlap = section.find("overlap")) read.overlap = overlap->number();
+  return allowed ? std::optional(read) : std::nullopt;
+}
+
 bool is_job(const fs::path& yaml) {
-  return load_root(yaml).find_filled("strokes").has_value();
+  const YamlSection root = load_root(yaml);
+  return root.find_filled("strokes").has_value() || lift_offs_of(root);
 }
 
 Job load_job(const fs::path& yaml) {
@@ -254,7 +281,7 @@ Job load_job(const fs::path& yaml) {
 
 std::variant<Problem, Job> load_problem_or_job(const fs::path& yaml) {
   YamlSection root = load_root(yaml);
-  if (root.find_filled("strokes")) return read_job(yaml, std::move(root));
+  if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));
   return ProblemReader(yaml, std::move(root)).read();
 }
 

@@ -194,6 +194,8 @@ class ProblemReader {
   MeshCache meshes_;
 };
 
+/// Returns what a problem file says of lift-offs, which makes it a job; none where it allows none.
+[[nodiscard]] std::optional<LiftOffs> lift_offs_of(const YamlSection& root);
 /// Reads the root of a job's file, which has `strokes` or a path. Throws InputError.
 [[nodiscard]] Job read_job(const std::filesystem::path& file, YamlSection root);
 

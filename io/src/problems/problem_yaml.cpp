@@ -144,6 +144,11 @@ void ProblemReader::require_one_path() const {
         "makes this file a workcell, which `swivel plan`, `check` and io::load_workcell() take",
         "a `path` here");
   }
+  if (lift_offs_of(root_))
+    root_.find_filled("lift")->fail(
+        "makes this file a job, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
+        "io::load_job() take",
+        "no `lift` here");
   require_keys_beside();
 }
 

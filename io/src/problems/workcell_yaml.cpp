@@ -25,6 +25,8 @@ class WorkcellReader : ProblemReader {
     for (const char* const other : {"start", "start_at", "start_tolerance"})
       if (const auto value = root_.find_filled(other))
         value->fail("is of problems with one path", "`start`, in one of the `arms`");
+    if (const auto lift = root_.find_filled("lift"))
+      lift->fail("is of jobs, and not supported for two arms", "a workcell without `lift`");
     sections_ = arms.items();
     if (sections_.size() != 2)
       arms.fail("has " + std::to_string(sections_.size()) + " arms", "a list of two");
@@ -266,7 +268,7 @@ Workcell load_workcell(const std::filesystem::path& yaml) {
 std::variant<Problem, Job, Workcell> load_problem_file(const std::filesystem::path& yaml) {
   YamlSection root = load_yaml(yaml, problem_schema()).section();
   if (root.find_filled("arms")) return WorkcellReader(yaml, std::move(root)).read();
-  if (root.find_filled("strokes")) return read_job(yaml, std::move(root));
+  if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));
   return ProblemReader(yaml, std::move(root)).read();
 }
 

@@ -33,6 +33,7 @@ class JobWriter {
     json["order"] = order();
     json["runs"] = runs();
     json["transitions"] = transitions();
+    json["lift_offs"] = lift_offs();
     json["no_transition"] = no_transition();
     json["advice"] = extras_.advice ? advice(*extras_.advice) : Json(nullptr);
     json["counters"] = counters_json(result_.counters);
@@ -114,6 +115,27 @@ class JobWriter {
     return list;
   }
 
+  [[nodiscard]] Json lift_offs() const {
+    Json list = Json::array();
+    // strokes are counted as the problem file has them
+    std::size_t part = 0, stroke = 0;
+    for (const LiftOffResult& lift : result_.lift_offs) {
+      for (; stroke < lift.stroke; ++stroke) {
+        const auto& piece = job_.strokes[part].piece;
+        const std::string whole = piece ? piece->stroke : "";
+        ++part;
+        while (piece && job_.strokes[part].piece && job_.strokes[part].piece->stroke == whole)
+          ++part;
+      }
+      list.push_back({{"stroke", job_.strokes[part].piece->stroke},
+                      {"s", lift.end},
+                      {"resumed_s", lift.resumed},
+                      {"reached_s", lift.reached},
+                      {"cause", cause_json(lift.cause)}});
+    }
+    return list;
+  }
+
   [[nodiscard]] Json no_transition() const {
     const std::optional<NoTransition>& none = result_.no_transition;
     if (!none) return nullptr;
@@ -162,7 +184,7 @@ class JobWriter {
     for (const ProcessEvent& event : motion.events)
       json["events"].push_back({{"t", event.t},
                                 {"stroke", job_.strokes[event.stroke].name},
-                                {"s", event.s},
+                                {"s", event.s + s_of_piece(job_.strokes[event.stroke])},
                                 {"process", event.on ? "on" : "off"}});
     json["warnings"] = motion.warnings;
     return json;
@@ -174,7 +196,8 @@ class JobWriter {
       const std::vector<bool> process = process_of_rows(part, job_);
       Json rows = Json::array();
       for (std::size_t k = 0; k < part.rows.size(); ++k) {
-        const TrajectoryRow& row = part.rows[k];
+        TrajectoryRow row = part.rows[k];
+        if (part.run) row.s += s_of_piece(job_.strokes[part.run->stroke]);
         rows.push_back(part.run ? row_json(row, roll_) : Json{{"joints", joints_json(row)}});
         rows.back()["process"] = process[k];
       }

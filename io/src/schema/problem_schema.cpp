@@ -427,6 +427,17 @@ Keys job_keys() {
              "share of the joints' speeds in transitions"}},
            keys_of_strokes(nullptr));
   for (Schema::Key& key : keys) key.beside = "strokes";
+  const LiftOffs lift;
+  keys.push_back(
+      {"lift",
+       section("lift", {{"allowed", boolean(), "", required(), "whether the tool may lift off",
+                         "true or false"},
+                        {"cost", number(kNonNegative), "", otherwise(lift.cost),
+                         "of each lift-off, in units of the metric"},
+                        {"overlap", number(kExtent), "m", otherwise(lift.overlap),
+                         "how much before the end of a run the next one begins, at least"}}),
+       "", in_words("every stroke is one run"),
+       "[lift-offs](#lift-offs) within strokes that no single run finishes; beside `path` too"});
   return in_group("job", std::move(keys));
 }
 
@@ -466,8 +477,9 @@ const Schema& problem_schema() {
                             {{{"path", "strokes", "arms"}, true},
                              {{"start", "strokes", "arms"}},
                              {{"start_at", "strokes", "arms"}},
-                             {{"start_tolerance", "strokes", "arms"}}}),
-                    {not_yet("lift")});
+                             {{"start_tolerance", "strokes", "arms"}},
+                             {{"lift", "arms"}}}),
+                    {});
   }();
   return schema;
 }

@@ -565,12 +565,14 @@ std::vector<Schema::Key> job_answer_keys() {
       key("status", one_of({"solved", "infeasible", "timeout", "cancelled"}),
           "as of results; a job that ran out of time may have a motion nevertheless"),
       key("cost", or_null(number()),
-          "of strokes and transitions; like all that describes the motion, `null` where there is "
+          "of strokes, transitions and lift-offs; like all that describes the motion, `null` where "
+          "there is "
           "none"),
       key("bound", or_null(number()),
-          "no job in this order costs less, if its transitions are those that Swivel finds"),
+          "no job in this order and with these lift-offs costs less, if its transitions are those "
+          "that Swivel finds"),
       key("bound_any", or_null(number()),
-          "no job in this order costs less, whatever its transitions"),
+          "no job in this order and with these lift-offs costs less, whatever its transitions"),
       key("gap", or_null(number()), "`cost` over `bound`, less 1: 0 where the job is optimal"),
       key("checked", or_null(boolean()), "whether the motion passed what `check` asks"),
       key("planner", text(), "which of the planners"),
@@ -619,6 +621,14 @@ Schema job_result() {
       key("transitions", transitions,
           "moves between strokes, `from`, `to` (`null`: the home), `cost`, `via`: how many "
           "configurations lie between their ends, 0 where the joints move straight"),
+      key("lift_offs",
+          list(section(
+              "", {key("stroke", text(), "name of the stroke"),
+                   key("s", number(), "where a run ends, along the whole stroke", "m"),
+                   key("resumed_s", number(), "where the next run begins", "m"),
+                   key("reached_s", number(), "how far a run from the begin of this one gets", "m"),
+                   key("cause", cause(), "what ends it there; `null`: no single cause is known")})),
+          "places at which the tool [lifts off](#lift-offs) within strokes"),
       key("no_transition", or_null(missing),
           "where every stroke has a path and there is no way between two: `from`, `to`, the two "
           "`bodies` that come nearer to each other than transitions may or `null`, and `where` "

@@ -69,6 +69,19 @@ struct JobMotionFile {
 [[nodiscard]] JobMotionFile load_job_motion(const std::filesystem::path& csv, const Job& job,
                                             const JointNames& joint_names);
 
+/// Rows of a job as read from a file, with the job of which they are: where the file has lift-offs,
+/// with_lift_offs() makes it of the problem's.
+struct ExecutedJobRows {
+  Job job;
+  std::variant<JobTrajectory, JobMotionFile> rows;  ///< s begins at 0 in each run
+};
+/// Loads rows as load_job_rows() does. Where the job allows lift-offs, strokes may be in runs named
+/// "<stroke>/1", "<stroke>/2", ..., whose s is that of the whole stroke. Throws InputError, by row,
+/// for runs that are not in this order, that leave some of the stroke out, or that overlap by less
+/// than LiftOffs::overlap.
+[[nodiscard]] ExecutedJobRows load_executed_rows(const std::filesystem::path& csv, const Job& job,
+                                                 const JointNames& joint_names);
+
 /// Loads a job's motion by load_job_motion() if the file's first column is `t`, else its trajectory
 /// by load_job_trajectory(). It reads the file once, which may be a pipe. Throws InputError.
 [[nodiscard]] std::variant<JobTrajectory, JobMotionFile> load_job_rows(

@@ -8,15 +8,16 @@
 
 namespace swivel::io {
 
-/// Returns true if a problem file has the key `strokes`, which makes it a job: load_job() reads it,
-/// and load_problem() does not. Throws InputError for a file that is no problem file at all.
+/// Returns true if a problem file has the key `strokes`, or allows lift-offs, which makes it a job:
+/// load_job() reads it, and load_problem() does not. Throws InputError for a file that is no
+/// problem file at all.
 [[nodiscard]] bool is_job(const std::filesystem::path& yaml);
 
 /// Loads a job and the files that it names, docs/formats.md "Jobs". A problem file with `path`
 /// instead of `strokes` is a job of one stroke named "path". Throws InputError.
 [[nodiscard]] Job load_job(const std::filesystem::path& yaml);
 
-/// Loads a file by load_job() if it has the key `strokes`, else by load_problem(). It reads the
+/// Loads a file by load_job() if is_job(), else by load_problem(). It reads the
 /// file once, which may be a pipe. Throws InputError.
 [[nodiscard]] std::variant<Problem, Job> load_problem_or_job(const std::filesystem::path& yaml);
 
