@@ -222,7 +222,7 @@ TEST(LiftOffs, LeastNumberAgainstAllCuts) {
   std::printf("%d with one run, %d with two, %d with three and more; %d impossible in any number\n",
               one, two, more, none);
   EXPECT_GE(one + two + more, count);
-  EXPECT_GE(more, at_least_among(30));
+  EXPECT_GE(more, at_least(30));
 }
 
 /// Returns the least cost of a job of one stroke over all places of a number of lift-offs.
@@ -277,7 +277,7 @@ TEST(LiftOffs, PlacesAgainstAllPlaces) {
   std::printf("%d with two runs, %d with three; %d jobs planned to compare; worst %.6f of best\n",
               two, more, tried, worst);
   EXPECT_GE(two + more, count);
-  EXPECT_GE(more, at_least_among(3));
+  EXPECT_GE(more, at_least(3));
 }
 
 // With lines of approach and retract, obstacles and continuous edges every answer passes its check,
@@ -312,7 +312,7 @@ TEST(LiftOffs, LinesAndObstacles) {
     EXPECT_TRUE(check_job(robot, executed_job(job, found), found.parts).passed);
   }
   std::printf("%d jobs with %d lift-offs\n", solved, lift_offs);
-  EXPECT_GE(solved, at_least_among(12));
+  EXPECT_GE(solved, at_least(12));
 }
 
 // The ring of the data folder, in time: its motion passes its check, rounded corners included.
