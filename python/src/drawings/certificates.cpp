@@ -148,8 +148,8 @@ void bind_certificates(py::module_& m) {
       });
   m.def("load_certificate", &io::load_certificate, py::arg("file"),
         "A Certificate: what `plan --certificate` or save() wrote. Raises InputError.");
-  m.def("_certificate", &certificate_of, py::arg("problem"), py::arg("planner"),
-        py::arg("threads"), py::arg("timeout"));
+  m.def("_certificate", &certificate_of, py::arg("problem"), py::arg("planner"), py::arg("threads"),
+        py::arg("timeout"));
   m.def("_check_certificate", &verdict_on, py::arg("problem"), py::arg("certificate"),
         py::arg("timeout"));
 }
