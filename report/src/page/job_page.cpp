@@ -7,6 +7,7 @@
 #include "drawing.hpp"
 #include "page/page_parts.hpp"
 #include "page/page_template.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -80,8 +81,9 @@ class JobPage {
     const Lattice& lattice = view.lattice;
     const auto part = part_of(k);
     const LatticeMap map = make_map(view, false, budget_);
-    const std::vector<PageRow> rows = placed(
-        lattice, map, part ? result_.parts[*part].rows : rows_of(lattice, view.path), view.path);
+    const std::vector<PageRow> rows =
+        part ? placed_part(*part, view, map)
+             : placed(lattice, map, rows_of(lattice, view.path), view.path);
     json["run"] = json_["runs"][k];
     json["settings"] = settings_json(view.problem, lattice);
     json["tool_path"] = tool_path_json(lattice.path_of_rows());
@@ -97,6 +99,19 @@ class JobPage {
     maps_ += "<h2>" + std::to_string(k + 1) + " " + escaped(name) +
              (order_[k].reversed ? " (backwards)" : "") + "</h2>\n" + to_svg(map);
     return json;
+  }
+  /// Returns the rows of a part, which is a run, on its map. A run between lift-offs measures arm
+  /// angles from other planes in its rows than in its lattice, by the same angle all along.
+  [[nodiscard]] std::vector<PageRow> placed_part(std::size_t part, const PlanView& view,
+                                                 const LatticeMap& map) const {
+    std::vector<TrajectoryRow> rows = result_.parts[part].rows;
+    const bool piece = job_.strokes[result_.parts[part].run->stroke].piece.has_value();
+    const double turned =
+        piece ? wrap_angle(view.lattice.phi(0, view.path.front()) - rows.front().phi) : 0;
+    for (TrajectoryRow& row : rows) row.phi += turned;
+    std::vector<PageRow> shown = placed(view.lattice, map, rows, view.path);
+    for (PageRow& row : shown) row.at.phi -= turned;
+    return shown;
   }
   /// Returns how many cells the map of a stroke may have.
   [[nodiscard]] std::size_t cells_each() const {
