@@ -280,9 +280,8 @@ TEST(LiftOffs, PlacesAgainstAllPlaces) {
   EXPECT_GE(more, at_least(3));
 }
 
-// With lines of approach and retract, obstacles and continuous edges every answer passes its check,
-// it is the same on one thread and on two, and a cut costs no more than the first one that a run
-// from the front would take.
+// With lines of approach and retract, obstacles and continuous edges every answer passes its check
+// and is the same on one thread and on two.
 TEST(LiftOffs, LinesAndObstacles) {
   Random random(seed("LiftOffs.LinesAndObstacles"));
   const Job like = bench();
