@@ -191,8 +191,7 @@ class Workcells(unittest.TestCase):
         done = run("plan", self.file(cell()), "--report", page, "--speed", "0.1", "--refine",
                    "--json", self.result)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        html = page.read_text()
-        data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', html, re.S)[1])
+        data = data_of(page)
         result = json.loads(self.result.read_text())
         for one, found in zip(data["arms"], result["arms"]):
             self.assertTrue(one["refined"])
