@@ -172,9 +172,9 @@ void serialize(A& archive, Robot& x) {
 template <class A>
 void serialize(A& archive, Task& x) {
   auto& [path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at, start_tolerance,
-         end, cost, refinement, steps] = x;
+         end, closed, cost, refinement, steps] = x;
   archive(path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at,
-          start_tolerance, end, cost, refinement, steps);
+          start_tolerance, end, closed, cost, refinement, steps);
 }
 /// Lists the members of a Problem and of its two bases, which no structured binding takes apart
 /// together.

@@ -649,14 +649,14 @@ void bind_task(py::module_& m) {
                        const Resolution& resolution, py::handle start,
                        std::optional<double> start_at, double start_tolerance, py::handle end,
                        const Cost& cost, const std::optional<PathSmoothing>& smooth,
-                       const Refinement& refinement) {
+                       const Refinement& refinement, bool closed) {
              Task task;
              task.waypoints = std::move(waypoints);
              task.path_frame = std::move(frame);
              task.limits = limits, task.resolution = resolution, task.cost = cost;
              task.start = to_posture(start, "start"), task.start_at = start_at,
              task.start_tolerance = start_tolerance, task.end = to_posture(end, "end");
-             task.smooth = smooth, task.refinement = refinement;
+             task.smooth = smooth, task.refinement = refinement, task.closed = closed;
              return task;
            }),
            py::arg("waypoints"), py::kw_only(), py::arg("frame") = "",
@@ -665,6 +665,7 @@ void bind_task(py::module_& m) {
            py::arg("start_at") = py::none(), py::arg("start_tolerance") = Task().start_tolerance,
            py::arg("end") = py::none(), py::arg_v("cost", Cost(), "Cost()"),
            py::arg("smooth") = py::none(), py::arg_v("refinement", Refinement(), "Refinement()"),
+           py::arg("closed") = false,
            "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or "
            "a list of either; or (n, 9) rows, "
            "with the least and the most roll there, rad. frame: the "
@@ -672,7 +673,8 @@ void bind_task(py::module_& m) {
            "link (also empty) or the name of a scene object. start: (7,) joints to begin with, "
            "rad. start_at: m along the path "
            "where\n"
-           "the start stands. end: (7,) joints to end in at the last waypoint, rad.")
+           "the start stands. end: (7,) joints to end in at the last waypoint, rad. closed: the "
+           "path must end in the joints in which it begins; its last waypoint is its first.")
       .def_readwrite("frame", &Task::path_frame,
                      "Base link (also empty) or the name of a scene object.")
       .def_readwrite("waypoints", &Task::waypoints,
@@ -691,6 +693,8 @@ void bind_task(py::module_& m) {
           "end", [](const Task& task) { return task.end; },
           [](Task& task, py::handle end) { task.end = to_posture(end, "end"); },
           "(7,) joints to end in, rad, or None. A copy; assign to change it.")
+      .def_readwrite("closed", &Task::closed,
+                     "Whether the path must end in the joints in which it begins.")
       .def_readwrite("cost", &Task::cost)
       .def_readwrite("refinement", &Task::refinement)
       .def(

@@ -312,6 +312,7 @@ class Task:
     def end(self) -> _Array | None: ...
     @end.setter
     def end(self, joints: ArrayLike | None) -> None: ...
+    closed: bool
     cost: Cost
     refinement: Refinement
     def __init__(
@@ -328,6 +329,7 @@ class Task:
         cost: Cost = ...,
         smooth: PathSmoothing | None = None,
         refinement: Refinement = ...,
+        closed: bool = False,
     ) -> None: ...
 
 class Problem(Robot, Task):

@@ -23,7 +23,41 @@ struct Answer {
                         // for rounding
   int deepest = -1;
   std::vector<int> empty;  // layers without a valid node
+  // Of a closed lattice, by slot: the least cost of a path that begins and ends there; infinite
+  // where there is none.
+  std::vector<double> closed_costs;
 };
+
+/// An edge into a node: the slot that it comes from, and its cost.
+struct EdgeFrom {
+  std::size_t slot;
+  double cost;
+};
+
+/// Returns for each slot the least cost of a path that begins and ends in it, one dynamic program a
+/// slot: `into` has the edges into each slot of each layer, `own` what nodes themselves cost,
+/// `exists` whether the nodes of layer 0 and of the last layer exist.
+inline std::vector<double> closed_costs_of(
+    const std::vector<std::vector<std::vector<EdgeFrom>>>& into,
+    const std::function<double(std::size_t layer, std::size_t slot)>& own,
+    const std::function<bool(std::size_t layer, std::size_t slot)>& exists) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<double> costs(into.front().size(), kNone);
+  for (std::size_t slot = 0; slot < costs.size(); ++slot) {
+    if (!exists(0, slot) || !exists(into.size() - 1, slot)) continue;
+    std::vector<double> here(costs.size(), kNone);
+    here[slot] = own(0, slot);
+    for (std::size_t i = 1; i < into.size(); ++i) {
+      std::vector<double> next(into[i].size(), kNone);
+      for (std::size_t b = 0; b < next.size(); ++b)
+        for (const EdgeFrom& edge : into[i][b])
+          next[b] = std::min(next[b], here[edge.slot] + edge.cost + own(i, b));
+      here.swap(next);
+    }
+    costs[slot] = here[slot];
+  }
+  return costs;
+}
 
 /// Plans by the definition: asks about every pair of nodes of neighbouring layers, with steps of
 /// its own and the plain edge rule, then runs a dynamic program and applies the order of answers.
@@ -109,7 +143,7 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<std::vector<double>> g(layers);
   std::vector<std::vector<int>> next(layers);
-  std::vector<std::vector<std::vector<std::size_t>>> into(layers);
+  std::vector<std::vector<std::vector<EdgeFrom>>> into(layers);
   for (std::size_t i = 0; i < layers; ++i) {
     g[i].assign(nodes[i].size(), kNone);
     next[i].assign(nodes[i].size(), -1);
@@ -125,7 +159,7 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
         if (!nodes[i + 1][b]) continue;
         const auto cost = edge(i, a, b);
         if (!cost) continue;
-        into[i + 1][b].push_back(a);
+        into[i + 1][b].push_back({a, *cost});
         if (own + *cost + g[i + 1][b] < g[i][a]) {
           g[i][a] = own + *cost + g[i + 1][b];
           next[i][a] = static_cast<int>(b);
@@ -133,6 +167,10 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       }
     }
   Answer answer;
+  if (lattice.is_closed())
+    answer.closed_costs = closed_costs_of(into, own_cost, [&](std::size_t i, std::size_t slot) {
+      return nodes[i][slot].has_value();
+    });
   int slot =
       first_of_answer(lattice, g[0], [&](int k) { return *nodes[0][static_cast<std::size_t>(k)]; });
   answer.solved = slot >= 0;
@@ -158,7 +196,7 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     if (i + 1 == layers) break;
     std::vector<char> ahead(nodes[i + 1].size(), 0);
     for (std::size_t b = 0; b < ahead.size(); ++b)
-      for (const std::size_t a : into[i + 1][b]) ahead[b] |= reached[a];
+      for (const EdgeFrom& from : into[i + 1][b]) ahead[b] |= reached[from.slot];
     reached.swap(ahead);
   }
   return answer;

@@ -80,6 +80,8 @@ const char* to_string(Cause::Kind kind) {
       return "angle_error";
     case Cause::Kind::kStepError:
       return "step_error";
+    case Cause::Kind::kNotClosed:
+      return "not_closed";
     case Cause::Kind::kCheck:
       return "check";
     case Cause::Kind::kNone:
@@ -120,6 +122,8 @@ std::string words(const Cause& cause) {
       return "tool-angle error";
     case Cause::Kind::kStepError:
       return "step error";
+    case Cause::Kind::kNotClosed:
+      return "no path closes";
     case Cause::Kind::kCheck:
       return "check " + cause.check + (cause.between_layers ? " between layers" : "");
     case Cause::Kind::kNone:

@@ -63,7 +63,10 @@ CircleTurns circle_turns(const Lattice& lattice, const Lattice::Joints& circles,
     const double inside = lattice.limits().joint_margin - kLimitTolerance,
                  lower = limit.lower + inside, upper = limit.upper - inside;
     const Extent extent = extent_of(rows, joint);
-    if (end != nullptr && std::abs(rows.back()[joint] - (*end)[joint]) > kPi)
+    const bool closes =
+        lattice.is_closed() && static_cast<int>(rows.size()) == lattice.layers();
+    if ((closes && std::abs(rows.back()[joint] - rows.front()[joint]) > kPi) ||
+        (end != nullptr && std::abs(rows.back()[joint] - (*end)[joint]) > kPi))
       turns.over[joint] = std::numeric_limits<double>::infinity();
     else if (starts_given || end != nullptr)
       turns.over[joint] = std::max({lower - extent.least, extent.most - upper, 0.0});

@@ -319,6 +319,8 @@ std::vector<Config> Lattice::path_joints(const std::vector<int>& slots) const {
 
 void Lattice::turn_to_end(std::vector<Config>& rows) const {
   constexpr double kRounding = 1e-9;  // rad
+  for (int j = 0; j < kDof && is_closed(); ++j)
+    if (std::abs(rows.front()[j] - rows.back()[j]) < kRounding) rows.back()[j] = rows.front()[j];
   if (!end_) return;
   for (int j = 0; j < kDof; ++j) {
     const double turns = std::round(((*end_)[j] - rows.back()[j]) / kTwoPi) * kTwoPi;

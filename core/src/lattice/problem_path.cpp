@@ -13,6 +13,7 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
   ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget,
                 problem.smooth ? problem.smooth : otherwise, problem.roll && problem.roll->circle(),
                 problem.steps);
+  if (problem.closed) path.close();
   if (problem.start) {
     Pose tool = chain.tool(*problem.start);
     if (chain.free_roll) {  // the roll is free: compare poses without it

@@ -4,9 +4,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
+
+namespace {
+
+/// Gives the last waypoint of a closed path the pose of the first. Throws InputError where the two
+/// are not one pose, or allow different rolls.
+void close_at_first_pose(std::vector<Waypoint>& waypoints, const std::string& source) {
+  constexpr double kOnePose = 1e-6;  // m and rad
+  const Waypoint& first = waypoints.front();
+  Waypoint& last = waypoints.back();
+  const double apart = (last.position - first.position).norm(),
+               angle = last.orientation.angularDistance(first.orientation);
+  if (!(apart <= kOnePose && angle <= kOnePose))
+    throw InputError(source, "path.closed: waypoint " + std::to_string(waypoints.size() - 1) +
+                                 ", the last, is " +
+                                 formatted("%.3g m and %.3g rad", apart, angle) +
+                                 " from the first: allowed is at most 1e-6 m and 1e-6 rad");
+  if (last.roll != first.roll)
+    throw InputError(source,
+                     "path.closed: the last waypoint allows other rolls than the first: allowed is "
+                     "one range at both");
+  last.position = first.position;
+  last.orientation = first.orientation;
+}
+
+}  // namespace
 
 std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
   Pose frame = Pose::Identity();
@@ -37,6 +63,7 @@ std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
   if (result.size() < 2)
     throw InputError(problem.source, "path: " + std::to_string(result.size()) +
                                          " waypoint(s): allowed are at least two");
+  if (problem.closed) close_at_first_pose(result, problem.source);
   return result;
 }
 

@@ -289,6 +289,11 @@ void validate_path(const Field& root, const Problem& problem) {
 void validate_postures(const Field& root, const Problem& problem) {
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
   if (problem.end) numbers(root("end"), *problem.end, Range::kFinite);
+  if (problem.closed && (problem.start || problem.end) && problem.start != problem.end)
+    fail(root("closed"), "is given beside a start or an end",
+         "neither, or both with the same joints");
+  if (problem.closed && problem.start_at)
+    fail(root("closed"), "is given beside start_at", "one of the two");
   if (problem.start_at && !problem.start)
     fail(root("start_at"), "is given without a start", "a number beside a start");
   number(root("start_at"), problem.start_at, Range::kNonNegative);

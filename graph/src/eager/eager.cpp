@@ -9,6 +9,7 @@
 #include "cost_to_go/best_start.hpp"
 #include "eager/valid_nodes.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/graph/search/closed_path.hpp"
 
 namespace swivel {
 
@@ -129,8 +130,64 @@ std::vector<double> costs_to_go(const Graph& graph, const Budget& budget, EagerO
   return distance;
 }
 
-/// Returns the best path from the node at which the answer begins, the smallest slots first among
-/// equal costs: vertices of a layer are numbered in slot order.
+/// Returns the least costs from all vertices to the nodes of the last layer in a run of slots, with
+/// what the nodes themselves cost.
+std::vector<double> costs_into(const Lattice::SlotRun& run, const Built& built,
+                               const ValidNodes& valid, const Budget& budget) {
+  std::vector<double> distance(num_vertices(built.graph), kUnreachable);
+  const std::size_t last = valid.layers.size() - 1;
+  for (std::size_t k = 0; k < valid.layers[last].size(); ++k)
+    if (const int slot = valid.layers[last][k].slot; slot >= run.first && slot < run.last)
+      distance[built.first[last] + k] = valid.cost(last, k);
+  for (std::size_t layer = last; layer > 0; --layer) {
+    budget.poll();
+    for (std::size_t k = 0; k < valid.layers[layer].size(); ++k) {
+      const Vertex v = built.first[layer] + k;
+      if (distance[v] == kUnreachable) continue;
+      for (auto [e, end] = out_edges(v, built.graph); e != end; ++e) {
+        double& least = distance[target(*e, built.graph)];
+        least = std::min(least, built.graph[*e].cost + distance[v]);
+      }
+    }
+  }
+  return distance;
+}
+
+/// Returns the best path from the k-th valid node of layer 0, the smallest slots first among equal
+/// costs: vertices of a layer are numbered in slot order.
+SlotPath path_from(int k, const Built& built, const ValidNodes& valid,
+                   const std::vector<double>& distance) {
+  Vertex at = built.first[0] + static_cast<std::size_t>(k);
+  SlotPath path;
+  for (std::size_t layer = 0;; ++layer) {
+    path.push_back(valid.layers[layer][at - built.first[layer]].slot);
+    if (layer + 1 == valid.layers.size()) return path;
+    Vertex next = 0;
+    for (auto [e, end] = in_edges(at, built.graph); e != end; ++e) {
+      const Vertex b = source(*e, built.graph);
+      if (built.graph[*e].cost + distance[b] == distance[at] && (next == 0 || b < next)) next = b;
+    }
+    at = next;
+  }
+}
+
+/// Returns the best path that begins and ends in a run of slots.
+SearchOutcome best_within(const Lattice::SlotRun& run, const Built& built, const ValidNodes& valid,
+                          const Budget& budget) {
+  const std::vector<double> distance = costs_into(run, built, valid, budget);
+  SearchOutcome best{{}, kUnreachable};
+  int first = -1;
+  for (std::size_t k = 0; k < valid.layers[0].size(); ++k) {
+    const int slot = valid.layers[0][k].slot;
+    const double cost = distance[built.first[0] + k];
+    if (slot >= run.first && slot < run.last && cost < best.cost)
+      best.cost = cost, first = static_cast<int>(k);
+  }
+  if (first >= 0) best.path = path_from(first, built, valid, distance);
+  return best;
+}
+
+/// Returns the best path from the node at which the answer begins.
 SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& valid,
                  const std::vector<double>& distance, double& cost) {
   cost = kUnreachable;
@@ -143,19 +200,8 @@ SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& v
     return valid.layers[0][static_cast<std::size_t>(k)].q;
   });
   if (first < 0) return {};
-  Vertex at = built.first[0] + static_cast<std::size_t>(first);
-  cost = distance[at];
-  SlotPath path;
-  for (std::size_t layer = 0;; ++layer) {
-    path.push_back(valid.layers[layer][at - built.first[layer]].slot);
-    if (layer + 1 == valid.layers.size()) return path;
-    Vertex next = 0;
-    for (auto [e, end] = in_edges(at, built.graph); e != end; ++e) {
-      const Vertex b = source(*e, built.graph);
-      if (built.graph[*e].cost + distance[b] == distance[at] && (next == 0 || b < next)) next = b;
-    }
-    at = next;
-  }
+  cost = distance[built.first[0] + static_cast<std::size_t>(first)];
+  return path_from(first, built, valid, distance);
 }
 
 std::optional<int> deepest_layer(const Built& built, const ValidNodes& valid,
@@ -182,8 +228,15 @@ void eager_search(const Lattice& lattice, Validity& validity, const Budget& budg
                   EagerOutcome& outcome) {
   const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   const Built built = build(lattice, valid, validity, budget, outcome);
-  const std::vector<double> distance = costs_to_go(built.graph, budget, outcome);
-  outcome.path = extract(lattice, built, valid, distance, outcome.cost);
+  if (lattice.is_closed()) {
+    static_cast<SearchOutcome&>(outcome) =
+        closed_path_first(lattice, budget, [&](const Lattice::SlotRun& run) {
+          return best_within(run, built, valid, budget);
+        });
+  } else {
+    const std::vector<double> distance = costs_to_go(built.graph, budget, outcome);
+    outcome.path = extract(lattice, built, valid, distance, outcome.cost);
+  }
   if (outcome.path.empty()) outcome.deepest = deepest_layer(built, valid, budget);
 }
 

@@ -161,6 +161,7 @@ class JobReader : ProblemReader {
     }
     require_in_scale(*model_, place.path, limits);
     read_end(place.path, model_->chain);
+    refuse_closed(place.path, "a stroke of a job");
     static_cast<Task&>(stroke) = std::move(static_cast<Task&>(problem_));
     if (const auto value = place.find("reversible")) stroke.reversible = value->boolean();
     if (const auto end = place.path.section().find_filled("end"); end && stroke.reversible)

@@ -71,6 +71,11 @@ class ProblemReader {
   /// Reads `end` of a path, if it is there, into `problem_`, which must have the path's waypoints.
   /// Of an arm of six joints six numbers are enough: the roll is that of the last waypoint.
   void read_end(const YamlValue& path, const Chain& chain);
+  /// Reads `closed` of a path, if it is there, into `problem_`, which must have the path's
+  /// waypoints, start and end.
+  void read_closed(const YamlValue& path);
+  /// Throws InputError where a path is closed; `what` says of what paths are not.
+  static void refuse_closed(const YamlValue& path, const std::string& what);
 
   /// Returns the path of a file that a key names, from the folder of the problem file.
   [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;

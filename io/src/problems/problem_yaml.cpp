@@ -125,6 +125,11 @@ Problem ProblemReader::read() {
   if (const auto value = root_.find_filled("start")) read_start(*value);
   read_start_place();
   read_end(path, model.chain);
+  read_closed(path);
+  if (problem_.closed && model.chain.free_roll)
+    path.section().find("closed")->fail(
+        "is given for an arm of seven joints whose roll is free, which is not supported yet",
+        "this key or path.roll");
   read_cost();
   read_vary();
   return std::move(problem_);
@@ -638,6 +643,35 @@ void ProblemReader::read_end(const YamlValue& path, const Chain& chain) {
   problem_.end = leaves_out_roll(joints, chain) ? with_roll_onto(waypoints_in_base(problem_).back(),
                                                                  chain, without_roll(joints))
                                                 : Config(Config::Map(joint_numbers(joints).data()));
+}
+
+void ProblemReader::read_closed(const YamlValue& path) {
+  const auto closed = path.section().find_filled("closed");
+  if (!closed || !closed->boolean()) return;
+  if ((problem_.start || problem_.end) && problem_.start != problem_.end)
+    closed->fail("is given beside `start` or `end`", "neither, or both with the same joints");
+  if (problem_.start_at) closed->fail("is given beside `start_at`", "one of the two");
+  problem_.closed = true;
+  try {
+    static_cast<void>(waypoints_in_base(problem_));
+  } catch (const InputError& error) {
+    problem_.closed = false;
+    static_cast<void>(waypoints_in_base(problem_));  // or the error is another one
+    const Waypoint &first = problem_.waypoints.front(), &last = problem_.waypoints.back();
+    if (first.roll != last.roll)
+      closed->fail("is true, but the last waypoint allows other rolls than the first",
+                   "one range at both");
+    closed->fail(formatted("is true, but the last waypoint is %.3g m and %.3g rad from the first",
+                           (last.position - first.position).norm(),
+                           last.orientation.normalized().angularDistance(
+                               first.orientation.normalized())),
+                 "at most 1e-6 m and 1e-6 rad");
+  }
+}
+
+void ProblemReader::refuse_closed(const YamlValue& path, const std::string& what) {
+  if (const auto closed = path.section().find_filled("closed"); closed && closed->boolean())
+    closed->fail("is not supported yet for " + what, "no such key here");
 }
 
 void ProblemReader::read_cost() {

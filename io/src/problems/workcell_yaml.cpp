@@ -128,6 +128,7 @@ class WorkcellReader : ProblemReader {
       end->fail("is given for a follower of six joints, which is not supported yet",
                 "no such key here");
     read_end(path, model.chain);
+    refuse_closed(path, "one of two arms");
     if (const auto smooth = path.section().find("smooth");
         smooth && !smooth->is_null() && problem_.path_frame == cell_.arms[1 - k].name)
       smooth->fail("is given for a follower, which is not supported yet",

@@ -147,9 +147,12 @@ Schema path() {
           {"end", configuration(), "", in_words("Swivel chooses"),
            "`{joints: [...]}`, seven numbers (rad), or six of an arm of six joints: the "
            "configuration at the [end](#start-and-end) of the path"},
+          {"closed", boolean(), "", otherwise("false"),
+           "whether the path must end in the joints in which it begins, so that laps "
+           "[repeat](#closed-paths): its last waypoint is its first"},
       },
       {{{"waypoints", "file"}, true}});
-  return refusing(std::move(keys), {not_yet("closed")});
+  return keys;
 }
 
 Schema scene() {

@@ -36,7 +36,7 @@ Schema cause() {
           key("cause",
               one_of({"reach", "singular", "limit", "manipulability", "pair", "contact",
                       "arm_slope", "roll_slope", "joint_step", "speed", "path_error", "angle_error",
-                      "step_error", "check"}),
+                      "step_error", "not_closed", "check"}),
               "`pair`: two bodies nearer than they must keep; `contact`: they touch; `check`: of "
               "the program that plans"),
           key("joint", or_null(text()), "of limits, steps and speeds; of `roll_slope` the roll"),

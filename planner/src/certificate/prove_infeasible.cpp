@@ -7,6 +7,7 @@
 #include "certificate/cut.hpp"
 #include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
@@ -309,6 +310,10 @@ InfeasibilityCertificate find_cut(const Lattice& lattice, const World& world, co
 InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget,
                                           const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("cut");
+  if (view.problem.closed)
+    throw InputError(view.problem.source,
+                     "path.closed: a certificate that no path closes is not supported yet: allowed "
+                     "is a certificate without path.closed");
   std::unique_ptr<CostToGo> own;  // for the eager planners, which keep no verdicts
   if (view.verdicts == nullptr) {
     own = make_cost_to_go(view.lattice, Pruning::kNone, budget);

@@ -19,6 +19,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -508,6 +509,9 @@ struct Planner::Impl {
   }
   void find(const PlanOptions& options, const Budget& budget, PlanResult& result) {
     Stopwatch watch, whole;
+    if (problem.closed && options.hooks.cost)
+      throw InvalidArgument("closed: is not supported beside a cost of states: allowed is one of "
+                            "the two");
     lay_out(may_tell_turns_apart(options.hooks), budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
@@ -527,6 +531,7 @@ struct Planner::Impl {
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
       result.trajectory = lattice.path_rows(path);
+      require_same_turns(lattice, result.trajectory);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
       if (lattice.is_approximate() || lattice.has_layers_between())
         result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
@@ -539,6 +544,20 @@ struct Planner::Impl {
     }
     explain(rule, found, options, budget, result);
     result.time_ms["report"] = watch.lap();
+  }
+  /// Throws InputError where a joint of over 64 turns, whose turns no lattice tells apart, comes
+  /// back on a closed path in another turn.
+  void require_same_turns(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) const {
+    for (int j = 0; j < kDof && lattice.is_closed(); ++j) {
+      const auto k = static_cast<std::size_t>(j);
+      const double turns = std::round((rows.back().q[j] - rows.front().q[j]) / kTwoPi);
+      if (lattice.chain().limit[k].wide() && turns != 0)
+        throw InputError(problem.source,
+                         "path.closed: joint '" + lattice.chain().joint_names[k] +
+                             "' comes back " + formatted("%+.0f", turns) +
+                             " turn(s) on, and whether another path brings it back is not known: "
+                             "allowed are joints without limits, or of at most 64 turns");
+    }
   }
   /// Proves the trajectory. If that does not end in time, the trajectory is moved to `partial`,
   /// since an unproved path is no answer; throws Stopped then.
@@ -564,6 +583,10 @@ struct Planner::Impl {
         return;
       }
       result.diagnosis.complete = false;  // until diagnose() has finished
+      if (lattice.is_closed() && found.deepest == lattice.layers() - 1) {
+        explain_open(rule, found, options, budget, result);
+        return;
+      }
       if (found.deepest) budget.tell(Stage::kDiagnosis);
       if (was_eager && found.deepest.value_or(-1) >= 0)
         path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
@@ -574,6 +597,19 @@ struct Planner::Impl {
       result.evidence.layers = options.evidence.layers;
     } catch (const Stopped&) {
     }
+  }
+  /// Says that paths lead to the end of a closed path, but none back to where it begins.
+  void explain_open(const EdgeRule& rule, const Found& found, const PlanOptions& options,
+                    const Budget& budget, PlanResult& result) {
+    const Lattice& lattice = *layout->last().lattice;
+    if (was_eager)
+      path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
+    result.partial = partial_rows(lattice, path);
+    result.diagnosis.cause.kind = Cause::Kind::kNotClosed;
+    result.diagnosis.reached_layer = *found.deepest;
+    result.diagnosis.reached_s = lattice.path().layer(*found.deepest).s;
+    result.diagnosis.layers_known = lattice.layers();
+    result.diagnosis.complete = true;
   }
   PlanResult plan(const PlanOptions& options) {
     const TraceSpan span("plan");

@@ -3,6 +3,7 @@
 
 #include "plan/stopwatch.hpp"
 #include "swivel/graph/eager/eager.hpp"
+#include "swivel/graph/search/closed_path.hpp"
 
 namespace swivel {
 
@@ -67,10 +68,16 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
     }
     time_ms["sweep"] = watch.lap();
     found.outcome = path_first(cost_to_go, validity, path_first_options, searched, first);
+    const bool closes = cost_to_go.lattice().is_closed() && !found.outcome.path.empty();
+    if (closes) {
+      found.deepest = cost_to_go.lattice().layers() - 1;
+      found.valid_path = found.outcome.path;  // an open path, should there be no closed one
+      found.outcome = closed_path_first(cost_to_go, validity, path_first_options, searched);
+    }
     found.decided = true;
-    found.valid_path = found.outcome.path;
+    if (!closes || !found.outcome.path.empty()) found.valid_path = found.outcome.path;
     time_ms["search"] = watch.lap();
-    if (found.outcome.path.empty()) {
+    if (found.outcome.path.empty() && !closes) {
       cost_to_go.budget().tell(Stage::kReach);
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
       // the path tried last is valid

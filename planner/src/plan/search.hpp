@@ -24,7 +24,7 @@ namespace swivel {
 /// Returns how much a sweep of the lattice's cost-to-go may leave out.
 [[nodiscard]] inline Pruning pruning_of(const Lattice& lattice) {
   constexpr int kFewLayers = 64;  // with fewer layers, chords are too long to give good bounds
-  return lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound;
+  return lattice.layers() < kFewLayers || lattice.is_closed() ? Pruning::kNone : Pruning::kByBound;
 }
 
 /// Adds the work of one search to that of all.
@@ -45,8 +45,8 @@ struct Found {
   /// False if the search was stopped before it was known whether there is a path.
   bool decided = false;
   SearchOutcome outcome;
-  /// If there is no path: the last layer that a valid path reaches; unset if it was not found in
-  /// time.
+  /// If there is no path: the last layer that a valid path reaches, of closed paths that of a path
+  /// which need not be closed; unset if it was not found in time.
   std::optional<int> deepest;
   /// A valid path from layer 0: the whole path; if there is none, the one to the deepest layer; if
   /// the lazy search was stopped, the part that was proved.

@@ -644,13 +644,10 @@ Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, cons
   return result;
 }
 
-}  // namespace
-
-Refined refine(const PreparedRobot& robot, const Problem& problem,
-               const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
-               const Budget& budget) {
-  validate(problem);
-  robot.require_prepared_for(problem);
+/// Refines a path whose given ends, if any, stay as they are.
+Refined refine_between_ends(const PreparedRobot& robot, const Problem& problem,
+                            const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+                            const Budget& budget) {
   const ToolPath path = problem_path(problem, robot.arm().chain, budget);
   if (rows.size() != static_cast<std::size_t>(path.size()))
     throw InvalidArgument("refine: " + std::to_string(rows.size()) +
@@ -665,6 +662,20 @@ Refined refine(const PreparedRobot& robot, const Problem& problem,
       make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
   return refine_along(*redundancy, robot, problem, path, rows, options,
                       options.second_seed && problem.rolls.empty(), budget);
+}
+
+}  // namespace
+
+Refined refine(const PreparedRobot& robot, const Problem& problem,
+               const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+               const Budget& budget) {
+  validate(problem);
+  robot.require_prepared_for(problem);
+  if (!problem.closed || problem.start || rows.empty())
+    return refine_between_ends(robot, problem, rows, options, budget);
+  Problem pinned = problem;  // both ends of a closed path stay as they are
+  pinned.start = pinned.end = rows.front().q;
+  return refine_between_ends(robot, pinned, rows, options, budget);
 }
 
 }  // namespace swivel

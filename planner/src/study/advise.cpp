@@ -204,6 +204,9 @@ class Adviser {
         finer();
         relax(Change::kStepError);
         break;
+      case Cause::Kind::kNotClosed:
+        finer();
+        break;
       case Cause::Kind::kNone:
       case Cause::Kind::kCheck:
         break;

@@ -223,6 +223,8 @@ Obstruction obstruction(const PathEnd& end, const LatticeMap::Node& node, const 
 Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
               const std::vector<int>& path, const std::vector<PageRow>& rows,
               const Json& diagnosis) {
+  const Json& cause = diagnosis["cause"];
+  if (cause.is_object() && cause["cause"] == "not_closed") return nullptr;  // paths reach the end
   const PathEnd end{map, lattice, path, diagnosis, rank_at_end(lattice, path)};
   const int layer = end.layer();
   if (layer >= map.layers) return nullptr;

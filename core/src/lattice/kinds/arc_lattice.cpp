@@ -499,6 +499,25 @@ void require_fits(PathEnd which, const Problem& problem, const Chain& chain, con
                                     {chain.limit.back().lower, chain.limit.back().upper}));
 }
 
+std::vector<Config> joints_of(const std::vector<Point>& points) {
+  std::vector<Config> joints;
+  for (const Point& point : points) joints.push_back(point.q);
+  return joints;
+}
+
+std::vector<int> numbers_below(std::size_t n) {
+  std::vector<int> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+/// Returns the nodes of layer 0 as those of the last layer of a closed path. They continue no node
+/// of the layer before.
+std::vector<Point> as_last_layer(std::vector<Point> points) {
+  for (Point& point : points) point.along = {-1, -1};
+  return points;
+}
+
 /// Returns a given posture as the only node of its layer, in the winding that the lattice's nodes
 /// have.
 Point given_point(const SelfMotion& motion, const Config& q) {
@@ -533,6 +552,10 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       result.points.push_back({given_point(motion, *problem.end)});
       break;
     }
+    if (i + 1 == path.size() && path.closed() && !problem.start) {
+      result.points.push_back(as_last_layer(result.points.front()));
+      break;
+    }
     const PathLayer& here = path.layer(i);
     ArcsOfLayer found = arcs_of(motion, method, here.tool, before, least);
     Layer layer(motion, here.tool, problem.resolution.arc);
@@ -545,10 +568,8 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
           [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
       layer.place(found.arcs[k], found.images[k]);
     }
-    std::vector<Config> nodes;
-    for (const Point& point : layer.points) nodes.push_back(point.q);
-    std::vector<int> slot_of(nodes.size());
-    std::iota(slot_of.begin(), slot_of.end(), 0);
+    std::vector<Config> nodes = joints_of(layer.points);
+    std::vector<int> slot_of = numbers_below(nodes.size());
     if (chain.roll) slot_of = layer.keep_window(here);
     if (twins) layer.add_flipped(before);
     result.arcs += static_cast<std::int64_t>(found.arcs.size()) * (twins ? 2 : 1);
@@ -650,6 +671,9 @@ ArcLattice::Fit ArcLattice::fit(std::size_t j, const Rows& rows) const {
                upper = chain().limit[j].upper - limits().joint_margin;
   const auto keeps = [&](double turn) { return least + turn >= lower && most + turn <= upper; };
   Fit fit;
+  if (is_closed() && static_cast<int>(rows.size()) == layers() && !chain().limit[j].wide() &&
+      std::abs(rows.back()[at] - rows.front()[at]) > kPi)
+    return fit;  // it comes back in another turn
   const bool ends = end_ && static_cast<int>(rows.size()) == layers();
   if (problem_.start || ends) {
     const bool turned =

@@ -29,6 +29,10 @@ bool turns_about_last_joint(const Chain& chain) {
 
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                       const Problem& problem, const Budget& budget) {
+  if (path.closed() && chain.free_roll)
+    throw InputError(problem.source,
+                     "path.closed: is not supported yet for arms of seven joints whose roll is "
+                     "free: allowed is path.roll left out, or path.closed");
   if (chain.free_roll && !path.unturned())
     return RollLattice::make(chain, *arm.srs, path, problem, budget, std::nullopt, true);
   if (arm.kind == ArmKind::kSrs)
@@ -56,6 +60,7 @@ std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm
 std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm,
                                               const ToolPath& path, const Problem& problem,
                                               const Budget& budget) {
+  if (path.closed()) return nullptr;
   const auto rest = last_joint_at_rest(chain, arm, problem);
   return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest, true) : nullptr;
 }

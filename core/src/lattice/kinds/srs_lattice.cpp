@@ -336,6 +336,24 @@ Lattice::Joints SrsLattice::off_nearest(const std::vector<int>& slots) const {
   return turns_along(Lattice::path_joints(slots)).furthest_over();
 }
 
+namespace {
+
+/// Turns the planes of a closed path's layers back, so that the last one is the first one.
+void turn_back(const ToolPath& path, std::vector<ArmPlane>& planes) {
+  const Vector3d u = planes.back().u, r = planes.back().r, first = planes.front().r;
+  const double holonomy = std::atan2(u.dot(first.cross(r)), first.dot(r)),
+               whole = path.layer(path.size() - 1).travel;
+  for (int i = 0; i < path.size(); ++i) {
+    ArmPlane& plane = planes[static_cast<std::size_t>(i)];
+    const double angle = -holonomy * path.layer(i).travel / whole;
+    plane.r = (Eigen::AngleAxisd(angle, plane.u) * plane.r).normalized();
+  }
+  planes.front().r = first;
+  planes.back() = planes.front();
+}
+
+}  // namespace
+
 std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
                                      const Budget& budget) {
   if (path.unturned()) {
@@ -361,6 +379,7 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
     planes.push_back(carried(path.layer(i).tool));
     if (i > 0 || path.begins_on_layer()) last = planes.back();
   }
+  if (path.closed()) turn_back(path, planes);
   return planes;
 }
 

@@ -24,6 +24,7 @@ struct Cause {
     kPathError,       ///< the tool would leave its path by more than limits.tool_path_error
     kAngleError,      ///< the tool would turn off its path by more than limits.tool_angle_error
     kStepError,       ///< the step error would exceed limits.step_error
+    kNotClosed,       ///< of a closed path: paths reach the end, but in other joints than the begin
     kCheck,           ///< a StateCheck of the caller refuses it
   };
   enum class Side { kNone, kLower, kUpper };

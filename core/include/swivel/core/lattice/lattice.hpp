@@ -84,6 +84,9 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] bool is_given(int layer) const {
     return (layer == 0 && starts_given_) || (layer == layers() - 1 && end_);
   }
+  /// Returns whether a path must end at the node at which it begins (Task::closed): the nodes of
+  /// the last layer are those of layer 0, slot by slot and bit for bit.
+  [[nodiscard]] bool is_closed() const { return path_->closed() && !starts_given_; }
   /// Returns whether joints `q` keep limits().manipulability. Every other condition on a node is
   /// part of node() and exact_config().
   [[nodiscard]] bool manipulable(const Config& q) const;
@@ -303,7 +306,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   }
   /// Turns the rows of a whole path that leads to a given end by whole turns of its joints, so that
   /// the last row is that end; rows that begin at a given start stay. Joints of the last row that
-  /// equal the end's but for rounding become the end's.
+  /// equal the end's but for rounding become the end's, and on a closed path those of the first.
   void turn_to_end(std::vector<Config>& rows) const;
   /// Sets row_step_bound() of every step (one entry if all are alike), and step_bound() from it.
   void set_row_step_bounds(std::vector<Config> bounds);

@@ -198,6 +198,10 @@ struct Task {
   /// Joint positions in which the path must end, rad: the tool is then at the last waypoint. A
   /// joint without limits, or of over 64 turns, may end whole turns away if `start` is given too.
   std::optional<Config> end;
+  /// Whether the path must end in the joints in which it begins, so that it can be repeated: the
+  /// last waypoint must then be the pose of the first, to 1e-6 m and rad. A joint without limits
+  /// may end whole turns away. `start` and `end` must be unset, or both given and equal.
+  bool closed = false;
   Cost cost;
   Refinement refinement;
   /// Into how many steps the way from each waypoint to the next is cut, instead of what the
@@ -214,9 +218,10 @@ struct Problem : Robot, Task {
   std::vector<Variation> vary;
 };
 
-/// Returns the waypoints in base_link: path_frame applied, quaternions normalised. Throws
-/// InputError for an unknown path_frame, fewer than two waypoints, a number that is not finite, or
-/// a quaternion whose length is off 1 by more than 1e-3.
+/// Returns the waypoints in base_link: path_frame applied, quaternions normalised. The last pose of
+/// a closed path is then the first one, bit for bit. Throws InputError for an unknown path_frame,
+/// fewer than two waypoints, a number that is not finite, a quaternion whose length is off 1 by
+/// more than 1e-3, or the ends of a closed path that are not one pose with one range of the roll.
 [[nodiscard]] std::vector<Waypoint> waypoints_in_base(const Problem& problem);
 
 }  // namespace swivel

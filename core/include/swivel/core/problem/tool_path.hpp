@@ -93,6 +93,11 @@ class ToolPath {
   }
   /// Returns true if end_at() has cut off layers, so that the last layer is not the path's end.
   [[nodiscard]] bool ends_early() const { return ends_early_; }
+  /// Notes that the motion along the path must end in the joints in which it begins (Task::closed).
+  /// The last layer's pose must be that of layer 0, bit for bit.
+  void close() { closed_ = true; }
+  /// Returns true if close() has been called, and the last layer is the path's end.
+  [[nodiscard]] bool closed() const { return closed_ && !ends_early_; }
   /// Returns the poses of the layers that begin_at() has cut off: arm angles are carried along the
   /// whole path.
   [[nodiscard]] const std::vector<Pose>& before() const { return before_; }
@@ -160,6 +165,7 @@ class ToolPath {
   bool begins_on_layer_ = true;
   bool begins_aside_ = false;  // layer 0 is off the curve
   bool ends_early_ = false;
+  bool closed_ = false;
   std::vector<Segment> segments_;
   std::vector<Place> waypoints_;  // without repeated ones
   std::vector<Corner> corners_;

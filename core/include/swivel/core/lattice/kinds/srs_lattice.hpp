@@ -384,7 +384,10 @@ class SrsLattice final : public Lattice {
 /// Returns the planes of a path's layers, from which arm angles are measured. They are carried
 /// along the whole path from its beginning, so that a start between two layers changes no plane of
 /// another layer. For a tool that stands turned, returns the planes of the path without the turn,
-/// each under the smallest rotation onto the turned tool. Throws Stopped.
+/// each under the smallest rotation onto the turned tool. Carried around a closed path, the plane
+/// comes back turned about the line from shoulder to wrist by an angle of at most half a turn, the
+/// holonomy: the plane of each layer is then turned back by the holonomy times its share of the
+/// path's travel, so that the last plane is the first one, bit for bit. Throws Stopped.
 [[nodiscard]] std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path,
                                                    const Budget& budget = {});
 
