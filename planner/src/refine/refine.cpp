@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "refine/basins.hpp"
+#include "refine/strided_solver.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
@@ -25,32 +27,8 @@ namespace swivel {
 
 namespace {
 
-constexpr double kFarthest = 1;  // rad, the most that a coordinate may move
-
-/// Every stride-th layer of another solver, its first and its last included.
-class StridedSolver final : public LayerSolver {
- public:
-  StridedSolver(const LayerSolver& all, int stride) : all_(&all) {
-    for (int i = 0; i + 1 < all.layers(); i += stride) layer_.push_back(i);
-    layer_.push_back(all.layers() - 1);
-  }
-  [[nodiscard]] int layers() const override { return static_cast<int>(layer_.size()); }
-  [[nodiscard]] int layer(int k) const { return layer_[static_cast<std::size_t>(k)]; }
-  /// Returns the index of the last chosen layer at or before a layer of the other solver.
-  [[nodiscard]] int no_later(int layer) const {
-    return static_cast<int>(std::upper_bound(layer_.begin(), layer_.end(), layer) -
-                            layer_.begin()) -
-           1;
-  }
-  [[nodiscard]] double travel(int k) const override { return all_->travel(layer(k)); }
-  [[nodiscard]] std::optional<Config> joints(int k, double angle) const override {
-    return all_->joints(layer(k), angle);
-  }
-
- private:
-  const LayerSolver* all_;
-  std::vector<int> layer_;
-};
+constexpr double kFarthest = 1;   // rad, the most that a coordinate may move
+constexpr int kMostNodes = 1000;  // tested to move rows of seeds clear
 
 /// Returns a start for the minimum over all layers: the minimum over every few of them, straight in
 /// between. Paths of fine lattices are jagged, and Newton's method would have to smooth one tooth
@@ -104,6 +82,10 @@ class RefinementChecker {
         extra_(options.extra_clearance),
         check_(options.check, budget),
         by_layer_(options.by_layer),
+        margin_inside_(problem.refinement.joint_margin + kBetween),
+        margin_sine_(std::sin(problem.refinement.singular_margin)),
+        least_inside_(margin_inside_),
+        least_sine_(margin_sine_),
         world_(robot.world(), problem, budget),
         rule_(world_.edge_rule(robot.radii())),
         at_(world_, DistanceProofs::kOn),
@@ -111,9 +93,10 @@ class RefinementChecker {
         budget_(budget) {}
 
   /// Returns true if the node is valid with the margins of refinement. `given` holds the joints of
-  /// the given path, whose distances from limits and singularities need not be exceeded. `jumps`:
-  /// the path passes through a singularity at this node, so that it should be near one.
-  [[nodiscard]] bool node(int layer, const Config& q, const Config& given, bool jumps = false) {
+  /// the given path, whose distances from limits and singularities need not be exceeded; null:
+  /// those of lower_margins() are kept. `jumps`: the path passes through a singularity at this
+  /// node, so that it should be near one.
+  [[nodiscard]] bool node(int layer, const Config& q, const Config* given, bool jumps = false) {
     if (!valid(layer, q, given, jumps) ||
         at_.find_violating_pair_incremental(q, Threshold(ClearanceRule::kNode, extra_)))
       return false;
@@ -126,7 +109,7 @@ class RefinementChecker {
   }
   /// Returns true if the node is valid without the margins of refinement.
   [[nodiscard]] bool bare_node(int layer, const Config& q) {
-    return valid(layer, q, q, false) &&
+    return valid(layer, q, &q, false) &&
            !at_.find_violating_pair_incremental(q, ClearanceRule::kNode) &&
            check_.states({&q, 1})[0] && (by_layer_ == nullptr || by_layer_->node(layer, q, 0));
   }
@@ -161,35 +144,58 @@ class RefinementChecker {
     return check_.motions({&motion, 1})[0];
   }
 
+  /// Lowers what nodes without a given path keep from limits and singularities to the least that
+  /// the rows of a path keep, where that is less than the margins of refinement.
+  void lower_margins(const std::vector<TrajectoryRow>& rows) {
+    for (const TrajectoryRow& row : rows) {
+      least_sine_ = std::min(least_sine_, redundancy_->singular_sine(row.q) - kRounding);
+      for (std::size_t j = 0; j < kDof; ++j)
+        least_inside_ = std::min(least_inside_, distance_inside(row.q, j));
+    }
+    least_inside_ = std::max(least_inside_, 0.0);
+  }
+
+  /// Returns true if all joints are within their limits; rows of seeds that no node replaces may
+  /// be beyond them.
+  [[nodiscard]] bool within_limits(const std::vector<TrajectoryRow>& rows) const {
+    return std::all_of(rows.begin(), rows.end(), [this](const TrajectoryRow& row) {
+      for (std::size_t j = 0; j < kDof; ++j)
+        if (distance_inside(row.q, j) < -kRounding) return false;
+      return true;
+    });
+  }
+
   std::int64_t nodes_asked = 0, edges_asked = 0;
 
  private:
+  static constexpr double kRounding = 1e-9;  // rad
+  static constexpr double kBetween = 1e-3;   // rad, by which a path along a limit may exceed it
+
   /// Returns true if the node is valid, apart from collisions and the user's check.
-  [[nodiscard]] bool valid(int layer, const Config& q, const Config& given, bool jumps) {
+  [[nodiscard]] bool valid(int layer, const Config& q, const Config* given, bool jumps) {
     budget_.poll();
     ++nodes_asked;
     if (lattice_->chain().roll && !lattice_->path().layer(layer).in_window(q[kDof - 1]))
       return false;
-    // rad, by which a path along a limit may exceed it between layers
-    constexpr double kBetween = 1e-3;
-    if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
-    if (!jumps &&
-        redundancy_->singular_sine(q) < std::min(std::sin(problem_->refinement.singular_margin),
-                                                 redundancy_->singular_sine(given) - 1e-9))
-      return false;
+    if (!inside(q, given)) return false;
+    const double sine =
+        given == nullptr ? least_sine_
+                         : std::min(margin_sine_, redundancy_->singular_sine(*given) - kRounding);
+    if (!jumps && redundancy_->singular_sine(q) < sine) return false;
     return lattice_->manipulable(q);
   }
-  [[nodiscard]] bool inside(const Config& q, const Config& given, double margin) const {
-    constexpr double kLimit = 1e-9;  // rad
+  /// Returns by how much a joint is inside its limits less limits.joint_margin, rad.
+  [[nodiscard]] double distance_inside(const Config& q, std::size_t j) const {
+    const JointLimit& limit = lattice_->chain().limit[j];
+    if (limit.continuous) return std::numeric_limits<double>::infinity();
+    const double x = q[static_cast<Eigen::Index>(j)];
+    return std::min(x - limit.lower, limit.upper - x) - lattice_->limits().joint_margin;
+  }
+  [[nodiscard]] bool inside(const Config& q, const Config* given) const {
     for (std::size_t j = 0; j < kDof; ++j) {
-      const JointLimit& limit = lattice_->chain().limit[j];
-      if (limit.continuous) continue;
-      const auto joint = static_cast<Eigen::Index>(j);
-      const double keep = lattice_->limits().joint_margin;
-      const double by = std::min(q[joint] - limit.lower, limit.upper - q[joint]) - keep;
-      const double given_by =
-          std::min(given[joint] - limit.lower, limit.upper - given[joint]) - keep;
-      if (by < std::min(margin, given_by) - kLimit) return false;
+      const double keep =
+          given == nullptr ? least_inside_ : std::min(distance_inside(*given, j), margin_inside_);
+      if (distance_inside(q, j) < keep - kRounding) return false;
     }
     return true;
   }
@@ -200,6 +206,8 @@ class RefinementChecker {
   double extra_;
   AskedCheck check_;
   LayerCheck* by_layer_;
+  double margin_inside_, margin_sine_;  // what refinement keeps: rad, no unit
+  double least_inside_, least_sine_;    // the same without a given path
   World world_;
   EdgeRule rule_;
   World::Query at_, between_;
@@ -291,7 +299,7 @@ class PathRefiner {
       bool fails = false;
       for (std::size_t i = 0; i < n; ++i) {
         if (x[i] == given_[i].phi || x[i] == node_known[i]) continue;
-        if (!checker_->node(static_cast<int>(i), rows[i].q, given_[i].q, jumps_[i])) {
+        if (!checker_->node(static_cast<int>(i), rows[i].q, &given_[i].q, jumps_[i])) {
           x[i] = shrink(i, x[i], boxes[i]);
           fails = true;
         }
@@ -339,7 +347,7 @@ class PathRefiner {
     for (int k = 0; k < kQueries; ++k) {
       const double middle = (good + bad) / 2;
       const auto q = solver_->joints(static_cast<int>(i), middle);
-      (q && checker_->node(static_cast<int>(i), *q, given_[i].q, jumps_[i]) ? good : bad) = middle;
+      (q && checker_->node(static_cast<int>(i), *q, &given_[i].q, jumps_[i]) ? good : bad) = middle;
     }
     (x > given_[i].phi ? box.high : box.low) = good;
     return good;
@@ -382,19 +390,26 @@ class PathRefiner {
   Budget budget_;
 };
 
+/// How far rows must keep from limits and singularities to stay where they are: as
+/// RefinementChecker::lower_margins() says, or however far they are.
+enum class RowMargins { kWhole, kOwn };
+
 /// Moves rows to the nearest nodes that keep the margins of refinement, or are at least valid;
-/// returns false if a row has neither nearby. Edges are not tested.
+/// returns false if a row has neither nearby. Edges are not tested. `left`: how many nodes that
+/// are not rows may be tested, since in a narrow passage no layer has a valid one.
 bool move_clear(const LayerSolver& solver, RefinementChecker& checker, const FixedRows& fixed,
-                std::vector<TrajectoryRow>& rows) {
+                RowMargins margins, int& left, std::vector<TrajectoryRow>& rows) {
   constexpr double kNearby = 0.1;  // rad
   constexpr int kSteps = 20;
-  int left = 1000;  // nodes to test: in a narrow passage no layer has a valid one
+  const auto clear = [&](int layer, const Config& q) {
+    return checker.node(layer, q, margins == RowMargins::kWhole ? nullptr : &q);
+  };
   const auto moved_clear = [&](int layer, TrajectoryRow& row) {
     for (int step = 1; step <= kSteps; ++step)
       for (const double by : {step * kNearby / kSteps, -step * kNearby / kSteps}) {
         if (left-- <= 0) return false;
         const auto q = solver.joints(layer, row.phi + by);
-        if (!q || !checker.node(layer, *q, *q)) continue;
+        if (!q || !clear(layer, *q)) continue;
         row.phi += by;
         row.q = *q;
         return true;
@@ -403,8 +418,7 @@ bool move_clear(const LayerSolver& solver, RefinementChecker& checker, const Fix
   };
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const int layer = static_cast<int>(i);
-    if (!fixed.row(i, rows.size()) &&
-        (checker.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i])))
+    if (!fixed.row(i, rows.size()) && (clear(layer, rows[i].q) || moved_clear(layer, rows[i])))
       continue;
     if (!checker.bare_node(layer, rows[i].q)) return false;
   }
@@ -471,10 +485,12 @@ std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobo
   return rows;
 }
 
-/// Returns the cost of the smoothest path near the rows, obstacles aside.
-double cost_without_obstacles(const LayerSolver& solver, const Lattice& lattice,
-                              const SmoothObjective& objective, const FixedRows& fixed,
-                              const std::vector<TrajectoryRow>& rows, const Budget& budget) {
+/// Returns the smoothest path near the rows, obstacles aside.
+std::vector<TrajectoryRow> smoothed_without_obstacles(const LayerSolver& solver,
+                                                      const SmoothObjective& objective,
+                                                      const FixedRows& fixed,
+                                                      const std::vector<TrajectoryRow>& rows,
+                                                      const Budget& budget) {
   std::vector<double> x;
   std::vector<CoordinateBox> boxes;
   for (const TrajectoryRow& row : rows) {
@@ -484,9 +500,14 @@ double cost_without_obstacles(const LayerSolver& solver, const Lattice& lattice,
   fixed.narrow(x, boxes);
   x = smooth_minimum(solver, objective, boxes, std::move(x), budget);
   std::vector<TrajectoryRow> best = rows;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    best[i].q = solver.joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
-  return cost_of(lattice, best);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto q =
+        fixed.row(i, rows.size()) ? std::nullopt : solver.joints(static_cast<int>(i), x[i]);
+    if (!q) continue;
+    best[i].phi = x[i];
+    best[i].q = *q;
+  }
+  return best;
 }
 
 /// Returns a path of a lattice that is up to four times as coarse along the path and finer in its
@@ -510,12 +531,127 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   if (!rows) return std::nullopt;
   const auto solver = redundancy.solver(*rows);
   const FixedRows fixed(problem);
-  if (cost_without_obstacles(*solver, redundancy.lattice(), objective, fixed, *rows, budget) >=
-      to_beat)
+  if (cost_of(redundancy.lattice(),
+              smoothed_without_obstacles(*solver, objective, fixed, *rows, budget)) >= to_beat)
     return std::nullopt;
-  if (!move_clear(*solver, checker, fixed, *rows)) return std::nullopt;
+  int left = kMostNodes;
+  if (!move_clear(*solver, checker, fixed, RowMargins::kOwn, left, *rows)) return std::nullopt;
   return rows;
 }
+
+/// Returns paths of an S-R-S arm through other basins whose optima cost less than `to_beat`,
+/// obstacles aside, the cheapest first: basin_seeds() on a grid of arm angles of its own. None for
+/// other arms.
+std::vector<std::vector<TrajectoryRow>> other_basins(const PreparedRobot& robot,
+                                                     const Problem& problem, const ToolPath& path,
+                                                     const Lattice& lattice,
+                                                     const SmoothObjective& objective,
+                                                     double to_beat, const Budget& budget) {
+  constexpr double kAngle = 0.03;  // rad
+  const auto* grid = dynamic_cast<const SrsLattice*>(&lattice);
+  if (grid == nullptr) return {};
+  Problem coarse = problem;
+  coarse.resolution.dphi = kAngle;
+  coarse.resolution.arcs = false;
+  const Chain& chain = robot.arm().chain;
+  const auto angles =
+      grid->last_joint()
+          ? make_coaxial_redundancy(chain, robot.srs(), path, coarse, *grid->last_joint(), budget)
+          : make_redundancy(chain, robot.arm_class(), path, coarse, budget);
+  return basin_seeds(dynamic_cast<const SrsLattice&>(angles->lattice()), *angles, objective,
+                     to_beat, budget);
+}
+
+/// Refines one path after the other, and keeps the cheapest result.
+class Improver {
+ public:
+  Improver(const Redundancy& redundancy, RefinementChecker& checker, const Problem& problem,
+           const Budget& budget, Refined& result)
+      : redundancy_(redundancy),
+        checker_(checker),
+        fixed_(problem),
+        budget_(budget),
+        bending_(cube(problem.refinement.smoothing)),
+        result_(result) {
+    const Lattice& lattice = redundancy.lattice();
+    objective_.weights = lattice.cost_scale();
+    objective_.most_change = 0.98 * redundancy.most_change();
+    // The other metrics are largest moves. A power of 32 would take twice as long for 0.2 % less.
+    constexpr int kNearLargest = 16;
+    if (lattice.cost().metric != CostMetric::kL2) objective_.power = kNearLargest;
+    objective_.roll_is_coordinate = redundancy.is_roll();
+    // otherwise the rolls stay as they are
+    if (lattice.roll_costs() && (lattice.chain().roll || redundancy.is_roll()))
+      for (int i = 0; i < lattice.layers(); ++i) objective_.roll.push_back(lattice.roll_weight(i));
+  }
+  /// Returns the objective for paths that jump nowhere.
+  const SmoothObjective& objective() {
+    objective_.bending = bending_;
+    objective_.jumps.clear();
+    return objective_;
+  }
+  /// Returns the cost below which the optimum of another seed is worth refining it.
+  [[nodiscard]] double to_beat() const {
+    constexpr double kWorthIt = 1 - 1e-4;
+    return kWorthIt * result_.cost;
+  }
+  /// Refines a path. `second`: it is a seed, whose edges need not be valid.
+  void improve(const std::vector<TrajectoryRow>& from, bool second) {
+    const Lattice& lattice = redundancy_.lattice();
+    PathRefiner refiner(redundancy_, checker_, from,
+                        second ? PathRefiner::Edges::kUnknown : PathRefiner::Edges::kValid, fixed_,
+                        budget_);
+    objective_.bending = bending_;
+    objective_.jumps = redundancy_.jumps(from);
+    // Try less smoothness if smoothness alone makes the path dearer than the lattice's.
+    const int attempts = result_.refined ? 1 : 3;
+    for (int attempt = 0; attempt < attempts; ++attempt, objective_.bending /= 10) {
+      auto refined = refiner.run(objective_, result_.rounds);
+      if (!refined) continue;
+      const double cost = cost_of(lattice, *refined);
+      if (!(cost <= result_.cost) || (second && !checker_.within_limits(*refined))) continue;
+      result_.rows = std::move(*refined);
+      result_.cost = cost;
+      result_.refined = true;
+      result_.from_second_seed = second;
+      result_.reason.clear();
+      return;
+    }
+  }
+  /// Refines seeds of basins, which come in the order of their optima, until one ends at its
+  /// optimum or there is no cheaper one.
+  void improve_from(std::vector<std::vector<TrajectoryRow>> seeds) {
+    constexpr std::size_t kMostSeeds = 16;
+    constexpr int kMostRuns = 4;
+    constexpr double kReached = 1 + 1e-4;  // of the optimum
+    int left = kMostNodes, runs = 0;
+    if (seeds.size() > kMostSeeds) seeds.resize(kMostSeeds);
+    for (std::vector<TrajectoryRow>& seed : seeds) {
+      const auto solver = redundancy_.solver(seed);
+      std::vector<TrajectoryRow> smooth =
+          smoothed_without_obstacles(*solver, objective(), fixed_, seed, budget_);
+      const double optimum = cost_of(redundancy_.lattice(), smooth);
+      if (!(optimum < to_beat())) return;  // those after it cost as much
+      for (std::vector<TrajectoryRow>* from : {&smooth, &seed}) {
+        const auto own = redundancy_.solver(*from);
+        if (!move_clear(*own, checker_, fixed_, RowMargins::kWhole, left, *from)) continue;
+        improve(*from, true);
+        if (++runs == kMostRuns || result_.cost <= kReached * optimum) return;
+      }
+    }
+  }
+
+ private:
+  static double cube(double x) { return x * x * x; }
+
+  const Redundancy& redundancy_;
+  RefinementChecker& checker_;
+  FixedRows fixed_;
+  const Budget& budget_;
+  double bending_;
+  SmoothObjective objective_;
+  Refined& result_;
+};
 
 /// Refines a path along one coordinate.
 Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot,
@@ -528,47 +664,18 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot,
   result.rows = rows;
   result.cost_before = result.cost = cost_of(lattice, rows);
   result.bend_before = result.bend = largest_bend(path, rows);
-  SmoothObjective objective;
-  objective.weights = lattice.cost_scale();
-  objective.most_change = 0.98 * redundancy.most_change();
-  // The other metrics are largest moves. A power of 32 would take twice as long for 0.2 % less.
-  constexpr int kNearLargest = 16;
-  if (lattice.cost().metric != CostMetric::kL2) objective.power = kNearLargest;
-  objective.roll_is_coordinate = redundancy.is_roll();
-  // otherwise the rolls stay as they are
-  if (lattice.roll_costs() && (lattice.chain().roll || redundancy.is_roll()))
-    for (int i = 0; i < lattice.layers(); ++i) objective.roll.push_back(lattice.roll_weight(i));
   result.reason = "no valid path was found that is not dearer";
-  const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
-    PathRefiner refiner(redundancy, checker, from,
-                        second ? PathRefiner::Edges::kUnknown : PathRefiner::Edges::kValid,
-                        FixedRows(problem), budget);
-    const double length = problem.refinement.smoothing;
-    objective.bending = length * length * length;
-    objective.jumps = redundancy.jumps(from);
-    // Try less smoothness if smoothness alone makes the path dearer than the lattice's.
-    const int attempts = result.refined ? 1 : 3;
-    for (int attempt = 0; attempt < attempts; ++attempt, objective.bending /= 10) {
-      auto refined = refiner.run(objective, result.rounds);
-      if (!refined) continue;
-      const double cost = cost_of(lattice, *refined);
-      if (!(cost <= result.cost)) continue;
-      result.rows = std::move(*refined);
-      result.cost = cost;
-      result.refined = true;
-      result.from_second_seed = second;
-      result.reason.clear();
-      return;
-    }
-  };
-  improve(rows, false);
+  Improver improver(redundancy, checker, problem, budget, result);
+  improver.improve(rows, false);
   if (second_seed) {
-    constexpr double kWorthIt = 1 - 1e-4;
-    const double length = problem.refinement.smoothing;
-    objective.bending = length * length * length;
-    if (const auto second = second_path(robot, problem, redundancy, checker, objective,
-                                        kWorthIt * result.cost, budget))
-      improve(*second, true);
+    if (const auto second = second_path(robot, problem, redundancy, checker, improver.objective(),
+                                        improver.to_beat(), budget))
+      improver.improve(*second, true);
+  }
+  if (second_seed && options.other_basins) {
+    checker.lower_margins(rows);
+    improver.improve_from(other_basins(robot, problem, path, lattice, improver.objective(),
+                                       improver.to_beat(), budget));
   }
   result.bend = largest_bend(path, result.rows);
   result.nodes_asked = checker.nodes_asked;

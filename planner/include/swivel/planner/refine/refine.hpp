@@ -29,6 +29,9 @@ struct RefineOptions {
   /// Also refine a path of a lattice that is coarse along the path and fine in the arm angle, and
   /// keep the cheaper result.
   bool second_seed = true;
+  /// With `second_seed` and an S-R-S arm: also refine paths through other basins of the cost, in
+  /// any branch, and keep the cheapest result.
+  bool other_basins = true;
   /// Clearance at layers in addition to what each pair must keep, m, except where the given path
   /// itself lacks it. Optima lie on the bound, and the motion between layers comes a little nearer.
   double extra_clearance = 0.1e-3;
