@@ -42,9 +42,10 @@ struct RefineOptions {
 };
 
 /// Returns a cheaper and smoother path near a valid path of the lattice: the arm angles of its
-/// layers leave the grid, while its branches and joint windings stay; for arms without an arm
-/// angle, the coordinate is the length along the self-motion from the given joints. Minimises sum
-/// |W dq| + l^3 sum h |q''|^2, where q'' is the second divided difference over the travel and l =
+/// layers leave the grid, while its branches and joint windings stay, unless a second seed or
+/// another basin turns out cheaper (RefineOptions); for arms without an arm angle, the coordinate
+/// is the length along the self-motion from the given joints. Minimises sum |W dq| + l^3 sum h
+/// |q''|^2, where q'' is the second divided difference over the travel and l =
 /// Refinement::smoothing; |r| is the Euclidean norm, or (sum |r_j|^16)^(1/16) for metrics of the
 /// largest move. Uses Newton's method (smooth_path.hpp). Only the optimum's nodes and motions are
 /// validated, as the planners do: if one fails, the intervals of its layers shrink towards the
