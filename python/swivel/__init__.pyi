@@ -450,6 +450,7 @@ class CauseKind:
     PATH_ERROR: ClassVar[CauseKind]
     ANGLE_ERROR: ClassVar[CauseKind]
     STEP_ERROR: ClassVar[CauseKind]
+    NOT_CLOSED: ClassVar[CauseKind]
     CHECK: ClassVar[CauseKind]
     @property
     def name(self) -> str: ...

@@ -80,9 +80,8 @@ class Closed(WithFolder):
         for name in ("kr6_weld_pipe_job.yaml", "door_job.yaml"):
             job = self.problem(name, ("path: {", "path: {closed: true, "), closed=False)
             self.assertRefused(run("plan", job), "closed", "not supported yet")
-        cell = self.problem(
-            "sda10f_plate_workcell.yaml", ("    path:\n", "    path:\n      closed: true\n"), closed=False
-        )
+        closed = ("    path:\n", "    path:\n      closed: true\n")
+        cell = self.problem("sda10f_plate_workcell.yaml", closed, closed=False)
         self.assertRefused(run("plan", cell), "closed", "not supported yet")
 
 

@@ -57,8 +57,9 @@ std::string diagnosis_text(const PlanResult& result) {
                                 : "no path found, among the solutions that were found";
   const std::string none = claim + with_held(result.held);
   if (d.cause.kind == Cause::Kind::kNotClosed)
-    return none + ": paths reach the end, but none in the joints in which it begins "
-                  "(path.closed)\n";
+    return none +
+           ": paths reach the end, but none in the joints in which it begins "
+           "(path.closed)\n";
   if (d.cause.kind == Cause::Kind::kNone)
     return none + "; stopped before it was known what ends every one\n";
   const std::string why = cause_text(d.cause);

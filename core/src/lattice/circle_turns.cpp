@@ -63,8 +63,7 @@ CircleTurns circle_turns(const Lattice& lattice, const Lattice::Joints& circles,
     const double inside = lattice.limits().joint_margin - kLimitTolerance,
                  lower = limit.lower + inside, upper = limit.upper - inside;
     const Extent extent = extent_of(rows, joint);
-    const bool closes =
-        lattice.is_closed() && static_cast<int>(rows.size()) == lattice.layers();
+    const bool closes = lattice.is_closed() && static_cast<int>(rows.size()) == lattice.layers();
     if ((closes && std::abs(rows.back()[joint] - rows.front()[joint]) > kPi) ||
         (end != nullptr && std::abs(rows.back()[joint] - (*end)[joint]) > kPi))
       turns.over[joint] = std::numeric_limits<double>::infinity();

@@ -229,10 +229,9 @@ void eager_search(const Lattice& lattice, Validity& validity, const Budget& budg
   const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   const Built built = build(lattice, valid, validity, budget, outcome);
   if (lattice.is_closed()) {
-    static_cast<SearchOutcome&>(outcome) =
-        closed_path_first(lattice, budget, [&](const Lattice::SlotRun& run) {
-          return best_within(run, built, valid, budget);
-        });
+    static_cast<SearchOutcome&>(outcome) = closed_path_first(
+        lattice, budget,
+        [&](const Lattice::SlotRun& run) { return best_within(run, built, valid, budget); });
   } else {
     const std::vector<double> distance = costs_to_go(built.graph, budget, outcome);
     outcome.path = extract(lattice, built, valid, distance, outcome.cost);

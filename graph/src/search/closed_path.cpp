@@ -120,7 +120,9 @@ ClosedOutcome closed_path_first(const Lattice& lattice, const Budget& budget,
   });
   double least = kUnreachable;
   for (const SearchOutcome& path : closed) least = std::min(least, path.cost);
-  const auto at = [&](int k) -> const SearchOutcome& { return closed[static_cast<std::size_t>(k)]; };
+  const auto at = [&](int k) -> const SearchOutcome& {
+    return closed[static_cast<std::size_t>(k)];
+  };
   const int best = best_start(
       lattice, static_cast<int>(closed.size()), least, [&](int k) { return at(k).cost; },
       [&](int k) { return *lattice.node(0, at(k).path.front()); });
@@ -131,9 +133,8 @@ ClosedOutcome closed_path_first(const Lattice& lattice, const Budget& budget,
 ClosedOutcome closed_path_first(CostToGo& cost_to_go, Validity& validity,
                                 const PathFirstOptions& options, SearchCounters& counters) {
   Sweeps sweeps(cost_to_go, validity, options, counters);
-  return closed_path_first(
-      cost_to_go.lattice(), cost_to_go.budget(),
-      [&](const Lattice::SlotRun& run) { return sweeps.best_within(run); });
+  return closed_path_first(cost_to_go.lattice(), cost_to_go.budget(),
+                           [&](const Lattice::SlotRun& run) { return sweeps.best_within(run); });
 }
 
 }  // namespace swivel

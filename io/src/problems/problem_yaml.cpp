@@ -661,11 +661,11 @@ void ProblemReader::read_closed(const YamlValue& path) {
     if (first.roll != last.roll)
       closed->fail("is true, but the last waypoint allows other rolls than the first",
                    "one range at both");
-    closed->fail(formatted("is true, but the last waypoint is %.3g m and %.3g rad from the first",
-                           (last.position - first.position).norm(),
-                           last.orientation.normalized().angularDistance(
-                               first.orientation.normalized())),
-                 "at most 1e-6 m and 1e-6 rad");
+    closed->fail(
+        formatted("is true, but the last waypoint is %.3g m and %.3g rad from the first",
+                  (last.position - first.position).norm(),
+                  last.orientation.normalized().angularDistance(first.orientation.normalized())),
+        "at most 1e-6 m and 1e-6 rad");
   }
 }
 

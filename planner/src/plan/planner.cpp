@@ -510,8 +510,9 @@ struct Planner::Impl {
   void find(const PlanOptions& options, const Budget& budget, PlanResult& result) {
     Stopwatch watch, whole;
     if (problem.closed && options.hooks.cost)
-      throw InvalidArgument("closed: is not supported beside a cost of states: allowed is one of "
-                            "the two");
+      throw InvalidArgument(
+          "closed: is not supported beside a cost of states: allowed is one of "
+          "the two");
     lay_out(may_tell_turns_apart(options.hooks), budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
@@ -553,8 +554,8 @@ struct Planner::Impl {
       const double turns = std::round((rows.back().q[j] - rows.front().q[j]) / kTwoPi);
       if (lattice.chain().limit[k].wide() && turns != 0)
         throw InputError(problem.source,
-                         "path.closed: joint '" + lattice.chain().joint_names[k] +
-                             "' comes back " + formatted("%+.0f", turns) +
+                         "path.closed: joint '" + lattice.chain().joint_names[k] + "' comes back " +
+                             formatted("%+.0f", turns) +
                              " turn(s) on, and whether another path brings it back is not known: "
                              "allowed are joints without limits, or of at most 64 turns");
     }

@@ -22,9 +22,10 @@ inline std::vector<std::string> faults_of_closed_ends(const Chain& chain,
     double by = rows.back().q[k] - rows.front().q[k];
     if (chain.limit[j].continuous) by = std::remainder(by, kTwoPi);
     if (!(std::abs(by) <= kSame))
-      faults.push_back(formatted("row %zu, the last: joint '%s' is %.3g rad from the first row, "
-                                 "and the path is closed",
-                                 rows.size() - 1, chain.joint_names[j].c_str(), by));
+      faults.push_back(
+          formatted("row %zu, the last: joint '%s' is %.3g rad from the first row, "
+                    "and the path is closed",
+                    rows.size() - 1, chain.joint_names[j].c_str(), by));
   }
   return faults;
 }

@@ -9,8 +9,8 @@
 namespace swivel {
 
 /// Returns the cheapest valid path that begins and ends in slots of one run, not necessarily the
-/// same; of several the one whose first slot is the smallest, then the first in slot order. An empty
-/// path where there is none. Throws Stopped.
+/// same; of several the one whose first slot is the smallest, then the first in slot order. An
+/// empty path where there is none. Throws Stopped.
 using BestWithin = std::function<SearchOutcome(const Lattice::SlotRun& run)>;
 
 /// What a search for a closed path found.
