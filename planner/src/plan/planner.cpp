@@ -511,8 +511,7 @@ struct Planner::Impl {
     Stopwatch watch, whole;
     if (problem.closed && options.hooks.cost)
       throw InvalidArgument(
-          "closed: is not supported beside a cost of states: allowed is one of "
-          "the two");
+          "closed: is not supported beside a cost of states: allowed is one of the two");
     lay_out(may_tell_turns_apart(options.hooks), budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
