@@ -62,13 +62,13 @@ bool is_above(const RobotModel& robot, const std::string& upper, const std::stri
 }
 
 /// The joints that move on their own on the way between two links, down the tree from one and up to
-/// the other.
+/// the other, without those that are held.
 struct JointsBetween {
   int turning = 0, sliding = 0;
   [[nodiscard]] int all() const { return turning + sliding; }
 };
 JointsBetween joints_between(const RobotModel& robot, const std::string& base,
-                             const std::string& tip) {
+                             const std::string& tip, const std::map<std::string, double>& hold) {
   std::set<int> between;  // those on the way from one of the links to the root alone
   for (const std::string& end : {base, tip})
     for (int link = robot.find_link(end); link >= 0;) {
@@ -80,7 +80,7 @@ JointsBetween joints_between(const RobotModel& robot, const std::string& base,
   JointsBetween count;
   for (const int number : between) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(number)];
-    if (!joint.movable() || joint.mimic) continue;
+    if (!joint.movable() || joint.mimic || hold.contains(joint.name)) continue;
     ++(joint.type == Joint::Type::kPrismatic ? count.sliding : count.turning);
   }
   return count;
@@ -89,13 +89,13 @@ JointsBetween joints_between(const RobotModel& robot, const std::string& base,
 /// Returns base and tip as the command line names them; guesses what it does not name. Sets
 /// `others` to the guessed arms that were not chosen. Throws InputError.
 ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments,
-                    std::vector<ArmGuess>& others) {
+                    const std::map<std::string, double>& hold, std::vector<ArmGuess>& others) {
   const std::string &base = arguments.base, &tip = arguments.tip;
   if (!base.empty()) require_known("--base", base, robot.links, "link", robot.source);
   if (!tip.empty()) {
     require_known("--tip", tip, robot.links, "link", robot.source);
     ArmGuess named{base.empty() ? robot.links[robot.root_link].name : base, tip};
-    if (arguments.roll || joints_between(robot, named.base, tip).all() == 6) named.joints = 6;
+    if (arguments.roll || joints_between(robot, named.base, tip, hold).all() == 6) named.joints = 6;
     return named;
   }
   ArmGuesses guesses = guess_arms(robot);
@@ -107,14 +107,13 @@ ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments,
         guesses.arms, [&](const ArmGuess& arm) { return is_above(robot, base, arm.tip); });
     std::erase_if(guesses.arms, [&](const ArmGuess& arm) {
       return is_above(robot, base, arm.tip) != below ||
-             joints_between(robot, base, arm.tip).all() < arm.joints;
+             joints_between(robot, base, arm.tip, hold).all() < arm.joints;
     });
     for (ArmGuess& arm : guesses.arms) {
       arm.base = base;
-      // A table under the part is a seventh joint.
-      const JointsBetween between = joints_between(robot, base, arm.tip);
-      if (!below && !arguments.roll && between.turning == kDof && between.sliding == 0)
-        arm.joints = kDof;
+      // A rail or a torso under the arm, or a table under the part, is a seventh joint.
+      const JointsBetween between = joints_between(robot, base, arm.tip, hold);
+      if (!arguments.roll && between.all() == kDof && between.sliding <= 1) arm.joints = kDof;
     }
   }
   if (guesses.arms.empty()) {
@@ -171,6 +170,10 @@ void print_srs(const SrsArm& srs) {
 
 /// Prints what an arm that is not S-R-S looks like.
 void print_other(const Chain& chain, const ArmClass& arm) {
+  if (const int slide = chain.slide(); slide >= 0) {
+    say("class      6R and a slide, joint %d\n", slide + 1);
+    return;
+  }
   const bool wrist = meet(chain, chain.roll ? 3 : 4);
   say("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
       meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
@@ -200,22 +203,28 @@ std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
   return beside;
 }
 
-/// Prints which joints beside an arm of six joints may be its seventh: turntables, whose plate is
-/// then the base.
-void print_tables(const RobotModel& robot, const ArmGuess& chosen) {
+/// Prints which joints beside an arm of six joints may be its seventh: rails and torsos, whose
+/// parent is then the base, and tables, whose plate is.
+void print_more_axes(const RobotModel& robot, const ArmGuess& chosen) {
   for (const Joint& joint : robot.joints) {
-    if (joint.mimic ||
-        (joint.type != Joint::Type::kRevolute && joint.type != Joint::Type::kContinuous))
-      continue;
-    const std::string& plate = robot.links[static_cast<std::size_t>(joint.child_link)].name;
-    try {
-      const ArmModel with_table = build_arm(robot, plate, chosen.tip, {}, Pose::Identity());
-      if (with_table.chain.joint_names[0] == joint.name && with_table.held.empty())
-        say("table      %s turns %s: --base %s makes it the first of seven joints\n",
-            joint.name.c_str(), plate.c_str(), plate.c_str());
-    } catch (const InputError&) {
-      // not a row of seven joints
-    }
+    if (joint.mimic || !joint.movable()) continue;
+    const auto name = [&](int link) -> const std::string& {
+      return robot.links[static_cast<std::size_t>(link)].name;
+    };
+    const bool slides = joint.type == Joint::Type::kPrismatic;
+    const auto print_where_first = [&](const char* what, const std::string& base) {
+      try {
+        const ArmModel with_it = build_arm(robot, base, chosen.tip, {}, Pose::Identity());
+        if (with_it.chain.joint_names[0] == joint.name && with_it.held.empty())
+          say("%-11s%s %s %s: --base %s makes it the first of seven joints\n", what,
+              joint.name.c_str(), slides ? "shifts" : "turns", name(joint.child_link).c_str(),
+              base.c_str());
+      } catch (const InputError&) {
+        // not a row of seven joints
+      }
+    };
+    print_where_first(slides ? "rail" : "torso", name(joint.parent_link));
+    print_where_first("table", name(joint.child_link));
   }
 }
 
@@ -284,13 +293,17 @@ void print_class(const Chain& chain, const ArmClass& kind) {
 void print_joints(const Chain& chain) {
   for (std::size_t j = 0; j < kDof - (chain.roll ? 1 : 0); ++j) {
     const JointLimit& limit = chain.limit[j];
-    if (limit.continuous)
+    if (limit.slides)
+      say("joint %zu    %-24s %9.4f to %9.4f m", j + 1, chain.joint_names[j].c_str(), limit.lower,
+          limit.upper);
+    else if (limit.continuous)
       say("joint %zu    %-24s continuous", j + 1, chain.joint_names[j].c_str());
     else
       say("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1,
           chain.joint_names[j].c_str(), limit.lower, limit.upper, limit.lower * 180 / kPi,
           limit.upper * 180 / kPi);
-    limit.velocity > 0 ? say(", %.3f rad/s\n", limit.velocity) : say(", no speed limit\n");
+    limit.velocity > 0 ? say(", %.3f %s\n", limit.velocity, limit.slides ? "m/s" : "rad/s")
+                       : say(", no speed limit\n");
   }
 }
 
@@ -360,7 +373,7 @@ int run(const InfoArguments& arguments) {
   for (const auto& [name, position] : hold)
     require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
-  const ArmGuess chosen = choose_arm(*robot, arguments, others);
+  const ArmGuess chosen = choose_arm(*robot, arguments, hold, others);
   const ArmModel arm = in_the_options_names([&] {
     return build_arm(*robot, chosen.base, chosen.tip, hold, Pose::Identity(),
                      chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
@@ -369,7 +382,7 @@ int run(const InfoArguments& arguments) {
   if (arguments.write != "-") {
     print_robot(*robot, shapes);
     print_arm(*robot, chosen, arm, hold, others);
-    if (arm.chain.roll) print_tables(*robot, chosen);
+    if (arm.chain.roll) print_more_axes(*robot, chosen);
     print_class(arm.chain, kind);
     print_joints(arm.chain);
     print_warnings(*robot, arm);

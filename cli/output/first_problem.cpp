@@ -104,7 +104,8 @@ std::string limits_section(const Robot& robot, const Chain& chain) {
   std::string text =
       "limits:\n  clearance: 0.005   # m, kept between the arm and everything around it\n"
       "  # joint_margin: 0.02   # rad, kept from the limits of each joint\n"
-      "  # Ranges narrower than the URDF's, rad:\n  # joints:\n";
+      "  # Ranges narrower than the URDF's, rad" +
+      std::string(chain.slide() >= 0 ? " or m" : "") + ":\n  # joints:\n";
   for (std::size_t j = 0; j < kDof - (robot.roll ? 1U : 0U); ++j) {
     const JointLimit& limit = chain.limit[j];
     text += "  #   " + yaml_text(chain.joint_names[j]) + ": " +

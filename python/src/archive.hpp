@@ -215,10 +215,10 @@ void serialize(A& archive, LatticeInfo& x) {
 }
 template <class A>
 void serialize(A& archive, Cause& x) {
-  auto& [kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit,
-         over, check] = x;
-  archive(kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit,
-          over, check);
+  auto& [kind, side, joint, other_joints, unwinds, slides, bodies, between_layers, object, value,
+         limit, over, check] = x;
+  archive(kind, side, joint, other_joints, unwinds, slides, bodies, between_layers, object, value,
+          limit, over, check);
 }
 template <class A>
 void serialize(A& archive, EmptyLayers& x) {

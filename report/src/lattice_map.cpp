@@ -121,6 +121,7 @@ double LatticeMap::value(double k) const {
 
 const char* LatticeMap::coordinate_name() const {
   if (coordinate == Coordinate::kRoll) return "roll";
+  if (coordinate == Coordinate::kCarriageAngle) return "carriage angle";
   return grid() ? "arm angle" : "generalised arm angle";
 }
 
@@ -268,7 +269,9 @@ class MapMaker {
   }
   void lay_out_arcs() {
     using Coordinate = LatticeMap::Coordinate;
-    map_.coordinate = lattice_.chain().roll ? Coordinate::kRoll : Coordinate::kGeneralisedArmAngle;
+    map_.coordinate = lattice_.chain().roll           ? Coordinate::kRoll
+                      : lattice_.chain().slide() >= 0 ? Coordinate::kCarriageAngle
+                                                      : Coordinate::kGeneralisedArmAngle;
     values_ = values_of(lattice_, budget_);
     fit_cells(map_, values_.value);
   }

@@ -13,6 +13,12 @@ function turned(joint, angle) {
   return turn.setPosition(point.clone().sub(point.clone().applyMatrix4(turn)));
 }
 
+/** How far a joint displaces what it carries, at q: rad, or m for one that slides. */
+const moved = (joint, q) =>
+  joint.slides
+    ? new Matrix4().setPosition(vector(joint.axis).multiplyScalar(q))
+    : turned(joint, q);
+
 /**
  * The displacement of a body of each group from its pose at q = 0, base frame: G_0 ... G_7, then of
  * the joints that mimic the arm's. A chain of two arms has the joints of both, one arm after the
@@ -21,14 +27,11 @@ function turned(joint, angle) {
 export function displacements(chain, q) {
   const g = [new Matrix4()];
   chain.joints.forEach((joint, k) =>
-    g.push(g[joint.parent ?? k].clone().multiply(turned(joint, q[k]))),
+    g.push(g[joint.parent ?? k].clone().multiply(moved(joint, q[k]))),
   );
   for (const follower of chain.followers ?? []) {
     const motion = follower.multiplier * q[follower.leader];
-    const own = follower.slides
-      ? new Matrix4().setPosition(vector(follower.axis).multiplyScalar(motion))
-      : turned(follower, motion);
-    g.push(g[follower.parent].clone().multiply(own));
+    g.push(g[follower.parent].clone().multiply(moved(follower, motion)));
   }
   return g;
 }
@@ -56,6 +59,7 @@ export function manipulability(chain, q) {
   const g = displacements(chain, q);
   const columns = chain.joints.map((joint, k) => {
     const axis = vector(joint.axis).transformDirection(g[k]);
+    if (joint.slides) return [axis.x, axis.y, axis.z, 0, 0, 0];
     const point = vector(joint.point).applyMatrix4(g[k]);
     const linear = point.cross(axis);
     return [linear.x, linear.y, linear.z, axis.x, axis.y, axis.z];

@@ -54,7 +54,7 @@ const player = new Player(() => {
   return rows.length > 0;
 });
 const pause = () => player.pause();
-const steps = stepsOf(rows);
+const steps = stepsOf(rows, chain);
 const plots = new Plots(
   $('plots'),
   rows.map((row) => row.s),

@@ -31,12 +31,16 @@ export function valueAt(list, index) {
   return f > 0 && i + 1 < list.length ? list[i] + f * (list[i + 1] - list[i]) : list[i];
 }
 
-/** The largest step of a joint from one row to the next, degrees. */
-export const stepBetween = (row, next) =>
-  kDegrees * Math.max(...row.q.map((v, j) => Math.abs(next.q[j] - v)));
-/** Of each row the largest step of a joint to the next; null at the last. */
-export const stepsOf = (rows) =>
-  rows.map((row, k) => (k + 1 < rows.length ? stepBetween(row, rows[k + 1]) : null));
+/**
+ * The largest step of a joint from one row to the next, degrees; of those that turn, where the
+ * chain is given, which says so.
+ */
+export const stepBetween = (row, next, chain) =>
+  kDegrees *
+  Math.max(...row.q.map((v, j) => (chain?.joints[j].slides ? 0 : Math.abs(next.q[j] - v))));
+/** Of each row stepBetween() it and the next; null at the last. */
+export const stepsOf = (rows, chain) =>
+  rows.map((row, k) => (k + 1 < rows.length ? stepBetween(row, rows[k + 1], chain) : null));
 
 const lineOf = ({ nearest, clearance_mm }) =>
   nearest ? { points: nearest, text: `${number(clearance_mm, 3)} mm` } : null;
@@ -84,9 +88,15 @@ export function placeWords({ s, phi, roll }, letter, digits) {
     ...angles.map(([name, angle]) => `${name} ${(angle * kDegrees).toFixed(1)}°`),
   ].join('   ');
 }
+/** How a joint's position is told: { scale: from rad or m, unit }; one that slides in mm. */
+export const shownOf = ({ slides }) =>
+  slides ? { scale: 1000, unit: ' mm' } : { scale: kDegrees, unit: '°' };
 /** The joints of a pose, a line each. */
 export const jointWords = (chain, q, digits) =>
-  chain.joints.map((joint, k) => `${joint.name}  ${(q[k] * kDegrees).toFixed(digits)}°`);
+  chain.joints.map((joint, k) => {
+    const { scale, unit } = shownOf(joint);
+    return `${joint.name}  ${(q[k] * scale).toFixed(digits)}${unit}`;
+  });
 /** A cell of the map in words, a line each. */
 export function cellWords(cell, chain, letter) {
   const lines = [placeWords(cell, letter, 4), cell.branch, cell.what];
@@ -139,12 +149,15 @@ export function cellBeside(cells, row, turned, by) {
 
 const kFarMm = 100, // clearances from here on look alike
   kFarDegrees = 45; // and distances from a joint limit
-/** The least distance of a joint from one of its limits, degrees; Infinity where there are none. */
+/**
+ * The least distance of a joint that turns from one of its limits, degrees; Infinity where there
+ * are none.
+ */
 export const marginOf = (chain, q) =>
   kDegrees *
   Math.min(
-    ...chain.joints.map(({ lower, upper }, k) =>
-      lower === null || upper === null ? Infinity : Math.min(q[k] - lower, upper - q[k]),
+    ...chain.joints.map(({ lower, upper, slides }, k) =>
+      lower === null || upper === null || slides ? Infinity : Math.min(q[k] - lower, upper - q[k]),
     ),
   );
 /**

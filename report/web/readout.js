@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the pose that is shown, with a gauge for each joint's range.
-import { kDegrees } from './poses.js';
+import { shownOf } from './poses.js';
 
-export const kNear = 1; // degrees from a limit: a joint is told apart
+export const kNear = 1; // degrees, or mm of a slide, from a limit: a joint is told apart
 
 function line(className, ...parts) {
   const element = Object.assign(document.createElement('div'), { className });
@@ -18,26 +18,27 @@ function commonLength(names) {
   return k;
 }
 /**
- * A joint, its angle and where it is between its limits. common: how many characters of its name
- * all joints share, which are left out where there is no room.
+ * A joint, its angle, rad, or its position, m, and where it is between its limits. common: how
+ * many characters of its name all joints share, which are left out where there is no room.
  */
-function jointLine({ name, lower, upper }, angle, digits, common) {
+function jointLine({ name, lower, upper, slides }, angle, digits, common) {
   const bounded = lower !== null && upper !== null,
-    room = bounded ? kDegrees * Math.min(angle - lower, upper - angle) : Infinity;
+    { scale, unit } = shownOf({ slides }),
+    room = bounded ? scale * Math.min(angle - lower, upper - angle) : Infinity;
   const element = line(
     room < kNear ? 'joint near' : 'joint',
     span(name.slice(0, common)),
     span(name.slice(common)),
     '  ',
-    span(`${(angle * kDegrees).toFixed(digits)}°`),
+    span(`${(angle * scale).toFixed(digits)}${unit}`),
   );
   if (bounded) {
     const share = Math.min(1, Math.max(0, (angle - lower) / (upper - lower)));
     element.style.setProperty('--at', `${(100 * share).toFixed(1)}%`);
     element.classList.add('bounded');
     element.title =
-      `${(lower * kDegrees).toFixed(0)}° to ${(upper * kDegrees).toFixed(0)}°, ` +
-      `${room.toFixed(room < 10 ? 1 : 0)}° from the nearer`;
+      `${(lower * scale).toFixed(0)}${unit} to ${(upper * scale).toFixed(0)}${unit}, ` +
+      `${room.toFixed(room < 10 ? 1 : 0)}${unit} from the nearer`;
   }
   return element;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is plotted along a path and in time.
 import { manipulability } from './kinematics.js';
-import { degrees, kDegrees, stepsOf } from './poses.js';
+import { degrees, shownOf, stepsOf } from './poses.js';
 
 /**
  * All joints that have limits in one plot: 0 and 100 are the limits. The one that the answer names
@@ -40,14 +40,18 @@ function ranges(chain, rows, named) {
 export function alongRows(chain, rows, settings, summary) {
   return [
     ...ranges(chain, rows, summary?.joint_limit?.joint),
-    ...chain.joints.map((joint, k) => ({
-      title: joint.name,
-      unit: 'deg',
-      values: rows.map((row) => row.q[k] * kDegrees),
-      of: ({ q }) => q[k] * kDegrees,
-      low: degrees(joint.lower),
-      high: degrees(joint.upper),
-    })),
+    ...chain.joints.map((joint, k) => {
+      const { scale } = shownOf(joint),
+        shown = (value) => (value === null ? null : value * scale);
+      return {
+        title: joint.name,
+        unit: joint.slides ? 'mm' : 'deg',
+        values: rows.map((row) => row.q[k] * scale),
+        of: ({ q }) => q[k] * scale,
+        low: shown(joint.lower),
+        high: shown(joint.upper),
+      };
+    }),
     {
       title: 'roll of the tool',
       unit: 'deg',
@@ -59,7 +63,7 @@ export function alongRows(chain, rows, settings, summary) {
     {
       title: 'largest joint step',
       unit: 'deg',
-      values: stepsOf(rows),
+      values: stepsOf(rows, chain),
       of: ({ step }) => step,
       low: null,
       high: degrees(settings.joint_step),

@@ -124,8 +124,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       for (Config* move : {&delta, &row_delta})
         if (lattice.continuous()[static_cast<std::size_t>(j)])
           (*move)[j] = std::remainder((*move)[j], kTwoPi);
-      if (std::abs(delta[j]) > limits.joint_step + 2 * lattice.fit_error()[j] ||
-          std::abs(row_delta[j]) > limits.joint_step)
+      const double most = limits.joint_step * (j == chain.slide() ? kSlideForTurn : 1);
+      if (std::abs(delta[j]) > most + 2 * lattice.fit_error()[j] || std::abs(row_delta[j]) > most)
         return std::nullopt;
     }
     if (!lattice.follows_path(layer, sa, row_a, sb, row_b)) return std::nullopt;

@@ -456,6 +456,10 @@ struct World::Query::Impl {
     for (int j = 0; j < displaced; ++j) {
       const auto k = static_cast<std::size_t>(j);
       const Vector3d turn = asked.half[j] * (displacements[k].linear() * chain.axis[k]);
+      if (chain.limit[k].slides) {
+        twists[k + 1] = {twists[k].turn, twists[k].origin + turn};
+        continue;
+      }
       twists[k + 1] = {twists[k].turn + turn,
                        twists[k].origin + (displacements[k] * chain.point[k]).cross(turn)};
     }

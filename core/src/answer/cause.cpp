@@ -35,6 +35,7 @@ const char* Cause::unit() const {
     case Kind::kLimit:
     case Kind::kJointStep:
     case Kind::kSpeed:
+      return slides ? "m" : "rad";
     case Kind::kAngleError:
     case Kind::kStepError:
     case Kind::kArmSlope:
@@ -147,6 +148,9 @@ std::string figures(const Cause& cause, std::optional<double> most) {
                                                 : "too near to the shoulder by ") +
              (*by < 10 ? misses(kMillimetres) + " mm" : misses(1) + " m");
     case Cause::Kind::kLimit:
+      if (cause.slides)
+        return (cause.other_joints ? cause.joint + ": " : "") + misses(kMillimetres) +
+               " mm beyond " + formatted("%.4g mm", kMillimetres * *cause.limit);
       return (cause.other_joints ? cause.joint + ": " : "") + misses(kDegrees) + " deg beyond " +
              formatted("%.2f deg", kDegrees * *cause.limit) +
              (cause.unwinds ? ": at the end of its range, it would have to unwind by a turn" : "");
@@ -164,9 +168,13 @@ std::string figures(const Cause& cause, std::optional<double> most) {
                        *cause.limit / *cause.over);
     case Cause::Kind::kJointStep:
       return cause.joint + ": " +
-             of("%.3g rad in one layer, allowed %.3g rad: of a layer, so a smaller ds may help", 1);
+             (cause.slides ? of("%.3g mm in one layer, allowed %.3g mm", kMillimetres)
+                           : of("%.3g rad in one layer, allowed %.3g rad", 1)) +
+             ": of a layer, so a smaller ds may help";
     case Cause::Kind::kSpeed:
-      return cause.joint + ": " + of("%.3g rad, allowed %.3g rad", 1);
+      return cause.joint + ": " +
+             (cause.slides ? of("%.3g mm, allowed %.3g mm", kMillimetres)
+                           : of("%.3g rad, allowed %.3g rad", 1));
     case Cause::Kind::kPathError:
       return of("%.3g mm, allowed %.3g mm", kMillimetres);
     case Cause::Kind::kArmSlope:

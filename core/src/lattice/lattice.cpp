@@ -109,11 +109,17 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
   set_row_step_bounds(step_bounds_along(chain, path, limits_, problem.resolution));
 }
 
+Config joint_steps(const Chain& chain, const Limits& limits) {
+  Config steps = Config::Constant(limits.joint_step);
+  if (const int slide = chain.slide(); slide >= 0) steps[slide] *= kSlideForTurn;
+  return steps;
+}
+
 std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPath& path,
                                                const Limits& limits, const Resolution& resolution) {
   const bool timed = limits.tool_speed || limits.tool_turn_speed, differ = timed || chain.roll;
   std::vector<Config> bounds(differ ? static_cast<std::size_t>(path.size()) - 1 : 1,
-                             Config::Constant(limits.joint_step));
+                             joint_steps(chain, limits));
   for (int i = 0; differ && i + 1 < path.size(); ++i) {
     const PathLayer& layer = path.layer(i);
     if (chain.roll)
@@ -269,6 +275,11 @@ std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, i
     c_before[k] = c[k] * ch + s[k] * sh, s_before[k] = s[k] * ch - c[k] * sh;
     c_after[k] = c[k] * ch - s[k] * sh, s_after[k] = s[k] * ch + c[k] * sh;
   }
+  if (const int k = chain.slide(); k >= 0) {
+    c_before[k] = c[k] = c_after[k] = 0;
+    s[k] = q0[k] + 0.5 * delta[k];
+    s_before[k] = s[k] - 0.25 * delta[k], s_after[k] = s[k] + 0.25 * delta[k];
+  }
   return {step.aside(chain.tool_point(c_before, s_before)), step.aside(chain.tool_point(c, s)),
           step.aside(chain.tool_point(c_after, s_after))};
 }
@@ -323,6 +334,7 @@ void Lattice::turn_to_end(std::vector<Config>& rows) const {
     if (std::abs(rows.front()[j] - rows.back()[j]) < kRounding) rows.back()[j] = rows.front()[j];
   if (!end_) return;
   for (int j = 0; j < kDof; ++j) {
+    if (j == chain_->slide()) continue;
     const double turns = std::round(((*end_)[j] - rows.back()[j]) / kTwoPi) * kTwoPi;
     for (Config& q : rows) q[j] += starts_given_ ? 0 : turns;
     if (std::abs((*end_)[j] - rows.back()[j]) < kRounding) rows.back()[j] = (*end_)[j];

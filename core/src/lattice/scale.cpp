@@ -13,12 +13,14 @@ namespace swivel {
 namespace {
 
 /// Returns how far the arm reaches without `tool`, m: the sum of the distances from axis to axis
-/// and on to the flange.
+/// and on to the flange, and the furthest position of a slide.
 double reach_of_arm(const Chain& chain, const Pose& tool) {
   const std::size_t joints =
       chain.roll ? kDof - 1 : kDof;  // the roll is no joint of the arm; its axis is the tool's
   double reach = ((chain.home * tool.inverse()).translation() - chain.point[joints - 1]).norm();
   for (std::size_t j = 1; j < joints; ++j) reach += (chain.point[j] - chain.point[j - 1]).norm();
+  for (const JointLimit& limit : chain.limit)
+    if (limit.slides) reach += std::max(std::abs(limit.lower), std::abs(limit.upper));
   return reach;
 }
 

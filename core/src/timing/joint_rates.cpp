@@ -2,10 +2,25 @@
 #include <algorithm>
 #include <limits>
 
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/timing/time_path.hpp"
 
 namespace swivel {
+
+namespace {
+
+/// Says which rate is assumed where no file states one: rad/s^power, and that of a slide.
+std::string assumed_rate(const Chain& chain, double rate, int power) {
+  std::string text = formatted("%.4g rad/s^%d", rate, power);
+  if (const int slide = chain.slide(); slide >= 0)
+    text += formatted(", of '%s' %.4g m/s^%d",
+                      chain.joint_names[static_cast<std::size_t>(slide)].c_str(),
+                      kSlideForTurn * rate, power);
+  return text;
+}
+
+}  // namespace
 
 JointRates joint_rates(const Chain& chain, const Limits& limits, const std::string& source) {
   // of small and middle-sized arms, on the slow side
@@ -14,11 +29,13 @@ JointRates joint_rates(const Chain& chain, const Limits& limits, const std::stri
   JointRates::Assumed no_acceleration{JointRate::kAcceleration,
                                       {},
                                       "joint accelerations are stated neither by the URDF nor as "
-                                      "limits.joint_acceleration: 10 rad/s^2"};
+                                      "limits.joint_acceleration: " +
+                                          assumed_rate(chain, kAcceleration, 2)};
   JointRates::Assumed no_jerk{
       JointRate::kJerk,
       {},
-      "joint jerks are stated neither by the URDF nor as limits.joint_jerk: 100 rad/s^3"};
+      "joint jerks are stated neither by the URDF nor as limits.joint_jerk: " +
+          assumed_rate(chain, kJerk, 3)};
   for (std::size_t j = 0; j < kDof; ++j) {
     const auto joint = static_cast<Eigen::Index>(j);
     const JointLimit& model = chain.limit[j];
@@ -35,9 +52,10 @@ JointRates joint_rates(const Chain& chain, const Limits& limits, const std::stri
       throw InputError(source, "joint '" + chain.joint_names[j] +
                                    "' has no speed limit in the URDF: allowed are robots whose "
                                    "joints all have one, or limits.joint_speed");
+    const double of_turn = model.slides ? kSlideForTurn : 1;
     if (!(rates.acceleration[joint] > 0))
-      rates.acceleration[joint] = kAcceleration, no_acceleration.of[j] = true;
-    if (!(rates.jerk[joint] > 0)) rates.jerk[joint] = kJerk, no_jerk.of[j] = true;
+      rates.acceleration[joint] = of_turn * kAcceleration, no_acceleration.of[j] = true;
+    if (!(rates.jerk[joint] > 0)) rates.jerk[joint] = of_turn * kJerk, no_jerk.of[j] = true;
   }
   for (const JointRates::Assumed& assumed : {no_acceleration, no_jerk})
     if (std::any_of(assumed.of.begin(), assumed.of.end(), [](bool one) { return one; }))

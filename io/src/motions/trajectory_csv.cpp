@@ -27,7 +27,7 @@ const Schema& trajectory_schema() {
                          "is negative; `check` proves it. Of arms that are not S-R-S 0 to 3, [for "
                          "plots](#branch), which `check` does "
                          "not look at"},
-                        {"JOINT", number(), "rad", required(),
+                        {"JOINT", number(), "rad or m", required(),
                          "a column for each joint, with its name; continuous joints without jumps"},
                     });
   return schema;

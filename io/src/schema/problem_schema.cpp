@@ -183,7 +183,8 @@ Schema resolution() {
            "middles of narrow ones: "
            "no arc is missed; S-R-S arms"},
           {"arc", number(kPositive), "rad", otherwise(d.arc),
-           "self-motion between nodes, of arms without an arm angle"},
+           "self-motion between nodes, of arms without an arm angle; 1 m of a prismatic joint "
+           "counts as 1 rad"},
           {"droll", number(kTurn), "rad", otherwise(d.droll),
            "widest step of `path.roll`, of arms of seven joints"},
           {"knot", number(kLength), "m", otherwise(d.knot),
@@ -236,7 +237,7 @@ Keys joint_and_path_limits() {
        "are narrower"},
       {"joint_step", number(kPositive), "rad", otherwise(d.joint_step),
        "largest move of a joint between neighbouring layers, whatever their distance: a "
-       "smaller `ds` allows more"},
+       "smaller `ds` allows more; a prismatic joint may move by 0.2 m for each rad"},
       {"arm_slope", number(kPositive), "rad/m", otherwise(d.arm_slope),
        "largest change of the arm angle along the path"},
       {"roll_slope", number(kPositive), "rad/m", otherwise(d.roll_slope),
@@ -267,11 +268,12 @@ Keys speed_limits() {
       {"joint_speed", of_joints(kPositive), "rad/s", in_words("`velocity` of the URDF"),
        rate("speed")},
       {"joint_acceleration", of_joints(kPositive), "rad/s²",
-       in_words("the smaller of `acceleration` and `deceleration` of the URDF; else 10, with a "
-                "warning"),
+       in_words("the smaller of `acceleration` and `deceleration` of the URDF; else 10 (of a "
+                "prismatic joint 2 m/s²), with a warning"),
        rate("acceleration")},
       {"joint_jerk", of_joints(kPositive), "rad/s³",
-       in_words("`jerk` of the URDF; else 100, with a warning"), rate("jerk")},
+       in_words("`jerk` of the URDF; else 100 (of a prismatic joint 20 m/s³), with a warning"),
+       rate("jerk")},
   };
 }
 

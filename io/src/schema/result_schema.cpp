@@ -95,7 +95,8 @@ Schema summary() {
               or_null(section(
                   "", {key("joint", text(), "its name"), key("side", side(), "which limit"),
                        key("margin_deg", number(), "how far from it", "degrees"), place()})),
-              "the joint that comes nearest to a limit: `joint`, `side`, `margin_deg`, `s`",
+              "of the joints that turn, the one that comes nearest to a limit: `joint`, `side`, "
+              "`margin_deg`, `s`",
               "degrees"),
           key("tool_path_error",
               or_null(section(

@@ -169,8 +169,10 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
   const Config moved = move.to - move.from;
   switch (cause.kind) {
     case Cause::Kind::kJointStep:
-      return !(moved.head(lattice_.chain().roll ? kDof - 1 : kDof).cwiseAbs().maxCoeff() <=
-               limits.joint_step);
+      return !(moved.cwiseAbs()
+                   .cwiseQuotient(joint_steps(lattice_.chain(), limits))
+                   .head(lattice_.chain().roll ? kDof - 1 : kDof)
+                   .maxCoeff() <= 1);
     case Cause::Kind::kRollSlope: {
       const auto roll = lattice_.roll_step(layer, a, move.from, b, move.to);
       return roll && !roll->allowed;

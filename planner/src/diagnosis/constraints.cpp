@@ -108,6 +108,7 @@ Cause Constraints::cause(int constraint) const {
     cause.kind = Cause::Kind::kLimit;
     cause.side = high ? Cause::Side::kUpper : Cause::Side::kLower;
     cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
+    cause.slides = k == lattice_.chain().slide();
     cause.limit = high ? upper : lower;
   } else if (is_object(constraint)) {
     cause.kind = Cause::Kind::kPair;
@@ -237,7 +238,8 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
 }
 
 std::optional<int> Constraints::run_out(int k, const Config& from, const Config& moved) const {
-  if (lattice_.continuous()[static_cast<std::size_t>(k)] || std::abs(moved[k]) <= kPi)
+  if (lattice_.continuous()[static_cast<std::size_t>(k)] || std::abs(moved[k]) <= kPi ||
+      k == lattice_.chain().slide())
     return std::nullopt;
   const double near = wrap_angle(moved[k]), there = from[k] + near;
   const auto [lower, upper] = limits_of(k);
@@ -248,14 +250,14 @@ std::optional<int> Constraints::run_out(int k, const Config& from, const Config&
 
 void Constraints::add_steps(const Config& from, const Config& moved, const Config& bound,
                             const Config& more, Violations& found) const {
-  const double joint_step = lattice_.limits().joint_step;
+  const Config most = joint_steps(lattice_.chain(), lattice_.limits());
   for (int k = 0; k < (lattice_.chain().roll ? kDof - 1 : kDof); ++k) {
     if (const auto limit = run_out(k, from, moved)) {
       found.add(*limit);
       continue;
     }
-    if (!(std::abs(moved[k]) <= joint_step + more[k])) found.add(kJointStep);
-    if (bound[k] < joint_step && !(std::abs(moved[k]) <= bound[k] + more[k])) found.add(kSpeed);
+    if (!(std::abs(moved[k]) <= most[k] + more[k])) found.add(kJointStep);
+    if (bound[k] < most[k] && !(std::abs(moved[k]) <= bound[k] + more[k])) found.add(kSpeed);
   }
 }
 
@@ -282,7 +284,7 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       return;
     case Fault::kStep: {
       const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
-      add_steps(from, interpolated.q - from, Config::Constant(lattice_.limits().joint_step),
+      add_steps(from, interpolated.q - from, joint_steps(lattice_.chain(), lattice_.limits()),
                 Config::Zero(), found);
       if (found.set == 0) found.add(kSpeed);
       return;
@@ -399,11 +401,16 @@ void Constraints::measure_step(Cause& cause, int layer, const Config& delta) con
   const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;
   Eigen::Index k = 0;
   if (cause.kind == Cause::Kind::kJointStep)
-    delta.head(joints).cwiseAbs().maxCoeff(&k);
+    delta.cwiseAbs()
+        .cwiseQuotient(joint_steps(lattice_.chain(), lattice_.limits()))
+        .head(joints)
+        .maxCoeff(&k);
   else
     delta.head(joints).cwiseAbs().cwiseQuotient(bound.head(joints)).maxCoeff(&k);
   cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
+  cause.slides = k == lattice_.chain().slide();
   cause.value = std::abs(delta[k]);
+  if (cause.slides && cause.kind == Cause::Kind::kJointStep) *cause.limit *= kSlideForTurn;
   if (cause.kind == Cause::Kind::kSpeed) cause.limit = bound[k];
 }
 

@@ -75,7 +75,7 @@ std::optional<NearestLimit> nearest_limit(const Chain& chain,
   std::size_t row = 0, joint = 0;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
-    if (limit.continuous || limit.wide()) continue;
+    if (limit.continuous || limit.wide() || limit.slides) continue;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double q = rows[i].q[static_cast<Eigen::Index>(k)],
                    margin = std::min(q - limit.lower, limit.upper - q);

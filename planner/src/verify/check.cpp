@@ -68,7 +68,7 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain,
     if (limits.tool_speed) dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
     if (limits.tool_turn_speed)
       dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
-    Config bound = Config::Constant(limits.joint_step);
+    Config bound = joint_steps(chain, limits);
     if (chain.roll) bound[kDof - 1] = roll_step_bound(path, i, limits, problem.resolution);
     for (std::size_t j = 0; dt > 0 && j < joints; ++j) {
       double& joint = bound[static_cast<Eigen::Index>(j)];
@@ -254,7 +254,7 @@ class Check {
       if (!(by >= -kLimit)) {
         fail("row %zu: joint '%s' at %.9g is outside its limits", k, joint_name(j), value);
         inside = false;
-      } else if (!result_.nearest_limit || by < result_.nearest_limit->by) {
+      } else if (!limit.slides && (!result_.nearest_limit || by < result_.nearest_limit->by)) {
         result_.nearest_limit = {static_cast<int>(j), by, k};
       }
     }
@@ -597,8 +597,9 @@ class Check {
     if (worst.by > 0) {
       jumps_[k] = true;
       const double moved = std::abs(move[static_cast<Eigen::Index>(worst.joint)]);
-      fail("rows %zu-%zu: joint '%s' moves by %.6g rad, joint_step and speeds allow %.6g", k - 1, k,
-           joint_name(worst.joint), moved, moved - worst.by);
+      fail("rows %zu-%zu: joint '%s' moves by %.6g %s, joint_step and speeds allow %.6g", k - 1, k,
+           joint_name(worst.joint), moved, chain_.limit[worst.joint].slides ? "m" : "rad",
+           moved - worst.by);
       return false;
     }
     const auto travel = [&](double at) { return path_.layer(static_cast<int>(at)).travel; };

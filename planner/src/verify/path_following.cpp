@@ -120,10 +120,13 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
   const Config move = (to - from).cwiseAbs();
   // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j|
   // reach_j, and that of its angle half of (sum |dq_i|)^2. A chord is off by an eighth of the
-  // acceleration.
+  // acceleration. Beside a slide, whose own reach is 1 m per m, a turn before it adds twice
+  // |dq_i dq_j|, so that 2 is enough; what it carries is further from the axes before it.
   double reach = (chain.home.translation() - chain.point[kDof - 1]).norm(), swept = 0;
   for (std::size_t j = kDof; j-- > 0;) {
-    swept += move[static_cast<Eigen::Index>(j)] * reach;
+    const auto at = static_cast<Eigen::Index>(j);
+    swept += move[at] * (chain.limit[j].slides ? 2 : reach);
+    if (chain.limit[j].slides) reach += std::max(std::abs(from[at]), std::abs(to[at]));
     if (j > 0) reach += (chain.point[j] - chain.point[j - 1]).norm();
   }
   const PoseDistance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};

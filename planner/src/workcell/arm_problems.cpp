@@ -224,6 +224,12 @@ ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget) {
       throw InputError(problems[k].source,
                        "path.roll: of an arm with an arm angle: allowed in a workcell are arms of "
                        "six joints with a roll, or none");
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const int slide = arms[k].chain.slide(); slide >= 0)
+      throw InputError(problems[k].source,
+                       "joint '" + arms[k].chain.joint_names[static_cast<std::size_t>(slide)] +
+                           "' is prismatic: allowed in a workcell are arms whose joints turn: "
+                           "hold it by its `hold`");
   if (const auto given = cell.given_arm()) {
     const std::size_t planned = 1 - *given;
     const bool follows = cell.leader_of(planned) >= 0;

@@ -187,8 +187,12 @@ std::string joint_step_words(const PathEnd& end, const Config& q) {
   const Config step =
       end.lattice.delta(*end.lattice.exact_config(end.layer() - 1, end.path.back()), q);
   Eigen::Index joint = 0;
-  const double most = step.cwiseAbs().maxCoeff(&joint);
-  return ", " + end.map.joint_names[joint] + formatted(" by %.2f rad", most);
+  const Chain& chain = end.lattice.chain();
+  step.cwiseAbs().cwiseQuotient(joint_steps(chain, end.lattice.limits())).maxCoeff(&joint);
+  const double most = std::abs(step[joint]);
+  return ", " + end.map.joint_names[joint] +
+         (joint == chain.slide() ? formatted(" by %.0f mm", 1e3 * most)
+                                 : formatted(" by %.2f rad", most));
 }
 
 /// Returns what keeps the path from the node past its end, whose joints are `q` and whose state in

@@ -31,6 +31,7 @@ Json chain_json(const Chain& chain) {
                       {"point", vector_json(chain.point[j])},
                       {"lower", limit.continuous ? Json(nullptr) : Json(limit.lower)},
                       {"upper", limit.continuous ? Json(nullptr) : Json(limit.upper)}});
+    if (limit.slides) joints.back()["slides"] = true;
   }
   Json followers = Json::array();
   for (const Chain::Follower& follower : chain.followers)

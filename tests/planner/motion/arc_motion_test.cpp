@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "axes_robots.hpp"
 #include "motion_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
@@ -30,14 +31,16 @@ std::vector<Arm> arms() {
     robot.tip_link = "flange";
     return robot;
   };
-  return {{of_data("panda_like"), {}},
-          {of_data("xarm7_like"), {}},
-          {of_data("gen3_like"), {}},
-          {of_data("fetch_like"), {}},
-          {offset_robot(), {}},
-          {of_data("kr6_like"), Roll{}},
-          {of_data("kr6_like"), Roll{-1.5, 1.5}},
-          {of_data("ur5e_like"), Roll{-0.8, 0.8}}};
+  std::vector<Arm> all{{of_data("panda_like"), {}},
+                       {of_data("xarm7_like"), {}},
+                       {of_data("gen3_like"), {}},
+                       {of_data("fetch_like"), {}},
+                       {offset_robot(), {}},
+                       {of_data("kr6_like"), Roll{}},
+                       {of_data("kr6_like"), Roll{-1.5, 1.5}},
+                       {of_data("ur5e_like"), Roll{-0.8, 0.8}}};
+  for (const TestRobot& robot : slide_robots()) all.push_back({robot, {}});
+  return all;
 }
 
 double most_deviation(const Chain& chain, const ToolPath& path,

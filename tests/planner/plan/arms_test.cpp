@@ -3,10 +3,12 @@
 // trajectory that is checked.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
+#include "axes_robots.hpp"
 #include "brute_force.hpp"
 #include "motion_problem.hpp"
 #include "planners.hpp"
@@ -205,6 +207,51 @@ TEST(Arms, FourPlannersAndBruteForceBesideATurntable) {
   EXPECT_GE(counts.solved, at_least_among(count / 4));
   EXPECT_GE(counts.infeasible, at_least_among(count / 20));
   EXPECT_GE(turned, at_least_among(count / 8));
+}
+
+/// Plans random problems of arms of six joints and one more axis with every planner. `axis` is
+/// its name; it must move in some of the answers.
+void plan_with_one_more_axis(const char* stream, const std::vector<TestRobot>& robots,
+                             const std::string& axis) {
+  const std::uint64_t base = seed(stream);
+  ArmsCounts counts;
+  const int count = trials(200);
+  int moves = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Problem problem =
+        random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const int solved = counts.solved;
+    check_agreement(problem,
+                    "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                        " robot " + problem.source,
+                    counts);
+    if (::testing::Test::HasFatalFailure()) return;
+    if (counts.solved == solved) continue;
+    const auto names = PreparedRobot(problem).arm().chain.joint_names;
+    const auto j = std::find(names.begin(), names.end(), axis) - names.begin();
+    const std::vector<TrajectoryRow> rows = plan(problem).trajectory;
+    moves += std::abs(rows.back().q[j] - rows.front().q[j]) > 0.01;
+  }
+  std::printf(
+      "%d problems: %d solved (%d with windings, in %d the axis moves), %d infeasible, %d with a "
+      "start, %d continuous, %d with obstacles\n",
+      count, counts.solved, counts.wound, moves, counts.infeasible, counts.started,
+      counts.continuous, counts.obstacles);
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  EXPECT_GE(counts.infeasible, at_least_among(count / 20));
+  EXPECT_GE(counts.started, at_least_among(count / 10));
+  EXPECT_GE(counts.continuous, at_least_among(count / 5));
+  EXPECT_GE(moves, at_least_among(count / 8));
+}
+
+/// Arms on a rail, on a column, with a slide in the middle or at the wrist.
+TEST(Arms, FourPlannersAndBruteForceWithASlide) {
+  plan_with_one_more_axis("Arms.Slide", slide_robots(), "slide");
+}
+
+TEST(Arms, FourPlannersAndBruteForceOnATorso) {
+  plan_with_one_more_axis("Arms.Torso", {torso_robot()}, "torso");
 }
 
 /// A path that turns the last joint on from near its limit: the first answer on circles leaves the

@@ -186,6 +186,10 @@ std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<Robo
     }
     radii[j] = about_axis;
     reach = about_point;
+    if (chain.limit[j].slides && about_point > 0) {
+      radii[j] = 1;  // m per m
+      reach += std::max(std::abs(chain.limit[j].lower), std::abs(chain.limit[j].upper));
+    }
   }
   const FollowerMotion beside = follower_motion(chain, bodies);
   for (std::size_t j = 0; j < kDof; ++j) radii[j] += beside.reach[j];

@@ -24,6 +24,13 @@ Chain::Turn turn_about(const Vector3d& a, const Vector3d& p) {
   return turn;
 }
 
+/// Returns the shift along the unit vector a: its "sine" is the position itself.
+Chain::Turn shift_along(const Vector3d& a) {
+  Chain::Turn shift{Eigen::Matrix4d::Identity(), Eigen::Matrix4d::Zero(), Eigen::Matrix4d::Zero()};
+  shift.sine.col(3).head<3>() = a;
+  return shift;
+}
+
 Pose at(const Chain::Turn& turn, double cosine, double sine) {
   return Pose(turn.still + cosine * turn.cosine + sine * turn.sine);
 }
@@ -244,6 +251,7 @@ void narrow(const RobotModel& robot, const Joint& follower, const Lead& lead, Jo
 void require_same_after_a_turn(const RobotModel& robot, const Chain& chain,
                                const Chain::Follower& follower) {
   const JointLimit& limit = chain.limit[static_cast<std::size_t>(follower.leader)];
+  if (limit.slides) return;
   if (!limit.continuous && limit.upper - limit.lower < kTwoPi - 1e-3) return;
   if (!follower.slides && follower.multiplier == std::round(follower.multiplier)) return;
   fail(robot, "joint '" + follower.name + "' mimics '" +
@@ -327,9 +335,33 @@ struct ArmJoints {
   bool seven = true;
 };
 
+/// Throws InputError where more of the arm's joints slide than may: one of seven that are all there
+/// are between base and tip, none of six. `between`: how many could be the arm's.
+void require_slides_allowed(const RobotModel& robot, const ArmJoints& arm, std::size_t between) {
+  constexpr double kLongest = 1000;  // m
+  const Joint* slide = nullptr;
+  for (const int j : arm.joints) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    if (joint.type != Joint::Type::kPrismatic) continue;
+    if (!arm.seven)
+      fail(robot, "joint '" + joint.name + "' is prismatic: the arm's six joints must turn");
+    if (slide != nullptr)
+      fail(robot, "joints '" + slide->name + "' and '" + joint.name +
+                      "' are prismatic: allowed is one such joint among the arm's seven");
+    if (!(joint.upper - joint.lower <= kLongest))
+      fail(robot, "joint '" + joint.name +
+                      "' is prismatic, with limits over 1000 m apart: allowed is at most that");
+    slide = &joint;
+  }
+  if (slide != nullptr && between > kDof)
+    fail(robot, "joint '" + slide->name + "' is prismatic, and " + std::to_string(between) +
+                    " joints move between base and tip: allowed with one that slides are seven: "
+                    "hold others by robot.hold");
+}
+
 /// Chooses the arm's joints: the last seven on the way to the tip that move and are neither held
 /// nor mimic another; with `roll` the last six where no seventh turns. Throws InputError where
-/// there are too few, or one of them is prismatic.
+/// there are too few, or more of them slide than may.
 ArmJoints choose_arm_joints(const RobotModel& robot, const KinematicPath& way,
                             const std::string& base_link, const std::string& tip_link,
                             const std::map<std::string, double>& hold,
@@ -356,13 +388,11 @@ ArmJoints choose_arm_joints(const RobotModel& robot, const KinematicPath& way,
              "only " + std::to_string(arm.size()) + " movable joints that are not held between '" +
                  base_link + "' and '" + tip_link +
                  "': allowed are at least seven, or six with path.roll");
+  const std::size_t between = arm.size();
   arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
-  for (const int j : arm)
-    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
-      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name +
-                      "' is prismatic: the arm's " + (seven ? "seven" : "six") +
-                      " joints must turn");
-  return {std::move(arm), seven};
+  ArmJoints chosen{std::move(arm), seven};
+  require_slides_allowed(robot, chosen, between);
+  return chosen;
 }
 
 /// Throws InputError where a joint on the way from base to tip mimics one of the arm's: the tool
@@ -424,10 +454,11 @@ void set_chain_joints(const RobotModel& robot, const KinematicPath& way,
         std::find(way.joints.begin(), way.joints.end(), arm[k]) - way.joints.begin());
     chain.axis[k] = (place < way.up ? -1.0 : 1.0) * (frame.linear() * joint.axis).normalized();
     chain.point[k] = frame.translation();
-    chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
-    chain.limit[k] = {joint.lower,        joint.upper,
-                      joint.velocity,     joint.type == Joint::Type::kContinuous,
-                      joint.acceleration, joint.jerk};
+    const bool slides = joint.type == Joint::Type::kPrismatic;
+    chain.turn[k] = slides ? shift_along(chain.axis[k]) : turn_about(chain.axis[k], chain.point[k]);
+    chain.limit[k] = {
+        joint.lower, joint.upper,        joint.velocity, joint.type == Joint::Type::kContinuous,
+        slides,      joint.acceleration, joint.jerk};
   }
 }
 
@@ -453,8 +484,9 @@ std::array<Pose, kDof + 1> Chain::displacements(const Config& q) const {
 
 void Chain::displace(const Config& q, int first, int last, std::array<Pose, kDof + 1>& G) const {
   for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k) {
-    const double angle = q[static_cast<Eigen::Index>(k)];
-    G[k + 1] = product(G[k], at(turn[k], std::cos(angle), std::sin(angle)));
+    const double x = q[static_cast<Eigen::Index>(k)];
+    G[k + 1] =
+        product(G[k], limit[k].slides ? at(turn[k], 0, x) : at(turn[k], std::cos(x), std::sin(x)));
   }
 }
 
@@ -495,6 +527,12 @@ Chain::Joints Chain::joints_between(int group_a, int group_b) const {
   return joints;
 }
 
+int Chain::slide() const {
+  for (int k = 0; k < kDof; ++k)
+    if (limit[static_cast<std::size_t>(k)].slides) return k;
+  return -1;
+}
+
 Pose Chain::tool(const Config& q) const {
   return displacements(q)[kDof] * home;
 }
@@ -515,6 +553,10 @@ Eigen::Matrix<double, 6, kDof> Chain::jacobian(const Config& q) const {
   for (std::size_t k = 0; k < kDof; ++k) {
     const Vector3d a = G[k].linear() * axis[k];
     const auto column = static_cast<Eigen::Index>(k);
+    if (limit[k].slides) {
+      J.col(column) << a, Vector3d::Zero();
+      continue;
+    }
     J.block<3, 1>(0, column) = a.cross(tool_point - G[k] * point[k]);
     J.block<3, 1>(3, column) = a;
   }

@@ -12,6 +12,20 @@ ArmClass classify(const Chain& chain, const std::string& source) {
     result.lock = lock_method(chain);
     if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
   };
+  if (const int slide = chain.slide(); slide >= 0) {
+    const std::string& name = chain.joint_names[static_cast<std::size_t>(slide)];
+    if (chain.free_roll)
+      throw InputError(source, "path.roll: joint '" + name +
+                                   "' is prismatic: allowed where the arm's joints turn: hold it "
+                                   "by robot.hold");
+    other("joint '" + name + "' slides");
+    if (result.lock.best < 0)
+      throw InputError(source, "joint '" + name +
+                                   "' is prismatic, and the six others have no closed form: "
+                                   "allowed are six of which three neighbouring axes meet in a "
+                                   "point or are parallel");
+    return result;
+  }
   if (chain.roll) {
     other("six joints and the roll of the tool");
     return result;

@@ -516,6 +516,10 @@ SixChain lock_joint(const Chain& chain, int joint, double value) {
   Pose turn = Pose::Identity();
   const auto locked = static_cast<std::size_t>(joint);
   for (std::size_t k = 0, to = 0; k < kDof; ++k) {
+    if (k == locked && chain.limit[k].slides) {
+      turn.translate(value * chain.axis[k]);
+      continue;
+    }
     if (k == locked) {
       append(turn, chain.axis[k], chain.point[k], Angle::of(value));
       continue;
@@ -663,9 +667,11 @@ LockMethod lock_method(const Chain& chain) {
     }
   }
   const double largest = *std::max_element(share.begin(), share.end());
+  const int slide = chain.slide();
   for (int j = 0; j < kDof; ++j) {
     const double mine = share[static_cast<std::size_t>(j)];
-    if (!(mine > kLeastShare * largest)) continue;
+    // Shares of m and rad cannot be compared, and the closed forms know turns alone.
+    if (slide >= 0 ? j != slide : !(mine > kLeastShare * largest)) continue;
     std::optional<ClosedFormFit> fit;
     for (const double value : kValues) {
       const auto form = ClosedForm::of(lock_joint(chain, j, value));

@@ -34,7 +34,13 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
     const Vector3d d = p - chain.point[i];
     return (d - chain.axis[i].dot(d) * chain.axis[i]).norm();
   };
+  const int slide = chain.slide();
+  // What axes in a row have in common is of no use where one of them slides.
+  const auto turn = [&](std::size_t first, std::size_t last) {
+    return slide < static_cast<int>(first) || slide > static_cast<int>(last);
+  };
   for (std::size_t k = 0; k + 2 < kDof; ++k) {
+    if (!turn(k, k + 2)) continue;
     // Where axes k and k + 1 come nearest; do all three meet there?
     const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1];
     const double sine2 = a.cross(b).squaredNorm();
@@ -45,12 +51,13 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
       add_alignments(chain, static_cast<int>(k), result);
   }
   for (std::size_t k = 0; k + 2 < kDof; ++k) {
+    if (!turn(k, k + 2)) continue;
     if (chain.axis[k].cross(chain.axis[k + 1]).norm() > kMeets ||
         chain.axis[k].cross(chain.axis[k + 2]).norm() > kMeets)
       continue;
     // A fourth axis parallel to these three, beyond one joint.
-    if (k + 4 < kDof) add_alignments(chain, static_cast<int>(k) + 2, result);
-    if (k >= 2) add_alignments(chain, static_cast<int>(k) - 2, result);
+    if (k + 4 < kDof && turn(k, k + 4)) add_alignments(chain, static_cast<int>(k) + 2, result);
+    if (k >= 2 && turn(k - 2, k + 2)) add_alignments(chain, static_cast<int>(k) - 2, result);
   }
   return result;
 }

@@ -6,11 +6,13 @@ namespace swivel {
 /// A chain of seven joints as frames along common normals. m, rad; matrices column by column.
 struct NewtonChain {
   double first[4][3];  ///< axes x, y, z of the frame of joint 1 in base, and its origin
-  /// Transform to the next joint's frame: Rz(q + turn) Tz(height) Tx(width) Rx(twist).
+  /// Transform to the next joint's frame: Rz(q + turn) Tz(height) Tx(width) Rx(twist); of a slide
+  /// Rz(turn) Tz(height + q) Tx(width) Rx(twist).
   struct Link {
     double turn, height, width, twist_cosine, twist_sine;
   } link[7];          ///< the last one has only a turn
   double last[4][3];  ///< axes and origin of the tool in the frame of joint 7
+  int slide;          ///< joint that slides, 0-based; -1: none
 };
 
 /// How Newton moves a point onto the self-motion curve.

@@ -132,13 +132,20 @@ inline void sine_cosine(V x, V& sine, V& cosine) {
   cosine = m > 0.0 ? -b : back;
 }
 
+/// Returns the angle by which joint k turns the frame of its link, rad.
+template <class V>
+inline V angle_of(const NewtonChain& chain, const V* q, int k) {
+  return k == chain.slide ? V{} + chain.link[k].turn : V(q[k] + chain.link[k].turn);
+}
+
 /// Axes of the joints, the tool's origin, and the pose error: `miss` (m) and `turn` (rad).
 template <class V>
 struct Stand {
   Vec3<V> axis[7], point[7], tool, miss, turn;
 };
 template <class V>
-inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Stand<V>& out) {
+inline void stand_at(const NewtonTask& task, const V* q, const V* sine, const V* cosine,
+                     Stand<V>& out) {
   const NewtonChain& chain = *task.chain;
   Vec3<V> X = constant<V>(chain.first[0]), Y = constant<V>(chain.first[1]),
           Z = constant<V>(chain.first[2]), P = constant<V>(chain.first[3]);
@@ -147,7 +154,8 @@ inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Sta
     out.point[k] = P;
     const NewtonChain::Link& link = chain.link[k];
     const Vec3<V> x = cosine[k] * X + sine[k] * Y, y = cosine[k] * Y - sine[k] * X;
-    if (k == 6) {  // a turn only
+    if (k == chain.slide) P = P + q[k] * Z;
+    if (k == 6) {  // no more than its own motion
       X = x;
       Y = y;
       break;
@@ -168,7 +176,7 @@ inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Sta
 
 /// Sets the rows of the Jacobian (columns 0 to 6) and the pose error (column 7).
 template <class V>
-[[gnu::always_inline]] inline void linearise(const Stand<V>& stand, V (&A)[6][8]) {
+[[gnu::always_inline]] inline void linearise(const Stand<V>& stand, int slide, V (&A)[6][8]) {
   for (int k = 0; k < 7; ++k) {
     const Vec3<V> v = cross(stand.axis[k], stand.tool - stand.point[k]);
     A[0][k] = v.x;
@@ -177,6 +185,13 @@ template <class V>
     A[3][k] = stand.axis[k].x;
     A[4][k] = stand.axis[k].y;
     A[5][k] = stand.axis[k].z;
+  }
+  if (slide >= 0) {
+    const Vec3<V>& along = stand.axis[slide];
+    A[0][slide] = along.x;
+    A[1][slide] = along.y;
+    A[2][slide] = along.z;
+    A[3][slide] = A[4][slide] = A[5][slide] = V{};
   }
   A[0][7] = stand.miss.x;
   A[1][7] = stand.miss.y;
@@ -221,10 +236,10 @@ template <class V>
 inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
   Stand<V> stand;
   V sine[7], cosine[7];
-  for (int k = 0; k < 7; ++k) sine_cosine(V(q[k] + task.chain->link[k].turn), sine[k], cosine[k]);
-  stand_at(task, sine, cosine, stand);
+  for (int k = 0; k < 7; ++k) sine_cosine(angle_of(*task.chain, q, k), sine[k], cosine[k]);
+  stand_at(task, q, sine, cosine, stand);
   V A[6][8], taken = V{};
-  linearise(stand, A);
+  linearise(stand, task.chain->slide, A);
   Column<V> pivot[6];
   const V whole = eliminate(A, pivot, taken);
   if (!any_above(whole, V{})) {
@@ -285,12 +300,12 @@ template <>
 inline double linear<double>(const NewtonTask& task, const double* q, double* particular,
                              double* null) {
   double angle[8], sine[8], cosine[8], A[6][8];  // seven joints, and the pose error
-  for (int k = 0; k < 7; ++k) angle[k] = q[k] + task.chain->link[k].turn;
+  for (int k = 0; k < 7; ++k) angle[k] = angle_of(*task.chain, q, k);
   angle[7] = 0;
   for (int k = 0; k < 8; ++k) sine_cosine(angle[k], sine[k], cosine[k]);
   Stand<double> stand;
-  stand_at(task, sine, cosine, stand);
-  linearise(stand, A);
+  stand_at(task, q, sine, cosine, stand);
+  linearise(stand, task.chain->slide, A);
   int pivot[6], free;
   if (!eliminate(A, pivot, free)) {
     for (int c = 0; c < 7; ++c) particular[c] = null[c] = 0;

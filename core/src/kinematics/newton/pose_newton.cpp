@@ -42,6 +42,7 @@ const NewtonKernels& newton_kernels() {
 }
 
 PoseNewton::PoseNewton(const Chain& chain) {
+  chain_.slide = chain.slide();
   Vector3d origin = chain.point[0], z = chain.axis[0];
   Vector3d x = z.unitOrthogonal();
   put(x, chain_.first[0]);

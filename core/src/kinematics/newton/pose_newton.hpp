@@ -12,7 +12,8 @@ namespace swivel {
 /// Newton's method for the six equations "the tool stands at a pose" in seven joints, made for very
 /// many small calls. It writes the chain as frames along common normals (Denavit & Hartenberg
 /// 1955), finds the step and the null vector by one elimination, and computes one point in each
-/// lane of a vector.
+/// lane of a vector. The position of a slide, m, takes the place of an angle, and so do its moves
+/// in norms.
 class PoseNewton {
  public:
   explicit PoseNewton(const Chain& chain);

@@ -16,6 +16,8 @@ using namespace self_motion;
 namespace {
 
 constexpr int kSeeds = 32;  // lock values, evenly spread over a turn
+// m: lock values of a slide, evenly spread over its range, are at most this far apart
+constexpr double kSeedStep = 0.0625;
 // rad by which a range must exceed a turn, so that the joint is a circle
 constexpr double kSliver = 1e-3;
 constexpr double kLeastWeight = 1e-2;  // of the largest
@@ -60,6 +62,23 @@ bool keeps_limits(const Chain& chain, const SelfMotionData& data) {
               kSymmetric);
 }
 
+/// Returns the values at which a joint is locked: all round, or, of a slide, from end to end, both
+/// included, so that no curve passes an end unseen.
+std::vector<double> lock_values(const Chain& chain, int lock) {
+  std::vector<double> values;
+  const JointLimit& limit = chain.limit[static_cast<std::size_t>(lock)];
+  if (limit.slides) {
+    const double range = limit.upper - limit.lower;
+    const int parts = std::max(kSeeds - 1, static_cast<int>(std::ceil(range / kSeedStep)));
+    for (int k = 0; k < parts; ++k) values.push_back(limit.lower + k * (range / parts));
+    values.push_back(limit.upper);
+    return values;
+  }
+  // Half a cell from 0, so that no value is a multiple of 90 degrees.
+  for (int k = 0; k < kSeeds; ++k) values.push_back(kTwoPi * (k + 0.5) / kSeeds - kPi);
+  return values;
+}
+
 }  // namespace
 
 SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin,
@@ -68,14 +87,15 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
   // Without a lock any joint serves: it decides where closed arcs begin.
   data->lock = method.best >= 0 ? method.best : 2;
   data->other = data->lock == 0 ? 1 : 0;
+  data->slide = chain.slide();
   const double largest = *std::max_element(weights.begin(), weights.end());
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
     data->lower[j] = limit.lower + margin;
     data->upper[j] = limit.upper - margin;
     const double range = data->upper[j] - data->lower[j];
-    data->circle[j] = limit.continuous || range > kTwoPi + kSliver;
-    if (range > kTwoPi) data->upper[j] = data->lower[j] + kTwoPi;
+    data->circle[j] = limit.continuous || (!limit.slides && range > kTwoPi + kSliver);
+    if (!limit.slides && range > kTwoPi) data->upper[j] = data->lower[j] + kTwoPi;
     const double weight = largest > 0 ? std::max(kLeastWeight, weights[j] / largest) : 1;
     data->scale[static_cast<Eigen::Index>(j)] = weight;
     data->scale2[static_cast<Eigen::Index>(j)] = weight * weight;
@@ -92,11 +112,10 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
       start[static_cast<Eigen::Index>(j)] = low + part * (high - low);
     }
   }
-  // Half a cell from 0, so that no value is a multiple of 90 degrees.
-  for (int k = 0; method.best >= 0 && k < kSeeds; ++k) {
-    const double value = kTwoPi * (k + 0.5) / kSeeds - kPi;
-    if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value)))
-      data->forms.emplace_back(value, *form);
+  if (method.best >= 0) {
+    for (const double value : lock_values(chain, data->lock))
+      if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value)))
+        data->forms.emplace_back(value, *form);
   }
   data->flip = flip_of(chain, data->lock, data->alignments, data->forms);
   data->flip_keeps_limits = keeps_limits(chain, *data);
@@ -111,6 +130,7 @@ std::vector<SelfMotionArc> SelfMotion::curves(const Pose& tool) const {
     for (int side = 0; side < (data_->flip.none() ? 1 : 2); ++side) {
       SelfMotionArc& arc = result.emplace_back();
       arc.closed = closed;
+      arc.slide = data_->slide;
       for (Point& p : points) {
         if (side == 1) data_->flip.apply(p);
         arc.q.push_back(p.q);
@@ -262,7 +282,7 @@ const std::array<bool, kDof>& SelfMotion::circles() const {
 
 Config SelfMotionArc::at(int chord, double u) const {
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % q.size();
-  return q[k] + Cubic({q[k], tangent[k]}, {q[next], tangent[next]}, 1).at(u);
+  return q[k] + Cubic({q[k], tangent[k]}, {q[next], tangent[next]}, 1, slide).at(u);
 }
 
 }  // namespace swivel

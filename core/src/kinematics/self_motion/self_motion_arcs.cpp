@@ -25,11 +25,17 @@ struct Crossing {
 };
 
 /// Calls add(u, whether it rises) for every u in [0, 1) at which start + cubic equals `value`.
+/// `end` is the value at u = 1 where it is known exactly: the chords that meet in a point which
+/// stands on a limit, as points at the first and last lock value of a slide do, then agree that it
+/// does.
 template <class Add>
-void cubic_crossings(const Cubic& cubic, int j, double start, double value, const Add& add) {
+void cubic_crossings(const Cubic& cubic, int j, double start, std::optional<double> end,
+                     double value, const Add& add) {
   const double b = cubic.m0[j], c = 3 * cubic.d[j] - 2 * cubic.m0[j] - cubic.m1[j],
                d = cubic.m0[j] + cubic.m1[j] - 2 * cubic.d[j];
-  const auto f = [&](double u) { return start - value + u * (b + u * (c + u * d)); };
+  const auto f = [&](double u) {
+    return u == 1 && end ? *end - value : start - value + u * (b + u * (c + u * d));
+  };
   // f is monotone between the roots of b + 2 c u + 3 d u^2.
   std::array<double, 4> knots{0, 1, 1, 1};
   std::size_t count = 1;
@@ -108,14 +114,15 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
     std::optional<Cubic> cubic;
     const std::size_t before = crossings_.size();
     // A cubic leaves its first point by 1.6 chords at most (below).
-    const double away = 1.6 * difference(b.q, a.q).norm() + 1e-9;
+    const double away = 1.6 * difference(b.q, a.q, data_.slide).norm() + 1e-9;
     for (int j = 0; j < kDof; ++j) {
       const auto at = static_cast<std::size_t>(j);
       if (data_.circle[at]) continue;
       if (a.q[j] - away > data_.lower[at] && a.q[j] + away < data_.upper[at]) continue;
-      if (!cubic) cubic.emplace(a, b, 1.0);
+      if (!cubic) cubic.emplace(a, b, 1.0, data_.slide);
       const double middle = (data_.lower[at] + data_.upper[at]) / 2,
-                   start = middle + wrapped(a.q[j] - middle);
+                   start = j == data_.slide ? a.q[j] : middle + wrapped(a.q[j] - middle);
+      const auto end = j == data_.slide ? std::optional<double>(b.q[j]) : std::nullopt;
       // A cubic leaves the range of its ends by 4/27 of the fit error of its tangents at most.
       const double bulge =
           0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
@@ -125,9 +132,10 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
       if (least > data_.lower[at] && most < data_.upper[at]) continue;
       for (const bool upper : {true, false})
         for (const double turn : {-kTwoPi, 0.0, kTwoPi}) {
+          if (j == data_.slide && turn != 0) continue;
           const double value = (upper ? data_.upper[at] : data_.lower[at]) + turn;
           if (value < least || value > most) continue;
-          cubic_crossings(*cubic, j, start, value, [&](double u, bool rising) {
+          cubic_crossings(*cubic, j, start, end, value, [&](double u, bool rising) {
             crossings_.push_back({k, u, j, upper, rising});
           });
         }
@@ -148,7 +156,7 @@ bool Cutter::solve_end(const std::vector<Point>& points, const Crossing& crossin
                        int& joint) const {
   const Point &a = points[static_cast<std::size_t>(crossing.chord)],
               &b = points[(static_cast<std::size_t>(crossing.chord) + 1) % points.size()];
-  const Cubic cubic(a, b, 1.0);
+  const Cubic cubic(a, b, 1.0, data_.slide);
   Config guess = a.q + cubic.at(crossing.u);
   joint = crossing.joint;
   bool at_upper = crossing.at_upper;
@@ -158,7 +166,7 @@ bool Cutter::solve_end(const std::vector<Point>& points, const Crossing& crossin
     Config start = guess;
     start[joint] = value;
     const auto found = data_.newton.with_joint_at(start, tool_, joint, value);
-    if (!found || difference(found->q, guess).norm() > 0.1) return false;
+    if (!found || difference(found->q, guess, data_.slide).norm() > 0.1) return false;
     end = *found;
     for (int j = 0; j < kDof; ++j)
       if (j != joint) end.q[j] = data_.image(end.q[j], static_cast<std::size_t>(j));
@@ -213,7 +221,7 @@ void Cutter::finish(SelfMotionArc&& arc) {
   arc.length.assign(1, 0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(arc.chords()); ++k) {
     const std::size_t next = (k + 1) % arc.q.size();
-    const Cubic cubic({arc.q[k], arc.tangent[k]}, {arc.q[next], arc.tangent[next]}, 1);
+    const Cubic cubic({arc.q[k], arc.tangent[k]}, {arc.q[next], arc.tangent[next]}, 1, data_.slide);
     const Config middle = 1.5 * cubic.d - 0.25 * (cubic.m0 + cubic.m1);
     length +=
         (data_.scale.cwiseProduct(cubic.m0).norm() + 4 * data_.scale.cwiseProduct(middle).norm() +
@@ -227,6 +235,7 @@ void Cutter::finish(SelfMotionArc&& arc) {
 void Cutter::keep_whole(const std::vector<Point>& points, bool closed) {
   if (!data_.inside(points[0].q)) return;
   SelfMotionArc arc;
+  arc.slide = data_.slide;
   arc.closed = closed;
   arc.q.reserve(points.size());
   arc.tangent.reserve(points.size());
@@ -238,16 +247,17 @@ bool Cutter::within_limits(const std::vector<Point>& points, const Piece& piece)
   if (piece.first < piece.end) return data_.inside(on(points, piece.first).q);
   // Both ends lie on one chord.
   const Crossing &from = *piece.from, &to = *piece.to;
-  const Cubic cubic(on(points, from.chord), on(points, from.chord + 1), 1.0);
+  const Cubic cubic(on(points, from.chord), on(points, from.chord + 1), 1.0, data_.slide);
   return data_.inside(on(points, from.chord).q + cubic.at((from.u + to.u) / 2));
 }
 
 void Cutter::keep(const std::vector<Point>& points, const Piece& piece) {
   constexpr double kSame2 = 1e-16;  // rad^2: two points nearer than its root are one
-  const auto coincide = [](const Config& a, const Config& b) {
-    return difference(a, b).squaredNorm() < kSame2;
+  const auto coincide = [this](const Config& a, const Config& b) {
+    return difference(a, b, data_.slide).squaredNorm() < kSame2;
   };
   SelfMotionArc arc;
+  arc.slide = data_.slide;
   arc.q.reserve(static_cast<std::size_t>(piece.end - piece.first + 2));
   arc.tangent.reserve(arc.q.capacity());
   Point p;

@@ -30,7 +30,7 @@ constexpr int kCloseSteps = 4;      // and from a guess on a curve
 constexpr int kDepth = 3;           // how often a chord may be halved
 
 /// Returns false only if a and b are further apart than `within` in this one joint: a cheap test
-/// that few pass.
+/// that few pass. Of a slide it may pass some more.
 bool maybe_near(const Config& a, const Config& b, int joint, double within) {
   const double apart = std::abs(a[joint] - b[joint]);
   return apart < within || apart > kTwoPi - within;
@@ -64,6 +64,19 @@ class Curves {
   void visit(const VisitCurve& visit) const;
 
  private:
+  [[nodiscard]] Config difference(const Config& a, const Config& b) const {
+    return self_motion::difference(a, b, data_.slide);
+  }
+  /// Returns how far the locked joint is from another of its values, less whole turns.
+  [[nodiscard]] double beyond(double lock, double from) const {
+    return data_.slide >= 0 ? lock - from : self_motion::difference(lock, from);
+  }
+  /// Returns the lock value that follows the k-th, k itself where none does: those of a slide have
+  /// a last one.
+  [[nodiscard]] std::size_t after(std::size_t k) const {
+    const std::size_t count = data_.forms.size();
+    return data_.slide >= 0 ? std::min(k + 1, count - 1) : (k + 1) % count;
+  }
   [[nodiscard]] Config outward(int half) const {
     const Vertex& v = vertices_[static_cast<std::size_t>(half / 2)];
     return half % 2 == 1 ? v.tangent : Config(-v.tangent);
@@ -249,7 +262,7 @@ bool Curves::straight(int half, int other, const Config& chord) const {
 }
 
 Config Curves::middle(int half, int other) const {
-  const Cubic cubic({at(half).q, outward(half)}, {at(other).q, -outward(other)}, 1);
+  const Cubic cubic({at(half).q, outward(half)}, {at(other).q, -outward(other)}, 1, data_.slide);
   return at(half).q + cubic.at(0.5);
 }
 
@@ -314,7 +327,8 @@ void Curves::join_neighbours() {
   std::vector<char> taken(vertices_.size(), 0);
   for (std::size_t k = 0; k < count; ++k)
     for (int a = first_[k]; a < first_[k + 1]; ++a) {
-      const std::size_t next = (k + 1) % count;
+      const std::size_t next = after(k);
+      if (next == k) continue;
       int best = -1;
       double least = 0;
       for (int b = first_[next]; b < first_[next + 1]; ++b) {
@@ -337,11 +351,11 @@ void Curves::bridge_ends() {
   std::vector<Gap> gaps;
   std::vector<int> ends;  // that lie between two lock values
   for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t next = (k + 1) % count;
+    const std::size_t next = after(k);
     ends.clear();
     for (int v = first_[k]; v < first_[k + 1]; ++v)
       if (open(2 * v + 1)) ends.push_back(2 * v + 1);
-    for (int v = first_[next]; v < first_[next + 1]; ++v)
+    for (int v = first_[next]; next != k && v < first_[next + 1]; ++v)
       if (open(2 * v)) ends.push_back(2 * v);
     while (!ends.empty()) {
       const int end = ends.front();
@@ -527,7 +541,7 @@ bool Curves::known(const Config& q, const Config& tangent, double near, double p
   constexpr double kAway = 1.2 * kLongChord + kNear;
   for (const Vertex& v : vertices_) {
     if (!maybe_near(v.q, q, data_.lock, kAway) || !maybe_near(v.q, q, kAway)) continue;
-    const double before = difference(v.q[data_.lock], q[data_.lock]);
+    const double before = beyond(v.q[data_.lock], q[data_.lock]);
     if (std::abs(before) > kFar) continue;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       const int next = v.next[side];
@@ -535,7 +549,7 @@ bool Curves::known(const Config& q, const Config& tangent, double near, double p
       // Each chord once, from the point with the smaller number.
       const Vertex& w = at(next);
       if (&w < &v) continue;
-      const double after = difference(w.q[data_.lock], q[data_.lock]);
+      const double after = beyond(w.q[data_.lock], q[data_.lock]);
       if (std::min(before, after) > kBeside || std::max(before, after) < -kBeside) continue;
       const Config chord = difference(w.q, v.q);
       const double length = chord.norm();

@@ -28,9 +28,11 @@ inline double difference(double a, double b) {
   return d - kTwoPi * ((d * (1 / kTwoPi) + kRound) - kRound);
 }
 
-inline Config difference(const Config& a, const Config& b) {
+/// Returns difference() of all joints; of the one that slides (0-based; -1: none) plainly a - b.
+inline Config difference(const Config& a, const Config& b, int slide) {
   Config d;
   for (int j = 0; j < kDof; ++j) d[j] = difference(a[j], b[j]);
+  if (slide >= 0) d[slide] = a[slide] - b[slide];
   return d;
 }
 
@@ -43,7 +45,7 @@ inline double wrapped(double angle) {
 /// first point.
 struct Cubic {
   Config d, m0, m1;  // chord, and tangents times its length
-  Cubic(const Point& a, const Point& b, double sign_b) : d(difference(b.q, a.q)) {
+  Cubic(const Point& a, const Point& b, double sign_b, int slide) : d(difference(b.q, a.q, slide)) {
     const double length = d.norm();
     m0 = length * a.tangent;
     m1 = (length * sign_b) * b.tangent;
@@ -93,6 +95,7 @@ struct SelfMotionData {
   explicit SelfMotionData(const Chain& chain) : newton(chain) {}
   PoseNewton newton;
   int lock = -1, other = 0;  // lock: the joint to lock; other: any joint but that
+  int slide = -1;            // the joint that slides, which is locked; -1: none
   std::array<double, kDof> lower{}, upper{};
   std::array<bool, kDof> circle{};
   Config scale, scale2;
@@ -104,6 +107,7 @@ struct SelfMotionData {
 
   [[nodiscard]] double image(double angle, std::size_t j) const {
     if (circle[j]) return self_motion::wrapped(angle);
+    if (static_cast<int>(j) == slide) return angle;
     if (angle >= lower[j] && angle <= upper[j]) return angle;  // ends stand on limits bit for bit
     const double middle = (lower[j] + upper[j]) / 2;
     return middle + self_motion::wrapped(angle - middle);

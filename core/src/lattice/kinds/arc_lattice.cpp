@@ -36,9 +36,11 @@ double difference(double a, double b) {
   return std::abs(d) < 3 ? d : wrap_angle(d);  // a small d needs no division
 }
 
-Config difference(const Config& a, const Config& b) {
+/// Returns difference() of all joints; of the one that slides (0-based; -1: none) plainly a - b.
+Config difference(const Config& a, const Config& b, int slide) {
   Config d;
   for (int j = 0; j < kDof; ++j) d[j] = difference(a[j], b[j]);
+  if (slide >= 0) d[slide] = a[slide] - b[slide];
   return d;
 }
 
@@ -51,7 +53,8 @@ double length_at(const SelfMotionArc& arc, int chord, double u) {
 std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord, const Config& q,
                                 double within) {
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-  const Config line = difference(arc.q[next], arc.q[k]), way = difference(q, arc.q[k]);
+  const Config line = difference(arc.q[next], arc.q[k], arc.slide),
+               way = difference(q, arc.q[k], arc.slide);
   const double length2 = line.squaredNorm();
   const double along = way.dot(line) / length2;
   if (along < -0.5 || along > 1.5) {
@@ -59,21 +62,22 @@ std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord,
       return std::nullopt;
   }
   double u = std::clamp(along, 0.0, 1.0);
-  Config off = difference(q, arc.at(chord, u));
+  Config off = difference(q, arc.at(chord, u), arc.slide);
   if (off.squaredNorm() > 0.04 * length2 + within * within) return std::nullopt;
   // Two steps along the chord: the cubic runs nearly at its speed.
   for (int step = 0; step < 2; ++step) {
     const double more = std::clamp(u + off.dot(line) / length2, 0.0, 1.0);
     if (more == u) break;
     u = more;
-    off = difference(q, arc.at(chord, u));
+    off = difference(q, arc.at(chord, u), arc.slide);
   }
   const double away = off.norm();
   if (away > within) return std::nullopt;
   return Place{number, chord, u, length_at(arc, chord, u), away};
 }
 
-/// A box about a chord's cubic, on the circle of each joint.
+/// A box about a chord's cubic, on the circle of each joint. That of a slide may be nearer than it
+/// is by whole turns.
 struct Box {
   int arc, chord;
   Config middle, radius;
@@ -93,7 +97,7 @@ struct Box {
 Box box_of(const SelfMotionArc& arc, int number, int chord) {
   constexpr double kRounding = 1e-9;  // rad: far above that of a few operations on angles
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-  const Config d = difference(arc.q[next], arc.q[k]);
+  const Config d = difference(arc.q[next], arc.q[k], arc.slide);
   const double third = d.norm() / 3;
   const Config first = third * arc.tangent[k], second = d - third * arc.tangent[next];
   const Config low = first.cwiseMin(second).cwiseMin(d).cwiseMin(0),
@@ -621,6 +625,8 @@ int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
 
 double arc_angle(const Chain& chain, const Config& q) {
   if (chain.roll) return q[kDof - 1];
+  if (const int slide = chain.slide(); slide >= 0)
+    return wrap_angle(q[slide + 1 < kDof ? slide + 1 : slide - 1]);
   const auto G = chain.displacements(q);
   const Vector3d S = G[1] * foot(chain, 1, 0), E = G[3] * foot(chain, 3, 2),
                  W = G[5] * foot(chain, 5, 6);

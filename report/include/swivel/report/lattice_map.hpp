@@ -41,6 +41,7 @@ struct LatticeMap {
   enum class Coordinate : std::uint8_t {
     kArmAngle,             ///< carried, of S-R-S arms
     kGeneralisedArmAngle,  ///< of other arms of seven joints: arc_angle()
+    kCarriageAngle,        ///< of arms with a joint that slides: arc_angle()
     kRoll,                 ///< of the tool: of arms of six joints
   };
   Coordinate coordinate = Coordinate::kArmAngle;
@@ -72,7 +73,8 @@ struct LatticeMap {
   [[nodiscard]] double place(double value) const;
   /// Returns the value that cell k stands for, rad, in [-pi, pi].
   [[nodiscard]] double value(double k) const;
-  /// Returns "arm angle", "generalised arm angle" or "roll"; letter() returns its letter.
+  /// Returns "arm angle", "generalised arm angle", "carriage angle" or "roll"; letter() returns its
+  /// letter.
   [[nodiscard]] const char* coordinate_name() const;
   [[nodiscard]] const char* letter(int panel) const;
   /// Says what it means that a cell has no node.

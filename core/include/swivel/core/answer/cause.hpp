@@ -37,13 +37,14 @@ struct Cause {
   /// For kLimit: the joint stands within its range, but the path goes on past its end, so that it
   /// would have to unwind by a turn.
   bool unwinds = false;
+  bool slides = false;                ///< `joint` is prismatic: m stands for rad
   std::array<std::string, 2> bodies;  ///< for kPair and kContact: names of the bodies
   bool between_layers = false;        ///< for kPair, kContact, kCheck: on motions alone
   /// For kPair and kContact: name of a scene object that several bodies come too near to; `bodies`
   /// is one pair of them.
   std::string object;
   /// The value at the node or edge that misses least, and the limit: rad for joints and angles, m
-  /// for lengths, no unit for manipulability. None where it was not measured.
+  /// for lengths and joints that slide, no unit for manipulability. None where it was not measured.
   std::optional<double> value, limit;
   /// For kRollSlope: the travel for which `limit` is allowed, m. For kPair where a depth is
   /// allowed: that depth, m; `limit` is less by what the motions between layers need.

@@ -196,7 +196,7 @@ struct TopToolSpeed {
 /// What a trajectory comes near to, and how well it follows its path. Source: measure() in
 /// planner/measure/measure.hpp.
 struct Measures {
-  std::optional<NearestLimit> nearest_limit;  ///< none where no joint has limits
+  std::optional<NearestLimit> nearest_limit;  ///< of joints that turn; none where none has limits
   /// None where the tool rests, or a joint's speed is not known.
   std::optional<TopToolSpeed> top_tool_speed;
   /// What was asked for, and is known: members below that it does not name mean nothing.

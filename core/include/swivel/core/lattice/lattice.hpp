@@ -331,6 +331,9 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   std::vector<Config> step_bounds_, row_step_bounds_;  // one entry for all steps, or one for each
 };
 
+/// Returns how far limits.joint_step lets each joint move between neighbouring layers: as many rad,
+/// or, for a slide, kSlideForTurn as many m.
+[[nodiscard]] Config joint_steps(const Chain& chain, const Limits& limits);
 /// Returns by how much limits.roll_slope lets the roll of an arm of six joints change on a step,
 /// rad: roll_slope times the step's travel or half of resolution.ds, whichever is longer, and half
 /// a turn at most. Nodes that lie resolution.arc apart cannot express less.

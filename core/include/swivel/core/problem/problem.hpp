@@ -98,10 +98,13 @@ struct Limits {
   /// Least distance between the robot's own bodies, m; unset: `clearance`.
   std::optional<double> self_clearance;
   double manipulability = 0.0;  ///< least Yoshikawa manipulability, sqrt(det(J J^T)), m^3
-  double joint_margin = 0.0;    ///< rad, kept from both limits of every bounded joint
-  double joint_step = 0.5;      ///< rad, largest move of any joint between neighbouring layers
-  double arm_slope = 20.0;      ///< rad/m, largest change of the arm angle per metre of path
-  double roll_slope = 20.0;     ///< rad/m, largest change of the roll per metre of travel
+  /// rad, or m of a slide, kept from both limits of every bounded joint
+  double joint_margin = 0.0;
+  /// rad, largest move of any joint between neighbouring layers; a slide may move by kSlideForTurn
+  /// as many m.
+  double joint_step = 0.5;
+  double arm_slope = 20.0;   ///< rad/m, largest change of the arm angle per metre of path
+  double roll_slope = 20.0;  ///< rad/m, largest change of the roll per metre of travel
   /// Largest second-order estimate of the error of a joint-space step, rad (docs/model.md).
   std::optional<double> step_error;
   /// Largest distance of the tool from its path between layers, m.
@@ -118,7 +121,7 @@ struct Limits {
   /// h: how finely clearance of motions is proved, m (docs/model.md).
   double edge_tolerance = 0.0005;
   // Joint rates that motions in time keep, instead of those of the robot model: rad/s, rad/s^2,
-  // rad/s^3, base to tip.
+  // rad/s^3, with m for rad of a slide, base to tip.
   std::optional<std::array<double, kDof>> joint_speed, joint_acceleration, joint_jerk;
   /// Returns the least distance of the robot from the scene on motions, m.
   [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
@@ -134,7 +137,7 @@ struct Resolution {
   double ds = 0.005;    ///< largest distance between layers, m
   double dphi = 0.05;   ///< largest step of the arm angle, rad
   double dalpha = 0.1;  ///< largest tool rotation between layers, rad
-  double arc = 0.175;   ///< self-motion between nodes, rad, for arms without an arm angle
+  double arc = 0.175;   ///< self-motion between nodes, rad (m of a slide), without an arm angle
   /// For S-R-S arms: adds nodes on the arcs of allowed arm angles that lie between grid angles.
   bool arcs = false;
   double droll = 0.1;  ///< largest step of the roll of seven-joint arms, rad

@@ -14,23 +14,31 @@
 namespace swivel {
 
 inline constexpr int kMostTurns = 64;  ///< Most turns in the range of a bounded joint.
+/// m of a slide for each rad of joints that turn, where one number is meant for joints of both
+/// kinds: limits.joint_step, and accelerations and jerks that no file states.
+inline constexpr double kSlideForTurn = 0.2;
 
-/// The limits of one joint. A bounded joint keeps lower <= q <= upper; a continuous one has neither
-/// bound.
+/// The kind and the limits of one joint. It turns, or it slides (a prismatic joint, as of a rail):
+/// then m stands for rad here and wherever a joint's position, speed or limit is meant. A bounded
+/// joint keeps lower <= q <= upper; a continuous one has neither bound. A slide is bounded.
 struct JointLimit {
   double lower = -kPi, upper = kPi;  ///< rad
   double velocity = 0;               ///< rad/s; 0: no file gives one
   bool continuous = false;
+  bool slides = false;                ///< a prismatic joint
   double acceleration = 0, jerk = 0;  ///< rad/s^2 and rad/s^3; 0: no file gives one
   /// Returns true if the bounds are over 64 turns apart and so mean "unlimited": such a joint is
   /// planned as a continuous one.
-  [[nodiscard]] bool wide() const { return !continuous && upper - lower > kMostTurns * kTwoPi; }
+  [[nodiscard]] bool wide() const {
+    return !continuous && !slides && upper - lower > kMostTurns * kTwoPi;
+  }
 };
 
 /// The seven-joint chain from base to tool, exactly as the URDF has it, as a product of
 /// exponentials in the base frame:
 ///   X_BT(q) = G_7(q) * home,   G_k(q) = exp([S_1] q_1) ... exp([S_k] q_k),   G_0 = 1.
-/// S_j turns about the line through `point[j]` along `axis[j]` (at q = 0). A body that moves with
+/// S_j turns about the line through `point[j]` along `axis[j]` (at q = 0), or, where
+/// limit[j].slides, shifts along `axis[j]`. At most one joint slides. A body that moves with
 /// joint k and has pose X at q = 0 has pose G_k(q) * X. Source: Lynch & Park, Modern Robotics, Eq.
 /// (4.14).
 struct Chain {
@@ -47,8 +55,11 @@ struct Chain {
   std::optional<Roll> free_roll;
   /// Returns true if the tool may be turned about its own z axis from the waypoint's orientation.
   [[nodiscard]] bool tool_may_turn() const { return roll || free_roll; }
-  /// The constant matrices of exp([S] q) = still + cos(q) cosine + sin(q) sine (homogeneous).
-  /// Source: Lynch & Park, Modern Robotics, Eq. (3.51) and (3.88).
+  /// Returns the joint (0-based) that slides; -1: all turn.
+  [[nodiscard]] int slide() const;
+  /// The constant matrices of exp([S] q) = still + cos(q) cosine + sin(q) sine (homogeneous); of a
+  /// slide still + q sine, with `cosine` zero. Source: Lynch & Park, Modern Robotics, Eq. (3.51)
+  /// and (3.88).
   struct Turn {
     Eigen::Matrix4d still, cosine, sine;
   };
@@ -94,10 +105,11 @@ struct Chain {
   void displace(const Config& q, int first, int last, std::array<Pose, kDof + 1>& G) const;
   /// Returns the tool's pose in the base frame for joints q, rad.
   [[nodiscard]] Pose tool(const Config& q) const;
-  /// Returns the origin of the tool in the base frame, m, from the joints' cosines and sines.
+  /// Returns the origin of the tool in the base frame, m, from the joints' cosines and sines, which
+  /// are 0 and q of a slide.
   [[nodiscard]] Vector3d tool_point(const Config& cosine, const Config& sine) const;
   /// Returns the 6x7 geometric Jacobian at the tool origin in the base frame: rows 0-2 linear (m),
-  /// rows 3-5 angular. Joints q in rad.
+  /// rows 3-5 angular; a slide's column is its direction and zero. Joints q in rad.
   [[nodiscard]] Eigen::Matrix<double, 6, kDof> jacobian(const Config& q) const;
   /// Returns the manipulability sqrt(max(0, det(J J^T))), J = jacobian(q); it does not depend on
   /// the reference point. Source: Yoshikawa 1984.
@@ -133,15 +145,17 @@ struct ArmModel {
 /// Builds the arm between two links. Its joints are the last seven movable joints before the tip
 /// that `hold` does not name and that mimic none; with `roll`, where the seventh of them is missing
 /// or prismatic, the last six, and the roll of the tool is the seventh. Every other joint is held
-/// at its position in `hold` (by name, rad or m), by default at 0 or its limit nearest to 0. Joints
-/// that mimic a joint of the arm follow it: they move what they carry (Chain::followers), and their
-/// limits and rates bound those of the joint they mimic. `tool` is the tool frame in the tip link.
-/// The base need not be above the tip in the tree: where the part is in the hand and the tool
-/// stands, the hand is the base, and the chain leads through the arm backwards.
+/// at its position in `hold` (by name, rad or m), by default at 0 or its limit nearest to 0. Where
+/// only seven are there, one may be prismatic.
+/// Joints that mimic a joint of the arm follow it: they move what they carry (Chain::followers),
+/// and their limits and rates bound those of the joint they mimic. `tool` is the tool frame in the
+/// tip link. The base need not be above the tip in the tree: where the part is in the hand and the
+/// tool stands, the hand is the base, and the chain leads through the arm backwards.
 ///
 /// Throws InputError for unknown names, a held joint outside its limits (or one that brings a joint
-/// that mimics it outside its own), too few joints, a prismatic joint among the arm's, a floating
-/// or planar joint between base and tip, a joint between base and tip that mimics one of the arm's,
+/// that mimics it outside its own), too few joints, a prismatic joint where none may be or with
+/// limits over 1000 m apart, a floating or planar joint between base and tip, a joint between base
+/// and tip that mimics one of the arm's,
 /// and a joint that mimics one whose range is a turn or more, unless a whole turn of that one
 /// leaves it in place.
 [[nodiscard]] ArmModel build_arm(const RobotModel& robot, const std::string& base_link,
@@ -180,7 +194,8 @@ struct FollowerMotion {
                                              const std::vector<RobotBody>& bodies);
 
 /// Returns for each joint j a bound on the distance from its axis of any point of a body that it
-/// moves, over all configurations, m; FollowerMotion::reach of the joint is added. The bound adds
+/// moves, over all configurations, m; 1 (m per m) for a slide that moves a body;
+/// FollowerMotion::reach of the joint is added. The bound adds
 /// up spheres about the points where neighbouring axes come closest, so it is tight where shoulder
 /// and wrist are spherical. docs/model.md "Motions".
 [[nodiscard]] std::array<double, kDof> motion_radii(const Chain& chain,

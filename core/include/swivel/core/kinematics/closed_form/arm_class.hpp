@@ -31,7 +31,8 @@ struct ArmClass {
 
 /// Returns the class of a chain: S-R-S where fit_srs() succeeds, else by lock_method(). The roll of
 /// the tool counts as the seventh joint of an arm of six, which is never S-R-S. `source` is the
-/// file for messages. Throws InputError for a seven-joint chain with a free roll that is not S-R-S.
+/// file for messages. Throws InputError for a seven-joint chain with a free roll that is not S-R-S,
+/// and for one with a slide whose other six joints have no closed form.
 [[nodiscard]] ArmClass classify(const Chain& chain, const std::string& source);
 
 }  // namespace swivel

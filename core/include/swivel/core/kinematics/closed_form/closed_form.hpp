@@ -33,8 +33,9 @@ struct SixChain {
   Pose tool(const Config6& q, Matrix6& J) const;
 };
 
-/// Returns the six-joint chain that is left when one joint (0-based) stays at `value`, rad: its
-/// turn is folded into the axes behind it and into the home pose.
+/// Returns the six-joint chain that is left when one joint (0-based), which must be the slide of a
+/// chain that has one, stays at `value`, rad or m: its motion is folded into the axes behind it and
+/// into the home pose.
 [[nodiscard]] SixChain lock_joint(const Chain& chain, int joint, double value);
 /// Returns q without one joint (0-based).
 [[nodiscard]] Config6 without_joint(const Config& q, int joint);
@@ -164,7 +165,7 @@ struct LockMethod {
   [[nodiscard]] std::string words() const;
 };
 /// Returns with which joints locked a seven-joint chain has a closed form, and which is best.
-/// Joints that self-motion hardly turns are not considered.
+/// Joints that self-motion hardly turns are not considered; where a joint slides, it alone is.
 [[nodiscard]] LockMethod lock_method(const Chain& chain);
 
 }  // namespace swivel

@@ -23,6 +23,7 @@ struct SelfMotionArc {
   /// its whole length.
   std::vector<double> length;
   bool closed = false;  ///< the first point follows the last
+  int slide = -1;       ///< joint (0-based) that slides, m instead of rad; -1: none
   /// Joint (0-based) that stands exactly on its limit at the first and at the last point; -1: none.
   std::array<int, 2> limit{-1, -1};
 
@@ -49,6 +50,9 @@ struct SelfMotionData;
 ///
 /// Without a closed form curves are those to which Newton leads from 96 points spread over the
 /// joints' ranges and from known configurations: some may be missed.
+///
+/// A joint that slides is the locked one; values of it lie evenly between its limits, at most 62.5
+/// mm apart and 32 at least. Curves are those that come by there. 1 m of it counts as 1 rad.
 class SelfMotion {
  public:
   /// Prepares for a chain and its lock_method(). `margin` (rad) is kept from joint limits.

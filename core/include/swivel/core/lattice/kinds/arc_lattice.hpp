@@ -17,7 +17,8 @@ namespace swivel {
 [[nodiscard]] int arc_branch(const Chain& chain, const LockMethod& method, const Config& q);
 /// Returns the generalised arm angle, rad: the angle of a point on axis 4, the foot nearest axis 3,
 /// about the line from the foot on axis 2 nearest axis 1 to the foot on axis 6 nearest axis 7,
-/// measured from the base's vertical. For an arm of six joints, returns the roll.
+/// measured from the base's vertical. For an arm of six joints, returns the roll; for one with a
+/// slide the carriage angle: that of the joint behind it, or before it where none is behind.
 [[nodiscard]] double arc_angle(const Chain& chain, const Config& q);
 
 /// Lattice of an arm that has no circle of arm angles: the nodes of a layer are points on its arcs
