@@ -864,8 +864,8 @@ class Honoured(WithFolder):
         self.refused(run("plan", problem), "problem.yaml:1: robot.urdf", "is a problem file")
 
 
-class Tables(WithFolder):
-    """What `swivel info` says of turntables beside arms of six joints."""
+class MoreAxes(WithFolder):
+    """What `swivel info` says of tables, rails and torsos of arms of six joints."""
 
     def test_found(self):
         done = run("info", DATA / "robots/kr6_turntable_like.urdf")
@@ -891,7 +891,53 @@ class Tables(WithFolder):
             self.assertEqual(done.returncode, 0, done.stderr)
             tilts = re.findall(r"^table +(\S+)", done.stdout, re.M)
             # Of a table on a table the lower one alone is an axis that turns about one line.
-            self.assertEqual(tilts, ["a"] if '"q"' in more else [], done.stdout)
+            found = ["a"] if '"q"' in more else ["rail"] if "rail" in more else []
+            self.assertEqual(tilts, found, done.stdout)
+
+    def test_rails_and_torsos(self):
+        done = run("info", DATA / "robots/ur10e_rail_like.urdf")
+        self.assertIn(
+            "rail       rail shifts carriage: --base track makes it the first of seven joints\n",
+            done.stdout,
+        )
+        with_it = run("info", DATA / "robots/ur10e_rail_like.urdf", "--base", "track").stdout
+        self.assertRegex(with_it, r"joint 1 +rail +-1.8000 to +1.8000 m, 1.000 m/s\n")
+        self.assertIn("class      6R and a slide, joint 1\n", with_it)
+        self.assertNotIn("\nheld ", with_it)
+        for more in (("--roll",), ("--hold", "rail=0.5")):
+            held = run("info", DATA / "robots/ur10e_rail_like.urdf", "--base", "track", *more)
+            self.assertIn("held       rail at ", held.stdout, held.stderr)
+        kr6 = (DATA / "robots/kr6_like.urdf").read_text()
+        torso = '<link name="stand"/>' + joint("waist", "revolute", "stand", "base_link").replace(
+            '<link name="base_link"/>', ""
+        )
+        urdf = self.folder / "robot.urdf"
+        urdf.write_text(kr6.replace("</robot>", torso + "</robot>"))
+        self.assertIn(
+            "torso      waist turns base_link: --base stand makes it the first of seven joints\n",
+            run("info", urdf).stdout,
+        )
+        self.assertRegex(run("info", urdf, "--base", "stand").stdout, r"joint 1 +waist ")
+
+    def test_two_slides_and_one_too_many_joints(self):
+        urdf = self.folder / "robot.urdf"
+        kr6 = (DATA / "robots/ur10e_rail_like.urdf").read_text()
+        gantry = '<link name="floor"/>' + joint("lift", "prismatic", "floor", "track").replace(
+            '<link name="track"/>', ""
+        )
+        urdf.write_text(kr6.replace("</robot>", gantry + "</robot>"))
+        options = ("--base", "floor", "--tip", "flange")
+        done = run("info", urdf, *options)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'rail' is prismatic, and 8 joints move between base and tip", done.stderr)
+        done = run("info", urdf, *options, "--hold", "lift=0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("class      6R and a slide, joint 1\n", done.stdout)
+        fixed = kr6.replace('name="joint_1" type="revolute"', 'name="joint_1" type="prismatic"')
+        urdf.write_text(fixed)
+        done = run("info", urdf, "--base", "track", "--tip", "flange")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("joints 'rail' and 'joint_1' are prismatic", done.stderr)
 
 
 class FirstProblem(WithFolder):
