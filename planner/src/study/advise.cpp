@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <numeric>
 #include <utility>
 
+#include "study/changes.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -18,77 +18,6 @@ namespace {
 
 using Change = Advice::Change;
 using Outcome = Advice::Outcome;
-
-/// Access to a limit of a problem, as a number that may be unset.
-struct LimitPlace {
-  std::function<std::optional<double>(const Limits&)> get;
-  std::function<void(Limits&, double)> set;
-};
-
-template <class Member>
-LimitPlace place_of(Member member) {
-  return {[member](const Limits& limits) { return std::optional<double>(limits.*member); },
-          [member](Limits& limits, double value) { limits.*member = value; }};
-}
-
-LimitPlace place_of(Change change) {
-  switch (change) {
-    case Change::kClearance:
-      return {[](const Limits& limits) { return std::optional(limits.clearance); },
-              // the shares that pairs keep between layers and among robot bodies stay
-              [](Limits& limits, double value) {
-                const double share = limits.clearance > 0 ? value / limits.clearance : 1;
-                if (limits.self_clearance) *limits.self_clearance *= share;
-                if (limits.edge_clearance) *limits.edge_clearance *= share;
-                limits.clearance = value;
-              }};
-    case Change::kJointMargin:
-      return place_of(&Limits::joint_margin);
-    case Change::kManipulability:
-      return place_of(&Limits::manipulability);
-    case Change::kArmSlope:
-      return place_of(&Limits::arm_slope);
-    case Change::kRollSlope:
-      return place_of(&Limits::roll_slope);
-    case Change::kJointStep:
-      return place_of(&Limits::joint_step);
-    case Change::kToolSpeed:
-      return place_of(&Limits::tool_speed);
-    case Change::kToolTurnSpeed:
-      return place_of(&Limits::tool_turn_speed);
-    case Change::kPathError:
-      return place_of(&Limits::tool_path_error);
-    case Change::kAngleError:
-      return place_of(&Limits::tool_angle_error);
-    default:
-      return place_of(&Limits::step_error);
-  }
-}
-
-/// Returns true if a smaller value relaxes the limit.
-bool relaxed_downwards(Change change) {
-  return change == Change::kClearance || change == Change::kJointMargin ||
-         change == Change::kManipulability || change == Change::kToolSpeed ||
-         change == Change::kToolTurnSpeed;
-}
-
-/// Returns the rank in which changes are tried, the expensive ones last: changes that leave the
-/// lattice as large as it is, a tool that may turn, more edges, more nodes, far more edges.
-int dearness(Change change) {
-  switch (change) {
-    case Change::kFreeRoll:
-      return 1;
-    case Change::kArmSlope:
-    case Change::kRollSlope:
-      return 2;
-    case Change::kFiner:
-      return 3;
-    case Change::kJointStep:
-      return 4;
-    default:
-      return 0;
-  }
-}
 
 class Adviser {
  public:
@@ -241,41 +170,10 @@ class Adviser {
   /// Returns the problem with the change.
   [[nodiscard]] Problem changed_problem(const Advice& advice) const {
     Problem changed = problem_;
-    switch (advice.change) {
-      case Change::kFreeStart:
-        changed.start.reset();
-        break;
-      case Change::kFreeEnd:
-        changed.end.reset();
-        break;
-      case Change::kFreeRoll:
-        changed.roll = Roll{};
-        for (Waypoint& waypoint : changed.waypoints) waypoint.roll.reset();
-        break;
-      case Change::kFiner:
-        changed.resolution.ds /= 2;
-        changed.resolution.dphi /= 2;
-        changed.resolution.dalpha /= 2;
-        changed.resolution.arc /= 2;
-        changed.resolution.arcs = true;
-        break;
-      case Change::kDepth:
-        for (SceneObject& object : changed.scene)
-          if (object.name == advice.object) object = deeper(object, *advice.to / *advice.from);
-        break;
-      case Change::kMoveObject:
-        for (SceneObject& object : changed.scene)
-          if (object.name == advice.object) object.pose.translation() += advice.offset;
-        break;
-      case Change::kWithoutObject:
-        std::erase_if(changed.scene,
-                      [&](const SceneObject& object) { return object.name == advice.object; });
-        std::erase_if(changed.vary,
-                      [&](const Variation& vary) { return vary.object == advice.object; });
-        break;
-      default:
-        place_of(advice.change).set(changed.limits, *advice.to);
-    }
+    if (is_of_scene(advice.change))
+      change_scene(advice, changed.scene, changed.vary);
+    else
+      change_arm(advice, changed, changed);
     return changed;
   }
 
@@ -340,12 +238,6 @@ class Adviser {
             {.change = Change::kDepth, .object = name, .from = cause.over.value_or(-*cause.limit)},
             &Adviser::plan_relaxed);
   }
-  /// Returns the object with all allowed depths multiplied by `factor`.
-  [[nodiscard]] static SceneObject deeper(SceneObject object, double factor) {
-    for (Allowed& allowed : object.allow)
-      if (allowed.depth) *allowed.depth *= factor;
-    return object;
-  }
   /// Returns the largest factor tried, up to 8, by which bodies can be deeper in the object at all.
   [[nodiscard]] double most_deeper(const std::string& name) const {
     const auto object = std::find_if(problem_.scene.begin(), problem_.scene.end(),
@@ -360,31 +252,11 @@ class Adviser {
     return 1.1;
   }
 
-  /// Plans with the limit relaxed as far as is sensible; if that solves the problem, bisects for
-  /// the strictest value that does, to a sixteenth of the way.
+  /// Plans with the limit relaxed as far as is sensible, then for the strictest value that helps.
   void plan_relaxed(Advice& advice) {
-    constexpr double kFactor = 8;
-    const Change change = advice.change;
-    const bool to_zero = change == Change::kClearance || change == Change::kJointMargin ||
-                         change == Change::kManipulability;
-    double strict = *advice.from;
-    advice.to = to_zero ? 0
-                : relaxed_downwards(change)
-                    ? strict / kFactor
-                    : strict * (change == Change::kDepth ? most_deeper(advice.object) : kFactor);
-    plan_changed(advice);
-    if (advice.outcome != Outcome::kSolved) return;
-    for (int k = 0; k < 4; ++k) {
-      Advice stricter = advice;
-      stricter.to = (strict + *advice.to) / 2;
-      plan_changed(stricter);
-      if (stricter.outcome == Outcome::kSolved)
-        advice = stricter;
-      else if (stricter.outcome == Outcome::kUnknown)
-        break;
-      else
-        strict = *stricter.to;
-    }
+    const double most = advice.change == Change::kDepth ? *advice.from * most_deeper(advice.object)
+                                                        : most_relaxed(advice.change, *advice.from);
+    relax_to_strictest(advice, most, [this](Advice& one) { plan_changed(one); });
   }
 
   void move(const std::string& name) {
@@ -396,23 +268,7 @@ class Adviser {
   /// Finds the shortest move of the object by 5, 10 or 20 mm along an axis of the base frame that
   /// helps.
   void plan_moved(Advice& best) {
-    for (double way = Advice::kMostMove / 4;
-         way <= Advice::kMostMove && best.outcome != Outcome::kSolved; way *= 2)
-      for (int axis = 0; axis < 3; ++axis)
-        for (const double sign : {1.0, -1.0}) {
-          Advice moved{.change = Change::kMoveObject, .object = best.object};
-          moved.offset[axis] = sign * way;
-          plan_changed(moved);
-          if (moved.outcome == Outcome::kUnknown) break;
-          const bool better =
-              moved.outcome < best.outcome ||
-              (moved.outcome == best.outcome &&
-               (moved.outcome == Outcome::kSolved ? moved.cost < best.cost
-                                                  : moved.reached_s > best.reached_s));
-          if (better) best = std::move(moved);
-        }
-    // no single move is to be named
-    if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();
+    find_shortest_move(best, Advice::kMostMove, [this](Advice& one) { plan_changed(one); });
   }
 
   const Problem& problem_;
