@@ -384,8 +384,7 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
   const bool moved =
       arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
   refuse_options("workcells", arguments.problem,
-                 {{arguments.advise.has_value(), "--advise"},
-                  {!arguments.trace.empty(), "--trace"},
+                 {{!arguments.trace.empty(), "--trace"},
                   {arguments.map, "--map"},
                   {!arguments.map_svg.empty(), "--map-svg"},
                   {arguments.full_map, "--full-map"},
@@ -415,6 +414,7 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
   }
   require_planner_of("workcells", arguments.search);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
+  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
   request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty() || request.report)
     request.options.evidence = Evidence::all();

@@ -19,6 +19,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
@@ -78,10 +79,33 @@ void write_rows(const WorkcellRequest& request, const WorkcellMotionPlan& plan,
                        : io::to_workcell_csv(plan.result));
 }
 
-/// Returns the answer of a workcell for people, with its refinement and its motion.
-std::string plan_text(const WorkcellMotionPlan& plan) {
+/// What was found.
+struct WorkcellAnswer {
+  WorkcellMotionPlan plan;
+  std::optional<AdviceOnWorkcell> advice{};  ///< with --advise, where there is no plan
+};
+
+/// Where there is no plan, seeks changes that would help, within --advise and what is left of
+/// --timeout. `begun` is when planning began.
+void find_advice(const WorkcellRequest& request, std::chrono::steady_clock::time_point begun,
+                 WorkcellAnswer& answer) {
+  if (!request.advise_s || answer.plan.result.status != PlanStatus::kInfeasible) return;
+  PlanOptions trials = request.options;
+  trials.timeout_s = request.advise_s;
+  if (request.options.timeout_s) {
+    const double gone =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    trials.timeout_s = std::clamp(*request.options.timeout_s - gone, 1e-6, *request.advise_s);
+  }
+  answer.advice = advise_workcell(request.cell, answer.plan.result, trials);
+}
+
+/// Returns the answer of a workcell for people, with its advice, its refinement and its motion.
+std::string plan_text(const WorkcellAnswer& answer) {
+  const WorkcellMotionPlan& plan = answer.plan;
   const WorkcellResult& result = plan.result;
   std::string text = workcell_text(result);
+  if (answer.advice) text += advice_text(*answer.advice);
   if (plan.refinement) text += refined_workcell_text(*plan.refinement, result.names);
   if (plan.timing)
     text += workcell_motion_text(
@@ -89,16 +113,18 @@ std::string plan_text(const WorkcellMotionPlan& plan) {
   return text;
 }
 
-/// Returns what followed the plan, for the result file. It points into `plan`.
-io::WorkcellExtras extras_of(const WorkcellRequest& request, const WorkcellMotionPlan& plan) {
+/// Returns what followed the plan, for the result file. It points into `answer`.
+io::WorkcellExtras extras_of(const WorkcellRequest& request, const WorkcellAnswer& answer) {
+  const WorkcellMotionPlan& plan = answer.plan;
   return {plan.refinement ? &*plan.refinement : nullptr, plan.timing ? &*plan.timing : nullptr,
-          request.timing.value_or(TimingOptions{})};
+          request.timing.value_or(TimingOptions{}), answer.advice ? &*answer.advice : nullptr};
 }
 
 /// Prints the answer, times and work counts of a workcell; warnings go to standard error.
-void print_workcell(const WorkcellMotionPlan& plan) {
+void print_workcell(const WorkcellAnswer& answer) {
+  const WorkcellMotionPlan& plan = answer.plan;
   const WorkcellResult& result = plan.result;
-  say_text(plan_text(plan));
+  say_text(plan_text(answer));
   std::string stages;
   for (const char* const stage :
        {"load", "prepare", "lattice", "search", "refine", "time", "check", "report", "certificate"})
@@ -129,14 +155,15 @@ void print_workcell(const WorkcellMotionPlan& plan) {
 /// is up first, of which a warning tells.
 std::optional<std::string> page_of(const WorkcellRequest& request, const PreparedWorkcell& prepared,
                                    const WorkcellView& view, const Budget& budget,
-                                   WorkcellMotionPlan& plan) {
+                                   WorkcellAnswer& answer) {
+  WorkcellMotionPlan& plan = answer.plan;
   if (!request.report || view.arms.empty()) return std::nullopt;
   try {
     const auto& timing = plan.timing;
     const WorkcellMotion* motion = timing && timing->motion ? &*timing->motion : nullptr;
     return to_workcell_page({prepared, request.cell, plan.result, view, motion},
-                            io::to_workcell_json(plan.result, extras_of(request, plan)), budget,
-                            {.which = "", .answer = plan_text(plan)});
+                            io::to_workcell_json(plan.result, extras_of(request, answer)), budget,
+                            {.which = "", .answer = plan_text(answer)});
   } catch (const Stopped&) {
     plan.result.warnings.push_back("stopped before the page was made: there is no report");
     return std::nullopt;
@@ -165,14 +192,17 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
+  const auto begun = std::chrono::steady_clock::now();
   const Budget budget = request.options.budget();  // of page and proof; the plan has its own
   const PreparedWorkcell prepared(request.cell);
   WorkcellView view;
-  WorkcellMotionPlan plan = plan_workcell_motion(prepared, request.options, request.refine,
-                                                 request.timing, request.report ? &view : nullptr);
+  WorkcellAnswer answer{plan_workcell_motion(prepared, request.options, request.refine,
+                                             request.timing, request.report ? &view : nullptr)};
+  WorkcellMotionPlan& plan = answer.plan;
   const WorkcellResult& result = plan.result;
   plan.result.time_ms["load"] = request.load_ms;
-  std::optional<std::string> page = page_of(request, prepared, view, budget, plan);
+  find_advice(request, begun, answer);
+  std::optional<std::string> page = page_of(request, prepared, view, budget, answer);
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   std::string proof;
   if (outputs.wants("--certificate") && infeasible) proof = proof_of(prepared, budget, plan.result);
@@ -183,7 +213,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   else
     outputs.remove("--report");
   if (outputs.wants("--json"))
-    outputs.write("--json", io::to_workcell_json(result, extras_of(request, plan)) + "\n");
+    outputs.write("--json", io::to_workcell_json(result, extras_of(request, answer)) + "\n");
   const std::size_t bytes = proof.size();
   if (bytes > 0)
     outputs.write("--certificate", std::move(proof));
@@ -198,7 +228,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
                       : "the search was stopped",
           [&] {
             if (request.quiet || outputs.takes_standard_output()) return;
-            print_workcell(plan);
+            print_workcell(answer);
             if (bytes > 0) say("certificate: %zu bytes\n", bytes);
           });
   if (infeasible || no_motion) return kNo;

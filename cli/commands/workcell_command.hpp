@@ -15,6 +15,7 @@ struct WorkcellRequest {
   Workcell cell{};
   PlanOptions options{};
   std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
+  std::optional<double> advise_s{};       ///< s, time for all trials of --advise
   bool refine = false;                    ///< --refine
   std::string out{};                      ///< --out; its ending tells the format of a motion
   bool report = false;                    ///< whether the page of --report is made

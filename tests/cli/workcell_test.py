@@ -106,6 +106,45 @@ class Workcells(unittest.TestCase):
         self.assertEqual(len(result["conflict"]["bodies"]), 2)
         self.assertFalse(self.out.exists())
 
+    def test_advice(self):
+        near = cell(gap=0.11)
+        self.assertIsNone(self.advised(near)["advice"])
+        done = self.plan(near, "--advise", "60")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        advice = json.loads(self.result.read_text())["advice"]
+        self.assertEqual(advice["arms"], [])
+        outcomes = [one["outcome"] for one in advice["cell"]]
+        self.assertEqual(outcomes, sorted(outcomes, key=["solved", "no_help"].index))
+        for one in advice["cell"]:
+            words = "would help" if one["outcome"] == "solved" else "no help"
+            self.assertIn(f"  {words}: {one['words']}", done.stdout)
+        best = advice["cell"][0]
+        self.assertEqual((best["change"], best["outcome"]), ("move_paths", "solved"))
+        self.assertEqual(best["words"], "'left': path moved by 20 mm along +y")
+        for waypoint in near["arms"][0]["path"]["waypoints"]:
+            waypoint["xyz"] = [a + b for a, b in zip(waypoint["xyz"], best["offset"])]
+        self.assertEqual(self.plan(near).returncode, 0)
+        self.assertEqual(json.loads(self.result.read_text())["cost"], best["cost"])
+
+    def test_advice_where_arms_have_no_path(self):
+        strict = cell(limits={"clearance": 0.1})
+        advice = self.advised(strict, "--advise", "60")["advice"]
+        best = advice["cell"][0]
+        self.assertEqual((best["change"], best["arm"]), ("clearance", None))
+        self.assertEqual(best["outcome"], "solved")
+        self.assertEqual([one["arm"] for one in advice["arms"]], ["left", "right"])
+        for one in advice["arms"]:
+            self.assertEqual(one["advice"][0]["outcome"], "solved")
+        strict["limits"]["clearance"] = best["to"]
+        self.assertEqual(self.plan(strict).returncode, 0)
+        self.assertEqual(json.loads(self.result.read_text())["cost"], best["cost"])
+
+    def advised(self, problem, *options):
+        """Returns the result of a workcell that has no plan."""
+        done = self.plan(problem, *options)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        return json.loads(self.result.read_text())
+
     def test_certificate(self):
         proof = self.folder / "proof.json"
         done = self.plan(cell(gap=0.02), "--certificate", proof)
@@ -378,7 +417,7 @@ class Workcells(unittest.TestCase):
             self.assertIn("workcell", done.stderr)
         for options in (
             ("--map",),
-            ("--advise", "1"), ("--trace", self.folder / "t.json"),
+            ("--trace", self.folder / "t.json"),
             ("--planner", "eager"), ("--path", "--x", "0.1"),
         ):
             done = self.plan(cell(), *options)

@@ -33,9 +33,9 @@ constexpr Limit kLimits[] = {
 };
 
 /// Returns an offset in words: "10 mm along +y", three numbers for a slanted one, "up to 20 mm" for
-/// zero, where no way was better than another.
-std::string words(const Vector3d& offset) {
-  if (offset.isZero(0)) return formatted("up to %.3g mm", 1e3 * Advice::kMostMove);
+/// zero, where no way was better than another. `most_tried`: the longest that is tried, m.
+std::string words(const Vector3d& offset, double most_tried) {
+  if (offset.isZero(0)) return formatted("up to %.3g mm", 1e3 * most_tried);
   Eigen::Index axis = 0;
   const double most = offset.cwiseAbs().maxCoeff(&axis);
   if (offset.norm() > most * (1 + 1e-9))
@@ -64,6 +64,10 @@ const char* to_string(Advice::Change change) {
       return "move_object";
     case Advice::Change::kWithoutObject:
       return "without_object";
+    case Advice::Change::kLeads:
+      return "leads";
+    case Advice::Change::kMovePaths:
+      return "move_paths";
     default:
       return "?";
   }
@@ -108,7 +112,11 @@ std::string words(const Advice& advice) {
              formatted("' up to %.3g mm deep instead of %.3g mm", 1e3 * *advice.to,
                        1e3 * *advice.from);
     case Advice::Change::kMoveObject:
-      return "'" + advice.object + "' moved by " + words(advice.offset);
+      return "'" + advice.object + "' moved by " + words(advice.offset, Advice::kMostMove);
+    case Advice::Change::kLeads:
+      return "leads";
+    case Advice::Change::kMovePaths:
+      return "paths moved by " + words(advice.offset, Advice::kMostPathMove);
     default:
       return "no '" + advice.object + "'";
   }

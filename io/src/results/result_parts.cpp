@@ -232,20 +232,24 @@ Json refinement_json(const Refined& refined) {
           {"edges_asked", refined.edges_asked}, {"second_seed", refined.from_second_seed}};
 }
 
+Json advice_json(const Advice& one) {
+  const bool moves =
+      one.change == Advice::Change::kMoveObject || one.change == Advice::Change::kMovePaths;
+  return {
+      {"change", to_string(one.change)},
+      {"words", words(one)},
+      {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
+      {"from", or_null(one.from)},
+      {"to", or_null(one.to)},
+      {"offset", moves ? Json({one.offset.x(), one.offset.y(), one.offset.z()}) : Json(nullptr)},
+      {"outcome", to_string(one.outcome)},
+      {"cost", or_null(one.cost)},
+      {"reached_s", or_null(one.reached_s)}};
+}
+
 Json advice_json(const std::vector<Advice>& advice) {
   Json list = Json::array();
-  for (const Advice& one : advice)
-    list.push_back({{"change", to_string(one.change)},
-                    {"words", words(one)},
-                    {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
-                    {"from", or_null(one.from)},
-                    {"to", or_null(one.to)},
-                    {"offset", one.change == Advice::Change::kMoveObject
-                                   ? Json({one.offset.x(), one.offset.y(), one.offset.z()})
-                                   : Json(nullptr)},
-                    {"outcome", to_string(one.outcome)},
-                    {"cost", or_null(one.cost)},
-                    {"reached_s", or_null(one.reached_s)}});
+  for (const Advice& one : advice) list.push_back(advice_json(one));
   return list;
 }
 

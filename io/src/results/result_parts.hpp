@@ -52,6 +52,7 @@ void add_measures(Json& json, const Measures& measures, bool solved);
 [[nodiscard]] std::string document_of(const Json& json);
 
 [[nodiscard]] Json refinement_json(const Refined& refined);
+[[nodiscard]] Json advice_json(const Advice& one);
 [[nodiscard]] Json advice_json(const std::vector<Advice>& advice);
 
 /// Adds the keys that say how good a timed motion of an arm is. `names`: of its joints.

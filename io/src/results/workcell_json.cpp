@@ -82,6 +82,20 @@ Json workcell_motion_json(const WorkcellTiming& timed, const TimingOptions& aske
   return json;
 }
 
+Json advice_on_workcell(const AdviceOnWorkcell& all) {
+  Json cell = Json::array(), arms = Json::array();
+  for (const WorkcellAdvice& one : all.cell) {
+    Json json = advice_json(one);
+    json.erase("reached_s");
+    json["words"] = words(one);
+    json["arm"] = one.arm.empty() ? Json(nullptr) : Json(one.arm);
+    cell.push_back(std::move(json));
+  }
+  for (const ArmAdvice& one : all.arms)
+    arms.push_back({{"arm", one.arm}, {"advice", advice_json(one.advice)}});
+  return {{"cell", cell}, {"arms", arms}};
+}
+
 }  // namespace
 
 std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras& extras) {
@@ -106,6 +120,7 @@ std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras&
                         {"on_motion", conflict->of_motion},
                         {"s", conflict->s},
                         {"bodies", conflict->bodies}};
+  json["advice"] = extras.advice ? advice_on_workcell(*extras.advice) : Json(nullptr);
   json["between_arms"] = nullptr;
   if (const auto& nearest = result.between_arms)
     json["between_arms"] = {{"clearance_mm", 1e3 * nearest->clearance},

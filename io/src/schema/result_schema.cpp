@@ -657,6 +657,29 @@ Schema job_result() {
   return section("job_result", join(join(job_answer_keys(), parts), last));
 }
 
+Schema advice_on_workcell() {
+  const Schema of_cell = list(section(
+      "advice_on_workcell",
+      {key("change", text(),
+           "as of [results](#advice), of one arm, of both or of the scene; besides `leads` (the "
+           "arm leads, its leader so far follows) and `move_paths` (that of the arm, or both "
+           "alike)"),
+       key("words", text(), "the change in a phrase"),
+       key("arm", or_null(text()), "that is changed; `null`: both, or the scene"),
+       key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
+       key("from", or_null(number()), "of limits and `allow`: what it is"),
+       key("to", or_null(number()), "of limits and `allow`: what was tried"),
+       key("offset", or_null(numbers(3)),
+           "of `move_object` and `move_paths`, base frame; zeros where no way helps", "m"),
+       key("outcome", one_of({"solved", "no_help", "unknown"}), "`unknown`: no time left"),
+       key("cost", or_null(number()), "of `solved`: of both paths")}));
+  const Schema of_arms = list(section(
+      "", {key("arm", text(), "that has no path by itself"),
+           key("advice", advice(), "what would help it by itself, as of [results](#advice)")}));
+  return section("", {key("cell", of_cell, "changes of the workcell, planned with both arms"),
+                      key("arms", of_arms, "changes for arms by themselves")});
+}
+
 Schema refinement_of_workcell() {
   std::vector<Schema::Key> of_arm{key("name", text(), "of the arm")};
   return section(
@@ -763,6 +786,8 @@ Schema workcell_result() {
            "where each arm has a path and both together have none: the first conflict met, "
            "`layer`, "
            "`on_motion`, `s` of both arms and the two `bodies`; else `null`"),
+       key("advice", or_null(advice_on_workcell()),
+           "with `--advise`, of workcells that have no plan; [below](#advice-on-a-workcell)"),
        key("between_arms", or_null(between),
            "the `row` and the `bodies` of both arms with the least margin, `clearance_mm` and "
            "`margin_mm`; `null` unless measured"),

@@ -27,7 +27,7 @@
 #include "validity/collision_validity.hpp"
 #include "workcell/arm_in_cell.hpp"
 #include "workcell/between_arms.hpp"
-#include "workcell/measure_workcell.hpp"
+#include "workcell/plan_and_measure.hpp"
 
 namespace swivel {
 
@@ -86,7 +86,8 @@ class WorkcellPlan {
         executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads),
         view_(view) {}
 
-  WorkcellResult plan() {
+  /// `explained`: whether the trajectories are measured, or arms without a path diagnosed.
+  WorkcellResult plan(bool explained) {
     const TraceSpan span("plan workcell");
     result_.planner = to_string(options_.planner);
     result_.threads = executor_.threads();
@@ -104,8 +105,10 @@ class WorkcellPlan {
         result_.checked = true;
         result_.time_ms["check"] = watch.lap();
       }
-      explain();
-      result_.time_ms["report"] = watch.lap();
+      if (explained) {
+        explain();
+        result_.time_ms["report"] = watch.lap();
+      }
       if (view_) give_view();
     } catch (const Stopped&) {
       if (result_.arms[0].trajectory.empty()) result_.status = stopped_status();
@@ -374,7 +377,13 @@ WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions
                              WorkcellView* view) {
   require_supported(options, "workcells");
   if (view) *view = {};
-  return WorkcellPlan(prepared, options, options.budget(), view).plan();
+  return WorkcellPlan(prepared, options, options.budget(), view).plan(true);
+}
+
+WorkcellResult decide_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
+                               const Budget& budget) {
+  require_supported(options, "workcells");
+  return WorkcellPlan(prepared, options, budget, nullptr).plan(false);
 }
 
 WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options) {

@@ -6,7 +6,7 @@
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
-#include "workcell/measure_workcell.hpp"
+#include "workcell/plan_and_measure.hpp"
 #include "workcell/timed_workcell.hpp"
 
 namespace swivel {

@@ -30,6 +30,8 @@ struct Advice {
     kDepth,
     kMoveObject,     ///< an object moved, and the path with it if it is given in its frame
     kWithoutObject,  ///< an object removed
+    kLeads,          ///< of workcells: the arm leads, and its leader so far follows
+    kMovePaths,      ///< of workcells: the path of an arm moved, or those of both alike
   };
   /// What planning the changed problem gave.
   enum class Outcome {
@@ -39,13 +41,14 @@ struct Advice {
     kUnknown,  ///< not decided in time, or not tried
   };
 
-  static constexpr double kMostMove = 0.02;  ///< most that kMoveObject moves an object, m
+  static constexpr double kMostMove = 0.02;      ///< most that kMoveObject moves an object, m
+  static constexpr double kMostPathMove = 0.04;  ///< most that kMovePaths moves paths, m
 
   Change change = Change::kFreeStart;
   std::string object;  ///< name of the object, for kDepth, kMoveObject and kWithoutObject
   /// For limits and kDepth: the value of the problem, and the changed one, in the problem's units.
   std::optional<double> from, to;
-  /// For kMoveObject: the move in the base frame, m; zero where none helps.
+  /// For kMoveObject and kMovePaths: the move in the base frame, m; zero where none helps.
   Vector3d offset{0, 0, 0};
   Outcome outcome = Outcome::kUnknown;
   std::optional<double> cost;       ///< for kSolved: cost of the path
@@ -92,6 +95,26 @@ struct AdviceOnJob {
   std::vector<StrokeAdvice> strokes;
 };
 
+/// One change of a workcell that has no plan, and what planning the changed workcell gave. Its
+/// outcome is never kFurther, and `reached_s` is unset.
+struct WorkcellAdvice : Advice {
+  /// Name of the arm that is changed, of kLeads of the arm that leads; empty: both arms, or the
+  /// scene.
+  std::string arm = {};
+};
+
+/// What would help an arm of a workcell by itself, which has no path.
+struct ArmAdvice {
+  std::string arm;
+  std::vector<Advice> advice;
+};
+
+/// What would help a workcell that has no plan.
+struct AdviceOnWorkcell {
+  std::vector<WorkcellAdvice> cell;
+  std::vector<ArmAdvice> arms;
+};
+
 /// Returns the name of a change in files: "without_strokes", "reversed", "best_order", "home",
 /// "approach", "retract", "lines".
 [[nodiscard]] const char* to_string(JobAdvice::Change change);
@@ -100,5 +123,10 @@ struct AdviceOnJob {
 [[nodiscard]] std::string words(const JobAdvice& advice);
 /// Returns the advice for the terminal, a line for each change.
 [[nodiscard]] std::string advice_text(const AdviceOnJob& advice);
+/// Returns the change in a phrase: "'left': a free start", "'right' leads", "'left': path moved by
+/// 10 mm along +y", "both paths moved by 20 mm along +z".
+[[nodiscard]] std::string words(const WorkcellAdvice& advice);
+/// Returns the advice for the terminal, a line for each change.
+[[nodiscard]] std::string advice_text(const AdviceOnWorkcell& advice);
 
 }  // namespace swivel

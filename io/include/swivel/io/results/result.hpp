@@ -45,8 +45,9 @@ struct JobExtras {
 /// What followed the plan of a workcell.
 struct WorkcellExtras {
   const RefinedWorkcell* refinement = nullptr;
-  const WorkcellTiming* motion = nullptr;  ///< null if it was not asked for or does not exist
-  TimingOptions timing{};                  ///< the options that the motion was timed with
+  const WorkcellTiming* motion = nullptr;    ///< null if it was not asked for or does not exist
+  TimingOptions timing{};                    ///< the options that the motion was timed with
+  const AdviceOnWorkcell* advice = nullptr;  ///< for a workcell that has no plan
 };
 /// Returns RESULT.json of a workcell as text, docs/formats.md "Result of a workcell".
 [[nodiscard]] std::string to_workcell_json(const WorkcellResult& result,

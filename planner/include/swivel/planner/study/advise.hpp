@@ -6,6 +6,7 @@
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/problem/job.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
 
 namespace swivel {
 
@@ -36,5 +37,23 @@ namespace swivel {
 /// unless the verdict is infeasible. Throws as plan_job() does.
 [[nodiscard]] AdviceOnJob advise_job(const PreparedRobot& robot, const Job& job,
                                      const JobResult& result, PlanOptions options = {});
+
+/// Returns changes that would help a workcell that has no plan, each planned alone, with both arms.
+/// Where one arm has no path by itself: what advise() finds for it. Where both have one: a free
+/// start, end or roll of either arm, a smaller joint margin of it, its path moved by 10, 20 or 40
+/// mm along an axis of the base frame (unless the other arm leads it or both paths are on one
+/// object), a smaller clearance of both. Further half the steps of both lattices, an object of the
+/// scene removed or moved, the follower as leader, and both paths moved alike. Paths are not moved
+/// where a start, an end or a motion is given. Where both arms have no path by themselves, no
+/// change of a single arm is planned with both, but a smaller clearance and joint margin of both.
+/// For arms without a path AdviceOnWorkcell::arms says what
+/// helps them by themselves.
+///
+/// `result` is the verdict on the workcell. Planner kind and threads are those of `options`, whose
+/// time-out covers all trials together (one second if unset). Changes that help come first. Empty
+/// unless the verdict is infeasible. Throws as plan_workcell() does. The number of threads changes
+/// the result only through the time.
+[[nodiscard]] AdviceOnWorkcell advise_workcell(const Workcell& cell, const WorkcellResult& result,
+                                               PlanOptions options = {});
 
 }  // namespace swivel

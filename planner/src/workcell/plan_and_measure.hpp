@@ -5,6 +5,10 @@
 
 namespace swivel {
 
+/// Plans a workcell as plan_workcell() does, but does not diagnose an arm that has no path by
+/// itself, and measures nothing. Returns and throws as plan_workcell() does.
+[[nodiscard]] WorkcellResult decide_workcell(const PreparedWorkcell& prepared,
+                                             const PlanOptions& options, const Budget& budget);
 /// Measures the trajectories of a result, of each arm by itself and between both, as far as
 /// `wanted` asks for it. Throws Stopped.
 void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
