@@ -14,6 +14,7 @@
 #include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "two_arms.hpp"
@@ -32,7 +33,7 @@ PlanOptions long_enough(int threads) {
 }
 
 /// What makes a random workcell hard to plan.
-enum class Hard { kClearance, kMargin, kPost, kStart, kRightFollows, kNear };
+enum class Hard { kClearance, kMargin, kPost, kGivenEnd, kRightFollows, kNear };
 
 void add_post(Workcell& cell, Random& random) {
   SceneObject post;
@@ -45,13 +46,15 @@ void add_post(Workcell& cell, Random& random) {
   cell.scene.push_back(post);
 }
 
-/// Gives the left arm a random start of its lattice, if there is one.
-void add_start(Workcell& cell, Random& random) {
+/// Gives the left arm a random node of its lattice as its start or its end, if there is one.
+void add_start_or_end(Workcell& cell, Random& random) {
   const PreparedWorkcell prepared(cell);
   const PlainArm arm(prepared.problem(0), prepared.robot(0));
-  if (arm.nodes(0).empty()) return;
-  const int n = static_cast<int>(arm.nodes(0).size());
-  cell.arms[0].start = arm.nodes(0)[static_cast<std::size_t>(random.below(n))].q;
+  const bool first = random.coin();
+  const std::vector<Lattice::Node>& nodes = arm.nodes(first ? 0 : arm.layers() - 1);
+  if (nodes.empty()) return;
+  const Config q = nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].q;
+  (first ? cell.arms[0].start : cell.arms[0].end) = q;
 }
 
 /// Lets both hands point forward and carry a bar that turns, which the left one leads.
@@ -89,7 +92,7 @@ Workcell hard_workcell(const TestRobot& robot, Hard hard, Random& random) {
   }
   if (hard == Hard::kPost || hard == Hard::kRightFollows || random.coin(0.3))
     add_post(cell, random);
-  if (hard == Hard::kStart) add_start(cell, random);
+  if (hard == Hard::kGivenEnd) add_start_or_end(cell, random);
   return cell;
 }
 
@@ -127,6 +130,9 @@ Workcell as_advised(Workcell cell, const WorkcellAdvice& advice, double stricter
     switch (advice.change) {
       case Change::kFreeStart:
         arm.start.reset();
+        break;
+      case Change::kFreeEnd:
+        arm.end.reset();
         break;
       case Change::kFiner:
         for (double* step : {&arm.resolution.ds, &arm.resolution.dphi, &arm.resolution.dalpha,
@@ -271,8 +277,98 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
   std::printf("; %d limits strictest\n", strictest);
   EXPECT_GE(infeasible, at_least(count / 4));
   EXPECT_GE(with_help, at_least(count / 8));
-  EXPECT_GE(conflicts, at_least(count / 20));
+  EXPECT_GE(conflicts, at_least(count / 30));
   EXPECT_GE(one_arm, at_least(count / 20));
+}
+
+/// The right tool is led in an arc about the left one, through a ball. Where the right arm leads,
+/// it goes straight between the same two poses, and passes beside the ball.
+TEST(AdviseWorkcell, LetsTheFollowerLead) {
+  Random random(1);
+  Workcell cell = random_workcell(data_robot("sda10f"), random);
+  const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
+  const double turn = 0.7, width = 0.45;
+  for (std::size_t k = 0; k < 2; ++k) {
+    Waypoint& left = cell.arms[0].waypoints[k];
+    left.position = Vector3d(0.68, 0.2, 1.05);
+    left.orientation =
+        Quaterniond(Eigen::AngleAxisd(k == 0 ? -turn : turn, Vector3d::UnitX())) * forward;
+    cell.arms[1].waypoints[k].position = Vector3d(0, -width, 0);
+    cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
+  }
+  cell.arms[1].path_frame = "left";
+  ASSERT_TRUE(cost_of(cell));
+  SceneObject ball;
+  ball.name = "ball";
+  ball.shape = Sphere{0.03};
+  ball.pose.translation() = Vector3d(0.68, 0.2 - width, 1.05);
+  cell.scene.push_back(ball);
+  const WorkcellResult result = plan_workcell(cell, long_enough(2));
+  ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+  int leads = 0;
+  for (const WorkcellAdvice& one : advise_workcell(cell, result, long_enough(2)).cell) {
+    const bool helps = holds(cell, one);
+    if (one.change != Change::kLeads) continue;
+    EXPECT_TRUE(helps);
+    EXPECT_EQ(words(one), "'right' leads");
+    ++leads;
+  }
+  EXPECT_EQ(leads, 1);
+}
+
+/// Beside a given motion only the other arm and the scene are changed, and no path is moved.
+TEST(AdviseWorkcell, LeavesAGivenMotionAsItIs) {
+  Random random(seed("AdviseWorkcell.LeavesAGivenMotionAsItIs"));
+  const TestRobot robot = data_robot("sda10f");
+  int infeasible = 0, helped = 0;
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    SCOPED_TRACE(trial);
+    Workcell cell = random_workcell(robot, random);
+    const WorkcellResult both = plan_workcell(cell, long_enough(1));
+    if (both.status != PlanStatus::kSolved) continue;
+    WorkcellArm& left = cell.arms[0];
+    for (const TrajectoryRow& row : both.arms[0].trajectory) left.given.push_back(row.q);
+    left.waypoints.clear();
+    add_post(cell, random);
+    cell.arms[1].limits.joint_margin = random.uniform(0, 0.5);
+    WorkcellResult result;
+    try {
+      result = plan_workcell(cell, long_enough(1));
+    } catch (const InputError&) {  // the post is in the way of the given motion
+      continue;
+    }
+    if (result.status == PlanStatus::kSolved) continue;
+    ++infeasible;
+    bool any = false;
+    for (const WorkcellAdvice& one : advise_workcell(cell, result, long_enough(2)).cell) {
+      EXPECT_NE(one.arm, "left");
+      EXPECT_NE(one.change, Change::kMovePaths);
+      EXPECT_NE(one.change, Change::kFiner);
+      any = holds(cell, one) || any;
+    }
+    helped += any;
+  }
+  std::printf("%d workcells: %d infeasible beside a given motion, %d of them helped\n", count,
+              infeasible, helped);
+  EXPECT_GE(infeasible, at_least(count / 20));
+}
+
+TEST(AdviseWorkcell, SaysNothingWithoutTimeAndWhereThereIsAPlan) {
+  Random random(2);
+  Workcell cell = random_workcell(data_robot("sda10f"), random);
+  cell.arms[0].limits.clearance = cell.arms[1].limits.clearance = 0.2;
+  const WorkcellResult result = plan_workcell(cell, long_enough(1));
+  ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+  PlanOptions none = long_enough(1);
+  none.timeout_s = 1e-6;
+  for (const WorkcellAdvice& one : advise_workcell(cell, result, none).cell)
+    EXPECT_EQ(one.outcome, Outcome::kUnknown) << words(one);
+  WorkcellResult solved = result;
+  solved.status = PlanStatus::kSolved;
+  EXPECT_TRUE(advise_workcell(cell, solved, none).cell.empty());
+  none.planner = PlannerKind::kEager;
+  EXPECT_THROW(static_cast<void>(advise_workcell(cell, result, none)), InvalidArgument);
 }
 
 }  // namespace
