@@ -271,7 +271,8 @@ class Results(unittest.TestCase):
         folder = pathlib.Path(self.folder.name)
         for cell, *more in (
             (plate, "--refine", "--speed", "0.05"), (plate,), (plate, "--timeout", "1e-9"),
-            (made_workcell(gap=0.02),), (made_workcell(gap=0.5, up=3),),
+            (made_workcell(gap=0.02), "--advise", "20"),
+            (made_workcell(gap=0.5, up=3), "--advise", "20"),
         ):
             if isinstance(cell, dict):
                 (folder / "cell.yaml").write_text(json.dumps(cell))
@@ -290,6 +291,7 @@ class Results(unittest.TestCase):
         alike = (
             ".arms[].diagnosis.", ".arms[].deepest_contact.", ".arms[].lattice.",
             ".arms[].trajectory[].roll", ".motion.arms[].slow[]", ".motion.arms[].corners.stops[]",
+            ".advice.arms[].advice[].",
         )
         self.assertEqual({key for key in known - seen if not key.startswith(alike)}, set())
         self.assertEqual(len(statuses), 4, statuses)
