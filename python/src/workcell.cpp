@@ -16,6 +16,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
@@ -416,11 +417,78 @@ void bind_check(py::module_& m) {
       });
 }
 
+AdviceOnWorkcell advise(const WorkcellOrFile& of, const WorkcellPlan& plan, double timeout) {
+  if (!(timeout > 0))
+    throw py::value_error("timeout: not a positive number: allowed are values above 0");
+  const auto cell = to_core(of);
+  return interruptible([&](const std::stop_token& stop) {
+    PlanOptions options;
+    options.timeout_s = timeout;
+    options.stop = stop;
+    return advise_workcell(*cell, plan.plan->result, options);
+  });
+}
+
+void bind_advice(py::module_& m) {
+  const auto or_none = [](const std::string& text) {
+    return text.empty() ? std::optional<std::string>() : text;
+  };
+  py::class_<WorkcellAdvice>(
+      m, "WorkcellAdvice",
+      "One change of a workcell that has no plan, and what planning both arms with it gave.")
+      .def_property_readonly(
+          "arm", [or_none](const WorkcellAdvice& a) { return or_none(a.arm); },
+          "Name of the arm that is changed; None: both, or the scene.")
+      .def_property_readonly(
+          "change", [](const WorkcellAdvice& a) { return a.change; }, "Change.")
+      .def_property_readonly("object",
+                             [or_none](const WorkcellAdvice& a) { return or_none(a.object); })
+      .def_property_readonly(
+          "asked", [](const WorkcellAdvice& a) { return a.from; },
+          "Of limits: what the workcell asks, in its unit.")
+      .def_property_readonly(
+          "changed_to", [](const WorkcellAdvice& a) { return a.to; },
+          "Of limits: what this is about.")
+      .def_property_readonly(
+          "offset", [](const WorkcellAdvice& a) { return a.offset; },
+          "Of an object or of paths that are moved, (3,), m, base frame.")
+      .def_property_readonly(
+          "outcome", [](const WorkcellAdvice& a) { return a.outcome; }, "Outcome.")
+      .def_property_readonly(
+          "cost", [](const WorkcellAdvice& a) { return a.cost; }, "Of both paths, where it solves.")
+      .def("__repr__", [](const WorkcellAdvice& a) {
+        return "<WorkcellAdvice " + std::string(to_string(a.outcome)) + ": " + words(a) +
+               (a.cost ? formatted(", cost %.6g>", *a.cost) : std::string(">"));
+      });
+  py::class_<AdviceOnWorkcell>(m, "AdviceOnWorkcell",
+                               "What would help a workcell that has no plan. str() says it.")
+      .def_property_readonly(
+          "cell", [](const AdviceOnWorkcell& a) { return a.cell; },
+          "Changes of the workcell, what helps first: a list of WorkcellAdvice.")
+      .def_property_readonly(
+          "arms",
+          [](const AdviceOnWorkcell& a) {
+            py::dict all;
+            for (const ArmAdvice& one : a.arms) all[one.arm.c_str()] = py::cast(one.advice);
+            return all;
+          },
+          "Name of an arm that has no path by itself -> what would help it by itself, a list of "
+          "Advice.")
+      .def("__str__", [](const AdviceOnWorkcell& a) { return advice_text(a); });
+  m.def("advise_workcell", &advise, py::arg("workcell").none(false), py::arg("plan").none(false),
+        py::kw_only(), py::arg("timeout") = 1.0,
+        "Finds changes that would help a workcell that has no plan, each planned alone with both "
+        "arms: AdviceOnWorkcell, empty where there is a plan.\n\n"
+        "workcell: the Workcell, or the name of its file. plan: its WorkcellPlan. timeout: s, for "
+        "all of them. Raises InputError.");
+}
+
 }  // namespace
 
 void bind_workcell(py::module_& m) {
   bind_cell(m);
   bind_plan(m);
+  bind_advice(m);
   bind_check(m);
   m.def(
       "plan_workcell",

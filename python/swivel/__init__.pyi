@@ -478,6 +478,8 @@ class Change:
     ALLOW: ClassVar[Change]
     MOVE_OBJECT: ClassVar[Change]
     WITHOUT_OBJECT: ClassVar[Change]
+    LEADS: ClassVar[Change]
+    MOVE_PATHS: ClassVar[Change]
     @property
     def name(self) -> str: ...
     @property
@@ -1273,6 +1275,30 @@ class WorkcellCheck:
     @property
     def clearance(self) -> float | None: ...
 
+class WorkcellAdvice:
+    @property
+    def arm(self) -> str | None: ...
+    @property
+    def change(self) -> Change: ...
+    @property
+    def object(self) -> str | None: ...
+    @property
+    def asked(self) -> float | None: ...
+    @property
+    def changed_to(self) -> float | None: ...
+    @property
+    def offset(self) -> _Array: ...
+    @property
+    def outcome(self) -> Outcome: ...
+    @property
+    def cost(self) -> float | None: ...
+
+class AdviceOnWorkcell:
+    @property
+    def cell(self) -> list[WorkcellAdvice]: ...
+    @property
+    def arms(self) -> dict[str, list[Advice]]: ...
+
 def load_workcell(file: _File) -> Workcell: ...
 def plan_workcell(
     workcell: Workcell | _File,
@@ -1287,6 +1313,9 @@ def plan_workcell(
     rate: float | None = None,
     refine: bool = False,
 ) -> WorkcellPlan: ...
+def advise_workcell(
+    workcell: Workcell | _File, plan: WorkcellPlan, *, timeout: float = 1.0
+) -> AdviceOnWorkcell: ...
 def check_workcell(
     workcell: Workcell | _File,
     rows: WorkcellPlan | dict[str, Trajectory] | dict[str, Motion] | _File,

@@ -74,6 +74,47 @@ class Workcells(unittest.TestCase):
             arms[name] = swivel.Problem(robot, task)
         return arms
 
+    def test_advice_is_planned(self):
+        arms = self.arms(0.11)
+        cell = swivel.Workcell(arms)
+        advice = swivel.advise_workcell(cell, swivel.plan_workcell(cell), timeout=60)
+        self.assertEqual(advice.arms, {})
+        best = advice.cell[0]
+        self.assertEqual((best.change, best.arm), (swivel.Change.MOVE_PATHS, "left"))
+        self.assertEqual(best.outcome, swivel.Outcome.SOLVED)
+        self.assertIn("would help: 'left': path moved by 20 mm along +y", str(advice))
+        self.assertIn("path moved by 20 mm", repr(best))
+        self.assertIsNone(best.object)
+        self.assertEqual(list(best.offset), [0, 0.02, 0])
+        with self.assertRaisesRegex(ValueError, "timeout"):
+            swivel.advise_workcell(cell, swivel.plan_workcell(cell), timeout=0)
+
+    def test_advice_tells_what_helps_an_arm_by_itself(self):
+        arms = self.arms(0.5)
+        limits = arms["right"].task.limits
+        limits.joint_margin = 0.9
+        task = arms["right"].task
+        task.limits = limits
+        cell = swivel.Workcell(
+            {"left": arms["left"], "right": swivel.Problem(arms["right"].robot, task)}
+        )
+        plan = swivel.plan_workcell(cell)
+        self.assertEqual(plan.status, "infeasible")
+        self.assertTrue(np.isinf(plan.least_costs[1]))
+        advice = swivel.advise_workcell(cell, plan, timeout=60)
+        self.assertEqual(list(advice.arms), ["right"])
+        alone = {one.change: one.outcome for one in advice.arms["right"]}
+        self.assertEqual(alone[swivel.Change.JOINT_MARGIN], swivel.Outcome.SOLVED)
+        best = advice.cell[0]
+        self.assertEqual((best.change, best.arm), (swivel.Change.JOINT_MARGIN, "right"))
+        self.assertEqual(best.asked, 0.9)
+        limits.joint_margin = best.changed_to
+        task.limits = limits
+        relaxed = swivel.Workcell(
+            {"left": arms["left"], "right": swivel.Problem(arms["right"].robot, task)}
+        )
+        self.assertEqual(swivel.plan_workcell(relaxed).cost, best.cost)
+
     def test_is_made_of_two_problems(self):
         cell = swivel.Workcell(self.arms(0.5))
         self.assertRegex(repr(cell), "<Workcell of 'left' and 'right', 2 waypoints>")
@@ -88,6 +129,7 @@ class Workcells(unittest.TestCase):
         self.assertIsNone(barred.diagnosis("left"))
         with self.assertRaises(KeyError):
             barred.diagnosis("middle")
+        self.assertEqual(swivel.advise_workcell(cell, plan).cell, [])
         with self.assertRaisesRegex(ValueError, "there is no plan"):
             barred.save(self.folder / "none.csv")
 
