@@ -7,8 +7,8 @@
 
 #include "study/episode_draw.hpp"
 #include "swivel/core/base/rpy.hpp"
-#include "swivel/core/study/job_failure.hpp"
 #include "swivel/core/study/placement.hpp"
+#include "swivel/core/study/study_failure.hpp"
 
 namespace swivel {
 
@@ -58,6 +58,12 @@ Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_
 Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode) {
   Job result = job;
   draw_scene(job.vary, seed, episode, result.scene);
+  return result;
+}
+
+Workcell episode_workcell(const Workcell& cell, std::uint64_t seed, std::uint64_t episode) {
+  Workcell result = cell;
+  draw_scene(cell.vary, seed, episode, result.scene);
   return result;
 }
 
@@ -124,11 +130,26 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Job&
     tool_path_error_mm_mean = sum / steps;
     tool_path_error_mm_max = most;
   } else if (status == PlanStatus::kInfeasible) {
-    JobFailure failure = failure_of(result, job);
-    failed_s = failure.reached_s;
-    cause = std::move(failure.cause);
-    by = std::move(failure.by);
-    reason = std::move(failure.reason);
+    failure_of(result, job).tell(*this);
+  }
+}
+
+EpisodeRow::EpisodeRow(std::uint64_t number, const WorkcellResult& result, const Workcell& cell)
+    : episode(number), status(result.status) {
+  for (const char* const stage : {"lattice", "search"})
+    if (const auto time = result.time_ms.find(stage); time != result.time_ms.end())
+      plan_ms += time->second;
+  for (const PlanResult& arm : result.arms) {
+    nodes_checked += arm.counters.nodes_checked;
+    fcl_calls += arm.counters.fcl_calls;
+  }
+  if (status == PlanStatus::kSolved) {
+    cost = result.cost;
+    const PlanResult &first = result.arms[0], &second = result.arms[1];  // of as many steps
+    tool_path_error_mm_mean = (first.tool_path_error_mm.mean + second.tool_path_error_mm.mean) / 2;
+    tool_path_error_mm_max = std::max(first.tool_path_error_mm.max, second.tool_path_error_mm.max);
+  } else if (status == PlanStatus::kInfeasible) {
+    failure_of(result, cell).tell(*this);
   }
 }
 

@@ -64,6 +64,26 @@ bool in_base_frame(const Problem& problem) {
   return problem.path_frame.empty() || problem.path_frame == problem.base_link;
 }
 
+/// Throws InvalidArgument for paths of a workcell that cannot be moved alike by `offset`.
+void require_paths_move(const Workcell& cell, const Offset& offset) {
+  std::vector<std::string> frames;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const WorkcellArm& arm = cell.arms[k];
+    if (cell.leader_of(k) >= 0 && !cell.arms[1 - k].given.empty())
+      throw InvalidArgument("path: that of '" + arm.name + "' is on the tool of '" +
+                            cell.arms[1 - k].name +
+                            "', whose motion is given: allowed is to move an object or the base");
+    if (cell.leader_of(k) < 0 && arm.given.empty())
+      frames.push_back(arm.path_frame.empty() ? arm.base_link : arm.path_frame);
+  }
+  if (frames.size() == 2 && frames[0] != frames[1] && motion_of(offset).turns)
+    throw InvalidArgument(
+        "path: roll, pitch and yaw turn paths about the origin of their frame, "
+        "and those of '" +
+        cell.arms[0].name + "' and '" + cell.arms[1].name + "' are in '" + frames[0] + "' and '" +
+        frames[1] + "': allowed are x, y and z, or to move an object or the base");
+}
+
 }  // namespace
 
 Vector3d written_rpy(const Matrix3d& r) {
@@ -124,6 +144,22 @@ Job placed_job(const Job& job, const Movable& thing, const Offset& offset) {
     Problem placed = placed_problem(stroke, thing, offset);
     result.strokes[k].waypoints = std::move(placed.waypoints);
     if (k == 0) result.scene = std::move(placed.scene);
+  }
+  return result;
+}
+
+Workcell placed_workcell(const Workcell& cell, const Movable& thing, const Offset& offset) {
+  if (thing.kind == Movable::Kind::kPath) require_paths_move(cell, offset);
+  Workcell result = cell;
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (cell.leader_of(k) >= 0) continue;
+    Problem arm;
+    static_cast<Robot&>(arm) = cell.arms[k];
+    static_cast<Task&>(arm) = cell.arms[k];
+    arm.scene = cell.scene;
+    Problem placed = placed_problem(arm, thing, offset);
+    result.arms[k].waypoints = std::move(placed.waypoints);
+    result.scene = std::move(placed.scene);
   }
   return result;
 }

@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "plan/supported_options.hpp"
-#include "study/job_answered.hpp"
+#include "study/answered.hpp"
+#include "study/studied_workcell.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/job/plan_job.hpp"
@@ -182,6 +183,34 @@ class JobEpisodes : public EpisodePlanner {
   const Job& job_;
 };
 
+class WorkcellEpisodes : public EpisodePlanner {
+ public:
+  WorkcellEpisodes(const Workcell& cell, const CampaignOptions& options,
+                   const std::function<void(const EpisodeRow&)>& row_done)
+      : EpisodePlanner(cell.vary, options, row_done), cell_(cell) {}
+
+ private:
+  std::optional<EpisodeRow> row_of(std::uint64_t episode, int) override {
+    std::optional<EpisodeRow> failed;
+    const Budget budget = single_.budget();
+    try {
+      const auto found = answer_of(episode, failed, [&] {
+        return plan_studied(episode_workcell(cell_, options_.seed, episode), single_, budget);
+      });
+      if (!found) return failed;
+      if (!found->fault && !answered(found->result, budget)) return std::nullopt;
+      if (options_.workcell_planned) options_.workcell_planned(episode, found->result);
+      EpisodeRow row(episode, found->result, cell_);
+      if (found->fault) found->fault->tell(row);
+      return row;
+    } catch (const Stopped&) {
+      return std::nullopt;
+    }
+  }
+
+  const Workcell& cell_;
+};
+
 /// Returns how many episodes of the shard are to be planned. Throws InputError for a campaign that
 /// makes no sense.
 int episodes_to_plan(const std::string& source, const std::vector<Variation>& vary,
@@ -220,6 +249,17 @@ void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOpti
   if (count == 0) return;
   Executor executor(options.plan.threads);
   JobEpisodes planner(robot, job, options, row_done);
+  executor.for_each(count, [&](int, int worker) { planner.plan_next(worker); });
+}
+
+void run_campaign(const Workcell& cell, const CampaignOptions& options,
+                  const std::function<void(const EpisodeRow&)>& row_done) {
+  validate(cell);
+  require_supported(options.plan, "workcells");
+  const int count = episodes_to_plan(cell.source, cell.vary, options);
+  if (count == 0) return;
+  Executor executor(options.plan.threads);
+  WorkcellEpisodes planner(cell, options, row_done);
   executor.for_each(count, [&](int, int worker) { planner.plan_next(worker); });
 }
 

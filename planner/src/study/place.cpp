@@ -14,11 +14,12 @@
 
 #include "measure/nearest_approach.hpp"
 #include "plan/supported_options.hpp"
-#include "study/job_answered.hpp"
+#include "study/answered.hpp"
+#include "study/studied_workcell.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/study/job_failure.hpp"
+#include "swivel/core/study/study_failure.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
@@ -97,6 +98,24 @@ std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {
   const auto found = std::find_if(problem.scene.begin(), problem.scene.end(),
                                   [&](const auto& o) { return o.name == thing.object; });
   return static_cast<int>(found - problem.scene.begin());
+}
+
+/// Lowers the clearance of a row to this one, if it comes nearer to what must be kept.
+void take_least(const LeastMargin& margin, PlacementRow& row) {
+  if (row.clearance_margin && *row.clearance_margin <= margin.margin) return;
+  row.clearance = margin.clearance;
+  row.clearance_margin = margin.margin;
+}
+
+/// Lowers what a row keeps and how fast its tool may be to what a stroke or an arm keeps and
+/// allows.
+void take_least(const Measures& measures, PlacementRow& row) {
+  const auto lower = [](std::optional<double>& least, double value) {
+    least = std::min(least.value_or(value), value);
+  };
+  if (measures.nearest_limit) lower(row.joint_margin, measures.nearest_limit->margin);
+  if (measures.top_tool_speed) lower(row.tool_speed, measures.top_tool_speed->speed);
+  if (measures.min_margin) take_least(*measures.min_margin, row);
 }
 
 }  // namespace
@@ -235,30 +254,44 @@ struct PlacementPlanner::JobPlacements : Impl {
     row.status = result.status;
     if (result.status == PlanStatus::kSolved) {
       row.cost = result.cost;
-      fill_measures(result, row);
+      for (const RunResult& run : result.runs) take_least(run.measures, row);
       return true;
     }
-    JobFailure failure = failure_of(result, job);
-    row.failed_s = failure.reached_s;
-    row.cause = std::move(failure.cause);
-    row.by = std::move(failure.by);
-    row.reason = std::move(failure.reason);
+    failure_of(result, job).tell(row);
     return true;
   }
-  /// Fills in the least of what the strokes keep, and the highest speed that all of them allow.
-  static void fill_measures(const JobResult& result, PlacementRow& row) {
-    const auto lower = [](std::optional<double>& least, double value) {
-      least = std::min(least.value_or(value), value);
-    };
-    for (const RunResult& run : result.runs) {
-      const Measures& m = run.measures;
-      if (m.nearest_limit) lower(row.joint_margin, m.nearest_limit->margin);
-      if (m.top_tool_speed) lower(row.tool_speed, m.top_tool_speed->speed);
-      if (!m.min_margin || (row.clearance_margin && *row.clearance_margin <= m.min_margin->margin))
-        continue;
-      row.clearance = m.min_margin->clearance;
-      row.clearance_margin = m.min_margin->margin;
+
+  void plan_again(const std::vector<PlacementCell>& /*cells*/, const Found& /*found*/) override {}
+};
+
+struct PlacementPlanner::WorkcellPlacements : Impl {
+  Workcell cell;
+  Movable thing;
+
+  WorkcellPlacements(Workcell c, Movable t, const PlanOptions& options)
+      : Impl(options), cell(std::move(c)), thing(std::move(t)) {
+    single.evidence.postures = true;  // clearances
+    validate(cell);
+    require_supported(single, "workcells");
+    static_cast<void>(placed_workcell(cell, thing, {}));
+  }
+
+  bool fill(PlacementRow& row, int /*worker*/) override {
+    const PlanOptions options = options_now();
+    const Budget budget = options.budget();
+    const Workcell placed = placed_workcell(cell, thing, row.offset);
+    const StudiedWorkcell found = plan_studied(placed, options, budget);
+    const WorkcellResult& result = found.result;
+    if (!found.fault && !answered(result, budget)) return false;
+    row.status = result.status;
+    if (result.status != PlanStatus::kSolved) {
+      found.failure(cell).tell(row);
+      return true;
     }
+    row.cost = result.cost;
+    for (const PlanResult& arm : result.arms) take_least(arm, row);
+    if (result.between_arms) take_least(*result.between_arms, row);
+    return true;
   }
 
   void plan_again(const std::vector<PlacementCell>& /*cells*/, const Found& /*found*/) override {}
@@ -272,6 +305,8 @@ PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, J
                                    Movable thing, PlanOptions options)
     : impl_(std::make_unique<JobPlacements>(std::move(robot), std::move(job), std::move(thing),
                                             options)) {}
+PlacementPlanner::PlacementPlanner(Workcell cell, Movable thing, PlanOptions options)
+    : impl_(std::make_unique<WorkcellPlacements>(std::move(cell), std::move(thing), options)) {}
 PlacementPlanner::~PlacementPlanner() = default;
 
 bool PlacementPlanner::stopped() const {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <optional>
+#include <string>
+
 #include "swivel/core/base/budget.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 
@@ -9,6 +12,11 @@ namespace swivel {
 /// itself, and measures nothing. Returns and throws as plan_workcell() does.
 [[nodiscard]] WorkcellResult decide_workcell(const PreparedWorkcell& prepared,
                                              const PlanOptions& options, const Budget& budget);
+/// Returns why the given motion of a workcell does not keep the limits of its arm by itself, with
+/// the row at fault; nothing where it does, or none is given. plan_workcell() refuses such a one.
+/// Throws Stopped.
+[[nodiscard]] std::optional<std::string> fault_of_given_motion(const PreparedWorkcell& prepared,
+                                                               const Budget& budget);
 /// Measures the trajectories of a result, of each arm by itself and between both, as far as
 /// `wanted` asks for it. Throws Stopped.
 void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,

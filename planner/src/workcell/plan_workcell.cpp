@@ -60,19 +60,13 @@ struct PlannedArm : ArmInCell {
 };
 using PlannedArms = std::array<std::unique_ptr<PlannedArm>, 2>;
 
-/// Throws InputError if a given motion does not keep the limits of its arm by itself.
-void require_sound(const PreparedWorkcell& prepared, std::size_t arm, const Budget& budget) {
-  const CheckResult found =
-      check_trajectory(prepared.robot(arm), prepared.problem(arm), prepared.given_rows(),
-                       {.margins = false, .budget = budget});
-  if (found.passed) return;
-  std::string more;
-  if (found.failure_count > 1)
-    more = formatted(" (and %lld more)", static_cast<long long>(found.failure_count - 1));
-  throw InputError(prepared.problem(arm).source,
-                   "given motion: " + found.failures.front() + more +
-                       ": allowed is a motion that keeps the limits; `limits` of the arm may be "
-                       "wider than the file's");
+/// Throws InputError if the given motion does not keep the limits of its arm by itself.
+void require_sound(const PreparedWorkcell& prepared, const Budget& budget) {
+  if (const auto fault = fault_of_given_motion(prepared, budget))
+    throw InputError(prepared.problem(*prepared.given_arm()).source,
+                     "given motion: " + *fault +
+                         ": allowed is a motion that keeps the limits; `limits` of the arm may be "
+                         "wider than the file's");
 }
 
 class WorkcellPlan {
@@ -134,7 +128,7 @@ class WorkcellPlan {
     result_.given_arm = given;
     executor_.for_each(2, [&](int arm, int) {
       const auto k = static_cast<std::size_t>(arm);
-      if (given == k) require_sound(prepared_, k, budget_);
+      if (given == k) require_sound(prepared_, budget_);
       arms_[k] = std::make_unique<PlannedArm>(prepared_, k, budget_);
     });
     if (arms_[0]->path.size() != arms_[1]->path.size())  // one of them is cut off
@@ -343,6 +337,20 @@ class WorkcellPlan {
 };
 
 }  // namespace
+
+std::optional<std::string> fault_of_given_motion(const PreparedWorkcell& prepared,
+                                                 const Budget& budget) {
+  const auto arm = prepared.given_arm();
+  if (!arm) return std::nullopt;
+  const CheckResult found =
+      check_trajectory(prepared.robot(*arm), prepared.problem(*arm), prepared.given_rows(),
+                       {.margins = false, .budget = budget});
+  if (found.passed) return std::nullopt;
+  std::string more;
+  if (found.failure_count > 1)
+    more = formatted(" (and %lld more)", static_cast<long long>(found.failure_count - 1));
+  return found.failures.front() + more;
+}
 
 void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
                       const Budget& budget, WorkcellResult& result) {

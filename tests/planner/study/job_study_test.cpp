@@ -10,7 +10,7 @@
 #include "seed.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/study/job_failure.hpp"
+#include "swivel/core/study/study_failure.hpp"
 #include "swivel/io/problems/job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -137,7 +137,7 @@ PlacementRow row_alone(const DoorJob& door, const Movable& thing, const Placemen
   const JobResult result = plan_job(*door.robot, placed_job(door.job, thing, cell.offset), options);
   row.status = result.status;
   if (result.status != PlanStatus::kSolved) {
-    const JobFailure failure = failure_of(result, door.job);
+    const StudyFailure failure = failure_of(result, door.job);
     row.failed_s = failure.reached_s;
     row.cause = failure.cause, row.by = failure.by, row.reason = failure.reason;
     return row;
@@ -243,13 +243,13 @@ TEST(PlacedJob, MovesEachStrokeAsItsProblem) {
   EXPECT_GT(compared, 1000);
 }
 
-TEST(JobFailure, NamesTheTransitionThatHasNoWay) {
+TEST(StudyFailure, NamesTheTransitionThatHasNoWay) {
   DoorJob door;
   door.job.limits.clearance = 0.3;  // of transitions: the arm is nearer to things at home
   const JobResult result = plan_job(*door.robot, door.job);
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   ASSERT_TRUE(result.no_transition && result.no_transition->bodies);
-  const JobFailure failure = failure_of(result, door.job);
+  const StudyFailure failure = failure_of(result, door.job);
   EXPECT_EQ(failure.cause, "transition");
   EXPECT_FALSE(failure.reached_s);
   EXPECT_NE(failure.by, "");

@@ -7,8 +7,10 @@
 
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/workcell.hpp"
 
 namespace swivel {
 
@@ -31,6 +33,9 @@ struct Shard {
                                       std::uint64_t episode);
 /// Returns the job of an episode under a seed: its objects are moved as those of a problem.
 [[nodiscard]] Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode);
+/// Returns the workcell of an episode under a seed: its objects are moved as those of a problem.
+[[nodiscard]] Workcell episode_workcell(const Workcell& cell, std::uint64_t seed,
+                                        std::uint64_t episode);
 
 /// Returns the names of the coordinates in which episodes differ, such as "door.x", in the order of
 /// `vary` and x y z roll pitch yaw.
@@ -66,6 +71,10 @@ struct EpisodeRow {
   /// have been asked. Its plan_ms is the time that lattices, search and order took; its mean error
   /// is that of the strokes, weighted by their steps. `job` may be that of any episode.
   EpisodeRow(std::uint64_t episode, const JobResult& result, const Job& job);
+  /// Takes an episode's row from the result of its workcell, for which Evidence::tool_path_error
+  /// must have been asked. Its plan_ms is the time that lattices and search took, its counters are
+  /// those of both arms, its mean error is that of both paths. `cell` may be that of any episode.
+  EpisodeRow(std::uint64_t episode, const WorkcellResult& result, const Workcell& cell);
   /// Makes the row of an episode that ended with an internal error.
   EpisodeRow(std::uint64_t episode, std::string error_message);
 };

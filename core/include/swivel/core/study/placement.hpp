@@ -10,6 +10,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/workcell.hpp"
 
 namespace swivel {
 
@@ -39,6 +40,13 @@ struct Movable {
 /// of all strokes. Its home stays as it is, seven joints. Throws InvalidArgument for an unknown
 /// object.
 [[nodiscard]] Job placed_job(const Job& job, const Movable& thing, const Offset& offset);
+/// Returns the workcell with one thing moved as by placed_problem(), for Movable::Kind::kPath the
+/// paths of both arms alike. The path of a follower stays on its leader's tool; a given motion,
+/// starts and ends stay as they are, joints. Throws InvalidArgument for an unknown object, for the
+/// path of a follower whose leader's motion is given, and for paths that are turned alike and have
+/// frames with an origin each.
+[[nodiscard]] Workcell placed_workcell(const Workcell& cell, const Movable& thing,
+                                       const Offset& offset);
 
 /// Returns roll, pitch and yaw of a rotation as multiples of 1e-12 rad. For an object that
 /// placed_problem() has turned, a problem file with these angles gives its rotation bit for bit.

@@ -21,6 +21,8 @@ struct CampaignOptions {
   std::function<void(std::uint64_t episode, const PlanResult& result)> planned;
   /// Called alike with the answers of a campaign of jobs.
   std::function<void(std::uint64_t episode, const JobResult& result)> job_planned;
+  /// Called alike with the answers of a campaign of workcells.
+  std::function<void(std::uint64_t episode, const WorkcellResult& result)> workcell_planned;
 };
 
 /// Plans the episodes of a shard and calls row_done with their rows in episode order, one call at a
@@ -35,6 +37,12 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem,
 /// Plans the episodes of a shard of a job's campaign, each as plan_job() does with one thread.
 /// Throws InvalidArgument and InputError as plan_job() does.
 void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOptions& options,
+                  const std::function<void(const EpisodeRow&)>& row_done);
+
+/// Plans the episodes of a shard of a workcell's campaign, each as plan_workcell() does with one
+/// thread. An episode in which the given motion of an arm does not keep its limits is infeasible.
+/// Throws InvalidArgument and InputError as plan_workcell() does.
+void run_campaign(const Workcell& cell, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 
 }  // namespace swivel

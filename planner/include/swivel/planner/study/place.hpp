@@ -39,6 +39,11 @@ class PlacementPlanner {
   /// thread. Clearances, margins and speeds of rows are those of the strokes.
   PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Job job, Movable thing,
                    PlanOptions options);
+  /// Prepares to plan placements of `thing` in `cell`, each in full as plan_workcell() does with
+  /// one thread. Costs of rows are of both paths together; clearances, margins and speeds are the
+  /// least of both arms, clearances also of what is between them. A placement at which the given
+  /// motion of an arm does not keep its limits is infeasible.
+  PlacementPlanner(Workcell cell, Movable thing, PlanOptions options);
   ~PlacementPlanner();
 
   /// Plans the cells and returns their rows in the order of `cells`, without those that were not
@@ -48,11 +53,12 @@ class PlacementPlanner {
   std::vector<PlacementRow> plan(const std::vector<PlacementCell>& cells,
                                  const std::function<void(const PlacementRow&)>& done = {});
   /// Plans the cells again and returns their trajectories, which rows do not hold, in the order of
-  /// `cells`, without those that have no path or were not answered in time. Returns none for a job,
-  /// of which plan_job() of placed_job() gives the parts of a cell.
+  /// `cells`, without those that have no path or were not answered in time. Returns none for a job
+  /// or a workcell, of which plan_job() of placed_job() and plan_workcell() of placed_workcell()
+  /// give the rows of a cell.
   [[nodiscard]] std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells);
   /// Plans the cells again and calls `found` after each that was answered, with its result and what
-  /// the plan found out, both valid during the call. Does nothing for a job.
+  /// the plan found out, both valid during the call. Does nothing for a job or a workcell.
   void plan_again(
       const std::vector<PlacementCell>& cells,
       const std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>& found);
@@ -63,6 +69,7 @@ class PlacementPlanner {
   struct Impl;
   struct ProblemPlacements;
   struct JobPlacements;
+  struct WorkcellPlacements;
   std::unique_ptr<Impl> impl_;
 };
 
