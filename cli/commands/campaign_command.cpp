@@ -128,8 +128,9 @@ CampaignOptions campaign_options(const CampaignArguments& arguments) {
 
 /// What the episodes are drawn of.
 struct Drawn {
-  std::optional<Job> job;  ///< unset for a problem of one path
-  Problem problem;         ///< of a job: that of its first stroke
+  std::optional<Job> job;        ///< set for a job
+  std::optional<Workcell> cell;  ///< set for a workcell
+  Problem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
   std::vector<io::InputFiles::File> inputs;
 };
 
@@ -137,10 +138,10 @@ struct Drawn {
 /// there is a results file, which says what it was computed from. Throws InputError.
 Drawn load_drawn(const CampaignArguments& arguments) {
   Drawn drawn;
-  std::variant<Problem, Job> loaded = [&] {
+  std::variant<Problem, Job, Workcell> loaded = [&] {
     const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
                                                      : io::InputFiles::Contents::kHash);
-    std::variant<Problem, Job> read = io::load_problem_or_job(arguments.problem);
+    std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
     drawn.inputs = noted.files();
     return read;
   }();
@@ -148,6 +149,10 @@ Drawn load_drawn(const CampaignArguments& arguments) {
     require_planner_of("jobs", arguments.search);
     drawn.job = chosen_job(std::move(*job), arguments.search, {});
     drawn.problem = problem_of_run(*drawn.job, {0, false});
+  } else if (Workcell* const cell = std::get_if<Workcell>(&loaded)) {
+    require_planner_of("workcells", arguments.search);
+    drawn.cell = chosen_workcell(std::move(*cell), arguments.search, {});
+    drawn.problem = problem_of_arm(*drawn.cell, 0);
   } else {
     drawn.problem = std::get<Problem>(std::move(loaded));
     arguments.search.apply(drawn.problem);
@@ -167,7 +172,7 @@ void add_outputs(const CampaignArguments& arguments, io::OutputFiles& outputs) {
 
 /// Returns the record of this run, which a shard's results begin with.
 io::ShardRecord record_of(const CampaignArguments& arguments, const CampaignOptions& options,
-                          const Problem& problem, const PreparedRobot& robot,
+                          const Problem& problem, const std::vector<HeldJoint>& held,
                           const std::vector<io::InputFiles::File>& inputs) {
   io::ShardRecord record{"campaign",
                          run_settings(arguments.problem, problem, arguments.search, inputs),
@@ -177,7 +182,7 @@ io::ShardRecord record_of(const CampaignArguments& arguments, const CampaignOpti
                          "swivel plan " + quoted(arguments.problem) + arguments.search.words() +
                              " --seed " + std::to_string(options.seed)};
   record.settings.values.emplace_back("seed", std::to_string(options.seed));
-  record.held = robot.arm().held;
+  record.held = held;
   record.settings.coordinates = varied_coordinates(problem.vary);
   return record;
 }
@@ -200,8 +205,10 @@ std::vector<EpisodeRow> resume(io::CampaignFile& file, const std::vector<Episode
 
 /// Plans the episodes that `rows` lacks, and appends them to `rows` and to the results file. Shows
 /// on standard error how many are done.
-void plan_episodes(const PreparedRobot& robot, const Drawn& drawn, const CampaignOptions& options,
-                   std::vector<EpisodeRow>& rows, std::optional<io::CampaignFile>& file) {
+/// `robot`: the prepared one of a problem or job.
+void plan_episodes(const std::optional<PreparedRobot>& robot, const Drawn& drawn,
+                   const CampaignOptions& options, std::vector<EpisodeRow>& rows,
+                   std::optional<io::CampaignFile>& file) {
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
   const std::uint64_t size = options.shard.size(options.episodes);
   auto solved = std::count_if(rows.begin(), rows.end(), [](const EpisodeRow& row) {
@@ -218,10 +225,12 @@ void plan_episodes(const PreparedRobot& robot, const Drawn& drawn, const Campaig
     solved += row.status == PlanStatus::kSolved;
     show();
   };
-  if (drawn.job)
-    run_campaign(robot, *drawn.job, options, row_done);
+  if (drawn.cell)
+    run_campaign(*drawn.cell, options, row_done);
+  else if (drawn.job)
+    run_campaign(*robot, *drawn.job, options, row_done);
   else
-    run_campaign(robot, drawn.problem, options, row_done);
+    run_campaign(*robot, drawn.problem, options, row_done);
 }
 
 /// Writes results, summary and page, prints the summary, and finishes the results file if all rows
@@ -243,8 +252,10 @@ int run(const CampaignArguments& arguments) {
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
   const Drawn drawn = load_drawn(arguments);
   const Problem& problem = drawn.problem;
-  const PreparedRobot robot(problem);
-  warn_of_held(robot.arm().held);
+  std::optional<PreparedRobot> robot;
+  if (!drawn.cell) robot.emplace(problem);
+  const std::vector<HeldJoint> held = drawn.cell ? held_joints(*drawn.cell) : robot->arm().held;
+  warn_of_held(held);
 
   std::vector<io::InputFiles::File> read = drawn.inputs;
   std::vector<EpisodeRow> rows = [&] {
@@ -266,8 +277,12 @@ int run(const CampaignArguments& arguments) {
       trajectories->write(episode, result,
                           [&](const JobResult& one) { return io::to_job_csv(one, *drawn.job); });
     };
+    options.workcell_planned = [&](std::uint64_t episode, const WorkcellResult& result) {
+      trajectories->write(episode, result,
+                          [](const WorkcellResult& one) { return io::to_workcell_csv(one); });
+    };
   }
-  const io::ShardRecord record = record_of(arguments, options, problem, robot, drawn.inputs);
+  const io::ShardRecord record = record_of(arguments, options, problem, held, drawn.inputs);
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
     file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
@@ -282,19 +297,22 @@ int run(const CampaignArguments& arguments) {
   if (trajectories && trajectories->removed() > 0)
     complain("swivel: removed %llu earlier trajectories in %s: there is no %s now\n",
              static_cast<unsigned long long>(trajectories->removed()),
-             arguments.trajectories.c_str(), drawn.job ? "job" : "path");
+             arguments.trajectories.c_str(),
+             drawn.cell  ? "plan"
+             : drawn.job ? "job"
+                         : "path");
   return campaign_exit_code(rows, record);
 }
 
 }  // namespace
 
 void add_campaign(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "campaign",
-      "Plan many episodes: the problem or job with the objects of 'vary' at random poses");
+  CLI::App* command = app.add_subcommand("campaign",
+                                         "Plan many episodes: the problem, job or workcell with "
+                                         "the objects of 'vary' at random poses");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<CampaignArguments>();
-  command->add_option("problem", arguments->problem, "problem file, or job")->required();
+  command->add_option("problem", arguments->problem, "problem file, job or workcell")->required();
   command->add_option("--episodes", arguments->episodes, "how many, all shards together")
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "what the poses are drawn from")

@@ -148,12 +148,8 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
 }
 
 int run_on_workcell(const CheckArguments& arguments, const Workcell& file) {
-  const bool moved =
-      arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
-  refuse_options("workcells", arguments.problem, {{moved, "--episode and placements"}});
   require_one_file(arguments);
-  Workcell cell = file;
-  for (WorkcellArm& arm : cell.arms) arguments.lattice.apply(arm);
+  const Workcell cell = chosen_workcell(file, arguments.lattice, arguments.episode);
   if (!arguments.certificate.empty()) return check_workcell_proof(cell, arguments.certificate);
   return check_workcell_file(cell, arguments.trajectory);
 }

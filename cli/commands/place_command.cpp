@@ -20,6 +20,7 @@
 #include "output/placement_output.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/tables/placement.hpp"
@@ -107,13 +108,15 @@ std::string problem_text(const PlaceArguments& arguments) {
   return text.str();
 }
 
-/// The problem or job whose thing is placed.
+/// The problem, job or workcell whose thing is placed.
 struct PlacedProblem {
   std::string text;  ///< of the problem file; empty without --write
   std::vector<io::InputFiles::File> inputs;
-  std::optional<Job> job;  ///< unset for a problem of one path
-  Problem problem;         ///< of a job: that of its first stroke
+  std::optional<Job> job;        ///< set for a job
+  std::optional<Workcell> cell;  ///< set for a workcell
+  Problem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
   Movable thing;
+  [[nodiscard]] bool has_one_path() const { return !job && !cell; }
 };
 
 /// Loads the problem file and notes which files were read: with hashes of their contents for a
@@ -121,10 +124,10 @@ struct PlacedProblem {
 PlacedProblem load_problem(const PlaceArguments& arguments) {
   PlacedProblem placed;
   if (!arguments.write.empty()) placed.text = problem_text(arguments);
-  std::variant<Problem, Job> loaded = [&] {
+  std::variant<Problem, Job, Workcell> loaded = [&] {
     const io::InputFiles noted(arguments.shard.empty() ? io::InputFiles::Contents::kIgnore
                                                        : io::InputFiles::Contents::kHash);
-    std::variant<Problem, Job> read = io::load_problem_or_job(arguments.problem);
+    std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
     placed.inputs = noted.files();
     return read;
   }();
@@ -134,6 +137,11 @@ PlacedProblem load_problem(const PlaceArguments& arguments) {
     source = job->source;
     placed.job = chosen_job(std::move(*job), arguments.search, {});
     placed.problem = problem_of_run(*placed.job, {0, false});
+  } else if (Workcell* const cell = std::get_if<Workcell>(&loaded)) {
+    require_planner_of("workcells", arguments.search);
+    source = cell->source;
+    placed.cell = chosen_workcell(std::move(*cell), arguments.search, {});
+    placed.problem = problem_of_arm(*placed.cell, 0);
   } else {
     placed.problem = std::get<Problem>(std::move(loaded));
     source = placed.problem.source;
@@ -155,22 +163,45 @@ std::string text_with_job(const std::string& text, const Job& job, const Movable
                         problem_of_run(moved, {stroke, false}));
 }
 
+/// Returns the text of a workcell's file with the thing moved by `offset`. Throws InputError where
+/// that moves the path of an arm in its frame, which files cannot say.
+std::string text_with_cell(const std::string& text, const Workcell& cell, const Movable& thing,
+                           const Offset& offset) {
+  const Workcell moved = placed_workcell(cell, thing, offset);
+  const std::size_t arm = moved.arms[1].waypoints != cell.arms[1].waypoints ? 1 : 0;
+  return io::with_poses(text, problem_of_arm(cell, arm), problem_of_arm(moved, arm));
+}
+
 /// Returns the problem file with the thing moved by `offset`.
 std::string text_with(const PlacedProblem& placed, const Offset& offset) {
+  if (placed.cell) return text_with_cell(placed.text, *placed.cell, placed.thing, offset);
   if (placed.job) return text_with_job(placed.text, *placed.job, placed.thing, offset);
   return io::with_poses(placed.text, placed.problem,
                         placed_problem(placed.problem, placed.thing, offset));
 }
 
+/// Returns a placement that moves the thing along every axis of the grid.
+Offset offset_along_all(const PlacementGrid& grid) {
+  Offset everywhere{};
+  for (const PlacementAxis& axis : grid.axes())
+    everywhere[static_cast<std::size_t>(axis.coordinate)] = axis.from != 0 ? axis.from : axis.to;
+  return everywhere;
+}
+
+/// Throws InputError if the paths of a workcell cannot be moved along the axes of the grid.
+void require_movable(const PlacedProblem& placed, const PlacementGrid& grid) {
+  if (!placed.cell) return;
+  try {
+    static_cast<void>(placed_workcell(*placed.cell, placed.thing, offset_along_all(grid)));
+  } catch (const InvalidArgument& error) {
+    throw InputError(std::string("--") + error.what());
+  }
+}
+
 /// Throws InputError if --write could not write the best placement, before it is sought: writes, to
 /// nowhere, a placement that moves the thing along every axis of the grid.
 void require_writable(const PlacedProblem& placed, const PlacementGrid& grid) {
-  in_the_name_of("--write", [&] {
-    Offset everywhere{};
-    for (const PlacementAxis& axis : grid.axes())
-      everywhere[static_cast<std::size_t>(axis.coordinate)] = axis.from != 0 ? axis.from : axis.to;
-    return text_with(placed, everywhere);
-  });
+  in_the_name_of("--write", [&] { return text_with(placed, offset_along_all(grid)); });
 }
 
 /// Returns the record of this run, which a shard's results begin with, but for the held joints.
@@ -185,6 +216,14 @@ io::ShardRecord record_of(const PlaceArguments& arguments, const PlacedProblem& 
       "swivel plan " + quoted(arguments.problem) + arguments.search.words()};
   arguments.request.note(record.settings);
   return record;
+}
+
+/// Returns a planner of the placements. `robot`: the prepared one of a problem or job.
+PlacementPlanner planner_of(const PlacedProblem& placed, std::shared_ptr<const PreparedRobot> robot,
+                            const PlanOptions& options) {
+  if (placed.cell) return {*placed.cell, placed.thing, options};
+  if (placed.job) return {std::move(robot), *placed.job, placed.thing, options};
+  return {std::move(robot), placed.problem, placed.thing, options};
 }
 
 /// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
@@ -292,6 +331,7 @@ int run(const PlaceArguments& arguments) {
   const AskedPlacements asked = asked_placements(arguments);
   require_options_agree(arguments);
   const PlacedProblem placed = load_problem(arguments);
+  require_movable(placed, asked.grid);
   if (!arguments.write.empty()) require_writable(placed, asked.grid);
   require_drawable(arguments.request, arguments.svg);
   io::ShardRecord record = record_of(arguments, placed, asked.shard);
@@ -300,12 +340,11 @@ int run(const PlaceArguments& arguments) {
 
   catch_interrupts();
   const auto begun = std::chrono::steady_clock::now();
-  const auto prepared = std::make_shared<const PreparedRobot>(placed.problem);
-  record.held = prepared->arm().held;
+  const auto prepared =
+      placed.cell ? nullptr : std::make_shared<const PreparedRobot>(placed.problem);
+  record.held = placed.cell ? held_joints(*placed.cell) : prepared->arm().held;
   warn_of_held(record.held);
-  PlacementPlanner planner =
-      placed.job ? PlacementPlanner(prepared, *placed.job, placed.thing, options)
-                 : PlacementPlanner(prepared, placed.problem, placed.thing, options);
+  PlacementPlanner planner = planner_of(placed, prepared, options);
   const std::vector<PlacementRow> rows = plan_placements(planner, asked, arguments.refine_grid);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -316,7 +355,7 @@ int run(const PlaceArguments& arguments) {
   std::snprintf(rate, sizeof rate, "; %.1f s, %.0f a second", seconds,
                 static_cast<double>(rows.size()) / seconds);
   PlacementScene scene;
-  if (outputs.wants("--report") && !placed.job)
+  if (outputs.wants("--report") && placed.has_one_path())
     scene = {prepared.get(), &placed.problem, placed.thing,
              planner.trajectories(cells_on_page(rows, asked.criteria)),
              ends_on_page(planner, rows)};
@@ -334,7 +373,7 @@ void add_place(CLI::App& app, int& exit_code) {
       "place", "Plan many placements of the part, the path or the robot: where should it stand?");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<PlaceArguments>();
-  command->add_option("problem", arguments->problem, "problem file, or job")->required();
+  command->add_option("problem", arguments->problem, "problem file, job or workcell")->required();
   arguments->request.placement.add_to(*command,
                                       ": FROM:TO:STEP, or a number; with --sample FROM:TO");
   command->add_option("--sample", arguments->request.sample,

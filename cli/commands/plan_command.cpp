@@ -381,27 +381,25 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
 /// Plans a workcell and writes and prints the answer.
 int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                      std::optional<io::OutputFiles>& outputs) {
-  const bool moved =
-      arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
   refuse_options("workcells", arguments.problem,
                  {{!arguments.trace.empty(), "--trace"},
                   {arguments.map, "--map"},
                   {!arguments.map_svg.empty(), "--map-svg"},
-                  {arguments.full_map, "--full-map"},
-                  {moved, "--episode and placements"}});
+                  {arguments.full_map, "--full-map"}});
   if (!arguments.report.empty()) require_pages();
   if (!arguments.certificate.empty() && (arguments.refine || arguments.motion.speed))
     throw InputError(
         "--certificate: is of the workcell as its file has it: allowed without --refine and "
         "--speed, which ask for more");
-  WorkcellRequest request{.cell = std::get<Workcell>(std::move(file.what)),
+  WorkcellRequest request{.cell = chosen_workcell(std::get<Workcell>(std::move(file.what)),
+                                                  arguments.search, arguments.episode),
                           .options = arguments.search.plan_options(),
                           .refine = arguments.refine,
                           .out = arguments.out,
+                          .which = arguments.episode.words(),
                           .report = !arguments.report.empty(),
                           .quiet = arguments.quiet,
                           .load_ms = file.load_ms};
-  for (WorkcellArm& arm : request.cell.arms) arguments.search.apply(arm);
   request.timing = arguments.motion.asked_timing({});
   if (request.timing) {
     require_motion_format(arguments.out);
@@ -515,6 +513,11 @@ void EpisodeChoice::require_both_or_neither() const {
 Job EpisodeChoice::apply(const Job& job) const {
   require_both_or_neither();
   return placement.apply(seed ? episode_job(job, *seed, *episode) : job);
+}
+
+Workcell EpisodeChoice::apply(const Workcell& cell) const {
+  require_both_or_neither();
+  return placement.apply(seed ? episode_workcell(cell, *seed, *episode) : cell);
 }
 
 Problem EpisodeChoice::apply(const Problem& problem) const {

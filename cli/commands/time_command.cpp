@@ -59,12 +59,8 @@ int run_on_job(const TimeArguments& arguments, const Job& job,
 
 int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
                     std::optional<io::InputFiles>& noted) {
-  const bool moved =
-      arguments.episode.seed || arguments.episode.episode || arguments.episode.placement.given();
-  refuse_options("workcells", file.source,
-                 {{arguments.refine, "--refine"}, {moved, "--episode and placements"}});
-  Workcell cell = file;
-  for (WorkcellArm& arm : cell.arms) arguments.lattice.apply(arm);
+  refuse_options("workcells", file.source, {{arguments.refine, "--refine"}});
+  Workcell cell = chosen_workcell(file, arguments.lattice, arguments.episode);
   const WorkcellTimeRequest request{.timing = arguments.motion.timing(limits_of_speeds(cell)),
                                     .cell = std::move(cell),
                                     .trajectory = arguments.trajectory,

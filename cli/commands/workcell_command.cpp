@@ -163,7 +163,7 @@ std::optional<std::string> page_of(const WorkcellRequest& request, const Prepare
     const WorkcellMotion* motion = timing && timing->motion ? &*timing->motion : nullptr;
     return to_workcell_page({prepared, request.cell, plan.result, view, motion},
                             io::to_workcell_json(plan.result, extras_of(request, answer)), budget,
-                            {.which = "", .answer = plan_text(answer)});
+                            {.which = request.which, .answer = plan_text(answer)});
   } catch (const Stopped&) {
     plan.result.warnings.push_back("stopped before the page was made: there is no report");
     return std::nullopt;

@@ -18,6 +18,7 @@ struct WorkcellRequest {
   std::optional<double> advise_s{};       ///< s, time for all trials of --advise
   bool refine = false;                    ///< --refine
   std::string out{};                      ///< --out; its ending tells the format of a motion
+  std::string which{};                    ///< episode in words, for the page; "" if none is chosen
   bool report = false;                    ///< whether the page of --report is made
   bool quiet = false;
   double load_ms = 0;  ///< time that loading took

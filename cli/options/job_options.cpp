@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options/job_options.hpp"
 
+#include <algorithm>
+
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::cli {
@@ -24,6 +27,34 @@ Job chosen_job(Job job, const LatticeOptions& lattice, const EpisodeChoice& epis
   job = episode.apply(job);
   for (Stroke& stroke : job.strokes) lattice.apply(stroke);
   return job;
+}
+
+Workcell chosen_workcell(Workcell cell, const LatticeOptions& lattice,
+                         const EpisodeChoice& episode) {
+  cell = episode.apply(cell);
+  for (WorkcellArm& arm : cell.arms) lattice.apply(arm);
+  return cell;
+}
+
+Problem problem_of_arm(const Workcell& cell, std::size_t arm) {
+  Problem problem;
+  static_cast<Robot&>(problem) = cell.arms[arm];
+  static_cast<Task&>(problem) = cell.arms[arm];
+  problem.scene = cell.scene;
+  problem.vary = cell.vary;
+  problem.source = cell.source;
+  return problem;
+}
+
+std::vector<HeldJoint> held_joints(const Workcell& cell) {
+  std::vector<HeldJoint> held;
+  for (const WorkcellArm& arm : cell.arms)
+    for (const HeldJoint& joint :
+         build_arm(*arm.model, arm.base_link, arm.tip_link, arm.hold, arm.tool, arm.roll).held)
+      if (std::none_of(held.begin(), held.end(),
+                       [&](const HeldJoint& known) { return known.name == joint.name; }))
+        held.push_back(joint);
+  return held;
 }
 
 }  // namespace swivel::cli

@@ -117,6 +117,17 @@ Job PlacementOptions::apply(const Job& job) const {
   return placed_job(job, what, one_offset());
 }
 
+Workcell PlacementOptions::apply(const Workcell& cell) const {
+  if (!any()) return cell;
+  const Movable what = thing(cell.scene, cell.source);
+  const Offset offset = one_offset();
+  try {
+    return placed_workcell(cell, what, offset);
+  } catch (const InvalidArgument& error) {
+    throw InputError(std::string("--") + error.what());
+  }
+}
+
 Offset PlacementOptions::one_offset() const {
   Offset offset{};
   for (const PlacementAxis& axis : axes()) {

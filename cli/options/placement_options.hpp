@@ -25,10 +25,11 @@ struct PlacementOptions {
   /// Lists the coordinates that are given, in the order of kCoordinates: FROM:TO:STEP, FROM:TO
   /// (count 0) or a number (count 1). Throws InputError.
   [[nodiscard]] std::vector<PlacementAxis> axes() const;
-  /// Returns the problem or job with one thing moved by one number for each given coordinate; the
-  /// problem or job itself if nothing is named. Throws InputError.
+  /// Returns the problem, job or workcell with one thing moved by one number for each given
+  /// coordinate; itself if nothing is named. Throws InputError.
   [[nodiscard]] Problem apply(const Problem& problem) const;
   [[nodiscard]] Job apply(const Job& job) const;
+  [[nodiscard]] Workcell apply(const Workcell& cell) const;
   /// Returns true if a thing or a coordinate is named.
   [[nodiscard]] bool given() const { return any(); }
   /// Returns the words of a command line that ask for one placement, with a space before each.
