@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Jobs as Python holds them.
+// Jobs and workcells as Python holds them.
 #pragma once
 #include <memory>
 #include <optional>
@@ -9,8 +9,14 @@
 
 #include "bindings.hpp"
 #include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/workcell.hpp"
 
 namespace swivel::python {
+
+/// A workcell. It does not change.
+struct Workcell {
+  std::shared_ptr<const swivel::Workcell> cell;  // shared with plans
+};
 
 /// A stroke of a job. What is unset is as the job says, as in a problem file.
 struct Stroke {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Jobs and their answers as bytes, for pickle, as archive.hpp has those of problems.
+// Jobs and their answers, and workcells, as bytes, for pickle, as archive.hpp has those of
+// problems.
 #pragma once
 #include "archive.hpp"
 #include "job_results.hpp"
@@ -49,6 +50,21 @@ void serialize(A& archive, Job& x) {
   static_assert(sizeof(Listed) == sizeof(Job));
   archive(static_cast<Robot&>(x), x.source, x.scene, x.vary, x.strokes, x.limits, x.home, x.order,
           x.process_speed, x.approach_speed, x.rapid, x.lift);
+}
+/// Lists the members of a WorkcellArm and of its bases.
+template <class A>
+void serialize(A& archive, WorkcellArm& x) {
+  struct Listed : Robot, Task {
+    std::string name;
+    std::vector<Config> given;
+  };
+  static_assert(sizeof(Listed) == sizeof(WorkcellArm));
+  archive(static_cast<Robot&>(x), static_cast<Task&>(x), x.name, x.given);
+}
+template <class A>
+void serialize(A& archive, Workcell& x) {
+  auto& [source, arms, scene, vary, may_touch] = x;
+  archive(source, arms, scene, vary, may_touch);
 }
 template <class A>
 void serialize(A& archive, StrokeRun& x) {
@@ -160,6 +176,11 @@ template <class A>
 void serialize(A& archive, JobPart& x) {
   auto& [rows, joint_names, stroke, reversed, cost, barred_by, process] = x;
   archive(rows, joint_names, stroke, reversed, cost, barred_by, process);
+}
+template <class A>
+void serialize(A& archive, Workcell& x) {
+  auto& [cell] = x;
+  archive(cell);
 }
 template <class A>
 void serialize(A& archive, JobRun& x) {

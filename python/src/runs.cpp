@@ -358,8 +358,8 @@ class Cells {
   std::uint64_t seed_;
 };
 
-/// What is planned many times: a problem, or a job.
-using Planned = std::variant<Problem, swivel::Job>;
+/// What is planned many times: a problem, a job or a workcell.
+using Planned = std::variant<Problem, swivel::Job, swivel::Workcell>;
 
 Planned to_planned(const Problem& problem) {
   return problem;
@@ -369,11 +369,17 @@ Planned to_planned(const Job& job) {
   return to_core(job);
 }
 
-/// Returns a robot for all plans of a problem or a job.
+Planned to_planned(const Workcell& cell) {
+  return *cell.cell;
+}
+
+/// Returns a robot for all plans of a problem or a job; null for a workcell, each plan of which
+/// prepares both arms.
 std::shared_ptr<const PreparedRobot> prepare(const Planned& planned, const std::stop_token& stop) {
   const Budget budget({}, nullptr, stop);
   if (const auto* const job = std::get_if<swivel::Job>(&planned))
     return std::make_shared<const PreparedRobot>(problem_of_run(*job, {0, false}), budget);
+  if (std::holds_alternative<swivel::Workcell>(planned)) return nullptr;
   return std::make_shared<const PreparedRobot>(std::get<Problem>(planned), budget);
 }
 
@@ -387,6 +393,8 @@ class Placer {
         options_(to_plan_options(planner, threads, timeout)) {
     if (const auto* const job = std::get_if<swivel::Job>(&planned_))
       static_cast<void>(placed_job(*job, thing_, {}));
+    else if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
+      static_cast<void>(placed_workcell(*cell, thing_, {}));
     else
       static_cast<void>(placed_problem(std::get<Problem>(planned_), thing_, {}));
   }
@@ -411,8 +419,12 @@ class Placer {
         PlanOptions options = options_;
         options.stop = stop_.get_token();
         const auto robot = prepare(planned_, stop);
-        std::visit([&](const auto& what) { planner_.emplace(robot, what, thing_, options); },
-                   planned_);
+        if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
+          planner_.emplace(*cell, thing_, options);
+        else if (const auto* const job = std::get_if<swivel::Job>(&planned_))
+          planner_.emplace(robot, *job, thing_, options);
+        else
+          planner_.emplace(robot, std::get<Problem>(planned_), thing_, options);
       }
       const std::stop_callback pass_on(stop, [&] { stop_.request_stop(); });
       return planner_->plan(wanted, done);
@@ -458,9 +470,12 @@ class Campaigner {
                         const py::gil_scoped_acquire gil;
                         each(to_table(std::vector{row}, coordinates));
                       };
-                      std::visit(
-                          [&](const auto& what) { run_campaign(*robot_, what, options, row_done); },
-                          planned_);
+                      if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
+                        run_campaign(*cell, options, row_done);
+                      else if (const auto* const job = std::get_if<swivel::Job>(&planned_))
+                        run_campaign(*robot_, *job, options, row_done);
+                      else
+                        run_campaign(*robot_, std::get<Problem>(planned_), options, row_done);
                       return rows;
                     }),
                     coordinates);
@@ -504,18 +519,21 @@ void bind_parts(py::module_& m) {
   py::class_<Placer>(m, "_Placer")
       .def(placer_of<Problem>())
       .def(placer_of<Job>())
+      .def(placer_of<Workcell>())
       .def("plan", &Placer::plan)
       .def_property_readonly("stopped", &Placer::stopped);
   py::class_<Campaigner>(m, "_Campaigner")
       .def(campaigner_of<Problem>())
       .def(campaigner_of<Job>())
+      .def(campaigner_of<Workcell>())
       .def("plan",
            [](Campaigner& self, std::uint64_t index, std::uint64_t count, const py::object& each) {
              return self.plan({index, count}, each);
            });
-  m.def("_load_problem_or_job", [](const std::filesystem::path& file) {
-    auto read =
-        interruptible([&](const std::stop_token&) { return io::load_problem_or_job(file); });
+  m.def("_load_problem_file", [](const std::filesystem::path& file) {
+    auto read = interruptible([&](const std::stop_token&) { return io::load_problem_file(file); });
+    if (auto* const cell = std::get_if<swivel::Workcell>(&read))
+      return py::cast(Workcell{std::make_shared<const swivel::Workcell>(std::move(*cell))});
     if (auto* const job = std::get_if<swivel::Job>(&read))
       return py::cast(from_core(std::move(*job)));
     return py::cast(std::get<Problem>(std::move(read)));

@@ -8,8 +8,11 @@
 #include <variant>
 
 #include "interruptible.hpp"
+#include "job.hpp"
+#include "job_archive.hpp"
 #include "plan_keywords.hpp"
 #include "results.hpp"
+#include "runs.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/problem/workcell.hpp"
@@ -24,11 +27,6 @@
 namespace swivel::python {
 
 namespace {
-
-/// A workcell as Python holds it. It does not change.
-struct Workcell {
-  std::shared_ptr<const swivel::Workcell> cell;  // shared with plans
-};
 
 struct WorkcellPlan {
   std::shared_ptr<const WorkcellMotionPlan> plan;  // shared with trajectories
@@ -46,6 +44,10 @@ std::shared_ptr<const swivel::Workcell> to_core(const WorkcellOrFile& cell) {
   if (const auto* made = std::get_if<const Workcell*>(&cell)) return (*made)->cell;
   return std::make_shared<const swivel::Workcell>(
       io::load_workcell(std::get<std::filesystem::path>(cell)));
+}
+
+Workcell shared(swivel::Workcell cell) {
+  return {std::make_shared<const swivel::Workcell>(std::move(cell))};
 }
 
 /// Returns true if two scenes have objects of the same names at the same places.
@@ -259,6 +261,25 @@ void bind_cell(py::module_& m) {
       .def_property_readonly(
           "names", [](const Workcell& w) { return names_of(*w.cell); }, "Names of both arms.")
       .def_property_readonly("source", [](const Workcell& w) { return w.cell->source; })
+      .def(
+          "placed",
+          [](const Workcell& w, const Offset& offset, const std::optional<std::string>& object,
+             bool path, bool base) {
+            return shared(placed_workcell(*w.cell, to_movable(object, path, base), offset));
+          },
+          py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
+          py::arg("base") = false,
+          "The workcell of one placement: an object of the scene with the paths on it, the paths "
+          "of both arms (a follower's with its leader's tool) or the robot moved by x y z (m) roll "
+          "pitch yaw (rad) in the base frame, about its own origin.")
+      .def(
+          "episode",
+          [](const Workcell& w, std::uint64_t seed, std::uint64_t episode) {
+            return shared(episode_workcell(*w.cell, seed, episode));
+          },
+          py::arg("seed"), py::arg("episode"),
+          "The workcell of this episode of a campaign: objects moved as the file's `vary` says.")
+      .def(pickling<Workcell>())
       .def("__repr__", [](const Workcell& w) {
         const std::size_t of = w.cell->given_arm() == 0u ? 1 : 0;
         return formatted("<Workcell of '%s' and '%s', %zu waypoints>", w.cell->arms[0].name.c_str(),
@@ -266,9 +287,7 @@ void bind_cell(py::module_& m) {
       });
   m.def(
       "load_workcell",
-      [](const std::filesystem::path& file) {
-        return Workcell{std::make_shared<const swivel::Workcell>(io::load_workcell(file))};
-      },
+      [](const std::filesystem::path& file) { return shared(io::load_workcell(file)); },
       py::arg("file"), "A problem file with `arms`, docs/formats.md. Raises InputError.");
 }
 

@@ -14,8 +14,8 @@ columns.
     else:
         print(plan.diagnosis.cause)
 
-A job of many strokes is loaded by load_job() and planned by plan_job(); place() and campaign() take
-problems and jobs. Two arms are loaded by load_workcell() and planned by plan_workcell().
+A job of many strokes is loaded by load_job() and planned by plan_job(); Two arms are loaded by
+load_workcell() and planned by plan_workcell(). place() and campaign() take all three.
 """
 import os as _os
 

@@ -1225,6 +1225,8 @@ class Workcell:
     def names(self) -> list[str]: ...
     @property
     def source(self) -> str: ...
+    def placed(self, offset: ArrayLike, *, object: str | None = None, path: bool = False, base: bool = False) -> Workcell: ...
+    def episode(self, seed: int, episode: int) -> Workcell: ...
 
 class WorkcellPlan:
     @property
@@ -1442,7 +1444,7 @@ class Episodes:
 
 # `client` is a dask.distributed.Client.
 def place(
-    problem: Problem | Job | _File,
+    problem: Problem | Job | Workcell | _File,
     *,
     object: str | None = None,
     path: bool = False,
@@ -1464,7 +1466,7 @@ def place(
     client: Any = None,
 ) -> Placements: ...
 def campaign(
-    problem: Problem | Job | _File,
+    problem: Problem | Job | Workcell | _File,
     *,
     episodes: int = 100,
     seed: int = 1,

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes many plans of one problem or job (placements, campaigns), here or on workers of a Dask
-cluster."""
+"""Makes many plans of one problem, job or workcell (placements, campaigns).
+
+They are made here or on workers of a Dask cluster.
+"""
 import contextlib
 import functools
 import os
@@ -37,10 +39,11 @@ def place(
 
     Does what `swivel place` does.
 
-    problem: a Problem, a Job, or the name of a file of either. object (a name of the scene), path,
-    base: what is moved; exactly one of the three; with path, the paths of all strokes of a job. x,
-    y, z (m), roll, pitch, yaw (rad): by how much it is moved, in the base frame, where turns are
-    about the thing's own origin: a number, or (from, to, step).
+    problem: a Problem, a Job, a Workcell, or the name of a file of one. object (a name of the
+    scene), path, base: what is moved; exactly one of the three; with path, the paths of all strokes
+    of a job, or of both arms of a workcell. x, y, z (m), roll, pitch, yaw (rad): by how much it is
+    moved, in the base frame, where turns are about the thing's own origin: a number, or (from, to,
+    step).
     sample: number of placements drawn at random, by seed, between from and to instead of a grid.
     refine_grid: plan a coarse grid first, then cells between neighbours of unlike verdict and
     beside the best: a third of the cells at most. best: one or several of 'cost', 'clearance',
@@ -53,8 +56,9 @@ def place(
 
     Returns Placements in the order of their numbers; the rows are the same at any number of
     threads, workers and batches. Clearances, margins and speeds of a job's rows are those of its
-    strokes. Rows have no trajectories: plan(problem.placed(row.offset, base=True)), or plan_job()
-    of a job placed so, has that of a row. Raises InvalidArgument, InputError and TypeError; Ctrl-C
+    strokes, those of a workcell's the least of both arms. Rows have no trajectories:
+    plan(problem.placed(row.offset, base=True)), or plan_job() of a job or plan_workcell() of a
+    workcell placed so, has that of a row. Raises InvalidArgument, InputError and TypeError; Ctrl-C
     raises KeyboardInterrupt, whose attribute `rows` is the Placements known so far.
     """
     problem = _loaded(problem)
@@ -109,15 +113,15 @@ def place(
 def campaign(
     problem, *, episodes=100, seed=1, planner="parallel", threads=0, progress=None, client=None
 ):
-    """Plans many episodes: the problem or job with the objects of its `vary` at random poses.
+    """Plans many episodes: the problem, job or workcell with its `vary` at random poses.
 
     Does what `swivel campaign` does.
 
-    problem: a Problem, a Job, or the name of a file of either. episodes: how many. seed: of the
-    random poses; Problem.episode(seed, k), or Job.episode(seed, k), is the k-th episode. planner: a
-    PlannerKind or its name. threads: 0 for all cores. progress(episodes, done, of): called with new
-    rows, the number of rows so far, and the number of all rows. client: a dask.distributed.Client,
-    as for place().
+    problem: a Problem, a Job, a Workcell, or the name of a file of one. episodes: how many. seed:
+    of the random poses; Problem.episode(seed, k), as of jobs and workcells, is the k-th episode.
+    planner: a PlannerKind or its name. threads: 0 for all cores. progress(episodes, done, of):
+    called with new rows, the number of rows so far, and the number of all rows. client: a
+    dask.distributed.Client, as for place().
 
     Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any
     number of threads and workers. Raises InvalidArgument, InputError and TypeError; Ctrl-C raises
@@ -154,12 +158,13 @@ def _known_rows(table, parts):
 
 
 def _loaded(problem):
-    """Returns the Problem or Job that is given, or that the file has."""
+    """Returns the Problem, Job or Workcell that is given, or that the file has."""
     if isinstance(problem, (str, os.PathLike)):
-        return _swivel._load_problem_or_job(problem)
-    if not isinstance(problem, (_swivel.Problem, _swivel.Job)):
+        return _swivel._load_problem_file(problem)
+    if not isinstance(problem, (_swivel.Problem, _swivel.Job, _swivel.Workcell)):
         raise TypeError(
-            f"problem: {type(problem).__name__}: allowed are a Problem, a Job, or a file of either"
+            f"problem: {type(problem).__name__}: allowed are a Problem, a Job, a Workcell, or a "
+            "file of one"
         )
     return problem
 

@@ -604,7 +604,9 @@ class JobStudies(unittest.TestCase):
             self.assertNotIn("\n", str(caught.exception))
         for wrong in (None, 3, job.robot, [job]):
             for study in (lambda of: swivel.place(of, base=True, x=0), swivel.campaign):
-                with self.assertRaisesRegex(TypeError, "allowed are a Problem, a Job, or a file"):
+                with self.assertRaisesRegex(
+                    TypeError, "allowed are a Problem, a Job, a Workcell, or a file"
+                ):
                     study(wrong)
 
 

@@ -3,6 +3,8 @@
 # the data folder.
 import json
 import os
+import pickle
+import re
 import subprocess
 import sys
 import tempfile
@@ -13,6 +15,7 @@ import numpy as np
 import swivel
 
 PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
+BAR = DATA / "problems" / "sda10f_bar_workcell.yaml"
 PLATE = DATA / "problems" / "sda10f_plate_workcell.yaml"
 
 
@@ -219,6 +222,102 @@ class Workcells(unittest.TestCase):
             swivel.plan_workcell(PLATE, planner="eager")
         with self.assertRaises(ValueError):
             swivel.plan_workcell(PLATE, threads=-1)
+
+
+class WorkcellStudies(unittest.TestCase):
+    """Placements and campaigns of workcells: rows are those of the program, and of plans."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        # the bar's workcell on a coarse lattice, with things that vary
+        text = BAR.read_text().replace("../", f"{DATA}/")
+        text = re.sub(r"^resolution:.*$", "resolution: {ds: 0.02, dphi: 0.2}", text, flags=re.M)
+        self.assertIn("ds: 0.02", text)
+        text += (
+            "scene:\n  - {name: post, cylinder: {radius: 0.03, length: 0.6}, "
+            "xyz: [0.55, 0.5, 1.0]}\nvary:\n  - {object: post, xyz: [0.1, 0.5, 0]}\n"
+        )
+        self.file = self.folder / "cell.yaml"
+        self.file.write_text(text)
+
+    def table(self, command, *arguments):
+        out = self.folder / "out.csv"
+        done = subprocess.run(
+            [PROGRAM, command, self.file, *arguments, "--out", out], capture_output=True, text=True
+        )
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        return out.read_text()
+
+    def saved(self, table):
+        table.save(self.folder / "saved.csv")
+        return (self.folder / "saved.csv").read_text()
+
+    @staticmethod
+    def without_time(text):
+        return [[*line.split(",")[:3], *line.split(",")[4:]] for line in text.splitlines()]
+
+    def test_placements(self):
+        cell = swivel.load_workcell(self.file)
+        for arguments, keywords in (
+            (("--path", "--x", "-0.1:0.2:0.15", "--y", "-0.2:0.2:0.2"),
+             {"path": True, "x": (-0.1, 0.2, 0.15), "y": (-0.2, 0.2, 0.2)}),
+            (("--base", "--x", "-1:1", "--sample", "6", "--seed", "4"),
+             {"base": True, "x": (-1, 1), "sample": 6, "seed": 4}),
+            (("--object", "post", "--y", "-0.6:0:0.1", "--refine-grid"),
+             {"object": "post", "y": (-0.6, 0, 0.1), "refine_grid": True}),
+        ):
+            wanted = self.table("place", *arguments)
+            for threads in (1, 2):
+                rows = swivel.place(cell, threads=threads, **keywords)
+                self.assertEqual(self.saved(rows), wanted)
+            self.assertTrue(0 < rows.solved.sum() < len(rows), rows)
+            thing, moved = next(iter(keywords.items()))
+            for row in rows:
+                plan = swivel.plan_workcell(cell.placed(row.offset, **{thing: moved}))
+                self.assertEqual(plan.status, row.status)
+                if row.solved:
+                    self.assertEqual(plan.cost, row.cost)
+        self.assertEqual(self.saved(swivel.place(self.file, **keywords)), wanted)
+
+    def test_campaigns(self):
+        cell = swivel.load_workcell(self.file)
+        wanted = self.table("campaign", "--episodes", "8", "--seed", "2")
+        for what, threads in ((cell, 1), (self.file, 2)):
+            rows = swivel.campaign(what, episodes=8, seed=2, threads=threads)
+            self.assertEqual(self.without_time(self.saved(rows)), self.without_time(wanted))
+        self.assertTrue(0 < rows.solved.sum() < 8)
+        for k, row in enumerate(rows):
+            plan = swivel.plan_workcell(cell.episode(2, k))
+            self.assertEqual(plan.status, row.status)
+            self.assertEqual(plan.cost if plan.solved else None, row.cost)
+            self.assertEqual(bool(row.reason), not row.solved)
+
+    def test_pickled(self):
+        cell = swivel.load_workcell(self.file)
+        again = pickle.loads(pickle.dumps(cell))
+        self.assertEqual(repr(again), repr(cell))
+        self.assertEqual(again.source, cell.source)
+        plan, other = swivel.plan_workcell(cell), swivel.plan_workcell(again)
+        np.testing.assert_array_equal(
+            plan.trajectories["left"].joints, other.trajectories["left"].joints
+        )
+        self.assertEqual(
+            self.without_time(self.saved(swivel.campaign(again, episodes=3))),
+            self.without_time(self.saved(swivel.campaign(cell, episodes=3))),
+        )
+
+    def test_refused(self):
+        cell = swivel.load_workcell(self.file)
+        with self.assertRaisesRegex(swivel.InvalidArgument, "'left': no such object"):
+            swivel.place(cell, object="left", x=0.1)
+        with self.assertRaisesRegex(swivel.InvalidArgument, "planner: allowed for workcells"):
+            swivel.place(cell, base=True, x=0.1, planner="eager")
+        with self.assertRaisesRegex(swivel.InvalidArgument, "exactly one"):
+            cell.placed([0.1, 0, 0, 0, 0, 0])
+        with self.assertRaisesRegex(swivel.InputError, "vary: missing"):
+            swivel.campaign(PLATE, episodes=2)
 
 
 if __name__ == "__main__":

@@ -49,9 +49,8 @@ Workcell cell_with_scene(Random& random, bool follows) {
   cell.scene.push_back(object("table", Box{Vector3d(0.05, 0.05, 0.02)},
                               Vector3d(1.1, random.uniform(-0.1, 0.1), 0.6)));
   cell.scene[0].pose.linear() = from_rpy({0.1, -0.2, 0.3}).toRotationMatrix();
-  cell.scene.push_back(
-      object("post", Cylinder{0.03, 0.4},
-             Vector3d(random.uniform(0.4, 0.7), random.uniform(-0.6, 0.6), 0.8)));
+  cell.scene.push_back(object("post", Cylinder{0.03, 0.4},
+                              Vector3d(random.uniform(0.4, 0.7), random.uniform(-0.6, 0.6), 0.8)));
   if (follows) {
     const Vector3d middle(random.uniform(0.62, 0.72), random.uniform(0.15, 0.25), 1.05);
     const double width = random.uniform(0.35, 0.45);
@@ -135,8 +134,8 @@ TEST(WorkcellPlacements, EachRowIsThatOfThePlacedWorkcellAtAnyThreadCount) {
     SCOPED_TRACE(trial);
     const bool follows = trial % 4 >= 2;
     const Workcell cell = cell_with_scene(random, follows);
-    const Movable thing = kThings[static_cast<std::size_t>(
-        trial % 4 == 0 ? random.below(4) : trial % 4)];
+    const Movable thing =
+        kThings[static_cast<std::size_t>(trial % 4 == 0 ? random.below(4) : trial % 4)];
     // paths in two frames are not turned alike
     const bool turns = thing.kind != Movable::Kind::kPath || follows;
     const PlacementGrid grid(
@@ -184,8 +183,8 @@ Pose moved(const Pose& pose, const Offset& offset, const Vector3d& origin) {
   const Matrix3d turn = from_rpy({offset[3], offset[4], offset[5]}).toRotationMatrix();
   Pose result = Pose::Identity();
   result.linear() = turn * pose.linear();
-  result.translation() = origin + turn * (pose.translation() - origin) +
-                         Vector3d(offset[0], offset[1], offset[2]);
+  result.translation() =
+      origin + turn * (pose.translation() - origin) + Vector3d(offset[0], offset[1], offset[2]);
   return result;
 }
 
@@ -231,15 +230,15 @@ TEST(PlacedWorkcell, MovesWhatGoesWithTheThing) {
     for (std::size_t i = 0; i < 2; ++i) {
       const Pose& was = cell.scene[i].pose;
       const bool moves = thing.object == cell.scene[i].name;
-      expect_near(placed.scene[i].pose,
-                  seen(moves ? moved(was, offset, was.translation()) : was), "object");
+      expect_near(placed.scene[i].pose, seen(moves ? moved(was, offset, was.translation()) : was),
+                  "object");
     }
     for (std::size_t k = 0; k < 2; ++k) {
       const auto was = in_base(cell, k), is = in_base(placed, k);
       ASSERT_EQ(is.size(), was.size());
       const bool on_table = cell.arms[k].path_frame == "table", on_tool = k == 1 && follows;
-      const bool moves = !on_tool && (thing.kind == Movable::Kind::kPath ||
-                                      (thing.object == "table" && on_table));
+      const bool moves =
+          !on_tool && (thing.kind == Movable::Kind::kPath || (thing.object == "table" && on_table));
       const Vector3d origin = on_table ? table : Vector3d(0, 0, 0);
       for (std::size_t i = 0; i < is.size(); ++i, ++compared) {
         const Pose stays = on_tool ? was[i] : seen(was[i]);
@@ -393,8 +392,8 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
       EXPECT_EQ(rows[k].reason.empty(), result.status == PlanStatus::kSolved);
       if (result.status != PlanStatus::kSolved) continue;
       EXPECT_EQ(*rows[k].cost, result.arms[0].cost + result.arms[1].cost);
-      EXPECT_EQ(rows[k].nodes_checked, result.arms[0].counters.nodes_checked +
-                                           result.arms[1].counters.nodes_checked);
+      EXPECT_EQ(rows[k].nodes_checked,
+                result.arms[0].counters.nodes_checked + result.arms[1].counters.nodes_checked);
       EXPECT_GT(*rows[k].tool_path_error_mm_mean, 0);
       EXPECT_LT(*rows[k].tool_path_error_mm_mean, *rows[k].tool_path_error_mm_max);
     }
