@@ -14,6 +14,7 @@
 #include "options/search_options.hpp"
 #include "output/check_output.hpp"
 #include "output/workcell_output.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -104,7 +105,7 @@ void find_advice(const WorkcellRequest& request, std::chrono::steady_clock::time
 std::string plan_text(const WorkcellAnswer& answer) {
   const WorkcellMotionPlan& plan = answer.plan;
   const WorkcellResult& result = plan.result;
-  std::string text = workcell_text(result);
+  std::string text = answer_text(result);
   if (answer.advice) text += advice_text(*answer.advice);
   if (plan.refinement) text += refined_workcell_text(*plan.refinement, result.names);
   if (plan.timing)

@@ -10,10 +10,6 @@
 
 namespace swivel::cli {
 
-/// Returns the answer of a workcell for people: what both arms do together, then a line about each
-/// arm; where there is no plan, why.
-[[nodiscard]] std::string workcell_text(const WorkcellResult& result);
-
 /// Returns what refining the arms of a workcell brought, for people. `names` are those of both
 /// arms.
 [[nodiscard]] std::string refined_workcell_text(const RefinedWorkcell& refined,

@@ -6,6 +6,7 @@
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/workcell_result.hpp"
 
 namespace swivel {
 
@@ -13,6 +14,10 @@ namespace swivel {
 /// near to, as far as that was asked for. Where there is no path, it says what ends every path,
 /// with further lines for every run of layers that are empty for one cause.
 [[nodiscard]] std::string answer_text(const PlanResult& result);
+
+/// Returns the answer of a workcell for people: what both arms do together, then a line about each
+/// arm; where there is no plan, why.
+[[nodiscard]] std::string answer_text(const WorkcellResult& result);
 
 /// Returns a line for each change that was tried, and one for those that were not, in the order
 /// given.
