@@ -59,12 +59,12 @@ int run_on_job(const TimeArguments& arguments, const Job& job,
 
 int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
                     std::optional<io::InputFiles>& noted) {
-  refuse_options("workcells", file.source, {{arguments.refine, "--refine"}});
   Workcell cell = chosen_workcell(file, arguments.lattice, arguments.episode);
   const WorkcellTimeRequest request{.timing = arguments.motion.timing(limits_of_speeds(cell)),
                                     .cell = std::move(cell),
                                     .trajectory = arguments.trajectory,
                                     .out = arguments.out,
+                                    .refine = arguments.refine,
                                     .quiet = arguments.quiet,
                                     .check = !arguments.no_check};
   return time_workcell_file(request, noted);

@@ -258,10 +258,18 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
   outputs.add("--out", request.out);
   catch_interrupts();
   std::optional<WorkcellTiming> timed;
+  std::optional<RefinedWorkcell> refined;
   try {
     timed = in_the_name_of(request.trajectory, [&] {
       const Budget budget(std::nullopt, &interrupted);
-      WorkcellTiming made = time_workcell(prepared, read.rows, request.timing, budget);
+      WorkcellTiming made;
+      if (request.refine) {
+        auto found = refine_and_time_workcell(prepared, read.rows, request.timing, budget);
+        refined = std::move(found.refinement);
+        made = std::move(found.timing);
+      } else {
+        made = time_workcell(prepared, read.rows, request.timing, budget);
+      }
       if (made.motion && request.check)
         require_passed(check_workcell_motion(prepared,
                                              {made.motion->arms[0].rows, made.motion->arms[1].rows},
@@ -279,6 +287,7 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
   deliver(outputs, timed ? "there is no motion now" : "the work was stopped", [&] {
     if (!timed) return say("stopped\n");
     if (executable && (request.quiet || outputs.takes_standard_output())) return;
+    if (refined) say_text(refined_workcell_text(*refined, {prepared.name(0), prepared.name(1)}));
     say_text(workcell_motion_text(*timed, joint_names_of(prepared),
                                   {prepared.name(0), prepared.name(1)}));
     if (executable) warn_of_motion(*timed->motion);

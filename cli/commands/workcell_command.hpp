@@ -34,6 +34,7 @@ struct WorkcellTimeRequest {
   TimingOptions timing{};
   Workcell cell{};
   std::string trajectory{}, out{};
+  bool refine = false;  ///< --refine
   bool quiet = false, check = true;
 };
 

@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -414,7 +415,7 @@ class Workcells(WithWorkcells):
 
     def test_who_refuses_workcells(self):
         file = self.file(cell())
-        done = run("time", file, "t.csv", "--speed", "0.1", "--refine")
+        done = run("info", "--pairs", file)
         self.assertEqual(done.returncode, 2)
         self.assertIn("workcell", done.stderr)
         for options in (
@@ -503,6 +504,38 @@ class Workcells(WithWorkcells):
         done = self.plan(self.given(), "--refine")
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn("beside which nothing is refined yet", done.stderr)
+
+    def test_time_refines(self):
+        """Rows of a plan without rounded corners are refined and timed as `plan` does it."""
+        cornered = cell()
+        for one, y in zip(cornered["arms"], (0.33, -0.35)):
+            one["path"]["waypoints"].append({"xyz": [0.70, y, 1.12], "rpy": [0, 1.5707963, 0]})
+        led = cell()
+        led["arms"][1]["path"] = {
+            "frame": "left", "waypoints": [{"xyz": [0, -0.45, 0]}, {"xyz": [0.02, -0.45, 0]}]
+        }
+        for problem in (cell(), cornered, led):
+            file, motion = self.file(problem), self.folder / "m.csv"
+            self.assertEqual(self.plan(problem).returncode, 0)
+            done = run("time", file, self.out, "--speed", "0.1", "--refine", "--out", motion)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            refined = re.match(r"refined: cost ([0-9.]+) before, ([0-9.]+) now, in ", done.stdout)
+            self.assertLess(float(refined[2]), float(refined[1]))
+            self.assertRegex(done.stdout, r"\n  left: joints bend by at most .*\n  right: joints ")
+            self.assertRegex(done.stdout, r"\nmotion: [0-9.]+ s at 100 mm/s ")
+            checked = run("check", file, motion)
+            self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+            planned = run("plan", file, "--speed", "0.1", "--refine", "--out", motion)
+            self.assertEqual(planned.returncode, 0, planned.stdout + planned.stderr)
+            as_planned = re.search(r"\nrefined: cost [0-9.]+ before, ([0-9.]+) now", planned.stdout)
+            self.assertAlmostEqual(float(refined[2]), float(as_planned[1]), places=2)
+            plain = run("time", file, self.out, "--speed", "0.1")
+            self.assertNotIn("refined", plain.stdout)
+        self.assertEqual(self.plan(cell()).returncode, 0)
+        (self.folder / "rows.csv").write_text(self.out.read_text())
+        done = run("time", self.file(self.given()), self.out, "--speed", "0.1", "--refine")
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("its motion is given", done.stderr)
 
     def test_formats_of_motions(self):
         file = self.file(cell())

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
+#include "swivel/planner/workcell/time_workcell.hpp"
 
 namespace swivel {
 
@@ -12,6 +15,11 @@ namespace swivel {
 /// itself, and measures nothing. Returns and throws as plan_workcell() does.
 [[nodiscard]] WorkcellResult decide_workcell(const PreparedWorkcell& prepared,
                                              const PlanOptions& options, const Budget& budget);
+/// Refines rows at the layers of both paths and times them: again with more clearance where bodies
+/// come too near between samples. Throws as refine_workcell() and time_workcell() do.
+[[nodiscard]] RefinedWorkcellMotion refine_until_timed(
+    const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const TimingOptions& options, const Budget& budget);
 /// Returns why the given motion of a workcell does not keep the limits of its arm by itself, with
 /// the row at fault; nothing where it does, or none is given. plan_workcell() refuses such a one.
 /// Throws Stopped.

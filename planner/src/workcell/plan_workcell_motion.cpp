@@ -45,21 +45,20 @@ class AfterPlan {
 
  private:
   void refine_and_time(bool refined, const std::optional<TimingOptions>& timing) {
-    constexpr double kMostExtra = 2e-3;  // m
     auto& time_ms = plan_.result.time_ms;
-    for (double extra = RefineOptions{}.extra_clearance;; extra *= 4) {
-      if (refined) {
-        Stopwatch watch;
-        plan_.refinement = refine_workcell(prepared_, planned_, budget_, extra);
-        time_ms["refine"] += watch.lap();
-      }
-      if (!timing) return;
-      plan_.timing =
-          time_workcell(prepared_, refined ? refined_rows() : planned_, *timing, budget_);
-      time_ms["time"] += plan_.timing->time_ms + plan_.timing->check_ms;
-      const auto& failure = plan_.timing->failure;
-      if (!refined || !failure || !failure->too_near || extra > kMostExtra) return;
+    if (refined && timing) {
+      RefinedWorkcellMotion found = refine_until_timed(prepared_, planned_, *timing, budget_);
+      plan_.refinement = std::move(found.refinement);
+      plan_.timing = std::move(found.timing);
+      time_ms["refine"] += found.refine_ms;
+    } else if (refined) {
+      Stopwatch watch;
+      plan_.refinement = refine_workcell(prepared_, planned_, budget_);
+      time_ms["refine"] += watch.lap();
+    } else {
+      plan_.timing = time_workcell(prepared_, planned_, *timing, budget_);
     }
+    if (timing) time_ms["time"] += plan_.timing->time_ms + plan_.timing->check_ms;
   }
   [[nodiscard]] RowsOfBoth refined_rows() const {
     return {plan_.refinement->arms[0].rows, plan_.refinement->arms[1].rows};
@@ -114,6 +113,24 @@ class AfterPlan {
 };
 
 }  // namespace
+
+RefinedWorkcellMotion refine_until_timed(const PreparedWorkcell& prepared, const RowsOfBoth& rows,
+                                         const TimingOptions& options, const Budget& budget) {
+  constexpr double kMostExtra = 2e-3;  // m
+  RefinedWorkcellMotion found;
+  for (double extra = RefineOptions{}.extra_clearance;; extra *= 4) {
+    Stopwatch watch;
+    found.refinement = refine_workcell(prepared, rows, budget, extra);
+    found.refine_ms += watch.lap();
+    const double time_ms = found.timing.time_ms, check_ms = found.timing.check_ms;
+    found.timing = time_workcell(
+        prepared, {found.refinement.arms[0].rows, found.refinement.arms[1].rows}, options, budget);
+    found.timing.time_ms += time_ms;
+    found.timing.check_ms += check_ms;
+    const auto& failure = found.timing.failure;
+    if (!failure || !failure->too_near || extra > kMostExtra) return found;
+  }
+}
 
 WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
                                         const PlanOptions& options, bool refined,

@@ -17,9 +17,11 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/timing/time_arms.hpp"
 #include "swivel/core/timing/time_path.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "verify/between_samples.hpp"
+#include "workcell/plan_and_measure.hpp"
 #include "workcell/timed_workcell.hpp"
 
 namespace swivel {
@@ -355,6 +357,21 @@ WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
     throw InvalidArgument("TimingOptions: speeds: allowed for workcells are none");
   require_motion_defaults(prepared);
   return WorkcellTimer(prepared, rows, options, budget).run();
+}
+
+RefinedWorkcellMotion refine_and_time_workcell(
+    const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const TimingOptions& options, const Budget& budget) {
+  require_positive(options);
+  require_motion_defaults(prepared);
+  std::array<std::vector<TrajectoryRow>, 2> laid;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Problem& problem = prepared.problem(k);
+    const ToolPath path =
+        problem_path(problem, prepared.robot(k).arm().chain, budget, PathSmoothing{});
+    laid[k] = rows_on_path(prepared.robot(k), problem, at_layers(problem, path, rows[k]));
+  }
+  return refine_until_timed(prepared, laid, options, budget);
 }
 
 }  // namespace swivel

@@ -39,6 +39,21 @@ namespace swivel {
                                            const std::array<std::vector<TrajectoryRow>, 2>& rows,
                                            const TimingOptions& options, const Budget& budget = {});
 
+/// Refined trajectories of both arms, and their motion in time.
+struct RefinedWorkcellMotion {
+  RefinedWorkcell refinement;
+  WorkcellTiming timing;
+  double refine_ms = 0;  ///< spent on refining
+};
+/// Refines trajectories of both arms as refine_workcell() does, and times them as time_workcell()
+/// does. Where bodies come too near between samples, they are refined again with more clearance at
+/// rows. `rows` may also be those of the workcell before with_motion_defaults(): they are solved
+/// again at their arm angles on the rounded corners first. Throws as both do, and InputError where
+/// an arm has no solution there.
+[[nodiscard]] RefinedWorkcellMotion refine_and_time_workcell(
+    const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const TimingOptions& options, const Budget& budget = {});
+
 /// A plan of a workcell, and if asked for, its refinement and its motion in time.
 struct WorkcellMotionPlan {
   /// The plan. If it is solved, trajectories, costs and measures describe the paths that are
