@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -40,12 +40,17 @@ struct CheckArguments {
 
 /// Prints what was proved, and how near it is to failing.
 void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
-  say("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position,
-      result.worst_angle, 1e3 * result.worst_path_error);
-  if (problem.limits.tool_path_error) say(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
-  say(" and %.3g rad", result.worst_path_angle);
-  if (problem.limits.tool_angle_error) say(" (allowed %.3g)", *problem.limits.tool_angle_error);
-  say(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
+  say("tool within %.2g m and %.2g rad of the path at rows", result.worst_position,
+      result.worst_angle);
+  // Where no row and the next could both be measured, nothing is known of what lies between.
+  if (result.largest_step > 0 || result.worst_path_error > 0 || result.worst_path_angle > 0) {
+    say(", within %.3f mm", 1e3 * result.worst_path_error);
+    if (problem.limits.tool_path_error)
+      say(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
+    say(" and %.3g rad", result.worst_path_angle);
+    if (problem.limits.tool_angle_error) say(" (allowed %.3g)", *problem.limits.tool_angle_error);
+    say(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
+  }
   if (result.nearest_limit)
     say(", '%s' %.2f deg from its limit at row %zu",
         chain.joint_names[result.nearest_limit->joint].c_str(),
@@ -72,24 +77,24 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   say("\n");
 }
 
-bool within_limits(const Chain& chain, const Config& q) {
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[j];
-    const double value = q[static_cast<Eigen::Index>(j)];
-    if (!limit.continuous && (value < limit.lower || value > limit.upper)) return false;
-  }
-  return true;
+/// Returns true if joint j of the chain may be at `value`, rad.
+bool within_limit(const Chain& chain, std::size_t j, double value) {
+  const JointLimit& limit = chain.limit[j];
+  return limit.continuous || (value >= limit.lower && value <= limit.upper);
 }
 
-/// Returns true if the joints of all rows are within their limits when read as degrees, while those
-/// of some row are not as radians, the unit of every file of joints.
+/// Returns true if the joints of all rows are within their limits when read as degrees, while one
+/// of them, read as radians, the unit of every file of joints, is outside and beyond a whole turn.
+/// Joints in radians that are outside by little are within their limits as degrees, too.
 bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
-  const auto as_radians = [&](const TrajectoryRow& row) { return within_limits(chain, row.q); };
-  const auto as_degrees = [&](const TrajectoryRow& row) {
-    return within_limits(chain, row.q / kDegrees);
-  };
-  return !std::all_of(rows.begin(), rows.end(), as_radians) &&
-         std::all_of(rows.begin(), rows.end(), as_degrees);
+  bool beyond_a_turn = false;
+  for (const TrajectoryRow& row : rows)
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double value = row.q[static_cast<Eigen::Index>(j)];
+      if (!within_limit(chain, j, value / kDegrees)) return false;
+      beyond_a_turn |= !within_limit(chain, j, value) && std::abs(value) > 2 * kPi;
+    }
+  return beyond_a_turn;
 }
 
 /// Verifies a certificate and prints the verdict behind `prefix`. Prints nothing where it
@@ -110,7 +115,8 @@ int run_on_certificate(const Problem& problem, const InfeasibilityCertificate& c
   }
   warn_of_held(held);
   if (!result.passed) {
-    say("%s%s\nfailed: this certificate proves nothing\n", prefix.c_str(), result.failure.c_str());
+    say("%sfailed: this certificate proves nothing\n  %s\n", prefix.c_str(),
+        result.failure.c_str());
     return kNo;
   }
   say("%spassed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld "

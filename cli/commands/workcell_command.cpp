@@ -345,7 +345,7 @@ int check_workcell_proof(const Workcell& cell, const std::string& file) {
     return kStopped;
   }
   if (!result.passed) {
-    say("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
+    say("failed: this certificate proves nothing\n  %s\n", result.failure.c_str());
     return kNo;
   }
   say("passed: no two paths without conflict at this resolution%s: %lld region%s of conflict, %lld "

@@ -46,7 +46,9 @@ void print_failures(const std::vector<std::string>& failures, std::int64_t count
     say("\n");
   }
   const auto listed = static_cast<std::int64_t>(failures.size());
-  if (count > listed) say("  and %lld more\n", static_cast<long long>(count - listed));
+  if (count > listed)
+    say("  and %lld more failure%s\n", static_cast<long long>(count - listed),
+        count - listed == 1 ? "" : "s");
 }
 
 }  // namespace swivel::cli

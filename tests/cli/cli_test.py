@@ -35,6 +35,31 @@ def run(*arguments):
     )
 
 
+def on_terminal(stream, command):
+    """Exit code and lines of a stream that is a terminal of 80 columns."""
+    import fcntl
+    import pty
+    import struct
+    import termios
+
+    outer, inner = pty.openpty()
+    fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: inner}
+    done = subprocess.run(command, timeout=300, **streams)
+    os.close(inner)
+    shown = b""
+    while True:
+        try:
+            part = os.read(outer, 65536)
+        except OSError:
+            break
+        if not part:
+            break
+        shown += part
+    os.close(outer)
+    return done.returncode, shown.decode().replace("\r\n", "\n").splitlines()
+
+
 class WithFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -133,7 +158,8 @@ class Certificates(WithFolder):
             self.certificate.write_text(json.dumps(bad))
             done = self.check()
             self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-            self.assertIn("failed: this certificate proves nothing", done.stdout)
+            lines = done.stdout.splitlines()
+            self.assertEqual((lines[0], len(lines)), ("failed: this certificate proves nothing", 2))
 
     def test_bad_ones_are_bad_input(self):
         good = self.certificate.read_text()
@@ -417,8 +443,38 @@ class Files(WithFolder):
         )
         self.assertLessEqual(len(lines), 4, lines)  # not one for each row
         self.assertRegex(lines[1], r"^  row 0: .* \(and \d+ more like it\)$")
-        self.assertEqual(lines[-1], "  and 6 more")
+        self.assertEqual(lines[-1], "  and 6 more failures")
         self.assertNotIn(" 0 %", lines[0])
+
+    def test_check_says_nothing_of_what_it_could_not_measure(self):
+        """A trajectory of another path: no row is right, so that none has a motion to the next."""
+        coarse = ("--ds", "0.02", "--dphi", "0.2")
+        _, out, _ = self.plan(PROBLEMS / "experiment_a.yaml", *coarse)
+        lines = run("check", PROBLEMS / "experiment_c.yaml", out, *coarse).stdout.splitlines()
+        self.assertTrue(lines[0].startswith("failed: 26 rows, 26 failures, "), lines)
+        self.assertNotIn(" between", lines[0])
+        self.assertNotIn("joint moves", lines[0])
+
+    def test_check_on_a_terminal(self):
+        """The verdict first, alike failures in one line, no number broken at 80 columns."""
+        coarse = ("--ds", "0.005", "--dphi", "0.2")
+        _, out, _ = self.plan(PROBLEMS / "experiment_c.yaml", *coarse)
+        rows = list(csv.reader(out.open()))
+        for row in rows[11:41]:  # an axis a little outside its limits, in radians
+            row[8] = repr(float(row[8]) + 0.3)
+        with out.open("w", newline="") as file:
+            csv.writer(file).writerows(rows)
+        command = [SWIVEL, "check", str(PROBLEMS / "experiment_c.yaml"), str(out), *coarse]
+        plain = subprocess.run(command, capture_output=True, text=True, timeout=300).stdout
+        self.assertTrue(plain.startswith(f"failed: {len(rows) - 1} rows, 30 failures, "), plain)
+        self.assertRegex(plain.splitlines()[1], r"^  row 10: .* \(and 19 more like it\)$")
+        self.assertEqual(plain.splitlines()[2:], ["  and 10 more failures"])
+        self.assertNotIn("as degrees", plain)
+        code, lines = on_terminal("stdout", command)
+        self.assertEqual(code, 1)
+        self.assertGreater(len(lines), 3)
+        self.assertLessEqual(max(map(len, lines)), 80, lines)
+        self.assertEqual(" ".join(lines).split(), plain.split())
 
     def test_episodes_move_the_door_and_can_be_checked(self):
         first = self.plan(
@@ -809,30 +865,6 @@ limits: {{clearance: 0.005}}
             "millimetres", run("plan", self.folder / "p.yaml", "--planner", "lazy").stderr
         )
 
-    def on_terminal(self, stream, command):
-        """Exit code and lines of a stream that is a terminal of 80 columns."""
-        import fcntl
-        import pty
-        import struct
-        import termios
-
-        outer, inner = pty.openpty()
-        fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-        streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: inner}
-        done = subprocess.run(command, timeout=300, **streams)
-        os.close(inner)
-        shown = b""
-        while True:
-            try:
-                part = os.read(outer, 65536)
-            except OSError:
-                break
-            if not part:
-                break
-            shown += part
-        os.close(outer)
-        return done.returncode, shown.decode().replace("\r\n", "\n").splitlines()
-
     def test_a_terminal_breaks_no_number(self):
         """On 80 columns lines are broken between words, by the program."""
         command = [
@@ -841,7 +873,7 @@ limits: {{clearance: 0.005}}
         ]
         plain = subprocess.run(command, capture_output=True, text=True, timeout=300).stdout
         self.assertGreater(max(map(len, plain.splitlines())), 80)
-        code, lines = self.on_terminal("stdout", command)
+        code, lines = on_terminal("stdout", command)
         self.assertEqual(code, 0)
         self.assertLessEqual(max(map(len, lines)), 80, lines)
 
@@ -859,7 +891,7 @@ limits: {{clearance: 0.005}}
             plain = subprocess.run(arguments, capture_output=True, text=True, timeout=300).stderr
             self.assertEqual(plain.count("\n"), 1, plain)
             self.assertGreater(len(plain), 100)
-            code, lines = self.on_terminal("stderr", arguments)
+            code, lines = on_terminal("stderr", arguments)
             self.assertEqual(code, 2)
             self.assertGreater(len(lines), 1)
             self.assertLessEqual(max(len(line) for line in lines if " " in line.strip()), 80, lines)
