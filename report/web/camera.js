@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From where the work is seen, and how near the camera may stand.
-import { Box3, Vector3 } from 'three';
+import { Vector3 } from 'three';
 import { displacements, standing, vector } from './kinematics.js';
 import { cornersOf, Occluder, Sight } from './sight.js';
 
-// Where the camera may stand: turns about the vertical, in steps of 15 degrees from nearly ahead of
-// -y, and angles above the ground, rad; above a map that lies on the floor only where x is to the
-// right and y away, as in the map.
+// Where the camera may stand: turns about the vertical, degrees from nearly ahead of -y, and angles
+// above the ground, rad; above a map that lies on the floor only where x is to the right and y
+// away, as in the map.
 const kAllRound = {
-    turns: Array.from({ length: 24 }, (_, k) => k),
+    turns: Array.from({ length: 36 }, (_, k) => 10 * k - 170),
     heights: [0.12, 0.3, 0.62, 1.0],
   },
-  kAbove = { turns: [21, 22, 23, 0, 1, 2, 3, 4], heights: [0.62, 1.0] };
-const kLong = 12, // worth of seeing the path in its whole extent
+  kAbove = { turns: [-45, -30, -15, 0, 15, 30, 45, 60], heights: [0.62, 1.0] };
+const kMarks = 48, // places of the path that are looked for
+  kPath = 112, // worth of seeing all of them
+  kNearest = 32, // of seeing where the arm is nearest to something
+  kArm = 8, // of seeing all its bodies
+  kLong = 28, // of seeing the path in its whole extent
   kRoom = 1.06; // of the picture about what it must show
 
 /**
@@ -28,9 +32,10 @@ function openingJoints({ rows, cut }) {
 
 /**
  * What a picture is to show: { points: corners of the bodies that move, at both ends of the path
- * and where the page opens, and the path itself; marks: [point, worth, body] that should be seen,
- * of which a point within a body names it; path; bodies: as of Sight; turns, heights: where the
- * camera may stand }, in the frame of what stands on the ground. parts: of View.
+ * and where the page opens, and the path itself; marks: [{ points, of which one should be seen,
+ * worth, own: number of the body that the points are within, if they are }]; path; bodies: as of
+ * Sight; turns, heights: where the camera may stand }, in the frame of what stands on the ground.
+ * parts: of View.
  */
 export function subject(data, parts) {
   const { rows, chain, tool_path } = data,
@@ -53,7 +58,8 @@ export function subject(data, parts) {
           points.push(...cornersOf(coarse.boundingBox, pose));
       });
   const bodies = poses(open).map((pose, k) => {
-    parts[k].occluder ??= new Occluder(parts[k].coarse, parts[k].off);
+    const { coarse, fine, off } = parts[k];
+    parts[k].occluder ??= new Occluder(off ? coarse : fine, off, fine);
     return { occluder: parts[k].occluder, pose };
   });
   const moving = bodies
@@ -62,20 +68,24 @@ export function subject(data, parts) {
       const { body } = parts[k];
       return body.kind !== 'scene' && !body.stands;
     });
-  const row = rows.find(({ q, nearest }) => q === open && nearest),
-    near = row ? [row.nearest] : data.cut?.line ? [data.cut.line.points] : [];
+  const row = rows.find(({ q, nearest }) => nearest && q.every((v, j) => v === open[j])),
+    line = row?.nearest ?? data.cut?.line?.points;
   const marks = [
-    ...Array.from({ length: path.length ? 16 : 0 }, (_, k) => [
-      path[Math.round((k / 15) * (path.length - 1))],
-      2,
-    ]),
-    ...near.map((point) => [vector(point).applyMatrix4(frame), 6]),
-    ...moving.map((k) => [
-      bodies[k].occluder.box.getCenter(new Vector3()).applyMatrix4(bodies[k].pose),
-      8 / moving.length,
-      k,
-    ]),
+    ...Array.from({ length: path.length ? kMarks : 0 }, (_, k) => ({
+      points: [path[Math.round((k / (kMarks - 1)) * (path.length - 1))]],
+      worth: kPath / kMarks,
+    })),
+    ...moving.map((k) => ({
+      points: [bodies[k].occluder.box.getCenter(new Vector3()).applyMatrix4(bodies[k].pose)],
+      worth: kArm / moving.length,
+      own: k,
+    })),
   ];
+  if (line) {
+    const ends = [line.slice(0, 3), line.slice(3)].map((end) => vector(end).applyMatrix4(frame));
+    marks.push({ points: ends, worth: kNearest });
+    for (const end of ends) marks.push({ points: [end], worth: kNearest / 4 });
+  }
   return { points, marks, bodies, path, ...(data.floor ? kAbove : kAllRound) };
 }
 
@@ -103,33 +113,38 @@ function spread(points, direction) {
 /**
  * The direction to the camera from which most of the path, of the arm and of the place that is
  * nearest to something is seen past all bodies, the arm's own among them, where the page opens.
+ * camera: with the field of view and the aspect of the picture.
  */
-export function bestDirection({ points, marks, bodies, path, turns, heights }) {
-  const box = new Box3().setFromPoints(points),
-    target = box.getCenter(new Vector3()),
-    radius = box.getSize(new Vector3()).length(),
+export function bestDirection({ points, marks, bodies, path, turns, heights }, camera) {
+  const eye = camera.clone(),
     sight = new Sight(bodies),
     candidates = [];
   for (const up of heights)
-    for (const k of turns) {
-      const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 12;
+    for (const from of turns) {
+      const turn = -Math.PI / 2 - 0.4 + (from * Math.PI) / 180;
       const direction = new Vector3(
         Math.cos(turn) * Math.cos(up),
         Math.sin(turn) * Math.cos(up),
         Math.sin(up),
       );
-      candidates.push({ up, k, direction, wide: spread(path, direction) });
+      candidates.push({ up, from, direction, wide: spread(path, direction) });
     }
-  const widest = Math.max(1e-6, ...candidates.map(({ wide }) => wide));
+  const widest = Math.max(1e-6, ...candidates.map(({ wide }) => wide)),
+    all = marks.reduce((sum, { worth }) => sum + worth, 0);
   let best = null;
-  for (const { up, k, direction, wide } of candidates) {
-    const from = target.clone().addScaledVector(direction, 1.6 * radius);
+  for (const { up, from, direction, wide } of candidates) {
+    fit(eye, points, direction);
+    // As if all were seen, less what is hidden: no candidate is followed below the best one.
     let score =
+      all +
       (kLong * wide) / widest +
       (up === 0.62 ? 1 : up === 0.12 ? -1 : 0) -
-      0.035 * Math.min(k, 24 - k);
-    for (const [point, worth, own] of marks) score += sight.hides(from, point, own) ? 0 : worth;
-    if (best === null || score > best.score) best = { score, direction };
+      0.0023 * Math.abs(from);
+    for (const { points: places, worth, own } of marks) {
+      if (best && score <= best.score) break;
+      if (places.every((place) => sight.hides(eye.position, place, own))) score -= worth;
+    }
+    if (!best || score > best.score) best = { score, direction };
   }
   return best.direction;
 }

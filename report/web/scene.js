@@ -403,14 +403,14 @@ class View {
     const shown = subject(this.data, this.parts);
     for (const corner of this.floorCorners ?? []) {
       shown.points.push(corner);
-      shown.marks.push([corner, 2]);
+      shown.marks.push({ points: [corner], worth: 2 });
     }
     const direction = {
       front: () => new THREE.Vector3(1, 0, 0.001),
       side: () => new THREE.Vector3(0, -1, 0.001),
       top: () => new THREE.Vector3(-0.001, 0, 1),
       fit: () => this.camera.position.clone().sub(this.orbit.target),
-      best: () => bestDirection(shown),
+      best: () => bestDirection(shown, this.camera),
     }[from]();
     this.orbit.target.copy(fit(this.camera, shown.points, direction));
     this.orbit.update();

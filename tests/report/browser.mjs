@@ -193,7 +193,8 @@ export async function assertPrints(page) {
     });
   });
   assert.ok(printed.colours > 200, `${printed.colours} colours in the picture`);
-  assert.equal(printed.nights, 0, 'pixels of the ground of the dark theme');
+  // Of 30,000 pixels; the edge of a body may have that colour by chance.
+  assert.ok(printed.nights < 30, `${printed.nights} pixels of the ground of the dark theme`);
   assert.equal(printed.theme, 'light');
   assert.ok(printed.width <= 700);
   assert.ok(printed.all <= 700, `${printed.all} pixels wide on paper`);
