@@ -213,16 +213,17 @@ function present() {
   const pose = shown();
   if (!pose) return;
   draw(pose);
+  const inMap = () => pose.off || pose.stroke === stroke;
+  strokes[stroke].maps?.draw(inMap() ? pose : null);
   // What is told in numbers and beside the arm need not change with every frame.
   if (player.playing && performance.now() - told < 60) return;
   told = performance.now();
   if (pose.part !== undefined && list.strokeOf(pose.part) !== stroke)
     open(list.strokeOf(pose.part));
   tellPose($('readout'), chain, whereWords(pose), pose, pose.off ? 1 : 2);
-  const { maps, plots } = strokes[stroke],
-    inMap = pose.off || pose.stroke === stroke;
-  maps?.draw(inMap ? pose : null);
-  plots?.draw(inMap ? pose.row : null, pose);
+  const { maps, plots } = strokes[stroke];
+  maps?.draw(inMap() ? pose : null);
+  plots?.draw(inMap() ? pose.row : null, pose);
 }
 function draw({ q, pair, line, hit }) {
   view?.pose(q, pair, line, hit);

@@ -145,12 +145,12 @@ function present() {
   const pose = shown();
   if (!pose) return;
   draw(pose);
+  panels.draw(pose);
   // What is told in numbers and beside the arm need not change with every frame.
   if (player.playing && performance.now() - told < 60) return;
   told = performance.now();
   const digits = pose.off ? 1 : 2;
   tellPose($('readout'), chain, placeWords(pose, data.map.letter, 4), pose, digits);
-  panels.draw(pose);
   plots.draw(pose.row, pose);
 }
 function draw({ q, pair, line, hit }) {

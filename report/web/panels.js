@@ -119,6 +119,22 @@ export class Panels {
     if (panel.rolls) return this.cells.place(row.roll);
     return row.sheet === panel.sheet ? row.angle : NaN;
   }
+  /**
+   * Where the cursor is in a panel: between two rows in proportion, the short way round a closed
+   * map; beside one that is not in the panel at the other.
+   */
+  cursorHeight(panel, pose) {
+    if (!pose.rows || panel.rolls) return this.height(panel, pose);
+    const [a, b, f] = pose.rows,
+      from = this.height(panel, a),
+      to = this.height(panel, b),
+      { closed, angles } = this.cells;
+    if (Number.isNaN(from) || Number.isNaN(to)) return f < 0.5 ? from : to;
+    const step = to - from,
+      turns = closed ? Math.round(step / angles) : 0,
+      at = from + f * (step - turns * angles);
+    return turns === 0 ? at : (((at + 0.5) % angles) + angles) % angles - 0.5;
+  }
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
     const { cells, rows, beside, cut, marks } = this,
@@ -400,12 +416,13 @@ export class Panels {
     for (const panel of this.panels) {
       const { line, dot, x, y } = panel;
       line.hidden = !here;
-      dot.hidden = !here || Number.isNaN(this.height(panel, here));
+      const height = here ? this.cursorHeight(panel, here) : NaN;
+      dot.hidden = Number.isNaN(height);
       if (!here) continue;
       const left = x.apply(here.layer).toFixed(1);
       line.style.transform = `translateX(${left}px)`;
       if (!dot.hidden) {
-        const top = y.apply(this.height(panel, here)).toFixed(1);
+        const top = y.apply(height).toFixed(1);
         dot.style.transform = `translate(${left}px, ${top}px)`;
       }
     }

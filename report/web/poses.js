@@ -63,6 +63,8 @@ export function poseAt(rows, steps, k) {
   return {
     ...near,
     row: k,
+    layer: mixed(a.layer, b.layer),
+    rows: [a, b, f], // it is at a + f (b - a)
     s: mixed(a.s, b.s),
     phi: a.phi + mixed(0, wrapped(b.phi - a.phi)),
     roll: a.roll === undefined ? undefined : mixed(a.roll, b.roll),

@@ -212,6 +212,7 @@ function present() {
   const now = shown(),
     { poses, between } = now;
   draw(now);
+  poses.forEach((pose, k) => maps[k].draw(pose.layer === undefined ? null : pose));
   // What is told in numbers and beside the arms need not change with every frame.
   if (player.playing && performance.now() - told < 60) return;
   told = performance.now();
@@ -220,7 +221,6 @@ function present() {
       place = pose.s === undefined ? '' : `\n${placeWords(pose, map.letter, 4)}`;
     const title = `${k === active ? '▸ ' : ''}${name}${place}`;
     tellPose(readouts[k], chain, title, pose, pose.off ? 1 : 2);
-    maps[k].draw(pose.layer === undefined ? null : pose);
     plots[k]?.draw(pose.row, pose);
   });
   gapReadout.textContent = between?.note ?? '';

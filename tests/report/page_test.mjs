@@ -333,6 +333,40 @@ async function checkKeysScroll(page) {
   assert.equal(await page.evaluate(() => scrollY), scrolled);
   await page.evaluate(() => scrollTo(0, 0));
 }
+/** Played, the map's cursor goes from row to row without jumps, the short way round the map. */
+async function checkCursorMoves(page, { rows }) {
+  const place = () =>
+    page.evaluate(() => {
+      const panel = document.querySelector('.panel:not(.other)'),
+        at = (part) => new DOMMatrix(getComputedStyle(panel.querySelector(part)).transform),
+        { e, f } = at('.dot');
+      return { line: at('.cursor').e, x: e, y: f };
+    });
+  const knots = [];
+  for (let k = 0; k < rows.length; ++k) {
+    await slide(page, k);
+    knots.push(await place());
+  }
+  const height = await page.evaluate(() => document.querySelector('.panel .chart').clientHeight),
+    pitch = (knots.at(-1).x - knots[0].x) / (rows.length - 1);
+  await slide(page, 0);
+  await page.evaluate(() => document.getElementById('play').click());
+  const seen = [];
+  while (!seen.length || seen.at(-1).x < knots[3].x) seen.push(await place());
+  await page.evaluate(() => document.getElementById('play').click());
+  let between = 0;
+  for (const { line, x, y } of seen) {
+    const k = Math.min(knots.length - 2, knots.findLastIndex((knot) => knot.x <= x + 0.05)),
+      [a, b] = [knots[k], knots[k + 1]],
+      [low, high] = [Math.min(a.y, b.y) - 0.2, Math.max(a.y, b.y) + 0.2],
+      isRound = high - low > height / 2;
+    assert.equal(line, x);
+    assert.ok(isRound ? y <= low + 0.4 || y >= high - 0.4 : y >= low && y <= high);
+    between += x > a.x + 0.1 * pitch && x < b.x - 0.1 * pitch;
+  }
+  console.log(`${between} of ${seen.length} places of the cursor are between rows`);
+  assert.ok(between >= 6, `${between} of ${seen.length}`);
+}
 /** Charts have names; entries of the legend fade and hide bodies. */
 async function checkLegend(page) {
   const names = await page.$$eval('.chart', (all) => all.map((one) => one.ariaLabel));
@@ -376,7 +410,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
 
   // A mesh of the page is that of its file, triangle by triangle.
   {
-    const { data, bytes } = plan(folder, 'c', '--ds', '0.05', '--dphi', '0.3'),
+    const { html, data, bytes } = plan(folder, 'c', '--ds', '0.05', '--dphi', '0.3'),
       stl = readFileSync(join(problems, '../meshes/door_2k.stl')),
       { points, corners } = triangles(data.meshes[0]);
     assert.equal(data.meshes.length, 1);
@@ -395,6 +429,10 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     const size = JSON.stringify(data.meshes).length;
     console.log(`${count} triangles in ${size} of ${bytes} bytes`);
     assert.ok(size < 20 * count);
+    const { page, close } = await open(html, { viewport: wide });
+    await drawn(page);
+    await checkCursorMoves(page, data);
+    await close();
   }
 
   // With the part in the hand the robot's base stands, and the part moves.
