@@ -1,14 +1,17 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws the arm of a report along its path, there and back, as a moving picture.
-//   moving_picture.mjs REPORT.html PACKAGES OUT.webp
-// PACKAGES is a folder whose node_modules has playwright-core (build/release/tests/report). Needs
-// chromium and img2webp (Debian: webp).
+//   moving_picture.mjs REPORT.html PACKAGES OUT.webp [AZIMUTH ELEVATION AWAY]
+// PACKAGES is a folder whose node_modules has playwright-core (build/release/tests/report). The
+// camera stands at the azimuth from x and the elevation above the ground, degrees, AWAY times as
+// far as where arm and path fill the picture, or where the page puts it. Needs chromium and
+// img2webp (Debian: webp).
+import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { join, resolve } from 'node:path';
-import { withBrowser } from '../../tests/report/browser.mjs';
+import { until, withBrowser } from '../../tests/report/browser.mjs';
 
-const [report, packages, out] = process.argv.slice(2);
+const [report, packages, out, ...place] = process.argv.slice(2);
 const kFrames = 36,
   kMilliseconds = 110,
   kWidth = 640,
@@ -16,14 +19,13 @@ const kFrames = 36,
 
 await withBrowser({ packages: resolve(packages) }, async ({ folder, open }) => {
   const { page, close } = await open(resolve(report), { viewport: { width: 1280, height: 900 } });
-  await page.waitForSelector('canvas');
+  await until(page, () => window.swivel.frames > 0);
   const most = Number(await page.getAttribute('#slider', 'max'));
-  // The picture alone, without the numbers and switches over it.
+  // The picture alone, over all else on the page, without the arm's faded ends of the path.
+  await page.locator('#ghosts').uncheck();
   await page.evaluate(
-    ([width, height]) => {
-      document.getElementById('readout').style.display = 'none';
-      document.getElementById('views').parentElement.style.display = 'none';
-      Object.assign(document.querySelector('canvas').parentElement.style, {
+    ([width, height, [azimuth, elevation, away]]) => {
+      Object.assign(document.getElementById('stage').style, {
         position: 'fixed',
         left: '0',
         top: '0',
@@ -31,10 +33,22 @@ await withBrowser({ packages: resolve(packages) }, async ({ folder, open }) => {
         height: `${height}px`,
         zIndex: 1000,
       });
-      window.dispatchEvent(new Event('resize'));
+      const { view } = window.swivel,
+        { camera, orbit } = view;
+      view.resize();
+      if (!away) return view.look('best');
+      const [turn, up] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180),
+        flat = Math.cos(up);
+      camera.position.set(Math.cos(turn) * flat, Math.sin(turn) * flat, Math.sin(up));
+      camera.position.add(orbit.target);
+      view.look('fit');
+      camera.position.sub(orbit.target).multiplyScalar(away).add(orbit.target);
+      orbit.update();
     },
-    [kWidth, kHeight],
+    [kWidth, kHeight, place.map(Number)],
   );
+  const shown = await page.locator('#scene').boundingBox();
+  assert.deepEqual([shown.width, shown.height], [kWidth, kHeight]);
   const files = [];
   for (let k = 0; k < kFrames; ++k) {
     await page.evaluate(
