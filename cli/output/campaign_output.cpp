@@ -2,10 +2,14 @@
 #include "output/campaign_output.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <functional>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "options/commands.hpp"
+#include "swivel/report/ended_by.hpp"
 #include "swivel/report/overview.hpp"
 #include "terminal/terminal.hpp"
 
@@ -13,7 +17,19 @@ namespace swivel::cli {
 
 namespace {
 
-void print_summary(const CampaignSummary& summary, const std::vector<HeldJoint>& held) {
+/// Prints what ended the paths of the episodes that have none, each with how many, most first.
+void print_ends(const std::vector<EpisodeRow>& rows) {
+  std::map<std::string, std::size_t> counts;
+  for (const EpisodeRow& row : rows)
+    if (row.status == PlanStatus::kInfeasible)
+      ++counts[ended_by(row.status, row.cause, row.by, row.reason)];
+  std::vector<std::pair<std::string, std::size_t>> ends(counts.begin(), counts.end());
+  std::ranges::stable_sort(ends, std::greater(), [](const auto& end) { return end.second; });
+  for (const auto& [by, count] : ends) say("  %zu without a path: %s\n", count, by.c_str());
+}
+
+void print_summary(const CampaignSummary& summary, const std::vector<EpisodeRow>& rows,
+                   const std::vector<HeldJoint>& held) {
   say("%llu of %llu episodes answered: %llu solved, %llu infeasible",
       static_cast<unsigned long long>(summary.answered()),
       static_cast<unsigned long long>(summary.episodes),
@@ -23,6 +39,7 @@ void print_summary(const CampaignSummary& summary, const std::vector<HeldJoint>&
     say(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
   if (!held.empty()) say(", held: %s", words(held).c_str());
   say("\n");
+  print_ends(rows);
   if (summary.answered() == 0) return;
   say("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL "
       "calls %.0f in the median\n",
@@ -42,7 +59,7 @@ void show_campaign(io::OutputFiles& outputs, const std::vector<EpisodeRow>& rows
                                                  record.settings.coordinates}));
   outputs.write("--json", io::to_json(summary, record.held));
   outputs.stage();
-  if (!outputs.takes_standard_output()) print_summary(summary, record.held);
+  if (!outputs.takes_standard_output()) print_summary(summary, rows, record.held);
   flush_standard_output();
   outputs.commit();
 }

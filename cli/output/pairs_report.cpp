@@ -2,11 +2,16 @@
 #include "output/pairs_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -14,6 +19,82 @@
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
+
+namespace {
+
+/// Pairs of bodies of the same two names of which the same is asked.
+struct PairRow {
+  std::array<std::string, 2> names;
+  RobotPair pair;  ///< that of the least median
+  std::size_t count = 0;
+};
+
+/// Returns what a pair keeps on layers and motions, and the tolerance, in mm; empty if it is
+/// dropped.
+std::string kept(const RobotPair& pair) {
+  if (pair.dropped) return "";
+  const RequiredClearance& asked = pair.required;
+  return formatted("%.4g/%.4g/%.4g", 1e3 * asked.node, 1e3 * asked.motion, 1e3 * asked.tolerance);
+}
+
+/// Returns true if two rows of the table would differ by their medians alone.
+bool alike(const PairRow& x, const PairRow& y) {
+  return x.names == y.names && x.pair.dropped == y.pair.dropped &&
+         x.pair.reduced == y.pair.reduced && kept(x.pair) == kept(y.pair);
+}
+
+/// Returns the rows of the table, pairs that are dropped or reduced first, as people look for
+/// these.
+std::vector<PairRow> folded(const World& world, const std::vector<RobotPair>& pairs) {
+  std::vector<PairRow> rows;
+  for (const RobotPair& pair : pairs) {
+    const auto names = world.names(pair.pair);
+    const PairRow row{{names[0], names[1]}, pair, 1};
+    const auto known =
+        std::ranges::find_if(rows, [&](const PairRow& other) { return alike(row, other); });
+    if (known == rows.end()) {
+      rows.push_back(row);
+      continue;
+    }
+    ++known->count;
+    if (pair.median < known->pair.median) known->pair = pair;
+  }
+  std::ranges::stable_sort(
+      rows, {}, [](const PairRow& row) { return std::pair(!row.pair.dropped, !row.pair.reduced); });
+  return rows;
+}
+
+/// Returns what most pairs keep, as of kept(), and how many these are.
+std::pair<std::string, std::size_t> usual(const std::vector<PairRow>& rows) {
+  std::map<std::string, std::size_t> counts;
+  for (const PairRow& row : rows)
+    if (!row.pair.dropped) counts[kept(row.pair)] += row.count;
+  std::pair<std::string, std::size_t> most;
+  for (const auto& [keeps, count] : counts)
+    if (count > most.second) most = {keeps, count};
+  return most;
+}
+
+/// Prints a table of the rows; what a pair keeps only where it is not as usual.
+void print_rows(const std::vector<PairRow>& rows, const std::string& as_usual) {
+  std::size_t width = 4;
+  for (const PairRow& row : rows)
+    for (const std::string& name : row.names) width = std::max(width, name.size());
+  const int columns = static_cast<int>(width);
+  say("%-*s %-*s %5s %-7s %9s\n", columns, "body", columns, "body", "pairs", "", "median mm");
+  for (const PairRow& row : rows) {
+    const RobotPair& pair = row.pair;
+    const std::string keeps = kept(pair);
+    say("%-*s %-*s %5zu %-7s %9s%s\n", columns, row.names[0].c_str(), columns, row.names[1].c_str(),
+        row.count, pair.dropped ? "dropped" : (pair.reduced ? "reduced" : "counts"),
+        pair.dropped              ? "touching"
+        : std::isinf(pair.median) ? "-"
+                                  : formatted("%.3f", 1e3 * pair.median).c_str(),
+        keeps.empty() || keeps == as_usual ? "" : ("  " + keeps).c_str());
+  }
+}
+
+}  // namespace
 
 void print_pairs(const std::string& file) {
   if (std::filesystem::path(file).extension() == ".urdf")
@@ -23,41 +104,20 @@ void print_pairs(const std::string& file) {
   const Problem problem = io::load_problem(file);
   const PreparedRobot robot(problem);
   const World& world = robot.world();
-  std::vector<RobotPair> pairs = world.robot_pairs_with_medians();
-  const auto dropped =
-      std::count_if(pairs.begin(), pairs.end(), [](const RobotPair& p) { return p.dropped; });
-  const auto reduced =
-      std::count_if(pairs.begin(), pairs.end(), [](const RobotPair& p) { return p.reduced; });
+  const std::vector<RobotPair> pairs = world.robot_pairs_with_medians();
+  const auto dropped = std::ranges::count_if(pairs, &RobotPair::dropped);
+  const auto reduced = std::ranges::count_if(pairs, &RobotPair::reduced);
+  const std::size_t counted = pairs.size() - static_cast<std::size_t>(dropped);
   say("%s, %zu robot pairs: %zu count, %zu of these reduced, %zu dropped\n",
-      problem.model->has_srdf ? "with an SRDF" : "without an SRDF", pairs.size(),
-      pairs.size() - static_cast<std::size_t>(dropped), static_cast<std::size_t>(reduced),
-      static_cast<std::size_t>(dropped));
-  std::size_t width = 9;
-  for (const RobotPair& p : pairs)
-    for (const std::string& name : world.names(p.pair)) width = std::max(width, name.size());
-  say("%-*s %-*s %-8s %9s %12s %13s %12s\n", static_cast<int>(width), "body",
-      static_cast<int>(width), "body", "", "median mm", "on layers mm", "on motions mm",
-      "tolerance mm");
-  // Dropped and reduced pairs come first, as people look for these.
-  std::stable_sort(pairs.begin(), pairs.end(), [](const RobotPair& x, const RobotPair& y) {
-    return std::pair(!x.dropped, !x.reduced) < std::pair(!y.dropped, !y.reduced);
-  });
-  for (const RobotPair& p : pairs) {
-    const auto names = world.names(p.pair);
-    say("%-*s %-*s %-8s ", static_cast<int>(width), names[0].c_str(), static_cast<int>(width),
-        names[1].c_str(),
-        p.dropped   ? "dropped"
-        : p.reduced ? "reduced"
-                    : "counts");
-    if (p.dropped)
-      say("%9s\n", "touching");
-    else if (std::isinf(p.median))
-      say("%9s %12.3f %13.3f %12.3f\n", "-", 1e3 * p.required.node, 1e3 * p.required.motion,
-          1e3 * p.required.tolerance);
-    else
-      say("%9.3f %12.3f %13.3f %12.3f\n", 1e3 * p.median, 1e3 * p.required.node,
-          1e3 * p.required.motion, 1e3 * p.required.tolerance);
-  }
+      problem.model->has_srdf ? "with an SRDF" : "without an SRDF", pairs.size(), counted,
+      static_cast<std::size_t>(reduced), static_cast<std::size_t>(dropped));
+  const std::vector<PairRow> rows = folded(world, pairs);
+  const auto [as_usual, count] = usual(rows);
+  if (count > 0)
+    say("%s keep %s mm (on layers/on motions/tolerance)%s\n",
+        count == counted ? "all" : std::to_string(count).c_str(), as_usual.c_str(),
+        count == counted ? "" : ", others what their row says");
+  print_rows(rows, as_usual);
 }
 
 }  // namespace swivel::cli

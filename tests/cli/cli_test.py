@@ -1118,7 +1118,11 @@ class Campaign(WithFolder):
         return [{key: value for key, value in row.items() if key != "plan_ms"} for row in rows]
 
     def test_rows_do_not_depend_on_threads_and_shards(self):
-        one = self.rows(self.campaign("one.csv", "--threads", "1")[1])
+        done, out = self.campaign("one.csv", "--threads", "1")
+        one = self.rows(out)
+        counts = [int(n) for n in re.findall(r"^  (\d+) without a path: \S", done.stdout, re.M)]
+        self.assertEqual(sum(counts), sum(row["status"] == "infeasible" for row in one))
+        self.assertEqual(counts, sorted(counts, reverse=True))
         self.assertEqual([row["episode"] for row in one], [str(k) for k in range(self.EPISODES)])
         self.assertEqual({row["status"] for row in one}, {"solved", "infeasible"})
         for row in one:

@@ -6,7 +6,7 @@ import random
 import re
 import unittest
 
-from cli_test import DATA, WithFolder, run
+from cli_test import DATA, SWIVEL, WithFolder, on_terminal, run
 from trials import SCALE, at_least, seed
 
 IIWA = (DATA / "robots/iiwa14.urdf").read_text()
@@ -390,7 +390,9 @@ class Info(WithFolder):
         )
         self.assertEqual(json.loads((self.folder / "s.json").read_text())["held"], [held])
         self.assertIn(
-            "1 of 1 episodes answered: 0 solved, 1 infeasible, held: rail at 0 m\n", done.stdout
+            "1 of 1 episodes answered: 0 solved, 1 infeasible, held: rail at 0 m\n"
+            "  1 without a path: ",
+            done.stdout,
         )
         done = run("place", self.rail(), "--path", "--x", "0", "--planner", "lazy")
         self.assertIn("1 of 1 placements planned, 0 with a path, 1 without: ", done.stdout)
@@ -862,6 +864,47 @@ class Honoured(WithFolder):
         self.refused(run("plan", self.urdf), "is XML", "`swivel info`")
         problem.write_text(problem.read_text().replace("urdf: robot.urdf", "urdf: problem.yaml"))
         self.refused(run("plan", problem), "problem.yaml:1: robot.urdf", "is a problem file")
+
+
+class Pairs(WithFolder):
+    """The table of `swivel info PROBLEM --pairs`."""
+
+    def pairs(self, clearance):
+        text = (DATA / "problems/experiment_c.yaml").read_text()
+        text = text.replace("clearance: 0.005", f"clearance: {clearance}")
+        text = text.replace("../", f"{DATA}/")
+        problem = self.folder / "problem.yaml"
+        problem.write_text(re.sub(r"^ *srdf: .*\n", "", text, flags=re.M))
+        code, lines = on_terminal("stdout", [SWIVEL, "info", str(problem), "--pairs"])
+        self.assertEqual(code, 0)
+        total, counted, reduced, dropped = map(int, re.findall(r"\d+", lines[0]))
+        self.assertEqual(total, counted + dropped)
+        rows = [line.split() for line in lines if re.search(" (counts|reduced|dropped) ", line)]
+        self.assertTrue(all(len(line) <= 80 for line in lines), lines)
+        # No two rows are alike but for their medians, and none is left out.
+        kinds = [(*row[:2], row[3], *row[5:]) for row in rows]
+        self.assertEqual(len(set(kinds)), len(kinds))
+        self.assertEqual(sum(int(row[2]) for row in rows), total)
+        self.assertEqual(sum(int(row[2]) for row in rows if row[3] == "reduced"), reduced)
+        self.assertGreater(total - len(rows), 10)
+        return lines, rows
+
+    def test_alike_rows_are_one(self):
+        lines, rows = self.pairs(0.005)
+        self.assertEqual(lines[1], "all keep 5/2.5/0.5 mm (on layers/on motions/tolerance)")
+        self.assertEqual({len(row) for row in rows}, {5})
+
+    def test_what_rows_keep_that_keep_less(self):
+        lines, rows = self.pairs(0.1)
+        usual = re.match(r"(\d+) keep (100/\S+) mm .*, others what", " ".join(lines[1:3]))
+        self.assertEqual(
+            int(usual[1]),
+            sum(int(row[2]) for row in rows if row[3] == "counts" or row[5:] == [usual[2]]),
+        )
+        less = [row for row in rows if row[3] == "reduced"]
+        self.assertTrue(less)
+        for row in less:
+            self.assertLess(float(row[5].split("/")[0]), 100)
 
 
 class MoreAxes(WithFolder):
