@@ -34,10 +34,18 @@ class Drawing {
   }
   /// Draws slanted lines over a rectangle. `colour`: of the lines.
   void hatch(double x, double y, double width, double height, const std::string& colour) {
+    rectangle(x, y, width, height, hatching(colour));
+  }
+  /// Fills the inside of a path of SVG without softening its edges.
+  void area(const std::string& d, const std::string& fill) {
+    body_ += "<path class=\"area\" fill=\"" + fill + "\" d=\"" + d + "\"/>\n";
+  }
+  /// Returns the fill of slanted lines of a colour.
+  std::string hatching(const std::string& colour) {
     std::size_t k = 0;
     while (k < hatches_.size() && hatches_[k] != colour) ++k;
     if (k == hatches_.size()) hatches_.push_back(colour);
-    rectangle(x, y, width, height, "url(#hatch-" + colour.substr(1) + ")");
+    return "url(#hatch-" + colour.substr(1) + ")";
   }
   /// Draws a path of SVG, such as "M0,0H10", without a fill.
   void path(const std::string& d, const std::string& stroke, double width) {
@@ -72,8 +80,8 @@ class Drawing {
     const std::string head = formatted(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" "
         "height=\"%.0f\" "
-        "font-family=\"sans-serif\" font-size=\"11\">\n<style>rect { shape-rendering: crispEdges "
-        "}</style>\n",
+        "font-family=\"sans-serif\" font-size=\"11\">\n<style>rect, .area { shape-rendering: "
+        "crispEdges }</style>\n",
         width, height, width, height);
     std::string patterns;
     for (const std::string& colour : hatches_)

@@ -5,6 +5,7 @@
 
 #include "drawing.hpp"
 #include "map_cells.hpp"
+#include "outline.hpp"
 #include "swivel/core/base/angle.hpp"
 
 namespace swivel {
@@ -109,23 +110,41 @@ class MapDrawing {
     return y_of(std::min(map_.angles, row * cells_.angles_each));
   }
 
-  /// Draws the cells of a panel and notes their states for the legend. Equal neighbours in a row
-  /// become one rectangle.
+  /// Draws the cells of a panel, those of one colour as one area, and notes their states for the
+  /// legend.
   void draw_cells(const std::vector<LatticeMap::Node>& nodes) {
-    for (int row = 0; row < cells_.rows; ++row) {
-      const auto first = nodes.begin() + row * cells_.columns, last = first + cells_.columns;
-      for (auto begin = first, end = begin; begin != last; begin = end) {
-        const LatticeMap::Node node = *begin;
-        seen_.see(node);
-        end = std::find_if(begin, last, [&](const auto& other) { return other != node; });
-        if (node.state == NodeState::kNoIk) continue;
-        const double x = left_of(static_cast<int>(begin - first)), y = low_of(row + 1),
-                     width = left_of(static_cast<int>(end - first)) - x, height = low_of(row) - y;
-        drawing_.rectangle(x, y, width, height, colour_of_node(map_, node));
-        if (node.state == NodeState::kJointLimit)
-          drawing_.hatch(x, y, width, height, palette::kHatch);
-      }
+    std::map<std::string, char> colours;  // and whether they are hatched
+    std::vector<std::string> colour_of;
+    for (const LatticeMap::Node& node : nodes) {
+      seen_.see(node);
+      const bool drawn = node.state != NodeState::kNoIk;
+      colour_of.push_back(drawn ? colour_of_node(map_, node) : "");
+      if (drawn) colours[colour_of.back()] = node.state == NodeState::kJointLimit;
     }
+    for (const auto& [colour, hatched] : colours) {
+      const auto is = [&, &shown = colour](int row, int column) {
+        return colour_of[static_cast<std::size_t>(row * cells_.columns + column)] == shown;
+      };
+      std::string d;
+      for (const std::vector<GridCorner>& loop : outlines(cells_.rows, cells_.columns, is))
+        d += around(loop);
+      drawing_.area(d, colour);
+      if (hatched != 0) drawing_.area(d, drawing_.hatching(palette::kHatch));
+    }
+  }
+  /// Returns the loop of corners of cells as a closed path of SVG.
+  [[nodiscard]] std::string around(const std::vector<GridCorner>& loop) const {
+    const auto coordinate = [](double value) {
+      std::string text = formatted("%.1f", value);
+      if (text.ends_with(".0")) text.resize(text.size() - 2);
+      return text;
+    };
+    std::string d =
+        "M" + coordinate(left_of(loop[0].column)) + "," + coordinate(low_of(loop[0].row));
+    for (std::size_t k = 1; k < loop.size(); ++k)
+      d += k % 2 == 1 ? "H" + coordinate(left_of(loop[k].column))
+                      : "V" + coordinate(low_of(loop[k].row));
+    return d + "Z";
   }
 
   /// Returns the colour of the line between two cells, or null: where their contrast is low, or
