@@ -89,7 +89,7 @@ export class BodyList {
         return entry;
       });
   }
-  /** A click on a body says what it is. */
+  /** A click on a body says what it is, and how near others are. */
   listen() {
     const { canvas } = this.view;
     let from = null;
@@ -106,13 +106,15 @@ export class BodyList {
     canvas.addEventListener('pointerleave', () => tell(null));
   }
   words({ body, point }) {
-    const { pair, text } = this.view.told ?? {},
+    const { pair, text, hit, near } = this.view.told ?? {},
       kind = partOf(body),
+      known = near?.(body.name) ?? [],
       lines = [kind && kind !== body.name ? `${body.name} (${kind})` : body.name];
-    if (pair?.includes(body.name)) {
+    if (pair?.includes(body.name) && (hit || !known.length)) {
       const other = pair.find((name) => name !== body.name) ?? body.name;
       lines.push(text ? `${text} from ${other}` : `nearest to ${other}`);
     }
+    lines.push(...known);
     const inBase = point.clone().applyMatrix4(this.view.world.matrix.clone().invert());
     lines.push(
       `point ${inBase

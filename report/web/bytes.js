@@ -24,12 +24,13 @@ const signed = (value) => (value % 2 ? -(value + 1) / 2 : value / 2);
 
 /**
  * Samples of `width` values each that a base64 text of varints stands for: one value of all samples
- * after the other, as what each adds to the line through the two samples before.
+ * after the other, as what each adds to the line through the two samples before. Numbers: the kind
+ * of array that is returned.
  */
-export function samples(text, width) {
+export function samples(text, width, Numbers = Int16Array) {
   const bends = varints(text),
-    count = bends.length / width,
-    result = new Int16Array(bends.length);
+    count = bends.length / Math.max(1, width),
+    result = new Numbers(bends.length);
   for (let k = 0, from = 0; k < width; ++k, from += count)
     for (let n = 0, value = 0, step = 0; n < count; ++n) {
       step += signed(bends[from + n]);

@@ -5,6 +5,7 @@ import { savers } from './figure.js';
 import { JobList, strokeName } from './joblist.js';
 import { jobSummary, strokeTable, verdict } from './jobtables.js';
 import { Cells, mapNote, mapTitle } from './map.js';
+import { Nearness, nearWords, nearWordsAt } from './nearness.js';
 import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
@@ -27,6 +28,7 @@ import { Strip } from './strip.js';
 const { chain, motion, home } = data,
   list = new JobList(data),
   { strokes, parts } = list,
+  nearness = strokes.map(({ near, rows }) => new Nearness(near, rows)),
   solved = data.result.cost !== null,
   objects = [
     ...new Set(data.bodies.filter(({ kind }) => kind === 'scene').map(({ name }) => name)),
@@ -225,8 +227,22 @@ function present() {
   maps?.draw(inMap() ? pose : null);
   plots?.draw(inMap() ? pose.row : null, pose);
 }
-function draw({ q, pair, line, hit }) {
-  view?.pose(q, pair, line, hit);
+/** What is nearest to a body, at a pose on a stroke and along all strokes. */
+function nearLines(name, { off, row, stroke: on }) {
+  const known = nearness
+    .map((one, k) => ({ near: one.least(name), k }))
+    .filter(({ near }) => near)
+    .sort((a, b) => a.near.mm - b.near.mm);
+  if (!known.length) return [];
+  const [{ near, k }] = known,
+    here = off || !Number.isFinite(row) ? null : nearness[on]?.at(name, Math.round(row));
+  const lines = [`nearest on strokes: ${nearWordsAt(near, strokeName(strokes[k], k))}`];
+  if (here) lines.unshift(Number.isInteger(row) ? nearWords(here) : nearWordsAt(here));
+  return lines;
+}
+function draw(pose) {
+  const { q, pair, line, hit } = pose;
+  view?.pose(q, pair, line, hit, (name) => nearLines(name, pose));
   Object.assign(window.swivel, { joints: q, line });
 }
 /** To a place on the slider. */

@@ -2,6 +2,7 @@
 // The report of one plan: text, map and plots first, then the arm; one cursor moves in all of them.
 import { savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
+import { Nearness, nearWords, nearWordsAt } from './nearness.js';
 import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
@@ -54,7 +55,8 @@ const player = new Player(() => {
   return rows.length > 0;
 });
 const pause = () => player.pause();
-const steps = stepsOf(rows, chain);
+const steps = stepsOf(rows, chain),
+  nearness = new Nearness(data.near, rows);
 const plots = new Plots(
   $('plots'),
   rows.map((row) => row.s),
@@ -153,8 +155,17 @@ function present() {
   tellPose($('readout'), chain, placeWords(pose, data.map.letter, 4), pose, digits);
   plots.draw(pose.row, pose);
 }
-function draw({ q, pair, line, hit }) {
-  view?.pose(q, pair, line, hit);
+/** What is nearest to a body, at a pose of the path and along all of it. */
+function nearLines(name, { off, row }) {
+  const least = nearness.least(name),
+    here = off ? null : nearness.at(name, Math.round(row));
+  if (!least) return [];
+  const lines = [`nearest along the path: ${nearWordsAt(least)}`];
+  if (here) lines.unshift(Number.isInteger(row) ? nearWords(here) : nearWordsAt(here));
+  return lines;
+}
+function draw({ q, pair, line, hit, off, row }) {
+  view?.pose(q, pair, line, hit, (name) => nearLines(name, { off, row }));
   Object.assign(window.swivel, { joints: q, line });
 }
 /** To row k, not always whole. */

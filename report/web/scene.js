@@ -418,11 +418,12 @@ class View {
   }
   /**
    * pair: names of the two bodies that are nearest, or that hit each other, or null; line: { points
-   * (six numbers), text } between them, or null.
+   * (six numbers), text } between them, or null. near: returns what is known of how near a body of
+   * some name comes to others, lines of text.
    */
-  pose(q, pair, line = null, hit = false) {
+  pose(q, pair, line = null, hit = false, near = () => []) {
     const g = displacements(this.data.chain, q);
-    this.told = { pair, text: line?.text };
+    this.told = { pair, text: line?.text, hit, near };
     this.world.matrix.copy(standing(this.data, g));
     for (const mesh of this.arm) {
       const { body, rest } = mesh.userData;

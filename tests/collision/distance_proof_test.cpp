@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ostream>
 #include <tuple>
 
@@ -111,7 +112,7 @@ struct CaseName {
 
 /// Counts what queries with distance proofs and by FCL alone were asked.
 struct LaneCounts {
-  std::int64_t questions = 0, pairs = 0, at_threshold = 0, clearances = 0, touching = 0;
+  std::int64_t questions = 0, pairs = 0, at_threshold = 0, clearances = 0, touching = 0, bodies = 0;
 };
 
 /// Returns whether some pair of bodies is nearer than d (m) at q, and compares each pair up to the
@@ -144,6 +145,41 @@ void check_clearance(ComparedQueries& queries, const Config& q, const CaseName& 
     counts.touching += plain->distance == 0;
   }
   ++counts.clearances;
+}
+
+/// Compares how near each body is at q with what FCL alone says: the same numbers, the least of
+/// them that of all pairs; where bodies are near, no pair of the body nearer and the named one no
+/// further.
+void check_body_clearances(ComparedQueries& queries, const Config& q, const CaseName& name,
+                           LaneCounts& counts) {
+  constexpr double kNear = 0.05;  // m, up to where pairs are asked about elsewhere
+  const auto plain = queries.off.body_clearances(q), sooner = queries.fast.body_clearances(q);
+  ASSERT_EQ(plain.size(), queries.world.body_names().size());
+  ASSERT_EQ(sooner.size(), plain.size());
+  double least = std::numeric_limits<double>::max();
+  for (int body = 0; body < static_cast<int>(plain.size()); ++body) {
+    const auto& found = sooner[static_cast<std::size_t>(body)];
+    const auto& fcl = plain[static_cast<std::size_t>(body)];
+    bool has_pair = false;
+    for (const BodyPair& pair : queries.world.pairs()) {
+      if (pair.a != body && pair.b != body) continue;
+      has_pair = true;
+      const double less = std::min(fcl ? fcl->distance : 0, kNear) - 1.1 * kTau;
+      EXPECT_FALSE(less > 0 && queries.off.pair_violates(q, pair, less)) << name << ' ' << body;
+    }
+    ASSERT_EQ(fcl.has_value(), has_pair) << name << " body " << body;
+    ASSERT_EQ(found.has_value(), has_pair) << name << " body " << body;
+    if (!found) continue;
+    EXPECT_EQ(found->distance, fcl->distance) << name << " body " << body;
+    EXPECT_EQ(found->pair, fcl->pair) << name << " body " << body;
+    EXPECT_TRUE(found->pair.a == body || found->pair.b == body);
+    least = std::min(least, found->distance);
+    if (found->distance < kNear) {
+      EXPECT_TRUE(queries.off.pair_violates(q, found->pair, found->distance + 1.1 * kTau)) << name;
+      ++counts.bodies;
+    }
+  }
+  EXPECT_EQ(least, queries.off.clearance(q)->least) << name;
 }
 
 /// Asks about distances within three bands of verdicts of the clearance at q, where it is less than
@@ -188,6 +224,7 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
       const CaseName name{base, s, k};
       const Config q = test::random_config(arm.chain, random);
       if (k % 100 == 0) check_clearance(queries, q, name, counts);
+      if (k % 50 == 0) check_body_clearances(queries, q, name, counts);
       if (HasFatalFailure()) return;
       ask(queries, q, k % 3 == 0 ? 0 : k % 3 == 1 ? 0.005 : random.uniform(0, 0.05), name, counts);
       if (k % 20 == 0) check_near_clearance(queries, q, name, counts);
@@ -195,17 +232,19 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
     sum += queries.asked.counters();
     by_fcl += queries.off.counters();
   }
-  const auto [questions, pairs, at_threshold, clearances, touching] = counts;
+  const auto [questions, pairs, at_threshold, clearances, touching, bodies] = counts;
   const std::int64_t undecided = questions - sum.proved_free - sum.proved_colliding;
   std::printf(
       "%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld "
       "certified free, %lld certified "
-      "colliding, %lld undecided; %lld pairs asked of both, %lld FCL calls for %lld\n",
+      "colliding, %lld undecided; %lld pairs asked of both, %lld FCL calls for %lld; %lld bodies "
+      "near others\n",
       robot.name.c_str(), scenes * configurations, static_cast<long long>(questions),
       static_cast<long long>(at_threshold), static_cast<long long>(sum.proved_free),
       static_cast<long long>(sum.proved_colliding), static_cast<long long>(undecided),
       static_cast<long long>(pairs), static_cast<long long>(sum.fcl_calls),
-      static_cast<long long>(by_fcl.fcl_calls));
+      static_cast<long long>(by_fcl.fcl_calls), static_cast<long long>(bodies));
+  EXPECT_GT(bodies, scenes);
   EXPECT_GT(clearances - touching, clearances / 10);
   EXPECT_EQ(sum.fcl_failures, 0);
   EXPECT_GT(at_threshold, scenes * 10);

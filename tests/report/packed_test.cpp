@@ -30,20 +30,22 @@ std::vector<std::int64_t> signed_varints(const std::string& text) {
   return values;
 }
 
-TEST(Packed, SamplesComeBack) {
-  Random random(seed("Packed.SamplesComeBack"));
+/// Encodes and decodes random samples of numbers of one kind.
+template <class T>
+void samples_come_back(Random& random) {
+  using Limits = std::numeric_limits<T>;
   int jumps = 0, empty = 0;
   const int kTrials = trials(400);
   for (int trial = 0; trial < kTrials; ++trial) {
     const auto width = static_cast<std::size_t>(1 + random.below(7)),
                count = static_cast<std::size_t>(random.below(60));
-    std::vector<std::int16_t> values(width * count);
-    for (std::int16_t& value : values) {
+    std::vector<T> values(width * count);
+    for (T& value : values) {
       const int kind = random.below(4);  // small, any, or one of the ends
-      value = static_cast<std::int16_t>(kind == 0   ? random.below(200) - 100
-                                        : kind == 1 ? random.below(65536) - 32768
-                                        : kind == 2 ? std::numeric_limits<std::int16_t>::min()
-                                                    : std::numeric_limits<std::int16_t>::max());
+      value = kind == 0   ? static_cast<T>(random.below(200) - 100)
+              : kind == 1 ? static_cast<T>(random.uniform(Limits::min(), Limits::max()))
+              : kind == 2 ? Limits::min()
+                          : Limits::max();
     }
     const std::vector<std::int64_t> bends = signed_varints(encode_samples(values, width));
     ASSERT_EQ(bends.size(), values.size());
@@ -53,12 +55,18 @@ TEST(Packed, SamplesComeBack) {
           return n < back ? 0 : values[(n - back) * width + k];
         };
         ASSERT_EQ(bends[k * count + n], at(0) - 2 * at(1) + at(2));
-        jumps += std::abs(bends[k * count + n]) > 32767;
+        jumps += std::abs(bends[k * count + n]) > Limits::max();
       }
     empty += count == 0;
   }
   EXPECT_GE(jumps, at_least(10000));
   EXPECT_GE(empty, at_least_among(2));
+}
+
+TEST(Packed, SamplesComeBack) {
+  Random random(seed("Packed.SamplesComeBack"));
+  samples_come_back<std::int16_t>(random);
+  samples_come_back<std::int32_t>(random);
 }
 
 TEST(Packed, TextsComeBack) {

@@ -685,6 +685,7 @@ struct World::Query::Impl {
     return bound_now >= d + kBoundSafety ? DistanceProof::kFree : proof.proved;
   }
   std::optional<Clearance> nearest(const Clearance& so_far);
+  std::vector<std::optional<BodyClearance>> nearest_of_bodies();
   double clearance_lower_bound(std::size_t k, double least, double enough) {
     const BodyPair& p = world->pairs[k];
     place_body(p.a);
@@ -850,6 +851,44 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
     }
   }
   return nearer ? std::optional(answer) : std::nullopt;
+}
+
+std::vector<std::optional<World::Query::BodyClearance>> World::Query::body_clearances(
+    const Config& q) {
+  impl_->move_to(q);
+  return impl_->nearest_of_bodies();
+}
+
+std::vector<std::optional<World::Query::BodyClearance>> World::Query::Impl::nearest_of_bodies() {
+  place_bodies();
+  const auto& pairs = world->pairs;
+  std::vector<std::pair<double, std::size_t>> order;  // least possible distance, m, and pair
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const BodyPair& p = pairs[k];
+    if (!world->may_touch[k])
+      order.emplace_back(
+          distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)), k);
+  }
+  std::sort(order.begin(), order.end());
+  constexpr double kMost = std::numeric_limits<double>::max();
+  // By body: distance and pair.
+  std::vector<std::pair<double, std::size_t>> least(bounds.size(), {kMost, pairs.size()});
+  for (const auto& [at_least, k] : order) {
+    auto &a = least[static_cast<std::size_t>(pairs[k].a)],
+         &b = least[static_cast<std::size_t>(pairs[k].b)];
+    // A pair that is proved to be further away than the nearest one of either body is of no use.
+    const double beyond = std::max(a.first, b.first);
+    if (beyond < kMost && (at_least - kBoundSafety > beyond || proved_beyond(k, beyond))) continue;
+    const std::pair found{test.clearance(placed(pairs[k].a), placed(pairs[k].b), &warm_start[k]),
+                          k};
+    a = std::min(a, found);
+    b = std::min(b, found);
+  }
+  std::vector<std::optional<BodyClearance>> answer(least.size());
+  for (std::size_t body = 0; body < least.size(); ++body)
+    if (const auto& [distance, k] = least[body]; k < pairs.size())
+      answer[body] = BodyClearance{distance, pairs[k]};
+  return answer;
 }
 
 std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q,

@@ -74,7 +74,7 @@ class JobPage {
     if (runs_.empty()) {
       json["tool_path"] =
           tool_path_json(path_within_scale(problem_of_run(job_, order_[k]), chain_, budget_));
-      json["map"] = json["cut"] = json["run"] = nullptr;
+      json["map"] = json["cut"] = json["run"] = json["near"] = nullptr;
       return json;
     }
     const PlanView& view = runs_[k];
@@ -88,6 +88,7 @@ class JobPage {
     json["settings"] = settings_json(view.problem, lattice);
     json["tool_path"] = tool_path_json(lattice.path_of_rows());
     json["rows"] = rows_json(view.world, lattice, rows, budget_);
+    json["near"] = near_json(view.world, rows, budget_);
     if (part)
       for (std::size_t row = 0; row < rows.size(); ++row)
         json["rows"][row]["process"] = json_["parts"][*part]["rows"][row]["process"];

@@ -32,7 +32,10 @@ void append_signed(std::vector<unsigned char>& bytes, std::int64_t value) {
   append_varint(bytes, value < 0 ? ~doubled : doubled);
 }
 
-std::string encode_samples(const std::vector<std::int16_t>& values, std::size_t width) {
+namespace {
+
+template <class T>
+std::string encoded(const std::vector<T>& values, std::size_t width) {
   std::vector<unsigned char> bytes;
   for (std::size_t k = 0; k < width; ++k) {
     std::int64_t before = 0, step = 0;
@@ -44,6 +47,16 @@ std::string encode_samples(const std::vector<std::int16_t>& values, std::size_t 
     }
   }
   return base64(bytes);
+}
+
+}  // namespace
+
+std::string encode_samples(const std::vector<std::int16_t>& values, std::size_t width) {
+  return encoded(values, width);
+}
+
+std::string encode_samples(const std::vector<std::int32_t>& values, std::size_t width) {
+  return encoded(values, width);
 }
 
 std::string compressed(std::string_view text) {

@@ -30,6 +30,8 @@ void append_signed(std::vector<unsigned char>& bytes, std::int64_t value);
 /// Samples of a smooth curve become small numbers. Base 64 of varints.
 [[nodiscard]] std::string encode_samples(const std::vector<std::int16_t>& values,
                                          std::size_t width);
+[[nodiscard]] std::string encode_samples(const std::vector<std::int32_t>& values,
+                                         std::size_t width);
 
 /// Compresses a text to a zlib stream (RFC 1950), in base 64. Equal texts give equal results with
 /// one version of zlib.

@@ -56,6 +56,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"meshes", std::move(bodies.meshes)},
       {"tool_path", tool_path_json(lattice.path_of_rows())},
       {"rows", rows_json(world, lattice, rows, budget)},
+      {"near", near_json(world, rows, budget)},
       {"beside", motion.refined ? beside_json(found) : Json::array()},
       {"motion", motion.motion ? motion_of(*motion.motion, problem, lattice, rows) : Json(nullptr)},
       {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, rows, diagnosis)

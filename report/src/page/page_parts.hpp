@@ -41,6 +41,12 @@ struct PageRow {
 /// Returns the rows with their clearances, which it asks for. Throws Stopped.
 [[nodiscard]] Json rows_json(const World& world, const Lattice& lattice,
                              const std::vector<PageRow>& shown, const Budget& budget);
+/// Returns how near each body comes, row by row, to those that it must keep clear of: `names` of
+/// bodies; `distance` to the nearest other one, in um, and `other`, the index of its name, of
+/// all names at one row after the other, as encode_samples() writes them. Bodies without pairs are
+/// left out; bodies of one name are as near as the nearest of them. Throws Stopped.
+[[nodiscard]] Json near_json(const World& world, const std::vector<PageRow>& rows,
+                             const Budget& budget);
 /// Returns the path beside which a refined one is drawn.
 [[nodiscard]] Json beside_json(const std::vector<PageRow>& rows);
 /// Returns the points of the tool in each layer.

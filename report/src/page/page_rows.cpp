@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "page/packed.hpp"
 #include "swivel/core/timing/time_path.hpp"
 
 namespace swivel::detail {
@@ -106,6 +108,42 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Pag
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+Json near_json(const World& world, const std::vector<PageRow>& rows, const Budget& budget) {
+  using Near = World::Query::BodyClearance;
+  constexpr double kGrain = 1e-6;  // m
+  const std::vector<std::string>& bodies = world.body_names();
+  World::Query query(world, DistanceProofs::kOn);
+  Json names = Json::array();
+  std::map<std::string, std::int32_t> index;
+  std::vector<std::int32_t> distances, others;
+  for (const PageRow& row : rows) {
+    budget.poll();
+    const std::vector<std::optional<Near>> found = query.body_clearances(row.at.q);
+    std::map<std::string, Near> nearest;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      if (!found[k]) continue;
+      const auto [known, is_new] = nearest.try_emplace(bodies[k], *found[k]);
+      if (!is_new && found[k]->distance < known->second.distance) known->second = *found[k];
+    }
+    // The pairs of a world, and so the bodies that are in one, are the same at every row.
+    if (index.empty())
+      for (const auto& [name, near] : nearest) {
+        index.emplace(name, static_cast<std::int32_t>(names.size()));
+        names.push_back(name);
+      }
+    for (const auto& [name, near] : nearest) {
+      const std::array<std::string, 2> pair = world.names(near.pair);
+      constexpr double kMost = std::numeric_limits<std::int32_t>::max() / 4;
+      distances.push_back(
+          static_cast<std::int32_t>(std::lround(std::min(near.distance / kGrain, kMost))));
+      others.push_back(index.at(pair[pair[0] == name ? 1 : 0]));
+    }
+  }
+  return {{"names", names},
+          {"distance", encode_samples(distances, names.size())},
+          {"other", encode_samples(others, names.size())}};
 }
 
 Json beside_json(const std::vector<PageRow>& rows) {

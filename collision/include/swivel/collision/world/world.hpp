@@ -294,6 +294,15 @@ class World {
     /// clearance is below, the result's distance is the largest double.
     [[nodiscard]] std::optional<Clearance> clearance_if_less(const Config& q,
                                                              const Clearance& so_far);
+    /// How far a body is from the nearest one that it must keep clear of.
+    struct BodyClearance {
+      double distance = 0;  ///< m; 0 if the two touch or one is inside the other
+      BodyPair pair;
+    };
+    /// Returns for each body, by its index in body_names(), the nearest of the pairs that it is in,
+    /// as exactly as FCL tells, whatever the pairs must keep: the first of those that are equally
+    /// near. Nothing for a body without pairs. Pairs that may touch are left out.
+    [[nodiscard]] std::vector<std::optional<BodyClearance>> body_clearances(const Config& q);
     /// Returns a point of each of the two bodies of clearance(q), in the base frame, that are as
     /// far apart as the bodies are, within 0.1 mm; meant for drawing. Returns nothing if the bodies
     /// touch or if FCL's points are not credible.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How near bodies come to those that they must keep clear of, row by row.
+import { samples } from './bytes.js';
+import { number } from './page.js';
+
+const kMicrometre = 1e-3; // mm
+
+export class Nearness {
+  /**
+   * near: { names, distance, other } of the page's data (src/page/page_rows.cpp), or null; rows: of
+   * the same path.
+   */
+  constructor(near, rows) {
+    this.rows = near ? rows : [];
+    this.names = near?.names ?? [];
+    [this.distances, this.others] = [near?.distance, near?.other].map((text) =>
+      samples(text ?? '', this.names.length, Int32Array),
+    );
+  }
+  /** The nearest of all to a body at a row: { mm, other, s }; null where nothing is known. */
+  at(name, row) {
+    const body = this.names.indexOf(name);
+    if (body < 0 || !this.rows[row]) return null;
+    const k = row * this.names.length + body;
+    return {
+      mm: kMicrometre * this.distances[k],
+      other: this.names[this.others[k]],
+      s: this.rows[row].s,
+    };
+  }
+  /** As at(), of the first row at which the body is nearest to something. */
+  least(name) {
+    return this.rows.reduce((best, _, row) => {
+      const here = this.at(name, row);
+      return here && (!best || here.mm < best.mm) ? here : best;
+    }, null);
+  }
+}
+
+/** What is nearest to a body, in words. near: of Nearness. */
+export const nearWords = ({ mm, other }) =>
+  mm > 0 ? `${number(mm, 3)} mm from ${other}` : `touches ${other}`;
+/** As nearWords(), with where that is. */
+export const nearWordsAt = (near, stroke = '') =>
+  `${nearWords(near)} at s ${near.s.toFixed(4)} m${stroke && ` of ${stroke}`}`;
