@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the search knows of the lattice: the cells of the (s, phi) map, decoded.
-import { bytes, samples } from './bytes.js';
+import { bytes, poseValues } from './bytes.js';
 import { number } from './page.js';
 import { kKnown, kObjects } from './palette.js';
 
@@ -21,7 +21,6 @@ export class Cells {
     this.jointNames = joints.map(({ name }) => name);
     this.states = new Uint8Array(bytes(map.states));
     this.causes = new Uint8Array(bytes(map.causes));
-    this.poses = samples(map.joints, joints.length);
     this.clearances = new Uint16Array(bytes(map.clearances));
     this.poseLayers = new Uint16Array(bytes(map.pose_layers)); // counted from the cell's first
     this.posePhis = new Float32Array(bytes(map.pose_phis));
@@ -31,6 +30,11 @@ export class Cells {
     let next = 0;
     for (let k = 0; k < this.states.length; ++k)
       this.pose[k] = this.states[k] & kAgain ? next - 1 : this.states[k] & kPosed ? next++ : -1;
+    this.poses = poseValues(map.joints, joints.length, {
+      rows: this.rows,
+      column: this.rows * this.panels.length,
+      pose: this.pose,
+    });
   }
   index(panel, column, row) {
     return (column * this.panels.length + panel) * this.rows + row;

@@ -13,9 +13,9 @@ export class Nearness {
   constructor(near, rows) {
     this.rows = near ? rows : [];
     this.names = near?.names ?? [];
-    [this.distances, this.others] = [near?.distance, near?.other].map((text) =>
-      samples(text ?? '', this.names.length, Int32Array),
-    );
+    [this.distances, this.others] = near
+      ? [near.distance, near.other].map((place) => samples(place, near.names.length))
+      : [[], []];
   }
   /** The nearest of all to a body at a row: { mm, other, s }; null where nothing is known. */
   at(name, row) {

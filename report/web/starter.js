@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Starts a page: inflates its data and its program, which it holds as zlib streams in base 64.
-import { bytes } from './bytes.js';
+import { decoded } from './bytes.js';
 
 const kNeeds =
   'This browser cannot unpack the page (DecompressionStream is missing); Chrome or Edge 80, ' +
@@ -9,7 +9,7 @@ const kNeeds =
 /** What an element holds, as a Response. */
 const inflated = (id) =>
   new Response(
-    new Blob([bytes(document.getElementById(id).textContent)])
+    new Blob([decoded(document.getElementById(id).textContent)])
       .stream()
       .pipeThrough(new DecompressionStream('deflate')),
   );
@@ -26,9 +26,18 @@ function showStill(why) {
 }
 
 async function start() {
-  const [data, program] = await Promise.all([inflated('data').json(), inflated('program').text()]),
-    script = document.createElement('script');
-  window.swivelPage = { data };
+  const [held, program] = await Promise.all([
+      inflated('data').arrayBuffer(),
+      inflated('program').text(),
+    ]),
+    script = document.createElement('script'),
+    all = new Uint8Array(held),
+    // A text of JSON, a byte 0, and the binary values of which the text has the places.
+    end = all.indexOf(0) < 0 ? all.length : all.indexOf(0);
+  window.swivelPage = {
+    data: JSON.parse(new TextDecoder().decode(all.subarray(0, end))),
+    bytes: all.subarray(end + 1),
+  };
   script.textContent = program;
   document.body.append(script); // runs it
   script.remove(); // so that a saved page starts as this one does

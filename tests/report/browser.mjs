@@ -24,16 +24,23 @@ export function some(variants) {
   return Array.from({ length: count }, (_, k) => variants[(first + k) % variants.length]);
 }
 
-/** The data that a page holds. */
-export const dataOf = (html) =>
-  JSON.parse(
-    inflateSync(
-      Buffer.from(
-        readFileSync(html, 'utf8').match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1],
-        'base64',
-      ),
-    ),
-  );
+/**
+ * What a page holds: { data, binary: its binary values, bytes: that of which the data has the place
+ * }.
+ */
+export function heldBy(html) {
+  const [, text] = readFileSync(html, 'utf8').match(/<script id="data"[^>]*>(.*?)<\/script>/s),
+    all = inflateSync(Buffer.from(text, 'base64')),
+    end = all.includes(0) ? all.indexOf(0) : all.length,
+    binary = new Uint8Array(all.subarray(end + 1));
+  return {
+    data: JSON.parse(all.subarray(0, end)),
+    binary,
+    bytes: ([first, count]) => binary.subarray(first, first + count),
+  };
+}
+/** The data of a page. */
+export const dataOf = (html) => heldBy(html).data;
 
 /** Ends with code 77 (skipped), but where CI is set with 1. */
 export function skip(why) {

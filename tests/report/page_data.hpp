@@ -41,11 +41,13 @@ inline std::string inflated(std::string_view text) {
   return result;
 }
 
-/// Returns the data of a page, as a browser finds it: the text between the tags of its element.
+/// Returns the JSON text of a page's data, as a browser finds it: between the tags of its element,
+/// before the binary values.
 inline std::string data_of(const std::string& page) {
   const std::string open = "<script id=\"data\" type=\"application/zlib\">";
   const std::size_t begin = page.find(open) + open.size();
-  return inflated(page.substr(begin, page.find("</script>", begin) - begin));
+  const std::string all = inflated(page.substr(begin, page.find("</script>", begin) - begin));
+  return all.substr(0, all.find('\0'));
 }
 
 }  // namespace swivel::test

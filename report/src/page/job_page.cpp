@@ -200,9 +200,9 @@ std::string to_job_page(const PlannedJob& planned, const std::string& result_jso
   const std::string name = std::filesystem::path(planned.job.source).filename().string();
   const std::string title = words.which.empty() ? name : name + ", " + words.which;
   JobPage page(planned, result_json, budget);
-  const Json data = page.data(name, words);
+  Json data = page.data(name, words);
   return fill(
-      job_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+      job_template(), std::move(data),
       {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", page.maps()}});
 }
 

@@ -53,16 +53,16 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                         {"by", ended_by(row.status, row.cause, row.by, row.reason)},
                         {"reason", row.reason},
                         {"offsets", row.offsets}});
-  const Json data = {{"problem", facts.problem},
-                     {"episodes", facts.episodes},
-                     {"seed", facts.seed},
-                     {"shard", {facts.shard.index, facts.shard.count}},
-                     {"asked", facts.shard.size(facts.episodes)},
-                     {"planner", facts.planner},
-                     {"plan_command", facts.plan_command},
-                     {"coordinates", facts.coordinates},
-                     {"rows", std::move(episodes)}};
-  return fill(overview_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+  Json data = {{"problem", facts.problem},
+               {"episodes", facts.episodes},
+               {"seed", facts.seed},
+               {"shard", {facts.shard.index, facts.shard.count}},
+               {"asked", facts.shard.size(facts.episodes)},
+               {"planner", facts.planner},
+               {"plan_command", facts.plan_command},
+               {"coordinates", facts.coordinates},
+               {"rows", std::move(episodes)}};
+  return fill(overview_template(), std::move(data),
               {{"@@ANSWER@@", escaped_lines(facts.problem + "\n\n" + answer_of(rows))}});
 }
 

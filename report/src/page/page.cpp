@@ -44,7 +44,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       motion.refined ? placed(lattice, map, *motion.refined, view.path) : found;
   const std::string name = std::filesystem::path(problem.source).filename().string();
   const std::string title = words.which.empty() ? name : name + ", " + words.which;
-  const Json data = {
+  Json data = {
       {"problem", name},
       {"which", words.which},
       {"answer", words.answer},
@@ -63,7 +63,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
                                     : Json(nullptr)},
       {"map", map_json(map, lattice, world, view.path, rows, kMostCells, budget)}};
   return fill(
-      page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+      page_template(), std::move(data),
       {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", to_svg(map)}});
 }
 

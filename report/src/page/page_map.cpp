@@ -82,6 +82,8 @@ class MapWriter {
                          {"name", map.solution_name(solution)},
                          {"rolls", map.shows_rolls(solution)}});
     }
+    posed_.rows = static_cast<std::size_t>(cells_.rows);
+    posed_.column = posed_.rows * solutions_.size();
     for (std::size_t row = 0; row < rows.size(); ++row)
       if (rows[row].layer == static_cast<double>(row_of_layer_.size()))
         row_of_layer_.push_back(row);
@@ -191,6 +193,7 @@ class MapWriter {
             static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (is_again ? 32u : 0u) |
                                       (cell.proved ? 64u : 0u) | (posed ? 128u : 0u)));
         causes_.push_back(cell.cause);
+        posed_.pose.push_back(posed ? static_cast<int>(poses_.size()) - (is_again ? 1 : 0) : -1);
         if (!posed || is_again) continue;
         budget_.poll();
         if (looked_at(cell))
@@ -235,14 +238,14 @@ class MapWriter {
             {"arcs", !map_.grid()},
             {"nothing", map_.emptiness()},
             {"panels", std::move(panels_)},
-            {"states", base64(states_)},
-            {"causes", base64(causes_)},
-            {"joints", encode_samples(joints, kDof)},
-            {"clearances", base64(clearances_.values)},
+            {"states", Json::binary(states_)},
+            {"causes", Json::binary(causes_)},
+            {"joints", Json::binary(encode_poses(joints, kDof, posed_))},
+            {"clearances", Json::binary(bytes_of(clearances_.values))},
             {"joint_unit", reach / 32767},
-            {"pose_layers", base64(layers)},
-            {"pose_phis", base64(phis)},
-            {"pose_rolls", base64(rolls)},
+            {"pose_layers", Json::binary(bytes_of(layers))},
+            {"pose_phis", Json::binary(bytes_of(phis))},
+            {"pose_rolls", Json::binary(bytes_of(rolls))},
             {"blockers", map_.blockers},
             {"complete", map_.complete},
             {"s", map_.s}};
@@ -264,6 +267,7 @@ class MapWriter {
   int rank_ = 0;  ///< of the roll that the path has in the layer, or had last
   std::vector<std::uint8_t> states_, causes_;  ///< of all cells
   std::vector<Shown> poses_;                   ///< layers counted from the cell's first
+  PosedCells posed_;
 };
 
 }  // namespace

@@ -99,8 +99,11 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Pag
       row["clearance_mm"] = 1e3 * clearance->distance;
       row["pair"] = {world.body_names()[clearance->pair.a], world.body_names()[clearance->pair.b]};
       if (const auto points = query.nearest_points(at.q, *clearance)) {
-        row["nearest"] = vector_json((*points)[0]);
-        for (const double x : (*points)[1]) row["nearest"].push_back(x);
+        // Within 0.1 mm anyway.
+        const auto drawn = [](double x) { return std::round(1e6 * x) / 1e6; };
+        row["nearest"] = Json::array();
+        for (const Vector3d& point : *points)
+          for (const double x : point) row["nearest"].push_back(drawn(x));
       } else {
         row["nearest"] = nullptr;
       }
@@ -142,8 +145,8 @@ Json near_json(const World& world, const std::vector<PageRow>& rows, const Budge
     }
   }
   return {{"names", names},
-          {"distance", encode_samples(distances, names.size())},
-          {"other", encode_samples(others, names.size())}};
+          {"distance", Json::binary(encode_samples(distances, names.size()))},
+          {"other", Json::binary(encode_samples(others, names.size()))}};
 }
 
 Json beside_json(const std::vector<PageRow>& rows) {

@@ -82,7 +82,23 @@ std::string escaped_lines(const std::string& text) {
   return result;
 }
 
-std::string fill(std::string_view page, const std::string& json,
+namespace {
+
+/// Moves the binary values of `json` behind `bytes`; [first, count] takes the place of each.
+void take_out(nlohmann::ordered_json& json, std::string& bytes) {
+  if (json.is_binary()) {
+    const auto& value = json.get_binary();
+    const std::size_t first = bytes.size();
+    bytes.append(value.begin(), value.end());
+    json = nlohmann::ordered_json::array({first, bytes.size() - first});
+  } else if (json.is_structured()) {
+    for (auto& part : json) take_out(part, bytes);
+  }
+}
+
+}  // namespace
+
+std::string fill(std::string_view page, nlohmann::ordered_json data,
                  const std::vector<std::pair<std::string_view, std::string>>& besides) {
   std::string filled;
   const auto copy_up_to = [&](std::string_view mark) {
@@ -97,8 +113,13 @@ std::string fill(std::string_view page, const std::string& json,
     filled += html;
   }
   copy_up_to("@@DATA@@");
+  std::string bytes;
+  take_out(data, bytes);
   // What turns the direction of writing would turn that of the page as well.
-  filled += compressed(printable(json));
+  std::string text =
+      printable(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  if (!bytes.empty()) text += '\0' + bytes;
+  filled += compressed(text);
   return filled += page;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,11 +19,12 @@ namespace swivel::detail {
 /// Returns the text with its lines escaped for HTML.
 [[nodiscard]] std::string escaped_lines(const std::string& text);
 
-/// Returns the page with its data, a JSON text, compressed in place of "@@DATA@@". `besides`: other
-/// marks, in the order of the page and all before the data, each with the HTML that takes its
-/// place.
+/// Returns the page with its data in place of "@@DATA@@": a compressed JSON text, then, where
+/// `data` has binary values, a byte 0 and these values one after the other, for which the text has
+/// [number of the first byte, how many]. `besides`: other marks, in the order of the page and all
+/// before the data, each with the HTML that takes its place.
 [[nodiscard]] std::string fill(
-    std::string_view page, const std::string& json,
+    std::string_view page, nlohmann::ordered_json data,
     const std::vector<std::pair<std::string_view, std::string>>& besides = {});
 
 }  // namespace swivel::detail

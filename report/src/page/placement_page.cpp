@@ -58,8 +58,8 @@ Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows
   Json poses = Json::array();
   for (const SceneObject& object : scene) poses.push_back(pose_json(object.pose));
   return {{"cell", cell.cell},
-          {"s", base64(s)},
-          {"joints", base64(joints)},
+          {"s", Json::binary(bytes_of(s))},
+          {"joints", Json::binary(bytes_of(joints))},
           {"poses", std::move(poses)},
           {"still_frame", pose_json(still_frame(thing, cell.offset))}};
 }
@@ -145,13 +145,13 @@ std::string to_placement_page(const std::vector<PlacementRow>& rows, const Place
     axes.push_back({{"name", kCoordinates[static_cast<std::size_t>(axis.coordinate)]},
                     {"values", std::move(values)}});
   }
-  const Json data = {{"problem", facts.problem},  {"thing", facts.thing},
-                     {"axes", std::move(axes)},   {"sample", facts.sample},
-                     {"asked", facts.asked},      {"criterion", to_string(facts.criteria.front())},
-                     {"planner", facts.planner},  {"plan_command", facts.plan_command},
-                     {"ends", std::move(ends)},   {"columns", std::move(columns)},
-                     {"scene", scene_json(scene)}};
-  return fill(placement_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+  Json data = {{"problem", facts.problem},  {"thing", facts.thing},
+               {"axes", std::move(axes)},   {"sample", facts.sample},
+               {"asked", facts.asked},      {"criterion", to_string(facts.criteria.front())},
+               {"planner", facts.planner},  {"plan_command", facts.plan_command},
+               {"ends", std::move(ends)},   {"columns", std::move(columns)},
+               {"scene", scene_json(scene)}};
+  return fill(placement_template(), std::move(data),
               {{"@@ANSWER@@", escaped_lines(facts.problem + "\n\n" + facts.answer)},
                {"@@MAP@@", facts.map}});
 }

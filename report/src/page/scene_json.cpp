@@ -92,10 +92,10 @@ namespace {
 /// Writes a mesh for drawing. Corners are rounded to 10 um; they are numbered in the order in which
 /// triangles use them, equal ones alike. `points`: of each the differences from the one before, x,
 /// y, z, with their signs in the lowest bits. `corners`: of each corner of the triangles how far
-/// its number is below the next that is not used yet. Both are base 64 of varints.
+/// its number is below the next that is not used yet. Both are varints.
 Json mesh_json(const TriangleMesh& mesh) {
   constexpr double kGrain = 1e-5;  // m
-  std::vector<unsigned char> points, corners;
+  Bytes points, corners;
   std::map<std::array<std::int64_t, 3>, std::uint64_t> numbers;
   std::array<std::int64_t, 3> before{};
   for (const auto& triangle : mesh.triangles)
@@ -110,7 +110,7 @@ Json mesh_json(const TriangleMesh& mesh) {
       for (std::size_t k = 0; k < 3; ++k) append_signed(points, at[k] - before[k]);
       before = at;
     }
-  return {{"grain", kGrain}, {"points", base64(points)}, {"corners", base64(corners)}};
+  return {{"grain", kGrain}, {"points", Json::binary(points)}, {"corners", Json::binary(corners)}};
 }
 
 }  // namespace

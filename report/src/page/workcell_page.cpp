@@ -290,9 +290,9 @@ std::string to_workcell_page(const PlannedWorkcell& planned, const std::string& 
                              const Budget& budget, const PageWords& words) {
   const std::string name = std::filesystem::path(planned.cell.source).filename().string();
   WorkcellPage page(planned, result_json, budget);
-  const Json data = page.data(name, words);
+  Json data = page.data(name, words);
   return fill(
-      workcell_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+      workcell_template(), std::move(data),
       {{"@@ANSWER@@", escaped_lines(name + "\n\n" + words.answer)}, {"@@MAP@@", page.maps()}});
 }
 
