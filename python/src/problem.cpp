@@ -701,7 +701,8 @@ void bind_task(py::module_& m) {
           "__eq__", [](const Task& a, const Task& b) { return a == b; }, py::is_operator())
       .def("__repr__",
            [](const Task& task) {
-             return "<Task of " + std::to_string(task.waypoints.size()) + " waypoints>";
+             return "<Task of " + std::to_string(task.waypoints.size()) + " waypoints" +
+                    (task.closed ? ", closed>" : ">");
            })
       .attr("__hash__") = py::none();
 }

@@ -317,6 +317,49 @@ TEST(ProblemFile, EndOfSixJoints) {
   EXPECT_NE(message.find("path.end.joints: has 3 entries"), std::string::npos) << message;
 }
 
+/// Returns a path with three waypoints, of which the last is to be the first, and more keys.
+ProblemFolder::Sections closed_path(const std::string& last, const std::string& more = "") {
+  return {{"path", "{closed: true, waypoints: [{xyz: [0.6, 0, 0.9]}, {xyz: [0.6, 0.1, 0.9]}, " +
+                       last + "]" + more + "}"}};
+}
+
+TEST(ProblemFile, ClosedPaths) {
+  const ProblemFolder folder;
+  const std::string first = "{xyz: [0.6, 0, 0.9]}", seven = "{joints: [0, 0, 0, 0, 0, 0, 1]}";
+  EXPECT_FALSE(folder.load({}).closed);
+  EXPECT_TRUE(folder.load(closed_path(first)).closed);
+  EXPECT_TRUE(folder.load(closed_path("{xyz: [0.6, 5e-7, 0.9], quat: [-1, 0, 0, 0]}")).closed);
+  ProblemFolder::Sections pinned = closed_path(first, ", end: " + seven);
+  pinned["start"] = seven;
+  EXPECT_TRUE(folder.load(pinned).closed);
+  struct Case {
+    ProblemFolder::Sections sections;
+    std::vector<std::string> needles;
+  };
+  std::vector<Case> cases{
+      {closed_path("{xyz: [0.6, 2e-6, 0.9]}"),
+       {"path.closed: is true, but the last waypoint is 2e-06 m and 0 rad from the first",
+        "at most 1e-6 m and 1e-6 rad"}},
+      {closed_path("{xyz: [0.6, 0, 0.9], rpy: [0, 0, 0.5]}"), {"path.closed", "0.5 rad"}},
+      {closed_path(first, ", end: " + seven), {"path.closed: is given beside `start` or `end`"}},
+      {closed_path(first), {"path.closed: is given beside `start` or `end`", "neither, or both"}},
+      {pinned, {"path.closed: is given beside `start_at`", "one of the two"}},
+  };
+  cases[3].sections["start"] = seven;
+  cases[4].sections["start_at"] = "0.05";
+  for (const Case& one : cases)
+    expect_message(input_error([&] { (void)folder.load(one.sections); }), one.needles);
+  const std::string data = SWIVEL_DATA_DIR;
+  const std::string windows =
+      "robot: {urdf: " + data +
+      "/robots/kr6_like.urdf, base_link: base_link, tip_link: flange}\n"
+      "path: {closed: true, roll: free, waypoints: [{xyz: [0.6, 0, 0.9], roll: [0, 1]}, "
+      "{xyz: [0.6, 0.1, 0.9], roll: [0, 1]}, {xyz: [0.6, 0, 0.9], roll: [0, 2]}]}\n";
+  expect_message(
+      input_error([&] { (void)load_problem(folder.folder().write("problems/w.yaml", windows)); }),
+      {"w.yaml:2: path.closed", "the last waypoint allows other rolls than the first"});
+}
+
 TEST(ProblemFile, SectionsWithEverythingCommentedOut) {
   const ProblemFolder folder;
   const Problem problem = folder.load({{"limits", "# {}"},
