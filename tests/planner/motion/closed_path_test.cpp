@@ -73,8 +73,9 @@ void keep_ring_inside(const Chain& chain, Config& q) {
   }
 }
 
-/// Sets how fine the lattice is, and limits that suit it.
-void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, Random& random) {
+/// Sets how fine the lattice is, and limits that suit it; `coarse`: never fine.
+void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, bool coarse,
+                       Random& random) {
   Resolution& resolution = problem.resolution;
   resolution.ds = std::max(0.01, length / (4 + random.below(4)));
   resolution.dalpha = random.uniform(0.3, 0.8);
@@ -83,8 +84,8 @@ void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, Random&
   problem_parts::draw_limits(problem, random);
   Limits& limits = problem.limits;
   // Where nodes lie close together and joints weigh unlike, the cheapest open path drifts.
-  const bool fine = random.coin();
-  if (fine)
+  const bool unlike = random.coin(), fine = unlike && !coarse;
+  if (unlike)
     for (double& weight : problem.cost.weights) weight = random.uniform(0.05, 2);
   if (nodes == RingNodes::kArmAngles) {
     resolution.arcs = random.coin();
@@ -95,6 +96,7 @@ void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, Random&
     return;
   }
   if (fine) resolution.arc = random.uniform(0.1, 0.2);
+  if (coarse) resolution.arc *= 1.5, resolution.dalpha = random.uniform(0.7, 1);
   limits.step_error.reset();
   if (limits.tool_path_error) limits.tool_path_error = random.uniform(0.02, 0.1);
   if (limits.tool_angle_error) limits.tool_angle_error = random.uniform(0.1, 0.4);
@@ -104,8 +106,9 @@ void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, Random&
 }
 
 /// Draws a closed path of two to four sides through tool poses of postures near each other, some
-/// with obstacles.
-Problem ring_problem(const RingArm& arm, Random& random) {
+/// with obstacles. A ring of `spins` has three sides, along which the last joint turns once, that
+/// before a roll.
+Problem ring_problem(const RingArm& arm, Random& random, bool spins = false) {
   Problem problem = problem_for(arm.robot);
   if (arm.nodes == RingNodes::kSixJoints)
     problem.roll = random.coin() ? Roll{} : Roll{random.uniform(-2, -0.5), random.uniform(0.5, 2)};
@@ -116,10 +119,13 @@ Problem ring_problem(const RingArm& arm, Random& random) {
   if (chain.roll) q[kDof - 1] = random.uniform(-0.2, 0.2);
   keep_ring_inside(chain, q);
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
-  for (int more = 1 + random.below(3); more > 0; --more) {
+  const int last = chain.roll ? kDof - 2 : kDof - 1, sides = spins ? 3 : 2 + random.below(3);
+  for (int side = 1; side < sides; ++side) {
     for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.2, 0.2);
     keep_ring_inside(chain, q);
-    problem.waypoints.push_back(waypoint_of(chain.tool(q)));
+    Config turned = q;
+    if (spins) turned[last] += kTwoPi * side / sides;
+    problem.waypoints.push_back(waypoint_of(chain.tool(turned)));
   }
   problem.waypoints.push_back(problem.waypoints.front());
   Quaterniond& orientation = problem.waypoints.back().orientation;
@@ -131,7 +137,7 @@ Problem ring_problem(const RingArm& arm, Random& random) {
     length += (problem.waypoints[k].position - problem.waypoints[k - 1].position).norm();
   if (random.coin(0.6))
     problem_parts::draw_obstacles(problem, chain, q, 1 + random.below(3), random);
-  draw_ring_lattice(problem, arm.nodes, length, random);
+  draw_ring_lattice(problem, arm.nodes, length, spins, random);
   if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
   return problem;
 }
@@ -177,6 +183,7 @@ RingTruth ring_truth(const PreparedRobot& robot, const ToolPath& path, const Pro
 
 struct RingCounts {
   int closed = 0, open_only = 0, none = 0, dearer = 0, obstacles = 0, turned = 0;
+  int other_branch = 0, told_apart = 0;
   std::array<int, 3> closed_by_nodes{};
 };
 
@@ -243,6 +250,13 @@ void check_ring(const RingArm& arm, const Problem& problem, const std::string& w
   ++counts.closed, ++counts.closed_by_nodes[static_cast<std::size_t>(arm.nodes)];
   ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
   counts.dearer += truth.cost > truth.open.cost * (1 + 1e-9);
+  // Where the answer of a lattice whose wide joints are circles comes back in another turn, these
+  // joints become nodes of their own.
+  const std::unique_ptr<Lattice> circles =
+      make_lattice(robot.arm().chain, robot.arm_class(), path, problem);
+  counts.told_apart += results[0].lattice.nodes != circles->nodes();
+  counts.other_branch +=
+      lattice.path_rows(truth.open.slots).front().branch != results[0].trajectory.front().branch;
   expect_laps(robot, problem, results[0], what, counts);
 }
 
@@ -272,6 +286,48 @@ TEST(ClosedPath, FourPlannersAndBruteForceOverAllStarts) {
   EXPECT_GE(counts.closed, at_least(100));
   EXPECT_GE(counts.dearer, at_least(8));
   for (const int closed : counts.closed_by_nodes) EXPECT_GE(closed, at_least(6));
+}
+
+/// Arms of joints with a turn and more, and without limits, which may come back in another turn.
+std::vector<RingArm> spinning_arms() {
+  const TestRobot gen3 = ring_at_flange("gen3_like");
+  TestRobot wide = with_limits(gen3, [](int number, Joint& joint) {
+    if (number + 1 == kDof)
+      joint.type = Joint::Type::kRevolute, joint.lower = -5, joint.upper = 5.5;
+  });
+  wide.name += ", joint 7 with limits";
+  return {{windings_robot(), RingNodes::kArmAngles},
+          {gen3, RingNodes::kArcs},
+          {wide, RingNodes::kArcs},
+          {ring_at_flange("kr6_like"), RingNodes::kSixJoints}};
+}
+
+/// Rings along which the last joint turns once. Where it has limits, and no other joint takes its
+/// turn, paths lead to the end, and none closes. Where paths close, their postures are others than
+/// those of the cheapest path that need not.
+TEST(ClosedPath, RingsThatTurnAJoint) {
+  const std::uint64_t base = seed("SpinningRings");
+  const std::vector<RingArm> arms = spinning_arms();
+  RingCounts counts;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const RingArm& arm = arms[static_cast<std::size_t>(trial) % arms.size()];
+    check_ring(arm, ring_problem(arm, random, true),
+               "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                   " robot " + arm.robot.name,
+               counts);
+    if (HasFatalFailure()) return;
+  }
+  std::printf(
+      "seed %llu: %d rings: %d have open paths alone, %d none; %d closed, %d of them dearer than "
+      "the open path, %d in another branch, %d once a joint's turns were told apart, %d turn a "
+      "joint on\n",
+      static_cast<unsigned long long>(base), count, counts.open_only, counts.none, counts.closed,
+      counts.dearer, counts.other_branch, counts.told_apart, counts.turned);
+  EXPECT_GE(counts.open_only, at_least(12));
+  EXPECT_GE(counts.closed, at_least(6));
+  EXPECT_GE(counts.other_branch + counts.told_apart, at_least(2));
 }
 
 }  // namespace
