@@ -92,7 +92,7 @@ class ClosedPaths(unittest.TestCase):
             swivel.plan(problem)
 
     def test_a_path_that_cannot_close(self):
-        """A turntable without limits follows the torch once round; its arm has a limit to unwind."""
+        """A turntable without limits follows the torch once round; its arm must unwind."""
         problem = swivel.load_problem(DATA / "problems" / "kr6_turntable_pipe.yaml")
         problem.resolution.ds, problem.resolution.arc = 0.01, 0.6
         self.assertTrue(swivel.plan(problem).solved)
