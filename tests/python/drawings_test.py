@@ -39,7 +39,7 @@ def program(*words, codes=(0,)):
 def unpacked(match):
     """Returns what a text in base 64 holds, if that is a zlib stream; else the text itself."""
     try:
-        return zlib.decompress(base64.b64decode(match[0])).decode()
+        return zlib.decompress(base64.b64decode(match[0])).decode("latin-1")
     except (ValueError, zlib.error):
         return match[0]
 
