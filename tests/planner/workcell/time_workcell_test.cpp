@@ -538,6 +538,52 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
   EXPECT_GE(timed, at_least(count / 6));
 }
 
+/// Rows of plans whose corners are sharp are laid on the rounded ones, refined and timed.
+TEST(RefineWorkcell, RefinesAndTimesRowsOfOtherPlans) {
+  Random random(seed("RefineWorkcell.RefinesAndTimesRowsOfOtherPlans"));
+  const TestRobot robot = data_robot("sda10f");
+  const int count = trials(48);
+  int solved = 0, timed = 0, cheaper = 0, too_near = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    SCOPED_TRACE(trial);
+    Workcell sharp = workcell_to_time(robot, static_cast<Kind>(trial % 4), random);
+    for (WorkcellArm& arm : sharp.arms) arm.smooth.reset();
+    std::optional<PreparedWorkcell> planned, prepared;
+    try {
+      planned.emplace(sharp);
+      prepared.emplace(with_motion_defaults(sharp));
+    } catch (const InputError&) {
+      continue;  // a follower whose tool stands still
+    }
+    const WorkcellResult plain = plan_workcell(*planned, lazily());
+    if (plain.status != PlanStatus::kSolved) continue;
+    ++solved;
+    const std::array<std::vector<TrajectoryRow>, 2> rows{plain.arms[0].trajectory,
+                                                         plain.arms[1].trajectory};
+    std::optional<RefinedWorkcellMotion> found;
+    try {
+      found = refine_and_time_workcell(*prepared, rows, {.speed = 0.25});
+    } catch (const InputError&) {
+      continue;  // a follower has other layers where its leader rounds corners
+    }
+    const RefinedWorkcell& refined = found->refinement;
+    EXPECT_LE(refined.cost, refined.cost_before);
+    EXPECT_NEAR(refined.cost_before, plain.cost, 0.05 * plain.cost);
+    cheaper += refined.cost < refined.cost_before;
+    too_near += found->timing.failure && found->timing.failure->too_near;
+    if (!found->timing.motion) continue;
+    ++timed;
+    const WorkcellCheckResult check =
+        check_workcell_motion(*prepared, rows_of(*found->timing.motion), {.margins = false});
+    EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
+  }
+  std::printf("%d plans, %d refined, %d timed, %d too near between samples\n", solved, cheaper,
+              timed, too_near);
+  EXPECT_GE(solved, at_least(count / 3));
+  EXPECT_GE(cheaper, at_least(count / 4));
+  EXPECT_GE(timed, at_least(count / 4));
+}
+
 TEST(RefineWorkcell, LeavesUnrefinedPlansAsTheyAre) {
   Random random(seed("RefineWorkcell.LeavesUnrefinedPlansAsTheyAre"));
   const TestRobot robot = data_robot("sda10f");
