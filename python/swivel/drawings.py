@@ -156,8 +156,33 @@ def _plan_html(self):
     return answer + drawn + button
 
 
+def _workcell_report(self, file=None):
+    """Makes the page of the plan: what `swivel plan WORKCELL --report` writes, one HTML file.
+
+    file: where the page is written.
+
+    Returns the page as text, or None where it was written. The workcell is planned again, which
+    gives the same plan. Raises ValueError for plans that were stopped, and where the package was
+    built without pages.
+    """
+    return _written(_swivel._draw_workcell(self), file)
+
+
+def _workcell_certificate(self, *, timeout=None):
+    """Proves that the workcell has no plan, as `swivel plan WORKCELL --certificate` does.
+
+    timeout: s, or None.
+
+    Returns a WorkcellCertificate. The proof comes from a search of its own. Raises ValueError for
+    plans that are not infeasible, or were made with refine or speed, and TimeoutError.
+    """
+    return _swivel._workcell_certificate(self, timeout)
+
+
 def extend():
-    """Gives the class Plan what is written in this file."""
+    """Gives the classes of plans what is written in this file."""
+    _swivel.WorkcellPlan.report = _workcell_report
+    _swivel.WorkcellPlan.certificate = _workcell_certificate
     for name, method in (
         ("report", _plan_report),
         ("map_svg", _plan_map_svg),

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import swivel
+from pages import data_of
 
 PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
 BAR = DATA / "problems" / "sda10f_bar_workcell.yaml"
@@ -208,6 +209,96 @@ class Workcells(unittest.TestCase):
         self.assertAlmostEqual(json.loads(plan.to_json())["refinement"]["cost"], plan.cost)
         timed = swivel.plan_workcell(cell, refine=True, speed=0.1)
         self.assertTrue(swivel.check_workcell(cell, timed.motions))
+
+    def barred(self):
+        """A workcell file whose tools would move up at one place."""
+        robot = {
+            "urdf": str(DATA / "robots" / "sda10f.urdf"),
+            "srdf": str(DATA / "robots" / "sda10f.srdf"),
+            "base_link": "base_link",
+            "hold": {"torso_joint_b1": 0},
+        }
+        arms = []
+        for name, y in (("left", 0.01), ("right", -0.01)):
+            path = [{"xyz": [0.72, y, z], "rpy": [0, 1.5707963, 0]} for z in (1.0, 1.1)]
+            arms.append({
+                "name": name, "tip_link": f"arm_{name}_link_tool0", "tool": {"xyz": [0, 0, 0.1]},
+                "path": {"waypoints": path}
+            })
+        file = self.folder / "barred.yaml"
+        cell = {"robot": robot, "arms": arms, "resolution": {"ds": 0.02, "dphi": 0.2}}
+        file.write_text(json.dumps(cell))
+        return file
+
+    def test_certificates(self):
+        file, proof = self.barred(), self.folder / "proof.json"
+        done = subprocess.run(
+            [PROGRAM, "plan", file, "--quiet", "--certificate", proof], capture_output=True
+        )
+        self.assertEqual(done.returncode, 1, done.stderr)
+        cell = swivel.load_workcell(file)
+        plan = swivel.plan_workcell(cell)
+        self.assertEqual(plan.status, "infeasible")
+        self.assertIsNotNone(plan.conflict)
+        certificate = plan.certificate()
+        self.assertEqual(certificate.to_json(), proof.read_text())
+        self.assertGreater(certificate.regions, 0)
+        self.assertEqual(certificate.cuts, certificate.regions + 1)
+        self.assertRegex(repr(certificate), "^<WorkcellCertificate: no plan, [0-9]+ regions, ")
+        saved = self.folder / "saved.json"
+        certificate.save(saved)
+        self.assertEqual(saved.read_text(), proof.read_text())
+        self.assertEqual(swivel.load_workcell_certificate(proof), certificate)
+        self.assertEqual(pickle.loads(pickle.dumps(certificate)), certificate)
+        for of in (cell, file):
+            for what in (certificate, proof):
+                check = swivel.check_workcell_certificate(of, what)
+                self.assertTrue(check, check.failure)
+        self.assertIsNone(check.failure)
+        self.assertEqual((check.regions, check.cuts), (certificate.regions, certificate.cuts))
+        self.assertGreater(check.pairs, 0)
+        self.assertTrue(pickle.loads(pickle.dumps(check)).passed)
+        self.assertEqual(
+            subprocess.run(
+                [PROGRAM, "check", file, "--certificate", saved], capture_output=True
+            ).returncode, 0
+        )
+        forged = json.loads(proof.read_text())
+        forged["sets"][-1].update(layers=[])
+        saved.write_text(json.dumps(forged))
+        check = swivel.check_workcell_certificate(cell, saved)
+        self.assertFalse(check.passed)
+        self.assertIn("failed", repr(check))
+        with self.assertRaises(swivel.InputError):
+            swivel.check_workcell_certificate(PLATE, proof)
+        with self.assertRaises(TimeoutError):
+            plan.certificate(timeout=1e-9)
+        with self.assertRaisesRegex(ValueError, "'solved': allowed is one that is infeasible"):
+            swivel.plan_workcell(PLATE).certificate()
+        with self.assertRaisesRegex(ValueError, "without refine and speed"):
+            swivel.plan_workcell(cell, speed=0.1).certificate()
+
+    @unittest.skipUnless(swivel._swivel._page_available(), "built without pages")
+    def test_pages(self):
+        for file, keywords, options in (
+            (PLATE, {}, ()),
+            (self.barred(), {}, ()),
+            (PLATE, {"speed": 0.05, "refine": True}, ("--speed", "0.05", "--refine")),
+        ):
+            page = self.folder / "page.html"
+            done = subprocess.run([PROGRAM, "plan", file, "--report", page, "--quiet", *options])
+            plan = swivel.plan_workcell(file, **keywords)
+            self.assertEqual(done.returncode, 0 if plan.solved else 1)
+            other = self.folder / "other.html"
+            self.assertIsNone(plan.report(other))
+            program, here = data_of(page), data_of(other)
+            for data in (program, here):
+                data["result"]["time_ms"] = None
+                if not keywords:
+                    continue
+                # the program's page tells the figures of the motion in its text, too
+                data.pop("answer", None)
+            self.assertEqual(here, program)
 
     def test_bad_input(self):
         with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):

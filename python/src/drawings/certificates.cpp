@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates that a problem has no path, and what verifies them.
+// Certificates that a problem has no path or a workcell no plan, and what verifies them.
+#include <algorithm>
 #include <optional>
+#include <variant>
 
 #include "archive.hpp"
 #include "bindings.hpp"
 #include "interruptible.hpp"
+#include "job.hpp"
 #include "plan_keywords.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
@@ -15,6 +18,9 @@
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+#include "workcells/workcell_plan.hpp"
 
 namespace swivel {
 
@@ -42,6 +48,31 @@ template <class A>
 void serialize(A& archive, InfeasibilityCertificate& x) {
   auto& [stroke, reversed, resolution, edges, windings, layers, first_layer, band, witnesses] = x;
   archive(stroke, reversed, resolution, edges, windings, layers, first_layer, band, witnesses);
+}
+template <class A>
+void serialize(A& archive, WorkcellCertificate::Move& x) {
+  auto& [from, to] = x;
+  archive(from, to);
+}
+template <class A>
+void serialize(A& archive, WorkcellCertificate::Region& x) {
+  auto& [layer, bodies, slots, moves] = x;
+  archive(layer, bodies, slots, moves);
+}
+template <class A>
+void serialize(A& archive, WorkcellCertificate::Branch& x) {
+  auto& [parent, arm, region, arm_without_path, cut] = x;
+  archive(parent, arm, region, arm_without_path, cut);
+}
+template <class A>
+void serialize(A& archive, WorkcellCertificate& x) {
+  auto& [windings, resolution, edges, layers, tree] = x;
+  archive(windings, resolution, edges, layers, tree);
+}
+template <class A>
+void serialize(A& archive, WorkcellCertificateCheck& x) {
+  auto& [passed, failure, complete, regions, cuts, pairs, nodes, edges] = x;
+  archive(passed, failure, complete, regions, cuts, pairs, nodes, edges);
 }
 template <class A>
 void serialize(A& archive, CertificateCheck& x) {
@@ -87,9 +118,125 @@ std::string words_of(const InfeasibilityCertificate& certificate) {
          removed_text(certificate) + ">";
 }
 
+/// Returns the certificate that a workcell has no plan. Throws ValueError for another plan.
+WorkcellCertificate proof_of(const WorkcellPlan& plan, std::optional<double> timeout) {
+  if (plan.plan->result.status != PlanStatus::kInfeasible)
+    throw py::value_error(std::string("the plan is '") + to_string(plan.plan->result.status) +
+                          "': allowed is one that is infeasible");
+  if (plan.refined || plan.timing)
+    throw py::value_error(
+        "a certificate is of the workcell as it is: allowed is a plan without refine and speed");
+  return interruptible([&](const std::stop_token& stop) {
+    const Budget budget(timeout, nullptr, stop);
+    return prove_infeasible(PreparedWorkcell(*plan.cell, budget), budget);
+  });
+}
+
+WorkcellCertificateCheck verdict_on_workcell(
+    const std::variant<const Workcell*, std::filesystem::path>& workcell,
+    const std::variant<const WorkcellCertificate*, std::filesystem::path>& certificate,
+    std::optional<double> timeout) {
+  const auto* const made = std::get_if<const Workcell*>(&workcell);
+  const auto cell = made != nullptr ? (*made)->cell
+                                    : std::make_shared<const swivel::Workcell>(io::load_workcell(
+                                          std::get<std::filesystem::path>(workcell)));
+  const auto* const known = std::get_if<const WorkcellCertificate*>(&certificate);
+  const WorkcellCertificate proof =
+      known != nullptr
+          ? **known
+          : io::load_workcell_certificate(std::get<std::filesystem::path>(certificate));
+  return interruptible([&](const std::stop_token& stop) {
+    const Budget budget(timeout, nullptr, stop);
+    return verify_certificate(PreparedWorkcell(*cell, budget), proof, budget);
+  });
+}
+
+/// Returns how many sets of pairs are divided by a region of conflict.
+std::int64_t regions_of(const WorkcellCertificate& certificate) {
+  return std::count_if(certificate.tree.begin(), certificate.tree.end(),
+                       [](const auto& branch) { return branch.region.has_value(); });
+}
+
+void bind_workcell_certificates(py::module_& m) {
+  py::class_<WorkcellCertificate>(
+      m, "WorkcellCertificate",
+      "Proves that two arms have no paths without conflict at their resolution: a tree of regions "
+      "of conflict, with a cut of one arm at each leaf.")
+      .def(pickling<WorkcellCertificate>())
+      .def_readonly("layers", &WorkcellCertificate::layers, "Of both lattices.")
+      .def_property_readonly("regions", &regions_of, "Regions of conflict.")
+      .def_property_readonly(
+          "cuts",
+          [](const WorkcellCertificate& x) {
+            return static_cast<std::int64_t>(x.tree.size()) - regions_of(x);
+          },
+          "Leaves: sets of pairs of paths in which an arm has none.")
+      .def(
+          "to_json", [](const WorkcellCertificate& x) { return io::to_json(x); },
+          "As text, docs/formats.md: what `plan WORKCELL --certificate` writes.")
+      .def(
+          "save",
+          [](const WorkcellCertificate& x, const std::filesystem::path& file) {
+            io::write_file(file, io::to_json(x));
+          },
+          py::arg("file"),
+          "As JSON, which `swivel check --certificate` and check_workcell_certificate() read.")
+      .def(
+          "__eq__",
+          // cuts in files have no lattice of their own
+          [](const WorkcellCertificate& a, const WorkcellCertificate& b) {
+            return io::to_json(a) == io::to_json(b);
+          },
+          py::is_operator())
+      .def("__repr__",
+           [](const WorkcellCertificate& x) {
+             const auto regions = regions_of(x);
+             return formatted("<WorkcellCertificate: no plan, %lld regions, %lld cuts, %d layers>",
+                              static_cast<long long>(regions),
+                              static_cast<long long>(x.tree.size()) - regions, x.layers);
+           })
+      .attr("__hash__") = py::none();
+  py::class_<WorkcellCertificateCheck>(m, "WorkcellCertificateCheck",
+                                       "What a certificate of a workcell proves, or its fault.")
+      .def(pickling<WorkcellCertificateCheck>())
+      .def_readonly("passed", &WorkcellCertificateCheck::passed)
+      .def("__bool__", [](const WorkcellCertificateCheck& x) { return x.passed; })
+      .def_property_readonly(
+          "failure",
+          [](const WorkcellCertificateCheck& x) -> std::optional<std::string> {
+            if (x.passed) return {};
+            return x.failure;
+          },
+          "The first fault; None if it passed.")
+      .def_readonly("complete", &WorkcellCertificateCheck::complete,
+                    "False: the proof covers only those solutions of the arms that were found.")
+      .def_readonly("regions", &WorkcellCertificateCheck::regions, "Regions of conflict.")
+      .def_readonly("cuts", &WorkcellCertificateCheck::cuts, "Cuts of one arm.")
+      .def_readonly("pairs", &WorkcellCertificateCheck::pairs,
+                    "Pairs of nodes and of moves of both arms asked.")
+      .def_readonly("nodes", &WorkcellCertificateCheck::nodes, "Nodes asked.")
+      .def_readonly("edges", &WorkcellCertificateCheck::edges, "Edges asked.")
+      .def("__repr__", [](const WorkcellCertificateCheck& x) {
+        if (!x.passed) return "<WorkcellCertificateCheck failed: " + x.failure + ">";
+        return formatted("<WorkcellCertificateCheck passed: %lld regions, %lld cuts>",
+                         static_cast<long long>(x.regions), static_cast<long long>(x.cuts));
+      });
+  m.def("load_workcell_certificate", &io::load_workcell_certificate, py::arg("file"),
+        "A WorkcellCertificate: what `plan WORKCELL --certificate` or save() wrote. Raises "
+        "InputError.");
+  m.def("check_workcell_certificate", &verdict_on_workcell, py::arg("workcell").none(false),
+        py::arg("certificate").none(false), py::kw_only(), py::arg("timeout") = py::none(),
+        "Verifies from the workcell alone that it has no plan, as `swivel check --certificate` "
+        "does: WorkcellCertificateCheck.\n\n"
+        "workcell, certificate: a Workcell and a WorkcellCertificate, or the names of their files. "
+        "timeout: s. Raises InputError for the certificate of another workcell, and TimeoutError.");
+  m.def("_workcell_certificate", &proof_of, py::arg("plan"), py::arg("timeout"));
+}
+
 }  // namespace
 
 void bind_certificates(py::module_& m) {
+  bind_workcell_certificates(m);
   py::class_<InfeasibilityCertificate>(
       m, "Certificate",
       "Proves that a problem has no path at its resolution: a band of layers that nothing crosses.")

@@ -10,7 +10,11 @@
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/workcell/time_workcell.hpp"
+#include "swivel/planner/workcell/workcell_view.hpp"
 #include "swivel/report/page.hpp"
+#include "swivel/report/workcell_page.hpp"
+#include "workcells/workcell_plan.hpp"
 
 namespace swivel::python {
 
@@ -90,9 +94,53 @@ Drawing draw(const Plan& plan, const Problem* given, bool with_page, bool full) 
   });
 }
 
+/// Returns true if two plans have the same rows of both arms.
+bool same_rows(const WorkcellResult& a, const WorkcellResult& b) {
+  return same_rows(a.arms[0].trajectory, b.arms[0].trajectory) &&
+         same_rows(a.arms[1].trajectory, b.arms[1].trajectory);
+}
+
+/// Plans a workcell again and returns its page. Throws ValueError for plans without a verdict, and
+/// if another plan is found.
+std::string page_of(const WorkcellPlan& plan) {
+  if (!page_available())
+    throw py::value_error("report: this build has no pages: allowed is one with SWIVEL_REPORT");
+  const WorkcellResult& known = plan.plan->result;
+  if ((known.status != PlanStatus::kSolved && known.status != PlanStatus::kInfeasible) ||
+      plan.plan->stopped)
+    throw py::value_error("the plan was stopped: allowed are plans that were not");
+  PlanOptions options;
+  for (const auto& [name, kind] : EnumNames<PlannerKind>::names)
+    if (name == known.planner) options.planner = kind;
+  options.check = true;
+  options.evidence = Evidence::all();
+  return interruptible([&](const std::stop_token& stop) {
+    options.stop = stop;
+    const Budget budget({}, nullptr, stop);
+    const Workcell cell = plan.completed();
+    const PreparedWorkcell prepared(cell, budget);
+    WorkcellView view;
+    const WorkcellMotionPlan again =
+        plan_workcell_motion(prepared, options, plan.refined, plan.timing, &view);
+    if (again.result.status != known.status || !same_rows(again.result, known))
+      throw std::logic_error("planned again, the workcell has another plan");
+    const auto& timing = again.timing;
+    const io::WorkcellExtras extras{again.refinement ? &*again.refinement : nullptr,
+                                    timing ? &*timing : nullptr,
+                                    plan.timing.value_or(TimingOptions{}), nullptr};
+    const WorkcellMotion* const motion = timing && timing->motion ? &*timing->motion : nullptr;
+    return to_workcell_page({prepared, cell, again.result, view, motion},
+                            io::to_workcell_json(again.result, extras), budget,
+                            {"", answer_text(again.result)});
+  });
+}
+
 }  // namespace
 
 void bind_drawings(py::module_& m) {
+  m.def(
+      "_draw_workcell", [](const WorkcellPlan& plan) { return page_of(plan); }, py::arg("plan"),
+      "The page of a workcell's plan as HTML; used by the package's WorkcellPlan.report().");
   m.def("_page_available", &page_available);
   m.def(
       "_draw",

@@ -23,16 +23,11 @@
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
+#include "workcells/workcell_plan.hpp"
 
 namespace swivel::python {
 
 namespace {
-
-struct WorkcellPlan {
-  std::shared_ptr<const WorkcellMotionPlan> plan;  // shared with trajectories
-  TimingOptions timing = {};
-  std::string frame = {};  // name of the base link
-};
 
 struct WorkcellCheck {
   WorkcellCheckResult result;
@@ -183,16 +178,14 @@ py::dict motions_of(const WorkcellPlan& plan) {
 WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
                   const std::optional<TimingOptions>& timing, bool refine) {
   const auto cell = to_core(of);
-  WorkcellPlan made{.frame = cell->arms[0].base_link};
-  if (timing) made.timing = *timing;
+  WorkcellPlan made{
+      .timing = timing, .refined = refine, .frame = cell->arms[0].base_link, .cell = cell};
   made.plan =
       std::make_shared<const WorkcellMotionPlan>(interruptible([&](const std::stop_token& stop) {
         options.stop = stop;
         const Budget budget({}, nullptr, stop);
-        swivel::Workcell completed = timing ? with_motion_defaults(*cell) : *cell;
-        for (WorkcellArm& arm : completed.arms)
-          if (refine) keep_clearance_between_layers(arm.limits);
-        return plan_workcell_motion(PreparedWorkcell(completed, budget), options, refine, timing);
+        return plan_workcell_motion(PreparedWorkcell(made.completed(), budget), options, refine,
+                                    timing);
       }));
   return made;
 }
@@ -362,8 +355,9 @@ void bind_plan(py::module_& m) {
           "to_json",
           [](const WorkcellPlan& p) {
             const auto& [result, refinement, timing, stopped] = *p.plan;
-            return io::to_workcell_json(result, {refinement ? &*refinement : nullptr,
-                                                 timing ? &*timing : nullptr, p.timing});
+            return io::to_workcell_json(
+                result, {refinement ? &*refinement : nullptr, timing ? &*timing : nullptr,
+                         p.timing.value_or(TimingOptions{})});
           },
           "As `swivel plan --json` writes it.")
       .def(
@@ -503,6 +497,13 @@ void bind_advice(py::module_& m) {
 }
 
 }  // namespace
+
+swivel::Workcell WorkcellPlan::completed() const {
+  swivel::Workcell whole = timing ? with_motion_defaults(*cell) : *cell;
+  for (WorkcellArm& arm : whole.arms)
+    if (refined) keep_clearance_between_layers(arm.limits);
+  return whole;
+}
 
 void bind_workcell(py::module_& m) {
   bind_cell(m);
