@@ -79,8 +79,9 @@ std::vector<std::string> colours_of_ends(const PlacementMap& map) {
       return one.status != PlanStatus::kSolved && ended_by(one) == end;
     });
     const std::string& cause = row->cause;
-    colours.emplace_back(cause == "pair" || cause == "contact" || cause == "transition"
-                             ? next(palette::kObjects, bodies)
+    const bool of_bodies = cause == "pair" || cause == "contact" || cause == "transition" ||
+                           cause == "conflict" || cause == "given_motion";
+    colours.emplace_back(of_bodies          ? next(palette::kObjects, bodies)
                          : cause == "limit" ? next(palette::kLimits, limits)
                                             : next(palette::kOthers, others));
   }

@@ -201,6 +201,7 @@ class WorkcellPlacements(Studies):
         _, rows = self.place(file, "--object", "post", "--y", "-0.45:0:0.45")
         self.assertEqual([row["status"] for row in rows], ["infeasible", "solved"])
         self.assertEqual(rows[0]["cause"], "given_motion")
+        self.assertEqual(rows[0]["by"], "given motion of 'left'")
         self.assertRegex(rows[0]["reason"], "^given motion of 'left': row 0: .*post")
         self.expect_refused(
             "plan", file, "--object", "post", "--y", "-0.45",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/workcell.hpp"
@@ -31,12 +33,11 @@ inline StudiedWorkcell plan_studied(const Workcell& cell, const PlanOptions& opt
     WorkcellResult barred;
     barred.names = {prepared.name(0), prepared.name(1)};
     barred.given_arm = prepared.given_arm();
-    return {std::move(barred),
-            StudyFailure{.reached_s = {},
-                         .cause = "given_motion",
-                         .by = {},
-                         .reason = "given motion of '" + prepared.name(*prepared.given_arm()) +
-                                   "': " + *fault}};
+    const std::string what = "given motion of '" + barred.names[*barred.given_arm] + "'";
+    return {
+        std::move(barred),
+        StudyFailure{
+            .reached_s = {}, .cause = "given_motion", .by = what, .reason = what + ": " + *fault}};
   }
   return {plan_workcell(prepared, options)};
 }

@@ -298,7 +298,8 @@ TEST(WorkcellPlacements, TellThatAGivenMotionIsBarred) {
       }
       ++barred;
       EXPECT_EQ(row.status, PlanStatus::kInfeasible);
-      EXPECT_EQ(row.reason.find("given motion of 'left': row "), 0u) << row.reason;
+      EXPECT_EQ(row.by, "given motion of 'left'");
+      EXPECT_EQ(row.reason.find(row.by + ": row "), 0u) << row.reason;
       EXPECT_NE(row.reason.find("post"), std::string::npos) << row.reason;
       EXPECT_THROW(static_cast<void>(row_alone(cell, kPost, cells[row.cell])), InputError);
     }
