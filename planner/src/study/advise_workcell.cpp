@@ -83,7 +83,6 @@ class WorkcellTrials {
  public:
   WorkcellTrials(const Workcell& cell, const WorkcellResult& result, const PlanOptions& options)
       : cell_(cell),
-        result_(result),
         options_(options),
         end_(Clock::now() +
              std::chrono::duration_cast<Clock::duration>(
@@ -323,7 +322,6 @@ class WorkcellTrials {
   }
 
   const Workcell& cell_;
-  const WorkcellResult& result_;
   PlanOptions options_;
   Clock::time_point end_, trial_end_;
   std::vector<std::size_t> without_path_;  // arms that have none by themselves

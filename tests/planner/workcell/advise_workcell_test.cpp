@@ -207,7 +207,9 @@ bool holds(const Workcell& cell, const WorkcellAdvice& advice) {
   EXPECT_TRUE(cost);
   // an arm that comes to lead has its waypoints by other roundings here
   const double rounding = advice.change == Change::kLeads ? 1e-6 : 0;
-  if (cost) EXPECT_NEAR(*cost, *advice.cost, rounding);
+  if (cost) {
+    EXPECT_NEAR(*cost, *advice.cost, rounding);
+  }
   return true;
 }
 
@@ -254,7 +256,9 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
     bool any = false;
     for (std::size_t k = 0; k < advice.cell.size(); ++k) {
       const WorkcellAdvice& one = advice.cell[k];
-      if (k > 0) EXPECT_LE(advice.cell[k - 1].outcome, one.outcome);
+      if (k > 0) {
+        EXPECT_LE(advice.cell[k - 1].outcome, one.outcome);
+      }
       ++advised;
       if (!holds(cell, one)) continue;
       any = true;

@@ -46,8 +46,7 @@ namespace swivel {
 /// scene removed or moved, the follower as leader, and both paths moved alike. Paths are not moved
 /// where a start, an end or a motion is given. Where both arms have no path by themselves, no
 /// change of a single arm is planned with both, but a smaller clearance and joint margin of both.
-/// For arms without a path AdviceOnWorkcell::arms says what
-/// helps them by themselves.
+/// For arms without a path AdviceOnWorkcell::arms says what helps them by themselves.
 ///
 /// `result` is the verdict on the workcell. Planner kind and threads are those of `options`, whose
 /// time-out covers all trials together (one second if unset). Changes that help come first. Empty
