@@ -118,7 +118,7 @@ def _plan_show(self, *, height=720):
 
     height: of the cell, pixels. Raises as report() does.
     """
-    page = report(None, self)
+    page = self.report()
     if _in_a_notebook():
         from IPython.display import display
 
@@ -182,6 +182,7 @@ def _workcell_certificate(self, *, timeout=None):
 def extend():
     """Gives the classes of plans what is written in this file."""
     _swivel.WorkcellPlan.report = _workcell_report
+    _swivel.WorkcellPlan.show = _plan_show
     _swivel.WorkcellPlan.certificate = _workcell_certificate
     for name, method in (
         ("report", _plan_report),

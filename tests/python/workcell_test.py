@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import swivel
@@ -299,6 +300,12 @@ class Workcells(unittest.TestCase):
                 # the program's page tells the figures of the motion in its text, too
                 data.pop("answer", None)
             self.assertEqual(here, program)
+        with mock.patch("webbrowser.open") as opened:
+            plan.show()
+        opened.assert_called_once()
+        shown = Path(opened.call_args[0][0].removeprefix("file://"))
+        self.addCleanup(shown.unlink)
+        self.assertEqual(data_of(shown)["result"]["cost"], here["result"]["cost"])
 
     def test_bad_input(self):
         with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
