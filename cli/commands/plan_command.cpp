@@ -26,6 +26,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
@@ -235,9 +236,11 @@ std::string page_of(const PlanRequest& request, const PlanAnswer& answer, const 
   PageMotion motion;
   if (plan.refinement && plan.refinement->refined) motion.refined = &plan.result.trajectory;
   if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
+  const io::VisualRobot visual = io::load_visuals(view.problem.source);
   return to_page(view, *answer.map, io::to_json(plan.result, extras), motion, budget,
                  {request.arguments.episode.words(),
-                  answer_text(plan.result) + (answer.advice ? advice_text(*answer.advice) : "")});
+                  answer_text(plan.result) + (answer.advice ? advice_text(*answer.advice) : ""),
+                  visual.model.get(), visual.left_out});
 }
 
 /// Makes the lattice map and the page, if they are asked for and the plan has a verdict. Adds a

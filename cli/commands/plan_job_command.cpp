@@ -14,6 +14,7 @@
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
@@ -125,9 +126,10 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
     if (answer.advice) text += advice_text(*answer.advice);
     if (plan.timing) text += job_motion_text(*plan.timing, result.parts, job);
     const JobMotion* motion = plan.timing && plan.timing->motion ? &*plan.timing->motion : nullptr;
+    const io::VisualRobot visual = io::load_visuals(job.source);
     return to_job_page({robot, job, result, view, motion},
                        io::to_job_json(result, job, extras_of(answer)), budget,
-                       {request.which, text});
+                       {request.which, text, visual.model.get(), visual.left_out});
   } catch (const Stopped&) {
     answer.plan.result.warnings.push_back("stopped before the page was made: there is no report");
     return std::nullopt;

@@ -65,6 +65,7 @@ export const viewKeys = (view) => ({
  * view: as of viewKeys; joints: returns those that are shown; text: what is copied of them.
  */
 export function viewOptions(view, joints, text = (q) => `[${q.join(', ')}]`) {
+  $('visual').addEventListener('change', ({ target }) => view()?.showVisual(target.checked));
   $('trail').addEventListener('change', ({ target }) => view()?.showTrail(target.checked));
   $('copy-joints').addEventListener('click', ({ target }) => {
     navigator.clipboard?.writeText(text(joints()));

@@ -53,15 +53,7 @@ class View {
     // All but the grid and ghosts is in the base frame.
     this.world = Object.assign(new THREE.Group(), { matrixAutoUpdate: false });
     this.scene.add(this.world);
-    this.parts = data.bodies.map((one) => {
-      const body = { ...one, stands: stands(one, data.ground) };
-      const fine = geometry(body, data.meshes, kFine),
-        { shape: coarse, off } =
-          body.mesh === undefined
-            ? { shape: geometry(body, data.meshes, kCoarse), off: 0 }
-            : thinned(fine);
-      return { body, fine, coarse, off, rest: matrix(body.pose) };
-    });
+    this.parts = data.bodies.map((one) => this.part(one, data));
     const materials = (settings) =>
       Object.fromEntries(
         Object.entries(kBodies).map(([kind, colour]) => [
@@ -72,15 +64,8 @@ class View {
     this.materials = materials({});
     this.faded = materials({ opacity: 0.1, rim: 0.25 });
     this.looks = new Map(); // of bodies that are not just shown: 'faded' or 'hidden', by legend
-    this.arm = this.parts.map((part) => {
-      const mesh = new THREE.Mesh(part.fine);
-      mesh.matrixAutoUpdate = false;
-      mesh.matrix.copy(part.rest);
-      mesh.userData = part;
-      this.dress(mesh, kindOf(part.body));
-      this.world.add(mesh);
-      return mesh;
-    });
+    this.visual = new Set(); // links of which visual shapes are shown
+    this.arm = this.parts.map((part) => this.meshOf(part));
     this.addNearest();
     this.tools = toolsOf(data.chain).map(() => this.addTool());
     this.paint();
@@ -90,6 +75,53 @@ class View {
     this.look('best');
     this.orbit.addEventListener('change', () => (this.dirty = this.moving = true));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+  }
+  /** What is drawn of a body of the page's data. */
+  part(one, data) {
+    const body = { ...one, stands: stands(one, data.ground) },
+      fine = geometry(body, data.meshes, kFine),
+      { shape: coarse, off } =
+        body.mesh === undefined
+          ? { shape: geometry(body, data.meshes, kCoarse), off: 0 }
+          : thinned(fine);
+    return { body, fine, coarse, off, rest: matrix(body.pose) };
+  }
+  meshOf(part) {
+    const mesh = new THREE.Mesh(part.fine);
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.copy(part.rest);
+    mesh.userData = part;
+    this.dress(mesh, kindOf(part.body));
+    this.world.add(mesh);
+    return mesh;
+  }
+  /** Shows the visual shapes of links that have some, or the collision shapes of all. */
+  showVisual(on) {
+    const { visual, chain } = this.data,
+      g =
+        this.displaced ??
+        displacements(
+          chain,
+          chain.joints.map(() => 0),
+        );
+    if (on && !this.arm.some(({ userData }) => userData.body.visual))
+      for (const one of visual) {
+        const mesh = this.meshOf(this.part({ ...one, visual: true }, this.data));
+        mesh.matrix.multiplyMatrices(g[one.group], mesh.userData.rest);
+        this.arm.push(mesh);
+      }
+    this.visual = new Set(on ? visual.map(({ name }) => name) : []);
+    // A link is in the colours of its collision shape.
+    const kinds = new Map(
+      this.arm
+        .filter(({ userData: { body } }) => !body.visual && body.kind === 'robot')
+        .map(({ userData: { body, kind } }) => [body.name, kind]),
+    );
+    for (const mesh of this.arm) {
+      const { body, kind } = mesh.userData;
+      this.dress(mesh, (body.visual && kinds.get(body.name)) || kind || kindOf(body));
+    }
+    this.dirty = true;
   }
   /**
    * Another plan of the same arm among the same bodies. poses: of the scene's objects in their
@@ -423,6 +455,7 @@ class View {
    */
   pose(q, pair, line = null, hit = false, near = () => []) {
     const g = displacements(this.data.chain, q);
+    this.displaced = g;
     this.told = { pair, text: line?.text, hit, near };
     this.world.matrix.copy(standing(this.data, g));
     for (const mesh of this.arm) {
@@ -459,8 +492,10 @@ class View {
   }
   /** A body in the colours of its kind, as its entry in the legend says. */
   dress(mesh, kind) {
-    const look = this.looks.get(entryOf(mesh.userData.body));
-    mesh.visible = look !== 'hidden';
+    const { body } = mesh.userData,
+      look = this.looks.get(entryOf(body)),
+      replaced = body.kind === 'robot' && this.visual.has(body.name) !== Boolean(body.visual);
+    mesh.visible = look !== 'hidden' && !replaced;
     mesh.material = (look === 'faded' ? this.faded : this.materials)[kind];
     mesh.userData.kind = kind;
   }
@@ -588,6 +623,7 @@ export function startView(sceneOf, begin, step) {
     // Not listed with the rest, which tests read as a whole.
     Object.defineProperty(window.swivel, 'view', { value: view });
     view.legend = new BodyList($('bodies'), view);
+    offerVisual(view.data);
     keepForPaper(view);
     begin(view);
     const frame = (now) => {
@@ -599,6 +635,15 @@ export function startView(sceneOf, begin, step) {
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(() => setTimeout(start));
+}
+
+/** Shows the switch of the robot's visual shapes where there are some; it says what is missing. */
+function offerVisual({ visual, unread }) {
+  const option = $('visual-option');
+  option.hidden = !visual?.length;
+  if (!unread?.length) return;
+  option.title = `not shown:\n${unread.join('\n')}`;
+  option.append(` (${unread.length} not shown)`);
 }
 
 /** Prints the picture of the moment with its labels: a canvas keeps none. */

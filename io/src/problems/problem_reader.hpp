@@ -42,6 +42,8 @@ class ProblemReader {
 
   /// Reads the file as a problem, which has one path. Throws InputError for a job.
   Problem read();
+  /// Reads the visual shapes of the section `robot` alone.
+  [[nodiscard]] VisualRobot read_visuals() const;
 
  protected:
   /// Reads the robot and the bodies about it into `problem_`: `robot`, `scene`.
@@ -150,6 +152,8 @@ class ProblemReader {
 
   void read_robot(const YamlValue& value);
   [[nodiscard]] Packages read_packages(const YamlSection& section) const;
+  /// Returns the links that the section `robot` leaves out.
+  [[nodiscard]] static std::vector<std::string> read_without(const YamlSection& section);
   [[nodiscard]] std::vector<std::string> joint_names() const;
   /// Narrows the limits of the robot's joints as the section `limits` says.
   void read_robot_limits(const YamlValue& value, RobotModel& robot) const;

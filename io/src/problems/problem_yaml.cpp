@@ -229,9 +229,7 @@ void ProblemReader::read_model(const YamlValue& value) {
   const auto srdf = section.find_filled("srdf");
   const YamlValue base = section.require("base_link");
   const auto packages = read_packages(section);
-  RobotOptions options;
-  if (const auto without = section.find_filled("without"))
-    for (const YamlValue& link : without->items()) options.without.push_back(link.text());
+  RobotOptions options{.without = read_without(section)};
   if (const auto limits = root_.find_filled("limits"))
     if (const auto soft = limits->section().find("soft_limits"))
       options.soft_limits = word(*soft, {true, false});
@@ -275,6 +273,19 @@ void ProblemReader::read_hand(const YamlValue& value) {
   if (problem_.attached.size() > kMostBodies)
     value.fail(std::to_string(problem_.attached.size()) + " attached bodies",
                "at most " + std::to_string(kMostBodies));
+}
+
+VisualRobot ProblemReader::read_visuals() const {
+  const YamlSection section = root_.require("robot").section();
+  return load_visual_urdf(resolve(section.require("urdf")), read_packages(section),
+                          {.without = read_without(section)});
+}
+
+std::vector<std::string> ProblemReader::read_without(const YamlSection& section) {
+  std::vector<std::string> links;
+  if (const auto without = section.find_filled("without"))
+    for (const YamlValue& link : without->items()) links.push_back(link.text());
+  return links;
 }
 
 Packages ProblemReader::read_packages(const YamlSection& section) const {
@@ -751,6 +762,14 @@ void ProblemReader::set(const YamlSection& section, const char* key,
   if (!value->is_sequence()) return target->fill(value->number());
   const std::vector<double> values = joint_numbers(*value);
   std::copy(values.begin(), values.end(), target->begin());
+}
+
+VisualRobot load_visuals(const fs::path& yaml) {
+  try {
+    return ProblemReader(yaml, load_yaml(yaml, problem_schema()).section()).read_visuals();
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 Problem load_problem(const fs::path& yaml) {

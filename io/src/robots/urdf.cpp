@@ -217,8 +217,9 @@ class Element {
   const std::string& owner_;
 };
 
-/// Which elements give a link its shapes; with kNone no meshes are read.
-enum class Shapes { kCollision, kVisualWhereNoCollision, kNone };
+/// Which elements give a link its shapes; with kNone no meshes are read. Of kVisual, shapes that
+/// cannot be read are left out, and those of <collision> are not looked at.
+enum class Shapes { kCollision, kVisualWhereNoCollision, kVisual, kNone };
 
 /// Builds the model of a URDF; links and joints stay in the order of the file.
 class ModelBuilder {
@@ -256,6 +257,8 @@ class ModelBuilder {
   }
 
   [[nodiscard]] const ShapeSurvey& survey() const { return survey_; }
+  /// Returns a message for each visual shape that was left out.
+  [[nodiscard]] const std::vector<std::string>& unread() const { return unread_; }
 
  private:
   using Index = std::map<std::string, int, std::less<>>;
@@ -415,7 +418,8 @@ class ModelBuilder {
     const bool has_collision = element.FirstChildElement("collision") != nullptr;
     for_each_child(element, "collision", [&](const tinyxml2::XMLElement& xml) {
       ++survey_.collision;
-      add_shape(Element(xml, file_, owner), xml, shapes_ == Shapes::kCollision, link);
+      if (shapes_ != Shapes::kVisual)
+        add_shape(Element(xml, file_, owner), xml, shapes_ == Shapes::kCollision, link);
     });
     for_each_child(element, "visual", [&](const tinyxml2::XMLElement& xml) {
       const auto* const geometry = xml.FirstChildElement("geometry");
@@ -423,6 +427,12 @@ class ModelBuilder {
           geometry != nullptr && geometry->FirstChildElement("mesh") != nullptr;
       if (shapes_ == Shapes::kVisualWhereNoCollision && !has_collision)
         add_shape(Element(xml, file_, owner), xml, true, link);
+      if (shapes_ != Shapes::kVisual) return;
+      try {
+        add_shape(Element(xml, file_, owner), xml, true, link);
+      } catch (const InputError& error) {
+        unread_.emplace_back(error.what());
+      }
     });
     model_->links.push_back(std::move(link));
   }
@@ -619,6 +629,7 @@ class ModelBuilder {
   std::set<std::string> left_out_;
   XmlWarnings warnings_;
   ShapeSurvey survey_;
+  std::vector<std::string> unread_;
 };
 
 std::shared_ptr<const RobotModel> with_srdf(UrdfRobot robot, const RobotOptions& options,
@@ -654,6 +665,14 @@ std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path
   const XmlSource source{urdf};
   const RobotOptions options;
   return ModelBuilder(source, packages, options, Shapes::kVisualWhereNoCollision).build().model;
+}
+
+VisualRobot load_visual_urdf(const std::filesystem::path& urdf, const Packages& packages,
+                             const RobotOptions& options) {
+  const XmlSource source{urdf};
+  ModelBuilder builder(source, packages, options, Shapes::kVisual);
+  const UrdfRobot robot = builder.build();
+  return {robot.model, builder.unread()};
 }
 
 std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,

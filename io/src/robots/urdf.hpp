@@ -7,6 +7,7 @@
 #include "meshes/mesh_name.hpp"
 #include "swivel/core/problem/robot_model.hpp"
 #include "swivel/io/robots/robot.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 
 namespace swivel::io {
 
@@ -20,5 +21,10 @@ struct UrdfRobot {
 /// InputError.
 [[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages,
                                   const RobotOptions& options);
+
+/// Loads a robot with its visual shapes in place of its collision shapes, which are not read.
+/// Throws InputError for all else that load_urdf() refuses.
+[[nodiscard]] VisualRobot load_visual_urdf(const std::filesystem::path& urdf,
+                                           const Packages& packages, const RobotOptions& options);
 
 }  // namespace swivel::io

@@ -38,6 +38,7 @@ class JobPage {
   /// Returns the data of the page. Throws Stopped.
   Json data(const std::string& name, const PageWords& words) {
     Bodies bodies(world_, job_.scene);
+    if (words.visual != nullptr) bodies.add_visual(*words.visual, *job_.model, robot_.arm());
     Json strokes = Json::array();
     for (std::size_t k = 0; k < order_.size(); ++k) strokes.push_back(stroke(k));
     Json parts = result_.parts.empty() ? partial_parts() : parts_of_job();
@@ -49,6 +50,8 @@ class JobPage {
             {"chain", chain_json(chain_)},
             {"ground", ground_json(*job_.model, robot_.arm())},
             {"bodies", std::move(bodies.bodies)},
+            {"visual", std::move(bodies.visual)},
+            {"unread", words.unread},
             {"meshes", std::move(bodies.meshes)},
             {"home", home()},
             {"strokes", std::move(strokes)},

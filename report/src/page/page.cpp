@@ -39,6 +39,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
   Bodies bodies(world, problem.scene);
+  if (words.visual != nullptr) bodies.add_visual(*words.visual, *problem.model, view.robot.arm());
   const std::vector<PageRow> found = placed(lattice, map, rows_of(lattice, view.path), view.path);
   const std::vector<PageRow> rows =
       motion.refined ? placed(lattice, map, *motion.refined, view.path) : found;
@@ -53,6 +54,8 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"chain", chain_json(lattice.chain())},
       {"ground", ground_json(*problem.model, view.robot.arm())},
       {"bodies", std::move(bodies.bodies)},
+      {"visual", std::move(bodies.visual)},
+      {"unread", words.unread},
       {"meshes", std::move(bodies.meshes)},
       {"tool_path", tool_path_json(lattice.path_of_rows())},
       {"rows", rows_json(world, lattice, rows, budget)},

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "page/packed.hpp"
+#include "page/thinned.hpp"
 
 namespace swivel::detail {
 
@@ -74,8 +75,38 @@ void Bodies::add(const RobotBody& body, int group) {
   add(body.name, body.attached ? "tool" : "robot", group, body.shape, body.pose);
 }
 
+void Bodies::add_visual(const RobotModel& shapes, const RobotModel& robot, const ArmModel& arm) {
+  constexpr std::size_t kMost = 200'000;  // triangles
+  std::map<const TriangleMesh*, MeshPtr> used;
+  std::size_t all = 0;
+  for (const Link& link : shapes.links)
+    for (const PlacedShape& placed : link.collision)
+      if (const auto* mesh = std::get_if<MeshPtr>(&placed.shape))
+        if (used.emplace(mesh->get(), *mesh).second) all += (*mesh)->triangles.size();
+  if (all > kMost)
+    for (const auto& [key, mesh] : used)
+      thinned_[key] = thinned(mesh, mesh->triangles.size() * kMost / all);
+  for (const Link& link : shapes.links) {
+    const int index = robot.find_link(link.name);
+    if (index < 0) continue;
+    const LinkPlacement& at = arm.links[static_cast<std::size_t>(index)];
+    for (const PlacedShape& placed : link.collision) {
+      const auto* mesh = std::get_if<MeshPtr>(&placed.shape);
+      const auto fewer = mesh == nullptr ? thinned_.end() : thinned_.find(mesh->get());
+      visual.push_back(body(link.name, "robot", at.group,
+                            fewer == thinned_.end() ? placed.shape : Shape(fewer->second),
+                            at.pose * placed.pose));
+    }
+  }
+}
+
 void Bodies::add(const std::string& name, const char* kind, int group, const Shape& shape,
                  const Pose& pose) {
+  bodies.push_back(body(name, kind, group, shape, pose));
+}
+
+Json Bodies::body(const std::string& name, const char* kind, int group, const Shape& shape,
+                  const Pose& pose) {
   Json body = {{"name", name}, {"kind", kind}, {"group", group}, {"pose", pose_json(pose)}};
   if (const auto* sphere = std::get_if<Sphere>(&shape)) body["sphere"] = sphere->radius;
   if (const auto* box = std::get_if<Box>(&shape)) body["box"] = vector_json(box->size);
@@ -84,7 +115,7 @@ void Bodies::add(const std::string& name, const char* kind, int group, const Sha
   if (const auto* capsule = std::get_if<Capsule>(&shape))
     body["capsule"] = {capsule->radius, capsule->length};
   if (const auto* mesh = std::get_if<MeshPtr>(&shape)) body["mesh"] = index_of(**mesh);
-  bodies.push_back(std::move(body));
+  return body;
 }
 
 namespace {

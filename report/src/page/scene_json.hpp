@@ -37,14 +37,20 @@ class Bodies {
   void add_arm(const World& world, const std::string& name, const std::vector<int>& groups,
                bool standing);
   void add_scene(const std::vector<SceneObject>& scene);
-  Json bodies = Json::array(), meshes = Json::array();
+  /// Adds the visual shapes of a robot's links, which a model has in place of collision shapes.
+  /// Meshes are drawn with fewer triangles where all together have more than 200,000.
+  void add_visual(const RobotModel& shapes, const RobotModel& robot, const ArmModel& arm);
+  Json bodies = Json::array(), meshes = Json::array(), visual = Json::array();
 
  private:
+  [[nodiscard]] Json body(const std::string& name, const char* kind, int group, const Shape& shape,
+                          const Pose& pose);
   void add(const std::string& name, const char* kind, int group, const Shape& shape,
            const Pose& pose);
   void add(const RobotBody& body, int group);
   std::size_t index_of(const TriangleMesh& mesh);
   std::map<const TriangleMesh*, std::size_t> index_;
+  std::map<const TriangleMesh*, MeshPtr> thinned_;  ///< by mesh that has too many triangles
 };
 
 }  // namespace swivel::detail

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 #include "swivel/report/lattice_map.hpp"
 
 namespace swivel {
@@ -19,11 +20,15 @@ struct PageMotion {
   const TimedPath* motion = nullptr;  ///< of the rows shown; played in its own time
 };
 
-/// What the page says besides its data.
+/// What the page says and shows besides its data.
 struct PageWords {
   std::string which;  ///< of the problems that one file describes, for the title
   std::string
       answer;  ///< shown with the map where JavaScript is switched off: answer_text, advice_text
+  /// The robot with its visual shapes in place of its collision shapes, which the page may then
+  /// show; null: none. Pages of plans and of jobs show them.
+  const RobotModel* visual = nullptr;
+  std::vector<std::string> unread;  ///< a message for each visual shape that is missing there
 };
 
 /// Returns one HTML file that needs nothing else: the arm among the scene in three dimensions, the

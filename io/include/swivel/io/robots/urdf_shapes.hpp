@@ -33,4 +33,14 @@ enum class ShapesOf { kCollision, kVisual };
     const std::filesystem::path& urdf,
     const std::map<std::string, std::filesystem::path>& packages);
 
+/// A robot with its visual shapes in place of its collision shapes; null where there is none.
+struct VisualRobot {
+  std::shared_ptr<const RobotModel> model;
+  std::vector<std::string> left_out;  ///< a message for each visual shape that cannot be read
+};
+/// Loads the visual shapes of the robot of a problem file, or of a job's, with the links that
+/// load_problem() gave it. Returns no robot where the file cannot be read once more, as one from a
+/// pipe cannot.
+[[nodiscard]] VisualRobot load_visuals(const std::filesystem::path& yaml);
+
 }  // namespace swivel::io

@@ -1,0 +1,161 @@
+#!/usr/bin/env node
+// SPDX-License-Identifier: BSD-3-Clause
+// Visual shapes of a robot on its page: what the URDF has, in place of the collision shapes while
+// the switch is on.
+//   visual_test.mjs SWIVEL PROBLEMS PACKAGES
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { triangles } from '../../report/web/bytes.js';
+import { heldBy, press, until, withBrowser } from './browser.mjs';
+
+const [swivel, problems, packages] = process.argv.slice(2).map((path) => resolve(path)),
+  data = resolve(problems, '..');
+
+/** A page of the arm at the bench, to whose links some elements are added, and what it holds. */
+function planned(folder, name, added) {
+  const urdf = readFileSync(join(data, 'robots/iiwa14.urdf'), 'utf8').replace(
+      /<link name="(\w+)">/g,
+      (open, link) => open + (added[link] ?? ''),
+    ),
+    html = join(folder, `${name}.html`),
+    file = join(folder, `${name}.yaml`);
+  writeFileSync(join(folder, `${name}.urdf`), urdf);
+  writeFileSync(
+    file,
+    readFileSync(join(problems, 'iiwa14_bench.yaml'), 'utf8')
+      .replace(/urdf: \S*iiwa14.urdf/, `urdf: ${name}.urdf`)
+      .replaceAll('../', `${data}/`),
+  );
+  const done = spawnSync(swivel, ['plan', file, '--ds', '0.02', '--dphi', '0.1', '--report', html]);
+  assert.equal(done.status, 0, String(done.stderr));
+  return { html, ...heldBy(html), bytes: statSync(html).size };
+}
+const visualOf = (geometry, origin = '') =>
+  `<visual>${origin}<geometry>${geometry}</geometry><material name="m"/></visual>`;
+
+/** A closed mesh of many triangles, as STL. */
+function bumpyTube(count) {
+  const n = Math.floor(Math.sqrt(count / 2)),
+    bytes = Buffer.alloc(84 + 50 * 2 * n * n);
+  bytes.writeUInt32LE(2 * n * n, 80);
+  const corner = (i, j) => {
+    const turn = (2 * Math.PI * i) / n,
+      radius = 0.1 + 0.01 * Math.sin(8 * turn) * Math.sin((9 * Math.PI * j) / n);
+    return [radius * Math.cos(turn), radius * Math.sin(turn), (0.3 * j) / n];
+  };
+  let at = 84;
+  for (let i = 0; i < n; ++i)
+    for (let j = 0; j < n; ++j)
+      for (const [a, b] of [
+        [1, 0],
+        [1, 1],
+      ]) {
+        const last = a && b ? corner(i, j + 1) : corner(i + 1, j + 1),
+          shape = [corner(i, j), a && b ? corner(i + 1, j + 1) : corner(i + 1, j), last];
+        shape.flat().forEach((value, k) => bytes.writeFloatLE(value, at + 12 + 4 * k));
+        at += 50;
+      }
+  return bytes;
+}
+
+/** What is drawn of the robot: [name, visual] of each mesh that is visible, and their poses. */
+const drawn = (page) =>
+  page.evaluate(() =>
+    window.swivel.view.arm
+      .filter(({ visible, userData: { body } }) => visible && body.kind === 'robot')
+      .map(({ matrix, userData: { body } }) => ({
+        name: body.name,
+        visual: Boolean(body.visual),
+        at: [...matrix.elements],
+      })),
+  );
+
+await withBrowser({ packages }, async ({ folder, open }) => {
+  // Of link 2 the collision shapes once more; of link 4 a mesh, of link 3 one that is missing.
+  const text = readFileSync(join(data, 'robots/iiwa14.urdf'), 'utf8'),
+    collisions = (link) =>
+      text
+        .slice(text.indexOf(`<link name="${link}">`))
+        .split('</link>')[0]
+        .match(/<collision>.*?<\/collision>/gs);
+  const again = collisions('link_2').join('').replaceAll('collision>', 'visual>');
+  const { html, data: held } = planned(folder, 'visual', {
+    link_2: again,
+    link_3: visualOf('<mesh filename="missing.dae"/>'),
+    link_4: visualOf(
+      `<mesh filename="${data}/meshes/door_2k.stl" scale="0.2 0.2 0.2"/>`,
+      '<origin xyz="0.01 0.02 0.03"/>',
+    ),
+    link_5: visualOf('<box size="0.1 -1 0.1"/>'), // wrong, and so left out
+  });
+  const names = [...new Set(held.visual.map(({ name }) => name))];
+  assert.deepEqual(names, ['link_2', 'link_4']);
+  assert.equal(held.unread.length, 2);
+  assert.match(held.unread[0], /link 'link_3': mesh 'missing.dae' not found/);
+  assert.match(held.unread[1], /link 'link_5'.*size/);
+  const { page, close } = await open(html, { viewport: { width: 1000, height: 800 } });
+  await until(page, () => window.swivel.frames > 0);
+  const before = await drawn(page);
+  assert.ok(before.length > 7 && before.every(({ visual }) => !visual));
+  assert.match(await page.textContent('#visual-option'), /visual shapes \(2 not shown\)/);
+  await page.check('#visual');
+  for (const key of [null, 'End', 'Home']) {
+    if (key) await press(page, key);
+    const shown = await drawn(page),
+      own = await page.evaluate(() =>
+        window.swivel.view.arm
+          .filter(({ userData: { body } }) => body.name === 'link_2' && !body.visual)
+          .map(({ matrix }) => [...matrix.elements]),
+      );
+    for (const { name, visual } of shown) assert.equal(visual, names.includes(name), name);
+    assert.deepEqual(
+      new Set(shown.map(({ name }) => name)),
+      new Set(before.map(({ name }) => name)),
+    );
+    // Where the visual shapes are the collision shapes, they stand where these stand. Two spheres
+    // about the ends of a cylinder are one capsule among the collision shapes.
+    const poses = shown.filter(({ name }) => name === 'link_2').map(({ at }) => at);
+    for (const at of own)
+      assert.ok(
+        poses.some((other) => other.every((value, k) => Math.abs(value - at[k]) < 1e-9)),
+        `${key}: ${at}`,
+      );
+  }
+  // The legend hides what it is of, and a click names the link.
+  await page.locator('#bodies button').filter({ hasText: 'arm' }).click();
+  await page.locator('#bodies button').filter({ hasText: 'arm' }).click();
+  const left = (await drawn(page)).map(({ name }) => name);
+  assert.ok(left.every((name) => !names.includes(name)));
+  await page.locator('#bodies button').filter({ hasText: 'arm' }).click();
+  await page.uncheck('#visual');
+  assert.deepEqual(
+    (await drawn(page)).map(({ name, visual }) => [name, visual]),
+    before.map(({ name, visual }) => [name, visual]),
+  );
+  await close();
+
+  // A robot without any, which most are: no switch.
+  const bare = planned(folder, 'bare', {});
+  assert.deepEqual([bare.data.visual, bare.data.unread], [[], []]);
+  const plain = await open(bare.html, { viewport: { width: 1000, height: 800 } });
+  await until(plain.page, () => window.swivel.frames > 0);
+  assert.ok(!(await plain.page.isVisible('#visual-option')));
+  await plain.close();
+
+  // Meshes of 300,000 triangles become lighter, as those of 200,000 are.
+  writeFileSync(join(folder, 'tube.stl'), bumpyTube(150_000));
+  writeFileSync(join(folder, 'tubes.stl'), bumpyTube(150_000));
+  const heavy = planned(folder, 'heavy', {
+    link_1: visualOf('<mesh filename="tube.stl"/>') + visualOf('<mesh filename="tube.stl"/>'),
+    link_6: visualOf('<mesh filename="tubes.stl"/>'),
+  });
+  globalThis.swivelPage = { bytes: heavy.binary };
+  const counts = heavy.data.meshes.map((mesh) => triangles(mesh).corners.length / 3),
+    all = counts.reduce((sum, count) => sum + count, 0);
+  assert.equal(heavy.data.visual.length, 3);
+  console.log(`${counts} triangles of ${300_000}, a page of ${(heavy.bytes / 1e6).toFixed(2)} MB`);
+  assert.ok(all > 50_000 && all <= 200_000, `${counts}`);
+  assert.ok(heavy.bytes <= 5e6, `${heavy.bytes} bytes`);
+});
