@@ -478,6 +478,7 @@ class Change:
     ALLOW: ClassVar[Change]
     MOVE_OBJECT: ClassVar[Change]
     WITHOUT_OBJECT: ClassVar[Change]
+    HOLD: ClassVar[Change]
     LEADS: ClassVar[Change]
     MOVE_PATHS: ClassVar[Change]
     @property

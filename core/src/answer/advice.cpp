@@ -64,6 +64,8 @@ const char* to_string(Advice::Change change) {
       return "move_object";
     case Advice::Change::kWithoutObject:
       return "without_object";
+    case Advice::Change::kHold:
+      return "hold";
     case Advice::Change::kLeads:
       return "leads";
     case Advice::Change::kMovePaths:
@@ -113,6 +115,11 @@ std::string words(const Advice& advice) {
                        1e3 * *advice.from);
     case Advice::Change::kMoveObject:
       return "'" + advice.object + "' moved by " + words(advice.offset, Advice::kMostMove);
+    case Advice::Change::kHold:
+      return "'" + advice.object + "' held " +
+             (advice.to ? formatted("at %.3g", *advice.to) : std::string("elsewhere than")) +
+             formatted(advice.to ? " instead of %.3g %s" : " at %.3g %s", *advice.from,
+                       advice.slides ? "m" : "rad");
     case Advice::Change::kLeads:
       return "leads";
     case Advice::Change::kMovePaths:

@@ -343,11 +343,12 @@ Schema advice() {
               "steps of the lattice), "
               "the name of a limit, `allow` (all depths that the object's `allow` gives, "
               "by one factor), "
-              "`move_object`, `without_object`"),
+              "`move_object`, `without_object`, `hold` (a joint that is held, held elsewhere)"),
           key("words", text(), "the change in a phrase"),
-          key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
-          key("from", or_null(number()), "of limits and `allow`: what it is"),
-          key("to", or_null(number()), "of limits and `allow`: what was tried"),
+          key("object", or_null(text()),
+              "of `allow`, `move_object` and `without_object`; of `hold` the joint"),
+          key("from", or_null(number()), "of limits, `allow` and `hold`: what it is"),
+          key("to", or_null(number()), "of limits, `allow` and `hold`: what was tried"),
           key("offset", or_null(numbers(3)),
               "of `move_object`, base frame; zeros where no way helps", "m"),
           key("outcome", one_of({"solved", "further", "no_help", "unknown"}),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -41,6 +42,7 @@ class Adviser {
       if (object.name != problem_.path_frame)
         try_once({.change = Change::kWithoutObject, .object = object.name});
     move(problem_.path_frame);
+    hold_elsewhere();
     // Last, because it changes the process as well.
     if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs)
       try_once({.change = Change::kFreeRoll});
@@ -187,7 +189,8 @@ class Adviser {
     Problem changed = changed_problem(advice);
     PlanResult found;
     try {
-      if (advice.change == Change::kFreeRoll) {  // another arm: its roll has other limits
+      // another arm: its roll has other limits, or its base stands elsewhere
+      if (advice.change == Change::kFreeRoll || advice.change == Change::kHold) {
         found = Planner(std::move(changed)).plan(options_);
       } else {
         trial_.set_problem(std::move(changed));
@@ -269,6 +272,49 @@ class Adviser {
   /// helps.
   void plan_moved(Advice& best) {
     find_shortest_move(best, Advice::kMostMove, [this](Advice& one) { plan_changed(one); });
+  }
+
+  /// Proposes to hold the joints between base and tip that are not planned elsewhere, where neither
+  /// start nor end is given, which would have to stand elsewhere too.
+  void hold_elsewhere() {
+    if (problem_.start || problem_.end) return;
+    for (const HeldJoint& held : trial_.prepare().arm().held)
+      if (held.leader.empty())
+        propose({.change = Change::kHold,
+                 .object = held.name,
+                 .slides = held.slides,
+                 .from = held.position},
+                &Adviser::plan_held);
+  }
+
+  /// Finds the position nearest to the present one at which the joint helps: a sixteenth, an
+  /// eighth, a quarter, ... of its range away, rounded to 1 mrad or 1 mm.
+  void plan_held(Advice& best) {
+    const RobotModel& robot = *problem_.model;
+    const Joint& joint = robot.joints[static_cast<std::size_t>(robot.find_joint(best.object))];
+    const bool continuous = joint.type == Joint::Type::kContinuous;
+    const double lower = continuous ? *best.from - kPi : joint.lower,
+                 upper = continuous ? *best.from + kPi : joint.upper;
+    const Advice unmoved = best;
+    best.outcome = Outcome::kNoHelp;
+    for (double share = 1.0 / 16; share <= 1 && best.outcome != Outcome::kSolved; share *= 2)
+      for (const double way : {-share, share}) {
+        Advice moved = unmoved;
+        moved.to = std::round(1e3 * (*best.from + way * (upper - lower))) / 1e3;
+        if (!(*moved.to >= lower && *moved.to <= upper)) continue;
+        plan_changed(moved);
+        if (moved.outcome == Outcome::kUnknown) {
+          if (best.outcome == Outcome::kNoHelp) best = unmoved;
+          return;
+        }
+        const bool better =
+            moved.outcome < best.outcome ||
+            (moved.outcome == best.outcome &&
+             (moved.outcome == Outcome::kSolved    ? moved.cost < best.cost
+              : moved.outcome == Outcome::kFurther ? moved.reached_s > best.reached_s
+                                                   : false));
+        if (better) best = moved;
+      }
   }
 
   const Problem& problem_;

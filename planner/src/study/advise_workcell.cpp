@@ -192,7 +192,8 @@ class WorkcellTrials {
   /// between its layers are those of both arms, an arm with an arm angle takes no roll, and an
   /// object may carry the other arm's path.
   [[nodiscard]] bool holds_alone(std::size_t arm, const Advice& one) const {
-    if (one.change == Change::kFiner) return false;
+    // A joint that is held may carry both arms.
+    if (one.change == Change::kFiner || one.change == Change::kHold) return false;
     if (one.change == Change::kFreeRoll) return cell_.arms[arm].roll.has_value();
     return one.object.empty() || !carries_path(one.object);
   }

@@ -58,6 +58,7 @@ bool relaxed_downwards(Advice::Change change) {
 int dearness(Advice::Change change) {
   switch (change) {
     case Advice::Change::kFreeRoll:
+    case Advice::Change::kHold:
       return 1;
     case Advice::Change::kArmSlope:
     case Advice::Change::kRollSlope:
@@ -99,6 +100,9 @@ void change_arm(const Advice& advice, Robot& robot, Task& task) {
     case Advice::Change::kFreeRoll:
       robot.roll = Roll{};
       for (Waypoint& waypoint : task.waypoints) waypoint.roll.reset();
+      break;
+    case Advice::Change::kHold:
+      robot.hold[advice.object] = *advice.to;
       break;
     case Advice::Change::kFiner:
       task.resolution.ds /= 2;

@@ -31,6 +31,11 @@ void set_clearance(Limits& limits, double clearance) {
   limits.clearance = clearance;
 }
 
+void move_object(Problem& problem, const Advice& advice) {
+  for (SceneObject& object : problem.scene)
+    if (object.name == advice.object) object.pose.translation() += advice.offset;
+}
+
 /// The problem as a reader of the advice would change it by hand.
 Problem followed(Problem problem, const Advice& advice) {
   const double share = advice.to.value_or(0);
@@ -78,9 +83,11 @@ Problem followed(Problem problem, const Advice& advice) {
     case Change::kStepError:
       limits.step_error = share;
       break;
+    case Change::kHold:
+      problem.hold[advice.object] = share;
+      break;
     case Change::kMoveObject:
-      for (SceneObject& object : problem.scene)
-        if (object.name == advice.object) object.pose.translation() += advice.offset;
+      move_object(problem, advice);
       break;
     case Change::kWithoutObject:
       problem.scene.erase(
@@ -109,7 +116,8 @@ Problem random_advised(const TestRobot& robot, Random& random) {
 /// needed.
 void expect_stricter_unsolved(const Problem& problem, const Advice& one, const PlanOptions& options,
                               const std::string& what) {
-  if (one.outcome != Outcome::kSolved || !one.to || !one.from) return;
+  if (one.outcome != Outcome::kSolved || !one.to || !one.from || one.change == Change::kHold)
+    return;
   const bool down = *one.to < *one.from;
   const double furthest = !down ? 8 * *one.from
                           : one.change == Change::kToolSpeed || one.change == Change::kToolTurnSpeed
@@ -133,6 +141,7 @@ void expect_outcome(const Problem& problem, const Advice& one, const PlanOptions
     return;
   }
   if (one.change == Change::kMoveObject && one.offset.isZero()) return;  // none of the ways helps
+  if (one.change == Change::kHold && !one.to) return;                    // likewise
   Advice given = one;
   if (!given.to) given.to = 0;
   const PlanResult there = plan(followed(problem, given), options);
@@ -197,6 +206,62 @@ PlanOptions for_seconds(double seconds) {
   PlanOptions options;
   options.timeout_s = seconds;
   return options;
+}
+
+/// Paths that an arm reaches with its torso turned, asked for with the torso at 0: where holding it
+/// elsewhere helps, no position that was tried nearer to 0 does.
+TEST(Advise, ATorsoHeldElsewhereHelps) {
+  const std::uint64_t base = seed("Advise.Torso");
+  const TestRobot robot = data_robot("sda10f");
+  const int count = trials(40);
+  int infeasible = 0, helped = 0, nearer = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    SCOPED_TRACE("SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
+    Problem problem = problem_for(robot);
+    const double turned = random.uniform(-1.5, 1.5);
+    const Chain chain = build_arm(*robot.model, robot.base_link, robot.tip_link,
+                                  {{"torso_joint_b1", turned}}, Pose::Identity())
+                            .chain;
+    problem_parts::draw_waypoints(problem, chain, random_config(chain, random), 2, random);
+    problem.resolution = {.ds = 0.02, .dphi = 0.3, .dalpha = 0.5};
+    problem.limits.clearance = 0;
+    problem.limits.tool_path_error.reset();
+    Planner planner(problem);
+    const PlanResult result = planner.plan();
+    if (result.status == PlanStatus::kSolved) continue;
+    ++infeasible;
+    const std::vector<Advice> advice = advise(planner, result, for_seconds(60));
+    const auto held = std::find_if(advice.begin(), advice.end(),
+                                   [](const Advice& a) { return a.change == Change::kHold; });
+    ASSERT_NE(held, advice.end());
+    ASSERT_EQ(held->object, "torso_joint_b1");
+    ASSERT_EQ(*held->from, 0);
+    if (held->outcome != Outcome::kSolved) continue;
+    ++helped;
+    const PlanResult there = plan(followed(problem, *held));
+    ASSERT_EQ(there.status, PlanStatus::kSolved);
+    ASSERT_EQ(there.cost, *held->cost);
+    EXPECT_NE(words(*held).find("'torso_joint_b1' held at "), std::string::npos) << words(*held);
+    const Joint& joint =
+        robot.model->joints[static_cast<std::size_t>(robot.model->find_joint(held->object))];
+    const double range = joint.upper - joint.lower;
+    for (double share = 1.0 / 16; share * range < std::abs(*held->to) - 1e-3; share *= 2)
+      for (const double way : {-share, share}) {
+        Advice less = *held;
+        less.to = std::round(1e3 * way * range) / 1e3;
+        if (*less.to < joint.lower || *less.to > joint.upper) continue;
+        ++nearer;
+        EXPECT_NE(plan(followed(problem, less)).status, PlanStatus::kSolved) << *less.to;
+      }
+  }
+  std::printf(
+      "%d paths, %d out of reach with the torso at 0, of which %d helped by holding it "
+      "elsewhere; %d nearer positions do not\n",
+      count, infeasible, helped, nearer);
+  EXPECT_GE(infeasible, at_least_among(count / 4));
+  EXPECT_GE(helped, at_least_among(count / 5));
+  EXPECT_GE(nearer, at_least_among(count / 8));
 }
 
 /// Joint 5 stands at its limit at the given start: without the start there is a path.

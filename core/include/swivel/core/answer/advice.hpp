@@ -30,6 +30,7 @@ struct Advice {
     kDepth,
     kMoveObject,     ///< an object moved, and the path with it if it is given in its frame
     kWithoutObject,  ///< an object removed
+    kHold,           ///< a joint between base and tip that is held, held elsewhere
     kLeads,          ///< of workcells: the arm leads, and its leader so far follows
     kMovePaths,      ///< of workcells: the path of an arm moved, or those of both alike
   };
@@ -45,8 +46,11 @@ struct Advice {
   static constexpr double kMostPathMove = 0.04;  ///< most that kMovePaths moves paths, m
 
   Change change = Change::kFreeStart;
-  std::string object;  ///< name of the object, for kDepth, kMoveObject and kWithoutObject
-  /// For limits and kDepth: the value of the problem, and the changed one, in the problem's units.
+  /// Name of the object, for kDepth, kMoveObject and kWithoutObject; of the joint, for kHold.
+  std::string object;
+  bool slides = false;  ///< for kHold: the joint is prismatic
+  /// For limits, kDepth and kHold: the value of the problem, and the changed one, in the problem's
+  /// units.
   std::optional<double> from, to;
   /// For kMoveObject and kMovePaths: the move in the base frame, m; zero where none helps.
   Vector3d offset{0, 0, 0};
