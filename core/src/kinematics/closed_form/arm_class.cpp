@@ -34,11 +34,17 @@ ArmClass classify(const Chain& chain, const std::string& source) {
     result.srs = fit_srs(chain, source);
     result.kind = ArmKind::kSrs;
   } catch (const NotSrs& error) {
-    if (chain.free_roll)
-      throw InputError(source,
-                       "path.roll: of arms of seven joints allowed for those with spherical "
-                       "shoulder and wrist; here " +
-                           error.why());
+    if (chain.free_roll) {
+      const int lock = lock_method(chain).best;
+      throw InputError(
+          source,
+          "path.roll: of arms of seven joints allowed for those with spherical shoulder and "
+          "wrist; here " +
+              error.why() +
+              (lock < 0 ? std::string()
+                        : ": robot.hold: {" + chain.joint_names[static_cast<std::size_t>(lock)] +
+                              ": POSITION} makes it an arm of six"));
+    }
     other(error.why());
   }
   return result;
