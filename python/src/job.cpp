@@ -171,7 +171,8 @@ Job::Job(const Job& other)
       retract(other.retract),
       process_speed(other.process_speed),
       approach_speed(other.approach_speed),
-      rapid(other.rapid) {
+      rapid(other.rapid),
+      lift(other.lift) {
   set_strokes(other.all_strokes());
 }
 
@@ -198,7 +199,7 @@ swivel::Job to_core(const Job& job) {
   core.source = job.source, core.scene = job.scene, core.vary = job.vary;
   core.limits = job.limits, core.home = job.home, core.order = job.order;
   core.process_speed = job.process_speed, core.approach_speed = job.approach_speed;
-  core.rapid = job.rapid;
+  core.rapid = job.rapid, core.lift = job.lift;
   for (Stroke& stroke : job.all_strokes()) {
     swivel::Stroke& made = core.strokes.emplace_back();
     made.name = std::move(stroke.name), made.waypoints = std::move(stroke.waypoints);
@@ -217,26 +218,14 @@ swivel::Job to_core(const Job& job) {
   return core;
 }
 
-namespace {
-
-/// Throws InputError for what jobs have in files and in C++, and not in Python.
-void require_known_to_python(const swivel::Job& job) {
-  if (job.lift)
-    throw InputError(job.source,
-                     "lift: is not supported in Python: allowed are the program `swivel` and C++");
-}
-
-}  // namespace
-
 Job from_core(swivel::Job core) {
-  require_known_to_python(core);
   Job job;
   static_cast<Robot&>(job) = core;
   job.source = std::move(core.source), job.scene = std::move(core.scene);
   job.vary = std::move(core.vary);
   job.limits = core.limits, job.home = core.home, job.order = core.order;
   job.process_speed = core.process_speed, job.approach_speed = core.approach_speed;
-  job.rapid = core.rapid;
+  job.rapid = core.rapid, job.lift = core.lift;
   std::vector<Stroke> strokes;
   for (swivel::Stroke& stroke : core.strokes) {
     job.cost = stroke.cost, job.refinement = stroke.refinement;  // files have one for all
@@ -257,16 +246,19 @@ Job from_core(swivel::Job core) {
 swivel::Job to_core(const JobOrFile& job) {
   if (const auto* made = std::get_if<const Job*>(&job)) return to_core(**made);
   const std::filesystem::path& file = std::get<std::filesystem::path>(job);
-  return interruptible([&](const std::stop_token&) {
-    swivel::Job read = io::load_job(file);
-    require_known_to_python(read);
-    return read;
-  });
+  return interruptible([&](const std::stop_token&) { return io::load_job(file); });
 }
 
 void bind_job(py::module_& m) {
   bind_enum<StrokeOrder>(m, "StrokeOrder", "In which order the strokes of a job are run.",
                          {{"given", StrokeOrder::kGiven}, {"best", StrokeOrder::kBest}});
+  PlainStruct<LiftOffs>(m, "LiftOffs",
+                        "Lets strokes that no single run finishes be done in several, as few as "
+                        "there can be, at the cheapest places; as keywords.")
+      .member("cost", &LiftOffs::cost, "Of each lift-off, in units of the metric.")
+      .member("overlap", &LiftOffs::overlap,
+              "m: so much before the end of a run the next one begins.")
+      .finish();
   bind_stroke(m);
   py::class_<Job, Robot> type(
       m, "Job",
@@ -278,7 +270,8 @@ void bind_job(py::module_& m) {
                        const Limits& limits, const Resolution& resolution, const Cost& cost,
                        const Refinement& refinement, py::handle home, py::handle order,
                        py::handle approach, py::handle retract, std::optional<double> process_speed,
-                       std::optional<double> approach_speed, double rapid) {
+                       std::optional<double> approach_speed, double rapid,
+                       const std::optional<LiftOffs>& lift) {
              Job job;
              static_cast<Robot&>(job) = robot;
              job.strokes = py::list(strokes);
@@ -291,7 +284,7 @@ void bind_job(py::module_& m) {
              job.approach = to_offset(approach, "approach");
              job.retract = to_offset(retract, "retract");
              job.process_speed = process_speed, job.approach_speed = approach_speed;
-             job.rapid = rapid;
+             job.rapid = rapid, job.lift = lift;
              return job;
            }),
            py::arg("robot"), py::arg("strokes"), py::arg("scene") = py::tuple(), py::kw_only(),
@@ -301,11 +294,13 @@ void bind_job(py::module_& m) {
            py::arg_v("refinement", Refinement(), "Refinement()"), py::arg("home") = py::none(),
            py::arg("order") = "given", py::arg("approach") = 0.0, py::arg("retract") = 0.0,
            py::arg("process_speed") = py::none(), py::arg("approach_speed") = py::none(),
-           py::arg("rapid") = 1.0,
+           py::arg("rapid") = 1.0, py::arg("lift") = py::none(),
            "strokes: Strokes. limits, resolution, approach, retract, process_speed and "
            "approach_speed hold for strokes that have none of their own; limits are kept in "
            "transitions, too. home: (7,), rad, or None. order: StrokeOrder or its name. rapid: "
-           "share of the joints' speeds in transitions.")
+           "share of the joints' speeds in transitions. lift: LiftOffs; None: each stroke is done "
+           "in "
+           "one run.")
       .def_readonly("source", &Job::source, "The file; empty of jobs made in memory.")
       .def_readwrite("scene", &Job::scene, "Scene, changed in place.")
       .def_property_readonly(
@@ -342,6 +337,9 @@ void bind_job(py::module_& m) {
       .def_readwrite("approach_speed", &Job::approach_speed,
                      "m/s along approach and retract, or None: as on the stroke.")
       .def_readwrite("rapid", &Job::rapid, "Share of the joints' speeds in transitions, to 1.")
+      .def_readwrite("lift", &Job::lift,
+                     "LiftOffs, where the tool may lift off within strokes, in the given order of "
+                     "strokes; None: each is done in one run.")
       .def(
           "validate", [](const Job& job) { static_cast<void>(to_core(job)); },
           "Raises InvalidArgument, which names stroke and member, for what no job may have.")

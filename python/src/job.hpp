@@ -50,6 +50,7 @@ struct Job : Robot {
   Vector3d approach = Vector3d::Zero(), retract = Vector3d::Zero();
   std::optional<double> process_speed, approach_speed;
   double rapid = 1;
+  std::optional<LiftOffs> lift;
 
   Job() = default;
   Job(const Job& other);

@@ -163,19 +163,25 @@ void serialize(A& archive, Job& x) {
     Vector3d approach, retract;
     std::optional<double> process_speed, approach_speed;
     double rapid;
+    std::optional<LiftOffs> lift;
   };
   static_assert(sizeof(Listed) == sizeof(Job));
   std::vector<Stroke> strokes;
   if constexpr (A::is_saving::value) strokes = x.all_strokes();
   archive(static_cast<Robot&>(x), x.source, x.scene, x.vary, strokes, x.limits, x.resolution,
           x.cost, x.refinement, x.home, x.order, x.approach, x.retract, x.process_speed,
-          x.approach_speed, x.rapid);
+          x.approach_speed, x.rapid, x.lift);
   if constexpr (A::is_loading::value) x.set_strokes(strokes);
 }
 template <class A>
 void serialize(A& archive, JobPart& x) {
-  auto& [rows, joint_names, stroke, reversed, cost, barred_by, process] = x;
-  archive(rows, joint_names, stroke, reversed, cost, barred_by, process);
+  auto& [rows, joint_names, stroke, reversed, cost, barred_by, process, begin] = x;
+  archive(rows, joint_names, stroke, reversed, cost, barred_by, process, begin);
+}
+template <class A>
+void serialize(A& archive, LiftOffPlace& x) {
+  auto& [stroke, result] = x;
+  archive(stroke, result);
 }
 template <class A>
 void serialize(A& archive, Workcell& x) {

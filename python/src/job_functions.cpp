@@ -48,6 +48,71 @@ std::size_t stroke_of(const swivel::Job& job, const std::string& name) {
                         nearest_name(name, known) + "'");
 }
 
+/// A run as rows have it: its name, "ring/2" of the second run of a stroke with lift-offs, the arc
+/// length of the stroke at which it begins, and that of the run itself, lines included, m.
+struct RunInRows {
+  std::string name;
+  double begin = 0, length = 0;
+};
+
+/// Returns the job whose strokes the runs are: where the job allows lift-offs and a stroke is done
+/// in several runs, with its lift-offs. Throws InvalidArgument for runs that are not in their
+/// order, that leave some of the stroke out, or that overlap by less than LiftOffs::overlap.
+swivel::Job executed_by(const swivel::Job& job, const std::vector<RunInRows>& runs) {
+  if (!job.lift) return job;
+  constexpr double kSamePlace = 1e-9;  // m
+  std::vector<LiftOff> places;
+  std::optional<std::size_t> stroke;
+  std::size_t number = 0;
+  double end = 0;
+  for (const RunInRows& run : runs) {
+    const std::size_t slash = run.name.rfind('/');
+    const auto whole = slash == std::string::npos || find_stroke(job, run.name)
+                           ? std::nullopt
+                           : find_stroke(job, run.name.substr(0, slash));
+    number = whole && whole == stroke ? number + 1 : 1;
+    stroke = whole;
+    if (!whole) continue;  // a stroke in one run; one that is not known is refused later
+    if (run.name.substr(slash + 1) != std::to_string(number))
+      throw InvalidArgument("'" + run.name + "': allowed is '" + run.name.substr(0, slash + 1) +
+                            std::to_string(number) + "': runs of a stroke in their order");
+    const double most = std::max(0.0, end - job.lift->overlap);
+    if (number > 1 && run.begin > most + kSamePlace)
+      throw InvalidArgument("'" + run.name +
+                            formatted("': begins at s = %.9g: allowed is at most %.9g, so that "
+                                      "nothing of the stroke is left out and runs overlap as "
+                                      "LiftOffs.overlap says",
+                                      run.begin, most));
+    if (number > 1) places.push_back({*whole, end, run.begin});
+    const swivel::Stroke& of = job.strokes[*whole];
+    end = run.begin + run.length - of.approach.norm() - of.retract.norm();
+  }
+  return with_lift_offs(job, places);
+}
+
+swivel::Job executed_by(const swivel::Job& job, const Parts& parts) {
+  std::vector<RunInRows> runs;
+  for (const JobPart& part : parts)
+    if (part.stroke)
+      runs.push_back({*part.stroke, part.begin, part.rows->empty() ? 0 : part.rows->back().s});
+  return executed_by(job, runs);
+}
+
+swivel::Job executed_by(const swivel::Job& job, const JobMotion& motion) {
+  const swivel::JobMotion& timed = *motion.motion();
+  std::vector<RunInRows> runs;
+  for (const StrokeRun& run : motion.order) {
+    const swivel::Stroke& stroke = motion.job->strokes[run.stroke];
+    runs.push_back({stroke.name, s_of_piece(stroke), 0});
+  }
+  for (std::size_t k = 0; k < timed.rows.size(); ++k) {
+    const std::size_t part = timed.part[k];
+    if ((part % 2 == 1) == job.home.has_value() && part / 2 < runs.size())
+      runs[part / 2].length = timed.rows[k].row.s;
+  }
+  return executed_by(job, runs);
+}
+
 /// Returns parts for the planner. Throws InvalidArgument for a stroke that the job does not have.
 std::vector<swivel::JobPart> to_core(const swivel::Job& job, const Parts& parts) {
   std::vector<swivel::JobPart> all;
@@ -80,6 +145,7 @@ Parts from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobTraje
       part.reversed = begins_at_last_waypoint(robot, job, *stroke, one.rows);
       for (std::size_t k = one.first_process; k <= one.last_process; ++k) part.process[k] = true;
     }
+    if (part.stroke) part.begin = s_of_piece(job.strokes[*find_stroke(job, *part.stroke)]);
     part.rows = std::make_shared<const std::vector<TrajectoryRow>>(std::move(one.rows));
   }
   return parts;
@@ -99,12 +165,13 @@ JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobM
 
 std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swivel::Job& job,
                                          const std::filesystem::path& file) {
-  auto read = io::load_job_rows(file, job, robot.arm().chain.joint_names);
-  if (auto* motion = std::get_if<io::JobMotionFile>(&read))
-    return from_file(robot, job, std::move(*motion));
-  return from_file(robot, job, std::get<io::JobTrajectory>(std::move(read)), file);
+  auto read = io::load_executed_rows(file, job, robot.arm().chain.joint_names);
+  if (auto* motion = std::get_if<io::JobMotionFile>(&read.rows))
+    return from_file(robot, read.job, std::move(*motion));
+  return from_file(robot, read.job, std::get<io::JobTrajectory>(std::move(read.rows)), file);
 }
 
+/// `job`: with the lift-offs of the parts.
 JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Job& job, const Parts& parts,
                            const CheckOptions& options) {
   const std::vector<swivel::JobPart> all = to_core(job, parts);
@@ -115,7 +182,8 @@ JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Job& job, c
   return result;
 }
 
-/// Checks a motion whose strokes are numbered as in the job that it was made for.
+/// Checks a motion whose strokes are numbered as in the job that it was made for. `job`: with the
+/// lift-offs of the motion.
 JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Job& job,
                            const JobMotion& motion, const CheckOptions& options) {
   const auto number = [&](std::size_t k) { return stroke_of(job, motion.job->strokes[k].name); };
@@ -142,9 +210,11 @@ JobCheck check(const JobOrFile& of, const Checked& rows) {
       given = *motion;
     else
       given = std::get<Parts>(rows);
-    const auto* const parts = std::get_if<Parts>(&given);
-    return {parts != nullptr ? check_parts(robot, job, *parts, options)
-                             : check_timed(robot, job, std::get<JobMotion>(given), options),
+    if (const auto* const parts = std::get_if<Parts>(&given))
+      return {check_parts(robot, executed_by(job, *parts), *parts, options),
+              robot.arm().chain.joint_names};
+    const JobMotion& motion = std::get<JobMotion>(given);
+    return {check_timed(robot, executed_by(job, motion), motion, options),
             robot.arm().chain.joint_names};
   });
 }
@@ -153,55 +223,68 @@ JobPlan plan(const JobOrFile& of, PlanOptions options,
              const std::optional<JobTimingOptions>& timing) {
   const swivel::Job job = to_core(of);
   JobPlan plan;
-  plan.job = without_surroundings(job);
   plan.plan = std::make_shared<const JobMotionPlan>(interruptible([&](const std::stop_token& stop) {
     options.stop = stop;
     if (!timing) return JobMotionPlan{swivel::plan_job(job, options), {}};
     return plan_job_motion(prepared(job, stop), job, options, *timing);
   }));
+  plan.job = without_surroundings(executed_job(job, plan.plan->result));
   return plan;
 }
 
 using Timeable = std::variant<JobPlan, Parts, std::filesystem::path>;
 
+/// Parts that are proved, and the job of which they are, with its lift-offs.
+struct ProvedParts {
+  swivel::Job job;
+  std::vector<swivel::JobPart> parts;
+};
+
 /// Returns the parts of a file, or made by hand, with rows at the layers of each run. Throws
 /// InputError unless they are proved to be the job's.
-std::vector<swivel::JobPart> proved_parts(const PreparedRobot& robot, const swivel::Job& job,
-                                          const Timeable& rows, const Budget& budget) {
+ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Job& of, const Timeable& rows,
+                         const Budget& budget) {
   Parts given;
   std::string source;
   if (const auto* file = std::get_if<std::filesystem::path>(&rows)) {
     source = file->string();
-    auto read = load_rows(robot, job, *file);
+    auto read = load_rows(robot, of, *file);
     if (std::holds_alternative<JobMotion>(read))
       throw InputError(source, "has times: allowed is the trajectory of a job without them");
     given = std::get<Parts>(std::move(read));
   } else {
     given = std::get<Parts>(rows);
   }
+  ProvedParts proved{executed_by(of, given), {}};
+  const swivel::Job& job = proved.job;
   CheckOptions options;
   options.margins = false, options.budget = budget;
   const JobCheckResult check = check_parts(robot, job, given, options);
   if (!check.passed)
     throw InputError(source, check.failures.front() + ": allowed is a job that passes check_job()");
-  std::vector<swivel::JobPart> parts = to_core(job, given);
-  for (swivel::JobPart& part : parts)
+  proved.parts = to_core(job, given);
+  for (swivel::JobPart& part : proved.parts)
     if (part.run)
       part.rows = rows_at_layers(robot, problem_of_run(job, *part.run), part.rows, {}, budget);
-  return parts;
+  return proved;
 }
 
 JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions& timing,
                std::optional<double> timeout) {
   if (timeout && !(*timeout > 0))
     throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
-  const swivel::Job job = to_core(of);
+  const swivel::Job given = to_core(of);
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
-    const PreparedRobot robot = prepared(job, stop);
-    const auto* const plan = std::get_if<JobPlan>(&rows);
-    const std::vector<swivel::JobPart> parts =
-        plan != nullptr ? to_core(job, parts_of(*plan)) : proved_parts(robot, job, rows, budget);
+    const PreparedRobot robot = prepared(given, stop);
+    ProvedParts proved;
+    if (const auto* const plan = std::get_if<JobPlan>(&rows)) {
+      proved.job = executed_job(given, plan->result());
+      proved.parts = to_core(proved.job, parts_of(*plan));
+    } else {
+      proved = proved_parts(robot, given, rows, budget);
+    }
+    const auto& [job, parts] = proved;
     JobMotion motion;
     motion.job = without_surroundings(job);
     motion.joint_names = robot.arm().chain.joint_names;

@@ -60,6 +60,23 @@ std::vector<JobRun> runs_of(const JobPlan& plan) {
   return runs;
 }
 
+/// Returns the places at which a plan's tool lifts off. Its job has the runs between them.
+std::vector<LiftOffPlace> lift_offs_of(const JobPlan& plan) {
+  std::vector<std::string> names;  // of the strokes of the job that was given
+  for (const swivel::Stroke& stroke : plan.job->strokes) {
+    const std::string& name = stroke.piece ? stroke.piece->stroke : stroke.name;
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  std::vector<LiftOffPlace> places;
+  for (const LiftOffResult& lift : plan.result().lift_offs)
+    places.push_back({names.at(lift.stroke), lift});
+  return places;
+}
+
+std::string lift_words(std::size_t count) {
+  return count == 0 ? "" : formatted(", %zu lift-off%s", count, count == 1 ? "" : "s");
+}
+
 std::string part_words(const JobPart& part) {
   return (part.stroke ? run_words(*part.stroke, part.reversed) : std::string("transition")) +
          formatted(": %zu rows", part.rows->size()) +
@@ -82,8 +99,9 @@ std::string motion_words(const JobMotion& motion) {
            formatted(": s = %.4f m: ", failure->s) + failure->reason;
   if (!motion.fault.empty()) return "not executable: " + motion.fault;
   const swivel::JobMotion& m = *motion.timing->motion;
-  return formatted("%.3f s, %zu strokes, %zu samples at %.6g Hz", m.duration, m.events.size() / 2,
-                   m.rows.size(), m.rate);
+  const std::size_t lift_offs = lift_off_count(*motion.job);
+  return formatted("%.3f s, %zu strokes", m.duration, m.events.size() / 2 - lift_offs) +
+         lift_words(lift_offs) + formatted(", %zu samples at %.6g Hz", m.rows.size(), m.rate);
 }
 
 std::string infeasible_words(const JobPlan& plan) {
@@ -105,7 +123,8 @@ std::string plan_words(const JobPlan& plan) {
   std::string text = to_string(result.status);
   if (result.status == PlanStatus::kInfeasible) return text + ": " + infeasible_words(plan);
   if (result.parts.empty()) return text;
-  text += formatted(": %zu strokes, cost %.6g", plan.job->strokes.size(), result.cost);
+  text += formatted(": %zu strokes", plan.job->strokes.size() - result.lift_offs.size()) +
+          lift_words(result.lift_offs.size()) + formatted(", cost %.6g", result.cost);
   if (const auto gap = gap_of(result)) text += formatted(", %.3g %% above its bound", 100 * *gap);
   if (plan.plan->timing) text += "; " + motion_words(motion_of(plan));
   if (plan.plan->stopped) text += "; stopped before its motion";
@@ -139,20 +158,26 @@ void bind_part(py::module_& m) {
                       "A part of a job: a run of a stroke, or a transition, in which the joints "
                       "move straight from row to row.")
       .def(pickling<JobPart>())
-      .def(py::init([](const py::object& rows, std::optional<std::string> stroke, bool reversed) {
+      .def(py::init([](const py::object& rows, std::optional<std::string> stroke, bool reversed,
+                       double begin) {
              const Trajectory trajectory = to_trajectory(rows);
              if (stroke && !py::isinstance<Trajectory>(rows))
                throw py::value_error("rows: of a stroke allowed is a Trajectory");
              JobPart part;
              part.rows = trajectory.rows, part.joint_names = trajectory.joint_names;
-             part.stroke = std::move(stroke), part.reversed = reversed;
+             part.stroke = std::move(stroke), part.reversed = reversed, part.begin = begin;
              return part;
            }),
            py::arg("rows"), py::arg("stroke") = py::none(), py::kw_only(),
-           py::arg("reversed") = false,
-           "rows: a Trajectory; of a transition also (n, 7), rad. stroke: its name; None: a "
-           "transition. reversed: it is run from the last waypoint to the first.")
-      .def_readonly("stroke", &JobPart::stroke, "Its name; None of a transition.")
+           py::arg("reversed") = false, py::arg("begin") = 0.0,
+           "rows: a Trajectory; of a transition also (n, 7), rad. stroke: its name, 'ring/2' of "
+           "the second run of a stroke with lift-offs; None: a transition. reversed: it is run "
+           "from the last waypoint to the first. begin: m along the stroke at which such a run "
+           "begins.")
+      .def_readonly("stroke", &JobPart::stroke,
+                    "Its name; 'ring/1', 'ring/2' of runs between lift-offs; None of a transition.")
+      .def_readonly("begin", &JobPart::begin,
+                    "m along the stroke at which its run begins: not 0 only behind a lift-off.")
       .def_readonly("reversed", &JobPart::reversed,
                     "Whether it runs from the last waypoint to the first.")
       .def_readonly("cost", &JobPart::cost, "Of a part that was planned, else None.")
@@ -161,8 +186,8 @@ void bind_part(py::module_& m) {
           [](const JobPart& x) {
             return Trajectory{x.rows, x.joint_names};
           },
-          "Its rows. s begins at 0 in each stroke, where its approach begins; in transitions s, "
-          "phi and branch mean nothing.")
+          "Its rows. s begins at 0 in each run, where its approach begins; in transitions s, phi "
+          "and branch mean nothing.")
       .def_property_readonly(
           "joints",
           [](const JobPart& x) {
@@ -189,7 +214,8 @@ void bind_part(py::module_& m) {
 void bind_run(py::module_& m) {
   py::class_<JobRun>(m, "JobRun", "What a job's plan found out about one run of a stroke.")
       .def(pickling<JobRun>())
-      .def_readonly("stroke", &JobRun::stroke, "Its name.")
+      .def_readonly("stroke", &JobRun::stroke,
+                    "Its name; 'ring/1', 'ring/2' of runs between lift-offs.")
       .def_property_readonly(
           "reversed", [](const JobRun& x) { return x.result->run.reversed; },
           "Whether it runs from the last waypoint to the first.")
@@ -223,6 +249,32 @@ void bind_run(py::module_& m) {
       });
 }
 
+void bind_lift_off(py::module_& m) {
+  py::class_<LiftOffPlace>(m, "LiftOff",
+                           "A place at which the tool lifts off within a stroke, and why.")
+      .def(pickling<LiftOffPlace>())
+      .def_readonly("stroke", &LiftOffPlace::stroke, "The name of the whole stroke.")
+      .def_property_readonly(
+          "end", [](const LiftOffPlace& x) { return x.result.end; },
+          "m along the stroke, where the run ends.")
+      .def_property_readonly(
+          "resumed", [](const LiftOffPlace& x) { return x.result.resumed; },
+          "m along the stroke, where the next run begins.")
+      .def_property_readonly(
+          "reached", [](const LiftOffPlace& x) { return x.result.reached; },
+          "m along the stroke, how far the longest run from the same begin leads.")
+      .def_property_readonly(
+          "cause", [](const LiftOffPlace& x) -> const Cause& { return x.result.cause; },
+          "What ends every run there; CauseKind.NONE where no single cause is known.")
+      .def("__repr__", [](const LiftOffPlace& x) {
+        const bool known = x.result.cause.kind != Cause::Kind::kNone;
+        return "<LiftOff of '" + x.stroke +
+               formatted("': ends at s = %.4f m, goes on at %.4f m; no run leads beyond %.4f m",
+                         x.result.end, x.result.resumed, x.result.reached) +
+               (known ? ": " + py::str(py::cast(x.result.cause)).cast<std::string>() : "") + ">";
+      });
+}
+
 void bind_plan(py::module_& m) {
   py::class_<JobPlan>(m, "JobPlan",
                       "The answer of plan_job(): the parts of a job, or why there is none.")
@@ -235,7 +287,7 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "cost",
           [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().cost); },
-          "Of strokes and transitions; None where there are no parts.")
+          "Of strokes, transitions and lift-offs; None where there are no parts.")
       .def_property_readonly(
           "bound",
           [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().bound); },
@@ -251,6 +303,10 @@ void bind_plan(py::module_& m) {
                              "Transitions and runs, JobParts, in the order in which they are "
                              "executed; maybe none.")
       .def_property_readonly("runs", &runs_of, "JobRuns, in the order in which they are executed.")
+      .def_property_readonly(
+          "lift_offs", &lift_offs_of,
+          "LiftOff of each place at which the tool lifts off within a stroke, in the order "
+          "of the job.")
       .def_property_readonly("no_transition", &no_transition_of,
                              "(from, to) where each run has a path, but no transition joins these "
                              "two: names of strokes, None for home. Else None.")
@@ -538,7 +594,7 @@ std::shared_ptr<const swivel::Job> without_surroundings(const swivel::Job& job) 
   auto rest = std::make_shared<swivel::Job>();
   rest->base_link = job.base_link, rest->source = job.source;
   rest->strokes = job.strokes;
-  rest->home = job.home, rest->order = job.order;
+  rest->home = job.home, rest->order = job.order, rest->lift = job.lift;
   return rest;
 }
 
@@ -548,7 +604,10 @@ std::vector<JobPart> parts_of(const JobPlan& plan) {
     JobPart& part = parts.emplace_back();
     part.rows = std::shared_ptr<const Rows>(plan.plan, &one.rows);
     part.joint_names = plan.result().joint_names;
-    if (one.run) part.stroke = name_of(*plan.job, *one.run), part.reversed = one.run->reversed;
+    if (one.run) {
+      part.stroke = name_of(*plan.job, *one.run), part.reversed = one.run->reversed;
+      part.begin = s_of_piece(plan.job->strokes[one.run->stroke]);
+    }
     part.cost = one.cost, part.barred_by = one.barred_by;
     part.process = process_of_rows(one, *plan.job);
   }
@@ -568,6 +627,7 @@ JobMotion motion_of(const JobPlan& plan) {
 void bind_job_results(py::module_& m) {
   bind_part(m);
   bind_run(m);
+  bind_lift_off(m);
   bind_motion(m);
   bind_plan(m);
   bind_check(m);

@@ -25,6 +25,14 @@ struct JobPart {
   std::optional<double> cost;  ///< none of a part that was not planned
   std::optional<std::array<std::string, 2>> barred_by;
   std::vector<bool> process;  ///< by rows; empty: not stated
+  /// Arc length of the whole stroke at which its run begins, m: not 0 only behind a lift-off.
+  double begin = 0;
+};
+
+/// A place at which the tool lifts off within a stroke.
+struct LiftOffPlace {
+  std::string stroke;
+  LiftOffResult result;
 };
 
 /// What a plan found out about a run.
@@ -37,6 +45,7 @@ struct JobRun {
 struct JobPlan {
   std::shared_ptr<const JobMotionPlan> plan;
   /// The job's strokes, home and order, by which the answer is written; without robot and scene.
+  /// Runs between lift-offs are strokes of their own.
   std::shared_ptr<const swivel::Job> job;
   [[nodiscard]] const JobResult& result() const { return plan->result; }
 };

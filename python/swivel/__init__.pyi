@@ -975,6 +975,11 @@ class Stroke:
         end: ArrayLike | None = None,
     ) -> None: ...
 
+class LiftOffs:
+    cost: float
+    overlap: float
+    def __init__(self, *, cost: float = ..., overlap: float = ...) -> None: ...
+
 class Job(Robot):
     scene: Scene
     @property
@@ -1004,6 +1009,7 @@ class Job(Robot):
     process_speed: float | None
     approach_speed: float | None
     rapid: float
+    lift: LiftOffs | None
     def __init__(
         self,
         robot: Robot,
@@ -1021,6 +1027,7 @@ class Job(Robot):
         process_speed: float | None = None,
         approach_speed: float | None = None,
         rapid: float = 1.0,
+        lift: LiftOffs | None = None,
     ) -> None: ...
     @property
     def source(self) -> str: ...
@@ -1033,9 +1040,18 @@ class Job(Robot):
 def load_job(file: _File) -> Job: ...
 
 class JobPart:
-    def __init__(self, rows: Trajectory | ArrayLike, stroke: str | None = None, *, reversed: bool = False) -> None: ...
+    def __init__(
+        self,
+        rows: Trajectory | ArrayLike,
+        stroke: str | None = None,
+        *,
+        reversed: bool = False,
+        begin: float = 0.0,
+    ) -> None: ...
     @property
     def stroke(self) -> str | None: ...
+    @property
+    def begin(self) -> float: ...
     @property
     def reversed(self) -> bool: ...
     @property
@@ -1049,6 +1065,18 @@ class JobPart:
     @property
     def barred_by(self) -> tuple[str, str] | None: ...
     def __len__(self) -> int: ...
+
+class LiftOff:
+    @property
+    def stroke(self) -> str: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def resumed(self) -> float: ...
+    @property
+    def reached(self) -> float: ...
+    @property
+    def cause(self) -> Cause: ...
 
 class JobRun:
     @property
@@ -1141,6 +1169,8 @@ class JobPlan:
     def parts(self) -> list[JobPart]: ...
     @property
     def runs(self) -> list[JobRun]: ...
+    @property
+    def lift_offs(self) -> list[LiftOff]: ...
     @property
     def no_transition(self) -> tuple[str | None, str | None] | None: ...
     @property

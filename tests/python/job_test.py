@@ -610,6 +610,85 @@ class JobStudies(unittest.TestCase):
                     study(wrong)
 
 
+RING = DATA / "problems" / "iiwa14_ring_job.yaml"
+
+
+def ring(**members):
+    """A ring of one and a half turns, at a coarse resolution, in two runs."""
+    job = swivel.load_job(RING)
+    job.resolution = swivel.Resolution(ds=0.02, dphi=0.2)
+    job.limits.tool_path_error = 0.005
+    for stroke in job.strokes:
+        stroke.limits = None
+    for name, value in members.items():
+        setattr(job, name, value)
+    return job
+
+
+class JobLiftOffs(unittest.TestCase):
+    """Strokes that no single run finishes."""
+
+    def test_the_program_gives_the_same_bits(self):
+        plan = swivel.plan_job(RING)
+        self.assertEqual([part.stroke for part in plan.parts if part.stroke], ["ring/1", "ring/2"])
+        with tempfile.TemporaryDirectory() as folder:
+            own, other = Path(folder) / "own.csv", Path(folder) / "other.csv"
+            plan.save(own)
+            program("plan", str(RING), "--out", str(other))
+            self.assertEqual(own.read_text(), other.read_text())
+            done = json.loads(program("plan", str(RING), "--json", "-"))
+            (place,), (said,) = plan.lift_offs, done["lift_offs"]
+            self.assertEqual((place.stroke, place.end), ("ring", said["end"]))
+            self.assertEqual(place.resumed, said["resumed"])
+            self.assertIn("lift-off", repr(plan))
+            self.assertIn("of 'ring': ends at s = ", repr(place))
+            # Files are read with their runs, and prove the job.
+            parts = swivel.load_job_trajectory(own, RING)
+            self.assertEqual([part.begin for part in parts], [part.begin for part in plan.parts])
+            self.assertTrue(swivel.check_job(RING, own))
+
+    def test_plans_are_checked_and_timed(self):
+        job = ring()
+        self.assertEqual((job.lift.cost, job.lift.overlap), (1, 0.01))
+        plan = swivel.plan_job(job)
+        self.assertEqual(len(plan.lift_offs), 1)
+        (lift,) = plan.lift_offs
+        self.assertLessEqual(lift.resumed, lift.end - 0.01 + 1e-9)
+        self.assertLessEqual(lift.end, lift.reached + 1e-9)
+        self.assertTrue(swivel.check_job(job, plan), plan)
+        self.assertTrue(swivel.check_job(job, plan.parts))
+        motion = swivel.time_job(job, plan.parts, speed=0.05)
+        self.assertTrue(motion.executable, motion)
+        self.assertTrue(swivel.check_job(job, motion))
+        timed = swivel.plan_job(job, speed=0.05)
+        self.assertTrue(swivel.check_job(job, timed.motion))
+        self.assertEqual(len(timed.motion.events), 4)
+        copy_of = pickle.loads(pickle.dumps(plan))
+        self.assertEqual(repr(copy_of.lift_offs), repr(plan.lift_offs))
+        self.assertTrue(swivel.check_job(pickle.loads(pickle.dumps(job)), copy_of))
+
+    def test_what_is_left_out_is_found(self):
+        job = ring()
+        parts = swivel.plan_job(job).parts
+        first, move, second = parts
+        late = swivel.JobPart(second.trajectory, "ring/2", begin=second.begin + 0.03)
+        with self.assertRaisesRegex(swivel.InvalidArgument, "'ring/2': begins at s = .* at most"):
+            swivel.check_job(job, [first, move, late])
+        wrong = swivel.JobPart(second.trajectory, "ring/3", begin=second.begin)
+        with self.assertRaisesRegex(swivel.InvalidArgument, "'ring/3': allowed is 'ring/2'"):
+            swivel.check_job(job, [first, move, wrong])
+        self.assertFalse(swivel.check_job(job, [first]))
+        with self.assertRaises(swivel.InvalidArgument):
+            swivel.check_job(ring(lift=None), parts)
+
+    def test_where_it_is_not_allowed(self):
+        plan = swivel.plan_job(ring(lift=None))
+        self.assertFalse(plan.solved)
+        self.assertEqual(plan.lift_offs, [])
+        with self.assertRaisesRegex(swivel.InvalidArgument, "lift: cost, overlap"):
+            ring(lift=swivel.LiftOffs(cost=-1)).validate()
+
+
 class JobErrors(unittest.TestCase):
     def raises(self, error, message, function, *arguments, **keywords):
         with self.assertRaisesRegex(error, message) as caught:
