@@ -379,17 +379,22 @@ struct Planner::Impl {
   /// Returns `found`, the answer of the lattice searched last, if its path is the answer of the
   /// task. A path on which a joint that is treated as a circle leaves its limits
   /// (Lattice::off_nearest()) is not: the next lattice tells the values of such joints apart, and
-  /// its answer is returned.
+  /// its answer is returned. Where that has no path, a warning says what the cheapest path would
+  /// have asked of the joint.
   Found tell_turns_apart(Found found, const EdgeRule& rule, const PlanOptions& options,
                          const Budget& budget, PlanResult& result) {
+    std::string note;
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
+      if (found.decided && found.outcome.path.empty() && !note.empty())
+        result.warnings.push_back(note);
       if (!found.decided || found.outcome.path.empty()) return found;
       const Lattice::Joints off = lattice.off_nearest(found.outcome.path);
       if (off == Lattice::Joints{}) return found;
       if (problem.start && !was_eager && !lattice.has_layers_between() && robot->arm_class().srs)
         if (const auto turned = search_turns(layout->last(), rule, options, budget, result))
           return *turned;
+      if (note.empty()) note = turns_note(lattice, found.outcome.path, off, problem);
       layout->second = Searched{lattice.with_windings(off), nullptr};
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
       found = search(*layout->second, false, rule, options, budget, result);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -26,5 +29,12 @@ namespace swivel {
   auto wound = lattice->with_windings(circles);
   return wound ? std::move(wound) : std::move(lattice);
 }
+
+/// Returns a line on the first of the joints `off` whose turning along the path `slots` does not
+/// fit its limits: by how much it turns along that path, or, where the start or the end is given,
+/// from where to where. `lattice` treats these joints as circles. Returns an empty line where each
+/// fits in some turn.
+[[nodiscard]] std::string turns_note(const Lattice& lattice, const std::vector<int>& slots,
+                                     const Lattice::Joints& off, const Task& task);
 
 }  // namespace swivel

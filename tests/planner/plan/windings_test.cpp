@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <ranges>
 #include <string>
 
 #include "inexact_robots.hpp"
@@ -14,6 +15,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -98,7 +100,7 @@ Config turned(Config q, const Wide& wide, Random& random) {
 /// What the trials met.
 struct Counts {
   int solved = 0, none = 0, started = 0, ended = 0, wound = 0, several_wound = 0, solved_wound = 0,
-      none_wound = 0, certified = 0, rolls = 0, inexact = 0;
+      none_wound = 0, certified = 0, noted = 0, rolls = 0, inexact = 0;
   std::array<int, 3> solved_by_shape{};
 };
 
@@ -151,9 +153,37 @@ void expect_certified(const PreparedRobot& robot, const Problem& problem, const 
   ++counts.certified;
 }
 
+/// Returns the warning that says how far a joint would turn; an empty one where there is none.
+std::string turns_note_of(const PlanResult& result) {
+  for (const std::string& line : result.warnings)
+    if (line.find("but for its limits") != std::string::npos) return line;
+  return {};
+}
+
+/// Returns the robot of a problem with the joints of `wide` continuous.
+Problem without_wide_limits(const Problem& problem, const TestRobot& robot, const Wide& wide) {
+  Problem free = problem;
+  static_cast<Robot&>(free) = problem_for(with_limits(robot, [&](int number, Joint& joint) {
+    if (wide.joints[static_cast<std::size_t>(number)]) joint.type = Joint::Type::kContinuous;
+  }));
+  return free;
+}
+
+/// Expects a path of `free`, the problem without limits of its wide joints, if an answer without a
+/// path names the turn of one of them.
+void check_note(const PlanResult& found, const Problem& free, const std::string& what,
+                Counts& counts) {
+  const std::string note = turns_note_of(found);
+  if (note.empty()) return;
+  ASSERT_EQ(found.status, PlanStatus::kInfeasible) << what;
+  ASSERT_EQ(plan(free).status, PlanStatus::kSolved) << what << ": " << note;
+  ++counts.noted;
+}
+
 /// Compares the answer with that of turns told apart: where a path did not fit, or `always`.
-void check_windings(const Problem& problem, PathShape shape, bool exact, bool always,
-                    const std::string& what, Counts& counts) {
+/// `free`: the problem without limits of its wide joints.
+void check_windings(const Problem& problem, const Problem& free, PathShape shape, bool exact,
+                    bool always, const std::string& what, Counts& counts) {
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   const PlanOptions lazy = with_all_evidence(PlannerKind::kLazy);
   Planner planner(robot, problem);
@@ -162,6 +192,7 @@ void check_windings(const Problem& problem, PathShape shape, bool exact, bool al
   if (told.empty() && !always) return;  // circles that fit are many
   counts.wound += !told.empty();
   counts.several_wound += told.size() > 1;
+  ASSERT_NO_FATAL_FAILURE(check_note(found, free, what, counts));
   PlanOptions apart;
   apart.planner = PlannerKind::kLazy;
   apart.hooks.check = std::make_shared<AllowsAll>();
@@ -225,23 +256,63 @@ TEST(Windings, CirclesCostWhatTurnsToldApartCost) {
     counts.inexact += which == 3;
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + robots[which].name;
-    ASSERT_NO_FATAL_FAILURE(
-        check_windings(problem, shape, which != 3, trial % 12 < 4, what, counts));
+    ASSERT_NO_FATAL_FAILURE(check_windings(problem,
+                                           without_wide_limits(problem, robots[which], wide), shape,
+                                           which != 3, trial % 12 < 4, what, counts));
   }
   std::printf(
       "%d problems, %d with a start, %d with an end, %d with rolls, %d of an inexact arm; "
       "compared: "
       "%d solved (%d lines, %d rings, %d screws), %d without a path; turns told apart in %d, of "
-      "several joints in %d; of these %d solved, %d without a path; %d certificates\n",
+      "several joints in %d; of these %d solved, %d without a path, %d with a turn named; %d "
+      "certificates\n",
       count, counts.started, counts.ended, counts.rolls, counts.inexact, counts.solved,
       counts.solved_by_shape[0], counts.solved_by_shape[1], counts.solved_by_shape[2], counts.none,
-      counts.wound, counts.several_wound, counts.solved_wound, counts.none_wound, counts.certified);
+      counts.wound, counts.several_wound, counts.solved_wound, counts.none_wound, counts.noted,
+      counts.certified);
   for (const int solved : counts.solved_by_shape) EXPECT_GE(solved, at_least_among(6));
   EXPECT_GE(counts.started, at_least_among(20));
   EXPECT_GE(counts.ended, at_least_among(20));
   EXPECT_GE(counts.solved_wound, at_least_among(1));
   EXPECT_GE(counts.none_wound, at_least_among(10));
+  EXPECT_GE(counts.noted, at_least_among(20));
   EXPECT_GE(counts.certified, at_least_among(40));
+}
+
+/// A ring of two and a half turns asks more of the last joint than +-2 pi allows: by as much as the
+/// cheapest path of an arm without that limit turns it.
+TEST(Windings, TellHowFarAJointWouldTurn) {
+  Wide wide;
+  wide.joints[6] = true;
+  const TestRobot robot = widened(data_robot("iiwa14"), wide);
+  Problem problem = problem_for(robot);
+  Config q;
+  q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
+  const Pose tool = arm_of(robot).chain.tool(q);
+  for (int k = 0; k <= 20; ++k) {
+    Pose pose = tool;
+    pose.linear() =
+        tool.linear() * Eigen::AngleAxisd(kTwoPi * k / 8, Vector3d::UnitZ()).toRotationMatrix();
+    pose.translation().x() -= 0.002 * k;
+    problem.waypoints.push_back(waypoint_of(pose));
+  }
+  const PlanResult free = plan(without_wide_limits(problem, robot, wide));
+  ASSERT_EQ(free.status, PlanStatus::kSolved);
+  const auto last = [](const TrajectoryRow& row) { return row.q[6]; };
+  const auto [least, most] = std::ranges::minmax(free.trajectory | std::views::transform(last));
+  const PlanResult found = plan(problem);
+  EXPECT_EQ(found.status, PlanStatus::kInfeasible);
+  EXPECT_EQ(turns_note_of(found),
+            formatted("but for its limits, %s would turn by %.0f deg along the cheapest path: its "
+                      "range is 720 deg",
+                      found.joint_names[6].c_str(), (most - least) * 180 / kPi));
+  // from a given start there is less room
+  problem.start = free.trajectory.front().q;
+  const double begin = (*problem.start)[6], end = most > begin ? most : least;
+  EXPECT_EQ(turns_note_of(plan(problem)),
+            formatted("but for its limits, %s would turn from %.0f to %.0f deg along the cheapest "
+                      "path: it may from -360 to 360 deg",
+                      found.joint_names[6].c_str(), begin * 180 / kPi, end * 180 / kPi));
 }
 
 /// A joint that a step could move by half a turn keeps its turns apart: the short way round a
