@@ -130,6 +130,18 @@ class FakeBetween : public Between {
       apart[k] = move(layer, moves[0], moves[1]);
     }
   }
+  /// Leaves out some of the pairs that are not apart.
+  void find_barred(int layer, const std::array<std::vector<int>, 2>& slots,
+                   const std::array<std::vector<Config>, 2>& q,
+                   std::span<std::uint8_t> barred) override {
+    for (std::size_t a = 0, k = 0; a < slots[0].size(); ++a)
+      for (std::size_t b = 0; b < slots[1].size(); ++b, ++k) {
+        wrong += *(*lattices_)[0]->node(layer, slots[0][a]) != q[0][a] ||
+                 *(*lattices_)[1]->node(layer, slots[1][b]) != q[1][b];
+        if (!barred[k] && chance(seed_ + 2, at(layer), k) < 0.8)
+          barred[k] = !node(layer, slots[0][a], slots[1][b]);
+      }
+  }
   [[nodiscard]] bool asks_moves() const override { return move_width_ > 0; }
   [[nodiscard]] std::array<std::vector<int>, 2> region(const NodePair& x, bool) override {
     if (!large_) return {std::vector{x.slots[0]}, std::vector{x.slots[1]}};
@@ -501,7 +513,7 @@ void expect_proof(const Task& task, const PlainPair& plain, const std::vector<Re
 /// Counts what the tasks met.
 struct Met {
   int tasks = 0, apart = 0, solved = 0, dearer = 0, none = 0, without_path = 0, by_product = 0,
-      by_regions = 0, stopped = 0, stopped_with_pair = 0;
+      by_regions = 0, by_pair_values = 0, stopped = 0, stopped_with_pair = 0;
   std::int64_t rounds = 0, pops = 0;
 };
 
@@ -605,6 +617,7 @@ void expect_plain_program(const Task& task, bool few_nodes, Random& random, Met&
   const bool regions_suffice =
       task.between->has_large_regions() || (few_nodes && task.lattices[0]->layers() <= 3);
   if (regions_suffice && random.coin(0.2)) both.most_pops = 64;
+  if (random.coin(0.3)) both.most_pairs = 0;
   for (const PairSearchOptions& options : {regions, product}) {
     if (options.pops == 0 && !regions_suffice) continue;
     SCOPED_TRACE(options.pops == 0 ? "regions" : "pairs of nodes");
@@ -613,6 +626,8 @@ void expect_plain_program(const Task& task, bool few_nodes, Random& random, Met&
   }
   const PairOutcome found = search(task, both, pruning);
   count(known, found, met);
+  met.by_pair_values +=
+      found.decided_by == PairSearcher::kProduct && found.turns > 1 && both.most_pairs > 0;
   expect_answer(known, found);
   if (::testing::Test::HasFailure()) return;
   if (met.tasks % 4 == 0) {
@@ -640,16 +655,18 @@ void expect_plain_programs(bool grids, int usual) {
   }
   std::printf(
       "%d tasks: %d without conflict, %d with an arm without path; of those in conflict %d solved "
-      "(%d dearer than both alone), %d without a pair; %d decided by regions, %d by the product, "
+      "(%d dearer than both alone), %d without a pair; %d decided by regions, %d by the product "
+      "(%d with the cost-to-go of pairs), "
       "%lld rounds, %lld pairs taken; %d stopped before the end, %d of them with a pair\n",
       met.tasks, met.apart, met.without_path, met.solved, met.dearer, met.none, met.by_regions,
-      met.by_product, static_cast<long long>(met.rounds), static_cast<long long>(met.pops),
-      met.stopped, met.stopped_with_pair);
+      met.by_product, met.by_pair_values, static_cast<long long>(met.rounds),
+      static_cast<long long>(met.pops), met.stopped, met.stopped_with_pair);
   EXPECT_GE(met.apart, at_least(grids ? 20 : 300));
   EXPECT_GE(met.solved, at_least(grids ? 20 : 300));
   EXPECT_GE(met.none, at_least(grids ? 3 : 60));
   EXPECT_GE(met.by_regions, at_least(grids ? 5 : 100));
   EXPECT_GE(met.by_product, at_least(grids ? 5 : 100));
+  EXPECT_GE(met.by_pair_values, at_least(grids ? 2 : 40));
   EXPECT_GE(met.stopped_with_pair, at_least(grids ? 1 : 20));
 }
 

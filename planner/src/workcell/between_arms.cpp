@@ -164,6 +164,30 @@ void BetweenArms::moves(std::span<const MovePair> questions, std::span<std::uint
     apart[k] = static_cast<std::uint8_t>(!barred(questions[k]));
 }
 
+void BetweenArms::find_barred(int layer, const std::array<std::vector<int>, 2>& slots,
+                              const std::array<std::vector<Config>, 2>& q,
+                              std::span<std::uint8_t> barred) {
+  const std::size_t columns = slots[1].size();
+  if (slots[0].empty() || slots[1].empty()) return;
+  std::array<std::vector<Config>, 2> exact = q;
+  std::array<std::vector<bool>, 2> found;  // whether a slot has exact joints
+  for (std::size_t arm = 0; arm < 2; ++arm)
+    for (std::size_t k = 0; k < q[arm].size(); ++k) {
+      const auto row = lattices_[arm]->exact_config(layer, slots[arm][k], q[arm][k]);
+      found[arm].push_back(row.has_value());
+      if (row) exact[arm][k] = *row;
+    }
+  const InterArmWorld::Stances first = query_.stances(0, -1, exact[0]),
+                               second = query_.stances(1, -1, exact[1]);
+  for (std::size_t k = 0; k < barred.size(); ++k) {
+    if (k % columns == 0) budget_.poll();
+    const std::size_t a = k / columns, b = k % columns;
+    if (!barred[k])
+      barred[k] = !found[0][a] || !found[1][b] ||
+                  query_.any_violates(first, first.stance_of(a), second, second.stance_of(b));
+  }
+}
+
 std::array<std::vector<int>, 2> BetweenArms::region(const NodePair& conflict, bool thorough) {
   std::array<LayerNodes, 2> nodes{LayerNodes(*lattices_[0], conflict.layer),
                                   LayerNodes(*lattices_[1], conflict.layer)};

@@ -28,6 +28,9 @@ class BetweenArms final : public Between {
 
   void nodes(std::span<const NodePair> questions, std::span<std::uint8_t> apart) override;
   void moves(std::span<const MovePair> questions, std::span<std::uint8_t> apart) override;
+  void find_barred(int layer, const std::array<std::vector<int>, 2>& slots,
+                   const std::array<std::vector<Config>, 2>& q,
+                   std::span<std::uint8_t> barred) override;
   [[nodiscard]] bool asks_moves() const override { return asks_moves_; }
   using Between::region;
   [[nodiscard]] std::array<std::vector<int>, 2> region(const NodePair& conflict,

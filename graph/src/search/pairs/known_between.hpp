@@ -37,6 +37,8 @@ class KnownBetween {
   /// Returns whether two moves are apart whose nodes are. Throws Stopped.
   [[nodiscard]] bool apart(const MovePair& pair);
   [[nodiscard]] bool asks_moves() const { return between_.asks_moves(); }
+  /// Returns the Between itself, for questions of another form; nothing is counted of them.
+  [[nodiscard]] Between& between() { return between_; }
 
  private:
   /// A pair of nodes, whose `to` are 0, or of moves.

@@ -78,6 +78,9 @@ class PairSearch {
       const bool regions_alone = pops <= 0 || pops > options_.most_pops;
       if (options_.rounds > 0 && regions.run(regions_alone ? -1 : rounds)) return;
       if (product.run(options_.rounds > 0 ? pops : -1)) return;
+      // The cost-to-go of pairs takes less than many rounds of regions.
+      if (outcome_.turns == 1 && product.has_few_pairs() && product.run(pops *= options_.growth))
+        return;
       rounds *= options_.growth;
     }
   }
@@ -89,6 +92,22 @@ class PairSearch {
 };
 
 }  // namespace
+
+void Between::find_barred(int layer, const std::array<std::vector<int>, 2>& slots,
+                          const std::array<std::vector<Config>, 2>& q,
+                          std::span<std::uint8_t> barred) {
+  const std::size_t columns = slots[1].size();
+  std::vector<NodePair> open;
+  for (std::size_t k = 0; k < barred.size(); ++k)
+    if (!barred[k])
+      open.push_back({layer,
+                      {slots[0][k / columns], slots[1][k % columns]},
+                      {q[0][k / columns], q[1][k % columns]}});
+  std::vector<std::uint8_t> apart(open.size());
+  nodes(open, apart);
+  for (std::size_t k = 0, at = 0; k < barred.size(); ++k)
+    if (!barred[k]) barred[k] = !apart[at++];
+}
 
 PairOutcome search_pair(const std::array<PairArm, 2>& arms, Between& between,
                         const PairSearchOptions& options) {

@@ -53,9 +53,11 @@ void ProductSearch::begin_turn() {
     side.starts.clear();
     for (int slot = 0; slot < searched.lattice().slots(0); ++slot)
       if (const double rest = side.values->at(0, slot); rest != kUnreachable)
-        side.starts.push_back({slot, rest});
+        side.starts.push_back({slot, rest, 0});
     sort(side.starts);
   });
+  if (outcome_.turns > 1 && has_few_pairs())
+    pair_cost_to_go_.emplace(values(), between_.between(), arms_[0].cost_to_go().budget());
   reached_.clear();
   reached_cost_.clear();
   done_.clear();
@@ -82,7 +84,7 @@ const std::vector<ProductSearch::Step>& ProductSearch::steps(int arm, int before
   const double rest = side.values->at(pair.layer, slot);
   for (const CostToGo::Step& step : found)
     here.steps->push_back(
-        {step.slot, step.cost + side.values->at(pair.layer + 1, step.slot) - rest});
+        {step.slot, step.cost + side.values->at(pair.layer + 1, step.slot) - rest, step.cost});
   sort(*here.steps);
   return *here.steps;
 }
@@ -129,6 +131,33 @@ void ProductSearch::push(int before, double cost, const std::array<int, 2>& ways
     open.cost += all[way].rise;
   }
   if (open.cost <= outcome_.cost) push(open);
+}
+
+void ProductSearch::expand(int before, double cost) {
+  const int layer = before < 0 ? 0 : reached_[static_cast<std::size_t>(before)].layer + 1;
+  const double spent =
+      before < 0
+          ? 0
+          : reached_cost_[static_cast<std::size_t>(before)] -
+                pair_cost_to_go_->at(layer - 1, reached_[static_cast<std::size_t>(before)].slots);
+  double next = kUnreachable;  // the least cost of those that are left
+  for (const Step& first : steps(0, before))
+    for (const Step& second : steps(1, before)) {
+      const std::array<int, 2> slots{first.slot, second.slot};
+      const double through =
+          spent + (first.cost + second.cost) + pair_cost_to_go_->at(layer, slots);
+      if (through == cost)
+        push({.cost = cost, .before = before, .slots = slots});
+      else if (through > cost)
+        next = std::min(next, through);
+    }
+  if (next == kUnreachable || next > outcome_.cost) return;
+  Open rest{.cost = next, .expands = true, .ways = {before, 0}, .slots = {-1, -1}};
+  if (before >= 0) {
+    rest.before = reached_[static_cast<std::size_t>(before)].before;
+    rest.slots = reached_[static_cast<std::size_t>(before)].slots;
+  }
+  push(rest);
 }
 
 void ProductSearch::push_beside(const Open& open, double before_cost, bool first_valid) {
@@ -189,7 +218,7 @@ bool ProductSearch::take(const Open& open) {
   const bool first_valid = is_valid(0, layer, open.slots[0]);
   const double before_cost =
       open.before < 0 ? 0 : reached_cost_[static_cast<std::size_t>(open.before)];
-  if (!open.raised) push_beside(open, before_cost, first_valid);
+  if (!open.raised && !pair_cost_to_go_) push_beside(open, before_cost, first_valid);
   if (!first_valid || done_.contains({layer, open.slots}) || !is_valid(1, layer, open.slots[1]))
     return false;
   const double dearer =
@@ -226,7 +255,10 @@ bool ProductSearch::run(std::int64_t most_pops) {
   const TraceSpan span("pairs of nodes");
   ++outcome_.turns;
   begin_turn();
-  push(-1, 0, {0, 0});
+  if (pair_cost_to_go_)
+    expand(-1, -kUnreachable);
+  else
+    push(-1, 0, {0, 0});
   const Budget& budget = arms_[0].cost_to_go().budget();
   const int last_layer = arms_[0].lattice().layers() - 1;
   for (std::int64_t pops = 0; !queue_.empty(); ++pops) {
@@ -235,13 +267,20 @@ bool ProductSearch::run(std::int64_t most_pops) {
     ++outcome_.pops;
     const Open open = pop();
     outcome_.bound = std::max(outcome_.bound, open.cost);
+    if (open.expands) {
+      expand(open.ways[0], open.cost);
+      continue;
+    }
     if (!take(open)) continue;
     const int index = static_cast<int>(reached_.size()) - 1;
     if (reached_.back().layer == last_layer) {
       find(index);
       return true;
     }
-    push(index, open.cost, {0, 0});
+    if (pair_cost_to_go_)
+      expand(index, open.cost);
+    else
+      push(index, open.cost, {0, 0});
   }
   outcome_.bound = kUnreachable;
   outcome_.decided_by = PairSearcher::kProduct;

@@ -43,6 +43,12 @@ class Between {
   virtual void nodes(std::span<const NodePair> questions, std::span<std::uint8_t> apart) = 0;
   /// Answers like nodes(), about moves whose nodes are apart. Throws Stopped.
   virtual void moves(std::span<const MovePair> questions, std::span<std::uint8_t> apart) = 0;
+  /// Sets barred[i * slots[1].size() + j] to 1 where slot i of arm 0 and slot j of arm 1 of a layer
+  /// are not apart. Pairs whose entry is 1 already are not asked about; others may be left out
+  /// where the answer takes long. `q`: joints of the slots, rad. Throws Stopped.
+  virtual void find_barred(int layer, const std::array<std::vector<int>, 2>& slots,
+                           const std::array<std::vector<Config>, 2>& q,
+                           std::span<std::uint8_t> barred);
   /// Returns false if all moves are apart whose nodes are, so that moves() need not be asked.
   [[nodiscard]] virtual bool asks_moves() const = 0;
   /// Returns for each arm slots of the layer of `conflict`, its own among them, so that no slot of
@@ -71,12 +77,16 @@ struct PairSearchOptions {
   /// Rounds of regions after which the product search takes its first turn; 0: no regions at all.
   std::int64_t rounds = 16;
   /// Pairs of nodes that the product search takes in its first turn; 0: no product search at all.
-  std::int64_t pops = 1 << 18;
+  std::int64_t pops = 1 << 13;
   /// By what rounds, counted from the first, and pairs of a turn are multiplied after each turn.
   int growth = 4;
   /// No turn of the product search takes more pairs than so many, for the memory that they need
   /// (some 200 bytes each). After the last turn regions go on alone.
   std::int64_t most_pops = 1 << 22;
+  /// Where there are no more pairs of simultaneous nodes than so many, of all layers together, the
+  /// second turn of the product search follows the first at once, and it and later ones begin with
+  /// the cost-to-go of every pair.
+  std::int64_t most_pairs = 1 << 22;
   /// Rounds after which Between is asked for thorough regions.
   std::int64_t quick_rounds = 8;
   ParallelFor work;  ///< shares the two arms among threads; the result is the same
