@@ -23,7 +23,8 @@ namespace swivel::test {
 inline constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// One arm for the plain program: the nodes of each layer that its own world allows, and which of
-/// its edges that world allows, asked when they are needed.
+/// its edges that world allows, asked when they are needed. The world is asked about the exact
+/// joints of nodes (Lattice::exact_config()).
 class PlainArm {
  public:
   PlainArm(const Problem& problem, const PreparedRobot& robot)
@@ -36,13 +37,22 @@ class PlainArm {
     for (std::size_t i = 0; i < layers_.size(); ++i) {
       std::vector<Lattice::Node> nodes;
       lattice_->layer_nodes(static_cast<int>(i), nodes);
-      for (const Lattice::Node& node : nodes)
-        if (!query_.find_violating_pair(node.q, ClearanceRule::kNode)) layers_[i].push_back(node);
+      auto& exact = exact_.emplace_back();
+      for (const Lattice::Node& node : nodes) {
+        const auto q = lattice_->exact_config(static_cast<int>(i), node.slot, node.q);
+        if (!q || query_.find_violating_pair(*q, ClearanceRule::kNode)) continue;
+        layers_[i].push_back(node);
+        exact.push_back(*q);
+      }
     }
   }
   [[nodiscard]] std::size_t layers() const { return layers_.size(); }
   [[nodiscard]] const std::vector<Lattice::Node>& nodes(std::size_t layer) const {
     return layers_[layer];
+  }
+  /// Returns the exact joints of node k of a layer, rad.
+  [[nodiscard]] const Config& exact(std::size_t layer, std::size_t k) const {
+    return exact_[layer][k];
   }
   struct Edge {
     std::size_t to = 0;
@@ -64,10 +74,12 @@ class PlainArm {
   }
   /// Returns whether an edge is valid; if not, edges() leaves it out from now on.
   bool valid(std::size_t layer, std::size_t a, std::size_t b) {
-    const Lattice::Node &from = layers_[layer][a], &to = layers_[layer + 1][b];
+    const Config &from = exact(layer, a), &to = exact(layer + 1, b);
+    const int i = static_cast<int>(layer);
     const bool valid =
-        lattice_->follows_path(static_cast<int>(layer), from.slot, from.q, to.slot, to.q) &&
-        !edge_blocked_plain(query_, rule_, from.q, to.q);
+        (!lattice_->is_approximate() || lattice_->row_step_allowed(i, lattice_->delta(from, to))) &&
+        lattice_->follows_path(i, layers_[layer][a].slot, from, layers_[layer + 1][b].slot, to) &&
+        !edge_blocked_plain(query_, rule_, from, to);
     if (!valid) invalid_.insert({layer, a, b});
     return valid;
   }
@@ -79,6 +91,7 @@ class PlainArm {
   EdgeRule rule_;
   World::Query query_;
   std::vector<std::vector<Lattice::Node>> layers_;
+  std::vector<std::vector<Config>> exact_;
   std::set<std::tuple<std::size_t, std::size_t, std::size_t>> invalid_;
 };
 
