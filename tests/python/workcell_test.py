@@ -50,6 +50,16 @@ class Workcells(unittest.TestCase):
             check = swivel.check_workcell(PLATE, rows)
             self.assertTrue(check, check.failures)
 
+    def test_every_example_has_a_plan_that_passes_its_check(self):
+        examples = sorted((DATA / "problems").glob("*_workcell.yaml"))
+        self.assertGreaterEqual(len(examples), 3)
+        for example in examples:
+            with self.subTest(example.name):
+                plan = swivel.plan_workcell(example)
+                self.assertTrue(plan.solved)
+                check = swivel.check_workcell(example, plan)
+                self.assertTrue(check, check.failures)
+
     def test_check_finds_what_is_wrong(self):
         plan = swivel.plan_workcell(PLATE)
         rows = dict(plan.trajectories)
