@@ -192,17 +192,12 @@ void add_outputs(const PlanArguments& arguments, io::OutputFiles& outputs) {
 }
 
 /// Where there is no path, seeks changes that would help, within --advise and what is left of
-/// --timeout. `begun` is when planning began.
-void find_advice(const Planner& planner, const PlanRequest& request,
-                 std::chrono::steady_clock::time_point begun, PlanAnswer& answer) {
+/// --timeout, that of `budget`.
+void find_advice(const Planner& planner, const PlanRequest& request, const Budget& budget,
+                 PlanAnswer& answer) {
   if (!request.advise_s || !answer.infeasible()) return;
   PlanOptions trials = request.options;
-  trials.timeout_s = request.advise_s;
-  if (request.options.timeout_s) {
-    const double gone =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    trials.timeout_s = std::clamp(*request.options.timeout_s - gone, 1e-6, *request.advise_s);
-  }
+  trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
   answer.advice = advise(planner, answer.plan.result, trials);
 }
 
@@ -444,12 +439,11 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   outputs.emplace(std::move(request.inputs));
   add_outputs(arguments, *outputs);
 
-  const auto begun = std::chrono::steady_clock::now();
   const Budget budget = request.options.budget();  // of proof and map; plan_motion() has its own
   Planner planner(request.problem);
   PlanAnswer answer{plan_motion(planner, request.options, arguments.refine, request.timing)};
   answer.plan.result.time_ms["load"] = request.load_ms;
-  find_advice(planner, request, begun, answer);
+  find_advice(planner, request, budget, answer);
   if (outputs->wants("--certificate")) find_certificate(planner, budget, answer);
   const io::PlanExtras extras = extras_of(request, answer);
   draw(planner, request, extras, budget, answer);

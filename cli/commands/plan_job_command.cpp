@@ -89,12 +89,13 @@ void find_certificate(const Job& job, const JobView& view, const Budget& budget,
   }
 }
 
-/// Where there is no job, seeks changes that would help, within --advise.
+/// Where there is no job, seeks changes that would help, within --advise and what is left of
+/// --timeout, that of `budget`.
 void find_advice(const JobRequest& request, const PreparedRobot& robot, const Job& job,
-                 JobAnswer& answer) {
+                 const Budget& budget, JobAnswer& answer) {
   if (!request.advise_s) return;
   PlanOptions trials = request.options;
-  trials.timeout_s = request.advise_s;
+  trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
   answer.advice = advise_job(robot, job, answer.plan.result, trials);
 }
 
@@ -167,14 +168,15 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
   const Job job = request.timing ? with_motion_defaults(request.job) : request.job;
-  const Budget budget = request.options.budget();  // of certificate and page; plans have their own
+  // Of certificate, advice and page; plans have their own.
+  const Budget budget = request.options.budget();
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   JobView view;
   const bool keeps_view = request.report || outputs.wants("--certificate");
   JobAnswer answer{planned(request, robot, job, keeps_view ? &view : nullptr)};
   if (answer.plan.result.status == PlanStatus::kInfeasible) {
     if (outputs.wants("--certificate")) find_certificate(job, view, budget, answer);
-    find_advice(request, robot, job, answer);
+    find_advice(request, robot, job, budget, answer);
   }
   JobMotionPlan& plan = answer.plan;
   JobResult& result = plan.result;

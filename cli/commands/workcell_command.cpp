@@ -87,17 +87,11 @@ struct WorkcellAnswer {
 };
 
 /// Where there is no plan, seeks changes that would help, within --advise and what is left of
-/// --timeout. `begun` is when planning began.
-void find_advice(const WorkcellRequest& request, std::chrono::steady_clock::time_point begun,
-                 WorkcellAnswer& answer) {
+/// --timeout, that of `budget`.
+void find_advice(const WorkcellRequest& request, const Budget& budget, WorkcellAnswer& answer) {
   if (!request.advise_s || answer.plan.result.status != PlanStatus::kInfeasible) return;
   PlanOptions trials = request.options;
-  trials.timeout_s = request.advise_s;
-  if (request.options.timeout_s) {
-    const double gone =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    trials.timeout_s = std::clamp(*request.options.timeout_s - gone, 1e-6, *request.advise_s);
-  }
+  trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
   answer.advice = advise_workcell(request.cell, answer.plan.result, trials);
 }
 
@@ -193,7 +187,6 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  const auto begun = std::chrono::steady_clock::now();
   const Budget budget = request.options.budget();  // of page and proof; the plan has its own
   const PreparedWorkcell prepared(request.cell);
   WorkcellView view;
@@ -202,7 +195,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   WorkcellMotionPlan& plan = answer.plan;
   const WorkcellResult& result = plan.result;
   plan.result.time_ms["load"] = request.load_ms;
-  find_advice(request, begun, answer);
+  find_advice(request, budget, answer);
   std::optional<std::string> page = page_of(request, prepared, view, budget, answer);
   const bool infeasible = result.status == PlanStatus::kInfeasible;
   std::string proof;

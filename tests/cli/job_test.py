@@ -179,6 +179,20 @@ class Jobs(WithFolder):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--certificate: is of the job as its file has it", done.stderr)
 
+    def test_advice_ends_with_the_time_out(self):
+        """Six strokes on a door out of reach, on fine lattices: what would help takes seconds."""
+        door = self.folder / "door.yaml"
+        text = JOB.read_text().replace("../", f"{DATA}/")
+        door.write_text(text.replace("xyz: [0.76, 0.27, 0.90]", "xyz: [1.02, 0.27, 0.90]"))
+        result = self.folder / "r.json"
+        options = ("--ds", 0.001, "--dphi", 0.02, "--advise", 60, "--timeout", 1)
+        done = run("plan", door, *options, "--json", result)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        advice = json.loads(result.read_text())["advice"]
+        outcomes = [one["outcome"] for stroke in advice["strokes"] for one in stroke["advice"]]
+        self.assertIn("unknown", outcomes)
+        self.assertIn("not tried in the time", done.stdout)
+
     def test_an_earlier_certificate_goes_where_there_is_a_job(self):
         proof = self.folder / "proof.json"
         proof.write_text("earlier")

@@ -512,11 +512,15 @@ class JobPlan {
       if (result_.runs[k].status == PlanStatus::kInfeasible) {
         PlanOptions alone = options_;
         alone.check = false;
+        alone.timeout_s = budget_.seconds_left();
         // The pointer does not own the robot, which outlives the plan.
         Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot_),
                         runs_[k]->problem);
-        result_.runs[k].diagnosis = planner.plan(alone).diagnosis;
-        if (result_.runs[k].diagnosis) runs_[k]->alone_plan.emplace(std::move(planner));
+        PlanResult found = planner.plan(alone);
+        const bool known = found.status == PlanStatus::kInfeasible;  // else the time was up
+        found.diagnosis.complete = known && found.diagnosis.complete;
+        result_.runs[k].diagnosis = std::move(found.diagnosis);
+        if (known) runs_[k]->alone_plan.emplace(std::move(planner));
       }
   }
 

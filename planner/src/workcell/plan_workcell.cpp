@@ -291,15 +291,17 @@ class WorkcellPlan {
       if (result_.least_costs[k] != kUnreachable) continue;
       PlanOptions alone = options_;
       alone.check = false;
+      alone.timeout_s = budget_.seconds_left();
       // The pointer does not own the robot, which outlives the plan.
       auto planner = std::make_unique<Planner>(
           std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &prepared_.robot(k)),
           prepared_.problem(k));
       PlanResult found = planner->plan(alone);
+      const bool known = found.status == PlanStatus::kInfeasible;  // else the time was up
+      found.diagnosis.complete = known && found.diagnosis.complete;
       result_.arms[k].diagnosis = std::move(found.diagnosis);
       result_.arms[k].partial = std::move(found.partial);
-      if (view_ && found.status == PlanStatus::kInfeasible)
-        arms_[k]->without_path = std::move(planner);
+      if (view_ && known) arms_[k]->without_path = std::move(planner);
     }
   }
   void note_for_view(const PairOutcome& outcome) {

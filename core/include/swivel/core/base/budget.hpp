@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -67,6 +68,13 @@ class Budget {
   /// Returns true if the work was cancelled or the deadline has passed.
   [[nodiscard]] bool spent() const {
     return cancelled() || (deadline_ && Clock::now() >= *deadline_);
+  }
+  /// Returns the time until the deadline, s, a tiny one where it has passed; none without one. A
+  /// time-out of that length ends with this budget.
+  [[nodiscard]] std::optional<double> seconds_left() const {
+    constexpr double kLeast = 1e-9;
+    if (!deadline_) return std::nullopt;
+    return std::max(kLeast, std::chrono::duration<double>(*deadline_ - Clock::now()).count());
   }
   /// Throws Stopped if the work was cancelled or the deadline has passed.
   void poll() const {
