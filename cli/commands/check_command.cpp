@@ -55,6 +55,10 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
     say(", '%s' %.2f deg from its limit at row %zu",
         chain.joint_names[result.nearest_limit->joint].c_str(),
         result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
+  if (result.nearest_slide_limit)
+    say(", '%s' %.2f mm from its limit at row %zu",
+        chain.joint_names[result.nearest_slide_limit->joint].c_str(),
+        1e3 * result.nearest_slide_limit->by, result.nearest_slide_limit->row);
   if (result.min_clearance)
     say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance,
         1e3 * *result.min_margin);

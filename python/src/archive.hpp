@@ -264,8 +264,8 @@ void serialize(A& archive, SpecialPair& x) {
 }
 template <class A>
 void serialize(A& archive, NearestLimit& x) {
-  auto& [margin, joint, side, row] = x;
-  archive(margin, joint, side, row);
+  auto& [margin, joint, side, row, slides] = x;
+  archive(margin, joint, side, row, slides);
 }
 template <class A>
 void serialize(A& archive, TopToolSpeed& x) {
@@ -284,10 +284,10 @@ void serialize(A& archive, DeepestContact& x) {
 }
 template <class A>
 void serialize(A& archive, Measures& x) {
-  auto& [nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin,
-         deepest_contact, min_manipulability, arm_angle] = x;
-  archive(nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin,
-          deepest_contact, min_manipulability, arm_angle);
+  auto& [nearest_limit, nearest_slide_limit, top_tool_speed, evidence, tool_path_error_mm,
+         min_clearance, min_margin, deepest_contact, min_manipulability, arm_angle] = x;
+  archive(nearest_limit, nearest_slide_limit, top_tool_speed, evidence, tool_path_error_mm,
+          min_clearance, min_margin, deepest_contact, min_manipulability, arm_angle);
 }
 template <class A>
 void serialize(A& archive, HeldJoint& x) {
@@ -402,10 +402,10 @@ template <class A>
 void serialize(A& archive, CheckResult& x) {
   auto& [passed, failures, failure_count, worst_position, worst_angle, worst_path_error,
          worst_path_angle, largest_step, cost, rounded, min_clearance, min_margin, deepest_contact,
-         nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
+         nearest_limit, nearest_slide_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
   archive(passed, failures, failure_count, worst_position, worst_angle, worst_path_error,
           worst_path_angle, largest_step, cost, rounded, min_clearance, min_margin, deepest_contact,
-          nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
+          nearest_limit, nearest_slide_limit, motion, rows_examined, moves_examined, fcl_calls);
 }
 template <class A>
 void serialize(A& archive, PlacementRow& x) {

@@ -179,6 +179,11 @@ py::object bodies_of(const std::array<std::string, 2>& bodies) {
   if (bodies[0].empty() && bodies[1].empty()) return py::none();
   return py::make_tuple(bodies[0], bodies[1]);
 }
+/// Returns a distance from a limit with its unit: degrees, or mm of a joint that slides.
+std::string distance_words(const NearestLimit& limit) {
+  return limit.slides ? formatted("%.2f mm", 1e3 * limit.margin)
+                      : formatted("%.2f deg", limit.margin * 180 / kPi);
+}
 py::object or_none(const std::string& text) {
   if (text.empty()) return py::none();
   return py::str(text);
@@ -220,15 +225,16 @@ void bind_measures(py::module_& m) {
       });
   py::class_<NearestLimit>(m, "NearestLimit", "How near the rows come to a joint's limit.")
       .def(pickling<NearestLimit>())
-      .def_readonly("margin", &NearestLimit::margin, "rad, to the limit itself.")
+      .def_readonly("margin", &NearestLimit::margin,
+                    "rad, to the limit itself; m of a joint that slides.")
       .def_readonly("joint", &NearestLimit::joint)
       .def_property_readonly(
           "side", [](const NearestLimit& x) { return to_string(x.side); }, "'lower' or 'upper'.")
       .def_readonly("row", &NearestLimit::row)
+      .def_readonly("slides", &NearestLimit::slides)
       .def("__repr__", [](const NearestLimit& x) {
-        return "<NearestLimit " + x.joint +
-               formatted(", %.2f deg from its %s limit, row %d>", x.margin * 180 / kPi,
-                         to_string(x.side), x.row);
+        return "<NearestLimit " + x.joint + ", " + distance_words(x) +
+               formatted(" from its %s limit, row %d>", to_string(x.side), x.row);
       });
   py::class_<TopToolSpeed>(
       m, "TopToolSpeed",
@@ -256,7 +262,10 @@ void bind_measures(py::module_& m) {
                        "What a trajectory comes near to, and how well it follows its path. None: "
                        "not asked for, or does not apply.")
       .def(pickling<Measures>())
-      .def_readonly("nearest_limit", &Measures::nearest_limit, "NearestLimit.")
+      .def_readonly("nearest_limit", &Measures::nearest_limit,
+                    "NearestLimit of the joints that turn.")
+      .def_readonly("nearest_slide_limit", &Measures::nearest_slide_limit,
+                    "NearestLimit of the joint that slides.")
       .def_readonly("top_tool_speed", &Measures::top_tool_speed, "TopToolSpeed.")
       .def_property_readonly(
           "tool_path_error_mm",
@@ -293,9 +302,8 @@ void bind_measures(py::module_& m) {
               x.min_margin->bodies[0] + " - " + x.min_margin->bodies[1] + ")");
         if (x.deepest_contact)
           add(formatted("contact %.3f mm deep", 1e3 * x.deepest_contact->depth));
-        if (x.nearest_limit)
-          add(x.nearest_limit->joint +
-              formatted(" %.2f deg from its limit", x.nearest_limit->margin * 180 / kPi));
+        for (const auto& nearest : {x.nearest_limit, x.nearest_slide_limit})
+          if (nearest) add(nearest->joint + " " + distance_words(*nearest) + " from its limit");
         if (x.evidence.tool_path_error)
           add(formatted("tool %.4g mm off", x.tool_path_error_mm.max));
         if (x.top_tool_speed) add(formatted("tool speed up to %.3g m/s", x.top_tool_speed->speed));

@@ -11,7 +11,8 @@ export function verdict(host, { answer, result, chain, map }, jump) {
   const helps = result.advice?.filter(({ outcome }) => outcome === 'solved') ?? [];
   const {
       clearance,
-      joint_limit: limit,
+      joint_limit: turn,
+      slide_limit: slide,
       tool_path_error: error,
       top_tool_speed: speed,
     } = result.summary ?? {},
@@ -69,17 +70,21 @@ export function verdict(host, { answer, result, chain, map }, jump) {
     const contact = result.deepest_contact;
     if (contact)
       say(contactWords(contact), result.trajectory[contact.row]?.s, (_, k) => k !== contact.row);
-    if (limit)
-      say(
-        `${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`,
-        limit.s,
-        ({ q }) =>
-          margin(
-            chain.joints.findIndex(({ name }) => name === limit.joint),
-            q,
-          ),
-        limit.margin_deg < kNear,
-      );
+    for (const [limit, room, unit] of [
+      [turn, turn?.margin_deg, '°'],
+      [slide, slide?.margin_mm, ' mm'],
+    ])
+      if (limit)
+        say(
+          `${limit.joint} ${number(room, 2)}${unit} from its limit`,
+          limit.s,
+          ({ q }) =>
+            margin(
+              chain.joints.findIndex(({ name }) => name === limit.joint),
+              q,
+            ),
+          room < kNear,
+        );
     if (error)
       say(
         `tool ${number(error.max_mm, 2)} mm off` +

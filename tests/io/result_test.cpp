@@ -31,6 +31,7 @@ PlanResult solved() {
   result.evidence = Evidence::all();
   result.tool_path_error_mm = {0.1, 0.2, 1, 0.001};
   result.nearest_limit = {0.04, "c", Cause::Side::kUpper, 0};
+  result.nearest_slide_limit = {0.125, "a", Cause::Side::kLower, 1, true};
   result.top_tool_speed = {0.35, "g", 0};
   result.min_clearance = 0.012;
   result.min_margin = {0.001, 0.003, 0.002, {"link_5", "link_7"}, 1};
@@ -99,6 +100,8 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(
       json["summary"]["joint_limit"],
       Json({{"joint", "c"}, {"side", "upper"}, {"margin_deg", 0.04 * 180 / kPi}, {"s", 0.1}}));
+  EXPECT_EQ(json["summary"]["slide_limit"],
+            Json({{"joint", "a"}, {"side", "lower"}, {"margin_mm", 125.0}, {"s", 0.1}}));
   EXPECT_EQ(json["summary"]["tool_path_error"],
             Json({{"max_mm", 0.2}, {"allowed_mm", 1.0}, {"s", 0.1}}));
   EXPECT_EQ(json["summary"]["top_tool_speed"], Json({{"speed", 0.35}, {"joint", "g"}, {"s", 0.1}}));

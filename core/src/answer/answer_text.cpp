@@ -109,6 +109,9 @@ std::string solved_text(const PlanResult& result) {
     line += " | " + limit->joint +
             formatted(" %.1f deg from its limit at s %.3f", limit->margin * 180 / kPi,
                       s_of(limit->row));
+  if (const auto& limit = result.nearest_slide_limit)
+    line += " | " + limit->joint +
+            formatted(" %.1f mm from its limit at s %.3f", 1e3 * limit->margin, s_of(limit->row));
   if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
     line += formatted(" | tool %.3f mm off", error.max) +
             (error.allowed ? formatted(" (allowed %.3g)", 1e3 * *error.allowed) : "");

@@ -123,11 +123,8 @@ Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
 Json summary_json(const Measures& result, const std::vector<TrajectoryRow>& rows) {
   const bool solved = !rows.empty();
   const auto s_of = [&](int row) { return rows[static_cast<std::size_t>(row)].s; };
-  Json json = {{"solved", solved},
-               {"clearance", nullptr},
-               {"joint_limit", nullptr},
-               {"tool_path_error", nullptr},
-               {"top_tool_speed", nullptr}};
+  Json json = {{"solved", solved},       {"clearance", nullptr},       {"joint_limit", nullptr},
+               {"slide_limit", nullptr}, {"tool_path_error", nullptr}, {"top_tool_speed", nullptr}};
   if (!solved) return json;
   if (const auto& least = result.min_margin)
     json["clearance"] = {{"value", least->clearance},
@@ -138,6 +135,11 @@ Json summary_json(const Measures& result, const std::vector<TrajectoryRow>& rows
     json["joint_limit"] = {{"joint", limit->joint},
                            {"side", to_string(limit->side)},
                            {"margin_deg", limit->margin * 180 / kPi},
+                           {"s", s_of(limit->row)}};
+  if (const auto& limit = result.nearest_slide_limit)
+    json["slide_limit"] = {{"joint", limit->joint},
+                           {"side", to_string(limit->side)},
+                           {"margin_mm", 1e3 * limit->margin},
                            {"s", s_of(limit->row)}};
   if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
     json["tool_path_error"] = {

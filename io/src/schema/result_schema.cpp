@@ -98,6 +98,13 @@ Schema summary() {
               "of the joints that turn, the one that comes nearest to a limit: `joint`, `side`, "
               "`margin_deg`, `s`",
               "degrees"),
+          key("slide_limit",
+              or_null(
+                  section("", {key("joint", text(), "its name"), key("side", side(), "which limit"),
+                               key("margin_mm", number(), "how far from it", "mm"), place()})),
+              "of the joint that slides, where one does, how near it comes to a limit: `joint`, "
+              "`side`, `margin_mm`, `s`",
+              "mm"),
           key("tool_path_error",
               or_null(section(
                   "", {key("max_mm", number(), "the most", "mm"),

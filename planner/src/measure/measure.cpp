@@ -69,13 +69,14 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
   result.evidence.postures = true;
 }
 
+/// Returns the nearest limit of the joints that turn, or of those that slide.
 std::optional<NearestLimit> nearest_limit(const Chain& chain,
-                                          const std::vector<TrajectoryRow>& rows) {
+                                          const std::vector<TrajectoryRow>& rows, bool slides) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t row = 0, joint = 0;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
-    if (limit.continuous || limit.wide() || limit.slides) continue;
+    if (limit.continuous || limit.wide() || limit.slides != slides) continue;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double q = rows[i].q[static_cast<Eigen::Index>(k)],
                    margin = std::min(q - limit.lower, limit.upper - q);
@@ -86,7 +87,8 @@ std::optional<NearestLimit> nearest_limit(const Chain& chain,
   const double q = rows[row].q[static_cast<Eigen::Index>(joint)];
   const bool is_lower = q - chain.limit[joint].lower <= chain.limit[joint].upper - q;
   return NearestLimit{least, chain.joint_names[joint],
-                      is_lower ? Cause::Side::kLower : Cause::Side::kUpper, static_cast<int>(row)};
+                      is_lower ? Cause::Side::kLower : Cause::Side::kUpper, static_cast<int>(row),
+                      slides};
 }
 
 std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& path,
@@ -114,7 +116,8 @@ std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& p
 
 void measure_margins(const Chain& chain, const ToolPath& path,
                      const std::vector<TrajectoryRow>& rows, Measures& measures) {
-  measures.nearest_limit = nearest_limit(chain, rows);
+  measures.nearest_limit = nearest_limit(chain, rows, false);
+  measures.nearest_slide_limit = nearest_limit(chain, rows, true);
   measures.top_tool_speed = top_tool_speed(chain, path, rows);
 }
 

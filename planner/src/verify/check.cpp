@@ -254,8 +254,9 @@ class Check {
       if (!(by >= -kLimit)) {
         fail("row %zu: joint '%s' at %.9g is outside its limits", k, joint_name(j), value);
         inside = false;
-      } else if (!limit.slides && (!result_.nearest_limit || by < result_.nearest_limit->by)) {
-        result_.nearest_limit = {static_cast<int>(j), by, k};
+      } else {
+        auto& nearest = limit.slides ? result_.nearest_slide_limit : result_.nearest_limit;
+        if (!nearest || by < nearest->by) nearest = {static_cast<int>(j), by, k};
       }
     }
     return inside;

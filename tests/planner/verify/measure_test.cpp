@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "axes_robots.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -21,6 +22,7 @@ struct Counts {
   int solved = 0;   ///< problems that have a trajectory
   int near = 0;     ///< trajectories with a clearance
   int bounded = 0;  ///< trajectories with a nearest limit of a joint
+  int slides = 0;   ///< trajectories of arms with a joint that slides
 };
 
 /// Checks that the measures are what plan() says of its trajectory.
@@ -43,7 +45,7 @@ void expect_what_rows_say(const Measures& measures, const PreparedRobot& robot,
   const World world(robot.world(), problem);
   World::Query query(world);
   std::optional<double> least;
-  double manipulability = 1e9, margin = 1e9;
+  double manipulability = 1e9, margin = 1e9, slide_margin = 1e9;
   for (const TrajectoryRow& row : trajectory) {
     if (const auto clearance = query.clearance(row.q))
       least = std::min(least.value_or(1e9), clearance->least);
@@ -51,7 +53,8 @@ void expect_what_rows_say(const Measures& measures, const PreparedRobot& robot,
     for (std::size_t k = 0; k < kDof; ++k) {
       if (chain.limit[k].continuous || chain.limit[k].wide()) continue;
       const double q = row.q[static_cast<Eigen::Index>(k)];
-      margin = std::min({margin, q - chain.limit[k].lower, chain.limit[k].upper - q});
+      double& least_of_kind = chain.limit[k].slides ? slide_margin : margin;
+      least_of_kind = std::min({least_of_kind, q - chain.limit[k].lower, chain.limit[k].upper - q});
     }
   }
   EXPECT_EQ(measures.min_clearance, least) << what;
@@ -62,6 +65,17 @@ void expect_what_rows_say(const Measures& measures, const PreparedRobot& robot,
     EXPECT_EQ(measures.nearest_limit->margin, margin) << what;
   }
   counts.bounded += measures.nearest_limit.has_value();
+  ASSERT_EQ(measures.nearest_slide_limit.has_value(), chain.slide() >= 0) << what;
+  if (const auto& slide = measures.nearest_slide_limit) {
+    EXPECT_EQ(slide->margin, slide_margin) << what;
+    EXPECT_TRUE(slide->slides) << what;
+    EXPECT_EQ(slide->joint, chain.joint_names[static_cast<std::size_t>(chain.slide())]) << what;
+    const double q = trajectory[static_cast<std::size_t>(slide->row)].q[chain.slide()];
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(chain.slide())];
+    EXPECT_EQ(slide->side == Cause::Side::kLower ? q - limit.lower : limit.upper - q, slide_margin)
+        << what;
+    ++counts.slides;
+  }
 }
 
 /// Checks what measuring gives without evidence, and that it refuses a trajectory without its last
@@ -82,9 +96,10 @@ void expect_less_without_evidence(const Measures& measures, const PreparedRobot&
 /// Measuring a trajectory gives what plan() says of it, and what asking row by row gives.
 TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
   const std::uint64_t base = seed("Measure");
-  const auto robots = all_robots();
+  auto robots = all_robots();
+  for (TestRobot& robot : slide_robots()) robots.push_back(std::move(robot));
   Counts counts;
-  const int count = trials(60);
+  const int count = trials(80);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
@@ -103,8 +118,9 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
     if (::testing::Test::HasFatalFailure()) return;
     expect_less_without_evidence(measures, robot, problem, result.trajectory, what);
   }
-  std::printf("%d trajectories, %d near something, %d with limits\n", counts.solved, counts.near,
-              counts.bounded);
+  std::printf("%d trajectories, %d near something, %d with limits, %d of slides\n", counts.solved,
+              counts.near, counts.bounded, counts.slides);
+  EXPECT_GE(counts.slides, at_least_among(count / 8));
   EXPECT_GE(counts.solved, at_least_among(count / 4));
   EXPECT_GE(counts.near, at_least_among(count / 8));
   EXPECT_GE(counts.bounded, at_least_among(count / 8));

@@ -180,10 +180,11 @@ struct SpecialPair {
 
 /// How near the rows come to a joint's limit.
 struct NearestLimit {
-  double margin = 0;  ///< distance from the limit itself, rad
+  double margin = 0;  ///< distance from the limit itself, rad; of a joint that slides m
   std::string joint;
   Cause::Side side = Cause::Side::kLower;
   int row = 0;
+  bool slides = false;  ///< a joint that slides
 };
 
 /// The highest constant speed of the tool at which no joint need turn faster than it can.
@@ -197,6 +198,7 @@ struct TopToolSpeed {
 /// planner/measure/measure.hpp.
 struct Measures {
   std::optional<NearestLimit> nearest_limit;  ///< of joints that turn; none where none has limits
+  std::optional<NearestLimit> nearest_slide_limit;  ///< of the joint that slides; none: none does
   /// None where the tool rests, or a joint's speed is not known.
   std::optional<TopToolSpeed> top_tool_speed;
   /// What was asked for, and is known: members below that it does not name mean nothing.

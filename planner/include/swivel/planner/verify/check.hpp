@@ -37,10 +37,11 @@ struct CheckResult {
   /// The row and joint that come nearest to a joint limit.
   struct LimitDistance {
     int joint = 0;  ///< 0..6
-    double by = 0;  ///< rad, inside the limits less joint_margin
+    double by = 0;  ///< inside the limits less joint_margin, rad; of a joint that slides m
     std::size_t row = 0;
   };
-  std::optional<LimitDistance> nearest_limit;  ///< unset if all joints are continuous
+  std::optional<LimitDistance> nearest_limit;  ///< of joints that turn; unset if none has limits
+  std::optional<LimitDistance> nearest_slide_limit;  ///< of the joint that slides; unset: none does
   /// Rates of a timed motion, by differences between samples, with rest before the first and after
   /// the last sample.
   struct Motion {
