@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <variant>
@@ -51,8 +52,9 @@ std::vector<PlacementCell> cells_of(const PlacementRequest& request, const Place
   std::vector<PlacementCell> cells(shard.size(request.total()));
   for (std::uint64_t k = 0; k < cells.size(); ++k) {
     const std::uint64_t cell = shard.episode(k);
-    cells[k] = {
-        cell, request.sample ? sampled_offset(grid.axes(), request.seed, cell) : grid.offset(cell)};
+    Placement at =
+        request.sample ? sampled_placement(grid.axes(), request.seed, cell) : grid.placement(cell);
+    cells[k] = {cell, at.offset, std::move(at.hold)};
   }
   return cells;
 }
@@ -151,11 +153,22 @@ PlacedProblem load_problem(const PlaceArguments& arguments) {
   return placed;
 }
 
-/// Returns the text of a job's file with the thing moved by `offset`. Throws InputError where that
-/// moves the path of a stroke in its frame, which files cannot say.
+/// Calls `work`, and puts the name of an option before the message of an InvalidArgument.
+template <class Work>
+void in_the_name_of_option(const std::string& option, const Work& work) {
+  try {
+    work();
+  } catch (const InvalidArgument& error) {
+    throw InputError(option + error.what());
+  }
+}
+
+/// Returns the text of a job's file with a placement. Throws InputError where that moves the path
+/// of a stroke in its frame, which files cannot say.
 std::string text_with_job(const std::string& text, const Job& job, const Movable& thing,
-                          const Offset& offset) {
-  const Job moved = placed_job(job, thing, offset);
+                          const Placement& at) {
+  Job moved = placed_job(job, thing, at.offset);
+  hold_joints(moved, at.hold);
   std::size_t stroke = 0;
   for (std::size_t k = job.strokes.size(); k-- > 0;)
     if (moved.strokes[k].waypoints != job.strokes[k].waypoints) stroke = k;
@@ -163,45 +176,82 @@ std::string text_with_job(const std::string& text, const Job& job, const Movable
                         problem_of_run(moved, {stroke, false}));
 }
 
-/// Returns the text of a workcell's file with the thing moved by `offset`. Throws InputError where
-/// that moves the path of an arm in its frame, which files cannot say.
+/// Returns the text of a workcell's file with a placement. Throws InputError where that moves the
+/// path of an arm in its frame, which files cannot say.
 std::string text_with_cell(const std::string& text, const Workcell& cell, const Movable& thing,
-                           const Offset& offset) {
-  const Workcell moved = placed_workcell(cell, thing, offset);
+                           const Placement& at) {
+  Workcell moved = placed_workcell(cell, thing, at.offset);
+  hold_joints(moved, at.hold);
   const std::size_t arm = moved.arms[1].waypoints != cell.arms[1].waypoints ? 1 : 0;
   return io::with_poses(text, problem_of_arm(cell, arm), problem_of_arm(moved, arm));
 }
 
-/// Returns the problem file with the thing moved by `offset`.
-std::string text_with(const PlacedProblem& placed, const Offset& offset) {
-  if (placed.cell) return text_with_cell(placed.text, *placed.cell, placed.thing, offset);
-  if (placed.job) return text_with_job(placed.text, *placed.job, placed.thing, offset);
-  return io::with_poses(placed.text, placed.problem,
-                        placed_problem(placed.problem, placed.thing, offset));
+/// Returns the problem file with a placement.
+std::string text_with(const PlacedProblem& placed, const Placement& at) {
+  if (placed.cell) return text_with_cell(placed.text, *placed.cell, placed.thing, at);
+  if (placed.job) return text_with_job(placed.text, *placed.job, placed.thing, at);
+  Problem moved = placed_problem(placed.problem, placed.thing, at.offset);
+  hold_joints(moved, at.hold);
+  return io::with_poses(placed.text, placed.problem, moved);
 }
 
-/// Returns a placement that moves the thing along every axis of the grid.
-Offset offset_along_all(const PlacementGrid& grid) {
-  Offset everywhere{};
+/// Returns a placement along every axis of the grid.
+Placement placement_along_all(const PlacementGrid& grid) {
+  Placement everywhere;
   for (const PlacementAxis& axis : grid.axes())
-    everywhere[static_cast<std::size_t>(axis.coordinate)] = axis.from != 0 ? axis.from : axis.to;
+    if (axis.joint.empty())
+      everywhere.offset[static_cast<std::size_t>(axis.coordinate)] =
+          axis.from != 0 ? axis.from : axis.to;
+    else
+      everywhere.hold[axis.joint] = axis.from;
   return everywhere;
 }
 
-/// Throws InputError if the paths of a workcell cannot be moved along the axes of the grid.
-void require_movable(const PlacedProblem& placed, const PlacementGrid& grid) {
-  if (!placed.cell) return;
-  try {
-    static_cast<void>(placed_workcell(*placed.cell, placed.thing, offset_along_all(grid)));
-  } catch (const InvalidArgument& error) {
-    throw InputError(std::string("--") + error.what());
-  }
+/// Throws InputError if joints cannot be held along the axes of the grid, or if the paths of a
+/// workcell cannot be moved along them.
+void require_placeable(const PlacedProblem& placed, const PlacementGrid& grid, bool sample) {
+  for (const PlacementAxis& axis : grid.axes())
+    if (!axis.joint.empty())
+      for (const double position : {axis.from, sample ? axis.to : axis.at(axis.count - 1)}) {
+        std::variant<Problem, Workcell> copy = placed.problem;
+        if (placed.cell) copy = *placed.cell;
+        in_the_name_of_option("--hold: ", [&] {
+          std::visit([&](auto& what) { hold_joints(what, {{axis.joint, position}}); }, copy);
+        });
+      }
+  const Offset offset = placement_along_all(grid).offset;
+  in_the_name_of_option("--", [&] {
+    if (placed.cell)
+      static_cast<void>(placed_workcell(*placed.cell, placed.thing, offset));
+    else
+      static_cast<void>(placed_problem(placed.problem, placed.thing, offset));
+  });
 }
 
 /// Throws InputError if --write could not write the best placement, before it is sought: writes, to
-/// nowhere, a placement that moves the thing along every axis of the grid.
+/// nowhere, a placement along every axis of the grid.
 void require_writable(const PlacedProblem& placed, const PlacementGrid& grid) {
-  in_the_name_of("--write", [&] { return text_with(placed, offset_along_all(grid)); });
+  in_the_name_of("--write", [&] { return text_with(placed, placement_along_all(grid)); });
+}
+
+/// Returns which joints along axes of the grid are prismatic.
+std::set<std::string> slides_of(const RobotModel& model, const PlacementGrid& grid) {
+  std::set<std::string> slides;
+  for (const PlacementAxis& axis : grid.axes())
+    if (const int joint = model.find_joint(axis.joint);
+        joint >= 0 && model.joints[static_cast<std::size_t>(joint)].type == Joint::Type::kPrismatic)
+      slides.insert(axis.joint);
+  return slides;
+}
+
+/// Returns the joints of a list that no axis of the grid varies, nor follow one that it does.
+std::vector<HeldJoint> still_held(std::vector<HeldJoint> held, const PlacementGrid& grid) {
+  std::erase_if(held, [&](const HeldJoint& joint) {
+    return std::any_of(grid.axes().begin(), grid.axes().end(), [&](const PlacementAxis& axis) {
+      return !axis.joint.empty() && (axis.joint == joint.name || axis.joint == joint.leader);
+    });
+  });
+  return held;
 }
 
 /// Returns the record of this run, which a shard's results begin with, but for the held joints.
@@ -290,7 +340,7 @@ void write_best(const PlacedProblem& placed, const std::vector<PlacementRow>& ro
   if (best.empty())
     outputs.remove("--write");
   else
-    outputs.write("--write", text_with(placed, best[0].offset));
+    outputs.write("--write", text_with(placed, {best[0].offset, best[0].hold}));
 }
 
 /// Returns the cells of the best placements, as many as the page of --report lists.
@@ -299,7 +349,7 @@ std::vector<PlacementCell> cells_on_page(const std::vector<PlacementRow>& rows,
   constexpr std::size_t kShown = 20;
   std::vector<PlacementCell> shown;
   for (const PlacementRow& row : best_placements(rows, criteria, kShown))
-    shown.push_back({row.cell, row.offset});
+    shown.push_back({row.cell, row.offset, row.hold});
   return shown;
 }
 
@@ -310,7 +360,7 @@ std::vector<PlacedEnd> ends_on_page(PlacementPlanner& planner,
   constexpr std::size_t kShown = 40;
   std::vector<PlacementCell> unsolved, shown;
   for (const PlacementRow& row : rows)
-    if (row.status == PlanStatus::kInfeasible) unsolved.push_back({row.cell, row.offset});
+    if (row.status == PlanStatus::kInfeasible) unsolved.push_back({row.cell, row.offset, row.hold});
   const std::size_t count = std::min(kShown, unsolved.size());
   for (std::size_t k = 0; k < count; ++k) shown.push_back(unsolved[k * unsolved.size() / count]);
   std::vector<PlacedEnd> ends;
@@ -325,13 +375,14 @@ std::vector<PlacedEnd> ends_on_page(PlacementPlanner& planner,
 
 /// Plans the placements of the command line, writes and prints them. Returns the exit code; that of
 /// a shard does not say whether a placement has a path, which all shards say together.
-int run(const PlaceArguments& arguments) {
+int run(PlaceArguments arguments) {
   PlanOptions options = arguments.search.plan_options();
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
   const AskedPlacements asked = asked_placements(arguments);
   require_options_agree(arguments);
   const PlacedProblem placed = load_problem(arguments);
-  require_movable(placed, asked.grid);
+  require_placeable(placed, asked.grid, arguments.request.sample.has_value());
+  arguments.request.placement.slides = slides_of(*placed.problem.model, asked.grid);
   if (!arguments.write.empty()) require_writable(placed, asked.grid);
   require_drawable(arguments.request, arguments.svg);
   io::ShardRecord record = record_of(arguments, placed, asked.shard);
@@ -342,7 +393,8 @@ int run(const PlaceArguments& arguments) {
   const auto begun = std::chrono::steady_clock::now();
   const auto prepared =
       placed.cell ? nullptr : std::make_shared<const PreparedRobot>(placed.problem);
-  record.held = placed.cell ? held_joints(*placed.cell) : prepared->arm().held;
+  record.held =
+      still_held(placed.cell ? held_joints(*placed.cell) : prepared->arm().held, asked.grid);
   warn_of_held(record.held);
   PlacementPlanner planner = planner_of(placed, prepared, options);
   const std::vector<PlacementRow> rows = plan_placements(planner, asked, arguments.refine_grid);
@@ -370,7 +422,9 @@ int run(const PlaceArguments& arguments) {
 
 void add_place(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "place", "Plan many placements of the part, the path or the robot: where should it stand?");
+      "place",
+      "Plan many placements of the part, the path, the robot or a joint that is held: where should "
+      "it stand?");
   // The callback shares the arguments, which must live as long as it does.
   auto arguments = std::make_shared<PlaceArguments>();
   command->add_option("problem", arguments->problem, "problem file, job or workcell")->required();
@@ -387,10 +441,11 @@ void add_place(CLI::App& app, int& exit_code) {
                     "plan a coarse grid first, then between neighbours of unlike verdict and "
                     "beside the best: a third of the cells at most");
   command
-      ->add_option("--best", arguments->request.best,
-                   "clearance | cost | margin (to a joint limit) | speed; ties are settled by the "
-                   "next one named, then by the "
-                   "order of cells")
+      ->add_option(
+          "--best", arguments->request.best,
+          "clearance | cost | margin (to a limit of a joint that turns) | slide (to one of "
+          "a joint that slides) | speed; ties are settled by the next one named, then by "
+          "the order of cells")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();

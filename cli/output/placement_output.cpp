@@ -53,11 +53,31 @@ std::string figures(const PlacementRow& row) {
   };
   add(", clearance %.1f mm", row.clearance, 1e3);
   add(", %.1f deg from a joint limit", row.joint_margin, 180 / kPi);
+  add(", %.1f mm from a slide's limit", row.slide_margin, 1e3);
   add(", tool speed up to %.3g m/s", row.tool_speed, 1);
   return text;
 }
 
 constexpr std::uint64_t kMostCells = 1'000'000;
+constexpr const char* kHeldSetting = "hold ";  // before the joint's name
+
+/// Returns the values of an axis as options have them.
+std::string values_of(const PlacementAxis& axis) {
+  std::string text = shortest(axis.from);
+  if (axis.count != 1 || axis.to != axis.from) text += ":" + shortest(axis.to);
+  return axis.step > 0 ? text + ":" + shortest(axis.step) : text;
+}
+
+/// Returns what is placed, for people: the thing that is moved, and the joints that are held.
+std::string thing_of(const PlacementRequest& request, const std::vector<PlacementAxis>& axes) {
+  std::string text = request.placement.path   ? "the path"
+                     : request.placement.base ? "the robot"
+                                              : request.placement.object;
+  if (!request.placement.arm.empty()) text += " of " + request.placement.arm;
+  for (const PlacementAxis& axis : axes)
+    if (!axis.joint.empty()) text += (text.empty() ? "" : " and ") + axis.joint;
+  return text;
+}
 
 }  // namespace
 
@@ -73,14 +93,14 @@ std::vector<PlacementAxis> PlacementRequest::axes() const {
   std::vector<PlacementAxis> axes = placement.axes();
   if (axes.empty())
     throw InputError(
-        "--x, --y, --z, --roll, --pitch, --yaw: none is given: allowed are one to six of them");
+        "--x, --y, --z, --roll, --pitch, --yaw, --hold: none is given: allowed are one or more of "
+        "them");
   for (PlacementAxis& axis : axes) {
-    const std::string name =
-        std::string("--") + kCoordinates[static_cast<std::size_t>(axis.coordinate)];
     if (sample)
       axis.count = 1;
     else if (axis.count == 0)
-      throw InputError(name + ": a range without a step: allowed is FROM:TO:STEP, or --sample N");
+      throw InputError("--" + (axis.joint.empty() ? "" : std::string("hold ")) + axis.name() +
+                       ": a range without a step: allowed is FROM:TO:STEP, or --sample N");
   }
   return axes;
 }
@@ -108,6 +128,10 @@ void PlacementRequest::note(io::RunSettings& settings) const {
   add("object", placement.object);
   add("path", placement.path ? "yes" : "");
   add("base", placement.base ? "yes" : "");
+  add("arm", placement.arm);
+  for (const PlacementAxis& axis : placement.axes())
+    if (!axis.joint.empty())
+      add(kHeldSetting + axis.joint, values_of(axis) + (axis.slides ? " m" : " rad"));
   for (std::size_t k = 0; k < kCoordinates.size(); ++k)
     add(kCoordinates[k], placement.coordinates[k]);
   add("sample", sample ? std::to_string(*sample) : "");
@@ -122,6 +146,13 @@ PlacementRequest PlacementRequest::from(const io::ShardRecord& record) {
   request.placement.object = record.setting("object");
   request.placement.path = !record.setting("path").empty();
   request.placement.base = !record.setting("base").empty();
+  request.placement.arm = record.setting("arm");
+  for (const auto& [name, value] : record.settings.values) {
+    if (!name.starts_with(kHeldSetting)) continue;
+    const std::string joint = name.substr(std::string(kHeldSetting).size());
+    request.placement.hold.push_back(joint + "=" + value.substr(0, value.find(' ')));
+    if (value.ends_with(" m")) request.placement.slides.insert(joint);
+  }
   for (std::size_t k = 0; k < kCoordinates.size(); ++k)
     request.placement.coordinates[k] = record.setting(kCoordinates[k]);
   if (const std::string sample = record.setting("sample"); !sample.empty())
@@ -152,19 +183,17 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
     map.emplace(grid, varied[0], varied[1], rows, criteria);
   }
   if (outputs.wants("--report")) {
-    const std::string thing = request.placement.path   ? "the path"
-                              : request.placement.base ? "the robot"
-                                                       : request.placement.object;
     std::string answer = count_text(rows) + '\n';
     if (!best.empty()) answer += std::string("the best by ") + to_string(criteria[0]) + ":\n";
     for (const PlacementRow& row : best)
       answer += "  " + figures(row) + ":\n    " + record.plan_command +
-                request.placement.words(row.offset) + '\n';
+                request.placement.words(row.offset, row.hold) + '\n';
     outputs.write("--report",
                   to_placement_page(rows,
-                                    {record.problem, thing, grid.axes(), request.sample.has_value(),
-                                     record.total, criteria, record.setting("planner"),
-                                     record.plan_command + request.placement.words({}), answer,
+                                    {record.problem, thing_of(request, grid.axes()), grid.axes(),
+                                     request.sample.has_value(), record.total, criteria,
+                                     record.setting("planner"),
+                                     record.plan_command + request.placement.words({}, {}), answer,
                                      map ? to_svg(*map) : ""},
                                     scene));
   }
@@ -178,7 +207,7 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
     if (!best.empty() && top > 0) say("best by %s:\n", to_string(criteria[0]));
     for (std::size_t k = 0; k < std::min(best.size(), top); ++k)
       say("  %s:\n    %s%s\n", figures(best[k]).c_str(), record.plan_command.c_str(),
-          request.placement.words(best[k].offset).c_str());
+          request.placement.words(best[k].offset, best[k].hold).c_str());
   }
   flush_standard_output();
   report_removed(outputs.commit(), "no placement has a path");

@@ -409,10 +409,10 @@ void serialize(A& archive, CheckResult& x) {
 }
 template <class A>
 void serialize(A& archive, PlacementRow& x) {
-  auto& [cell, offset, status, cost, clearance, clearance_margin, joint_margin, tool_speed,
-         failed_s, cause, by, reason] = x;
-  archive(cell, offset, status, cost, clearance, clearance_margin, joint_margin, tool_speed,
-          failed_s, cause, by, reason);
+  auto& [cell, offset, hold, status, cost, clearance, clearance_margin, joint_margin, slide_margin,
+         tool_speed, failed_s, cause, by, reason] = x;
+  archive(cell, offset, hold, status, cost, clearance, clearance_margin, joint_margin, slide_margin,
+          tool_speed, failed_s, cause, by, reason);
 }
 template <class A>
 void serialize(A& archive, EpisodeRow& x) {

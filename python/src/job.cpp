@@ -346,14 +346,15 @@ void bind_job(py::module_& m) {
       .def(
           "placed",
           [](const Job& job, const Offset& offset, const std::optional<std::string>& object,
-             bool path, bool base) {
-            return from_core(placed_job(to_core(job), to_movable(object, path, base), offset));
+             bool path, bool base, const HeldPositions& hold) {
+            return from_core(placed_job(held_as(to_core(job), hold),
+                                        to_movable(object, path, base, !hold.empty()), offset));
           },
           py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
-          py::arg("base") = false,
+          py::arg("base") = false, py::arg("hold") = HeldPositions(),
           "The job of one placement: an object of the scene, the paths of all strokes or the robot "
           "moved by x y z (m) roll pitch yaw (rad) in the\n"
-          "base frame, about its own origin.")
+          "base frame, about its own origin, with the joints of `hold` held there, rad or m.")
       .def(
           "episode",
           [](const Job& job, std::uint64_t seed, std::uint64_t episode) {

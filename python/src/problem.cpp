@@ -856,14 +856,16 @@ void bind_problem(py::module_& m) {
       .def(
           "placed",
           [](const Problem& problem, const Offset& offset, const std::optional<std::string>& object,
-             bool path,
-             bool base) { return placed_problem(problem, to_movable(object, path, base), offset); },
+             bool path, bool base, const HeldPositions& hold) {
+            return placed_problem(held_as(problem, hold),
+                                  to_movable(object, path, base, !hold.empty()), offset);
+          },
           py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
-          py::arg("base") = false,
+          py::arg("base") = false, py::arg("hold") = HeldPositions(),
           "The problem of one placement: an object of the scene, the path or the robot moved by x "
           "y z (m) roll pitch yaw (rad) in "
           "the\n"
-          "base frame, about its own origin.")
+          "base frame, about its own origin, with the joints of `hold` held there, rad or m.")
       .def("episode", &episode_problem, py::arg("seed"), py::arg("episode"),
            "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
       .def("__repr__", [](const Problem& problem) {

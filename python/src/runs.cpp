@@ -5,7 +5,9 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <variant>
 
 #include "archive.hpp"
@@ -150,19 +152,35 @@ std::string placement_words(const PlacementRow& row) {
   std::string text = formatted("%llu", static_cast<unsigned long long>(row.cell));
   for (std::size_t k = 0; k < kCoordinates.size(); ++k)
     if (row.offset[k] != 0) text += formatted(", %s %.6g", kCoordinates[k], row.offset[k]);
+  for (const auto& [joint, position] : row.hold)
+    text += ", " + joint + formatted(" at %.6g", position);
   if (row.status != PlanStatus::kSolved)
     return text + ": " + (row.reason.empty() ? "no path" : "no path, " + row.reason);
   text += formatted(": cost %.6g", *row.cost);
   if (row.clearance) text += formatted(", clearance %.1f mm", 1e3 * *row.clearance);
   if (row.joint_margin)
     text += formatted(", %.1f deg from a joint limit", *row.joint_margin * 180 / kPi);
+  if (row.slide_margin)
+    text += formatted(", %.1f mm from a slide's limit", 1e3 * *row.slide_margin);
   if (row.tool_speed) text += formatted(", tool speed up to %.3g m/s", *row.tool_speed);
   return text;
 }
 
+/// Returns an array for each joint that is varied, by its name.
+std::map<std::string, py::array_t<double>> held_columns(const Placements& table) {
+  std::map<std::string, py::array_t<double>> columns;
+  const auto size = static_cast<py::ssize_t>(table.rows->size());
+  for (py::ssize_t k = 0; k < size; ++k)
+    for (const auto& [joint, position] : (*table.rows)[static_cast<std::size_t>(k)].hold) {
+      py::array_t<double>& column = columns.try_emplace(joint, size).first->second;
+      column.mutable_at(k) = position;
+    }
+  return columns;
+}
+
 std::vector<PlacementCriterion> to_criteria(const std::vector<std::string>& names) {
   if (names.empty())
-    throw InvalidArgument("best: no criterion: allowed are clearance, cost, margin, speed");
+    throw InvalidArgument("best: no criterion: allowed are clearance, cost, margin, slide, speed");
   std::vector<PlacementCriterion> criteria;
   for (const std::string& name : names) criteria.push_back(placement_criterion_from_string(name));
   return criteria;
@@ -178,6 +196,8 @@ void bind_tables(py::module_& m) {
             return py::array_t<double>(py::ssize_t{6}, r.offset.data());
           },
           "(6,): x y z (m) roll pitch yaw (rad), by how much the thing is moved.")
+      .def_readonly("hold", &PlacementRow::hold,
+                    "Positions of the joints that are varied, by name, rad or m.")
       .def_readonly("status", &PlacementRow::status, "Status.")
       .def_property_readonly("solved",
                              [](const PlacementRow& r) { return r.status == PlanStatus::kSolved; })
@@ -186,7 +206,10 @@ void bind_tables(py::module_& m) {
                     "m, of the pair that comes nearest to what it must keep.")
       .def_readonly("clearance_margin", &PlacementRow::clearance_margin,
                     "m, that less what the pair must keep.")
-      .def_readonly("joint_margin", &PlacementRow::joint_margin, "rad, to the nearest limit.")
+      .def_readonly("joint_margin", &PlacementRow::joint_margin,
+                    "rad, to the nearest limit of a joint that turns.")
+      .def_readonly("slide_margin", &PlacementRow::slide_margin,
+                    "m, to the nearer limit of a joint that slides.")
       .def_readonly("tool_speed", &PlacementRow::tool_speed,
                     "m/s, highest constant speed of the tool.")
       .def_readonly("failed_s", &PlacementRow::failed_s, "m, where every path ends.")
@@ -212,6 +235,9 @@ void bind_tables(py::module_& m) {
           },
           "(n, 6): x y z (m) roll pitch yaw (rad).")
       .def_property_readonly(
+          "hold", &held_columns,
+          "Positions of the joints that are varied, by name, each (n,), rad or m.")
+      .def_property_readonly(
           "clearance", [](const Placements& t) { return numbers(t, &PlacementRow::clearance); },
           "(n,), m; as cost.")
       .def_property_readonly(
@@ -222,6 +248,10 @@ void bind_tables(py::module_& m) {
           "joint_margin",
           [](const Placements& t) { return numbers(t, &PlacementRow::joint_margin); },
           "(n,), rad; as cost.")
+      .def_property_readonly(
+          "slide_margin",
+          [](const Placements& t) { return numbers(t, &PlacementRow::slide_margin); },
+          "(n,), m; as cost.")
       .def_property_readonly(
           "tool_speed", [](const Placements& t) { return numbers(t, &PlacementRow::tool_speed); },
           "(n,), m/s; as cost.")
@@ -240,7 +270,8 @@ void bind_tables(py::module_& m) {
                 *t.rows, to_criteria(one != nullptr ? std::vector{*one} : std::get<1>(by)), count);
           },
           py::arg("by") = "cost", py::arg("count") = 10,
-          "Those that have a path, the best first. by: 'clearance', 'cost', 'margin' or 'speed', "
+          "Those that have a path, the best first. by: 'clearance', 'cost', 'margin', 'slide' or "
+          "'speed', "
           "or several, each of which "
           "settles\n"
           "the ties of those before.");
@@ -296,27 +327,42 @@ void bind_tables(py::module_& m) {
 
 /// A coordinate as given in Python: a number, (from, to) of samples, or (from, to, step).
 using Range = std::variant<double, std::array<double, 2>, std::array<double, 3>>;
+/// A joint that is held, with the least and the greatest of its positions.
+using HeldRange = std::tuple<std::string, double, double>;
 
 /// The cells that are asked for: those of a grid, or a sample of places between the ends of its
 /// axes.
 class Cells {
  public:
-  Cells(const std::array<std::optional<Range>, 6>& ranges, std::optional<std::uint64_t> sample,
-        std::uint64_t seed)
-      : grid_(axes_of(ranges, sample.has_value())), sample_(sample), seed_(seed) {
+  /// `hold`: ranges of the joints that are held, by name.
+  Cells(const std::array<std::optional<Range>, 6>& ranges, const py::dict& hold,
+        std::optional<std::uint64_t> sample, std::uint64_t seed)
+      : grid_(axes_of(ranges, hold, sample.has_value())), sample_(sample), seed_(seed) {
     constexpr std::uint64_t kMost = 1'000'000;
     if (size() < 1 || size() > kMost)
       throw InvalidArgument((sample ? "sample: " : "the grid: ") + std::to_string(size()) +
                             " placements: allowed are 1 to " + std::to_string(kMost));
   }
   [[nodiscard]] std::uint64_t size() const { return sample_ ? *sample_ : grid_.size(); }
+  /// Returns the joints that are held, with the least and the greatest of their positions.
+  [[nodiscard]] std::vector<HeldRange> joints() const {
+    std::vector<HeldRange> joints;
+    for (const PlacementAxis& axis : grid_.axes())
+      if (!axis.joint.empty())
+        joints.emplace_back(axis.joint, axis.from, sample_ ? axis.to : axis.at(axis.count - 1));
+    return joints;
+  }
+  /// Returns the offsets of cells, with the positions of joints() behind them.
   [[nodiscard]] py::array_t<double> offsets(const std::vector<std::uint64_t>& numbers) const {
-    py::array_t<double> array({static_cast<py::ssize_t>(numbers.size()), py::ssize_t{6}});
+    const std::vector<HeldRange> held = joints();
+    py::array_t<double> array(
+        {static_cast<py::ssize_t>(numbers.size()), static_cast<py::ssize_t>(6 + held.size())});
     double* out = array.mutable_data();
     for (const std::uint64_t cell : numbers) {
-      const Offset offset =
-          sample_ ? sampled_offset(grid_.axes(), seed_, cell) : grid_.offset(cell);
-      out = std::copy(offset.begin(), offset.end(), out);
+      const Placement at =
+          sample_ ? sampled_placement(grid_.axes(), seed_, cell) : grid_.placement(cell);
+      out = std::copy(at.offset.begin(), at.offset.end(), out);
+      for (const auto& [joint, low, high] : held) *out++ = at.hold.at(joint);
     }
     return array;
   }
@@ -328,29 +374,37 @@ class Cells {
 
  private:
   static std::vector<PlacementAxis> axes_of(const std::array<std::optional<Range>, 6>& ranges,
-                                            bool sample) {
+                                            const py::dict& hold, bool sample) {
     std::vector<PlacementAxis> axes;
-    for (std::size_t k = 0; k < ranges.size(); ++k) {
-      if (!ranges[k]) continue;
-      const auto refuse = [&](const char* allowed) {
-        throw InvalidArgument(std::string(kCoordinates[k]) + ": allowed is " + allowed);
-      };
-      const int coordinate = static_cast<int>(k);
-      if (const auto* const one = std::get_if<double>(&*ranges[k])) {
-        axes.push_back(placement_axis(coordinate, *one, *one, 0));
-      } else if (const auto* const two = std::get_if<std::array<double, 2>>(&*ranges[k])) {
-        if (!sample) refuse("a number, or (from, to, step), without sample");
-        axes.push_back(placement_axis(coordinate, (*two)[0], (*two)[1], 0));
-      } else {
-        const auto& [from, to, step] = std::get<2>(*ranges[k]);
-        if (!(step > 0)) refuse("a step > 0");
-        axes.push_back(placement_axis(coordinate, from, to, sample ? 0 : step));
-      }
+    for (const auto& [name, range] : hold) {
+      const auto joint = name.cast<std::string>();
+      axes.push_back(axis_of(
+          "hold: '" + joint + "'", range.cast<Range>(), sample,
+          [&](double from, double to, double step) { return held_axis(joint, from, to, step); }));
     }
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+      if (ranges[k])
+        axes.push_back(
+            axis_of(kCoordinates[k], *ranges[k], sample, [&](double from, double to, double step) {
+              return placement_axis(static_cast<int>(k), from, to, step);
+            }));
     if (axes.empty())
       throw InvalidArgument(
-          "x, y, z, roll, pitch, yaw: none is given: allowed are one to six of them");
+          "x, y, z, roll, pitch, yaw, hold: none is given: allowed are one or more of them");
     return axes;
+  }
+  template <class Make>
+  static PlacementAxis axis_of(const std::string& name, const Range& range, bool sample,
+                               const Make& make) {
+    if (const auto* const one = std::get_if<double>(&range)) return make(*one, *one, 0);
+    if (const auto* const two = std::get_if<std::array<double, 2>>(&range)) {
+      if (!sample)
+        throw InvalidArgument(name + ": allowed is a number, or (from, to, step), without sample");
+      return make((*two)[0], (*two)[1], 0);
+    }
+    const auto& [from, to, step] = std::get<2>(range);
+    if (!(step > 0)) throw InvalidArgument(name + ": allowed is a step > 0");
+    return make(from, to, sample ? 0 : step);
   }
 
   PlacementGrid grid_;
@@ -386,10 +440,11 @@ std::shared_ptr<const PreparedRobot> prepare(const Planned& planned, const std::
 /// Plans placements of one thing; of a problem with a planner that remembers earlier plans.
 class Placer {
  public:
-  Placer(Planned planned, Movable thing, const py::object& planner, int threads,
-         std::optional<double> timeout)
+  Placer(Planned planned, Movable thing, std::vector<HeldRange> joints, const py::object& planner,
+         int threads, std::optional<double> timeout)
       : planned_(std::move(planned)),
         thing_(std::move(thing)),
+        joints_(std::move(joints)),
         options_(to_plan_options(planner, threads, timeout)) {
     if (const auto* const job = std::get_if<swivel::Job>(&planned_))
       static_cast<void>(placed_job(*job, thing_, {}));
@@ -397,16 +452,26 @@ class Placer {
       static_cast<void>(placed_workcell(*cell, thing_, {}));
     else
       static_cast<void>(placed_problem(std::get<Problem>(planned_), thing_, {}));
+    for (const auto& [joint, low, high] : joints_)
+      for (const double position : {low, high})
+        std::visit(
+            [&, &name = joint](const auto& what) {
+              static_cast<void>(held_as(what, {{name, position}}));
+            },
+            planned_);
   }
   Placements plan(const std::vector<std::uint64_t>& cells,
                   const py::array_t<double, py::array::c_style>& offsets, const py::object& each) {
     if (offsets.ndim() != 2 || offsets.shape(0) != static_cast<py::ssize_t>(cells.size()) ||
-        offsets.shape(1) != 6)
-      throw py::value_error("offsets: allowed is (n, 6)");
+        offsets.shape(1) != static_cast<py::ssize_t>(6 + joints_.size()))
+      throw py::value_error("offsets: allowed is (n, 6 + joints)");
     std::vector<PlacementCell> wanted(cells.size());
     for (std::size_t k = 0; k < cells.size(); ++k) {
       wanted[k].cell = cells[k];
-      std::copy_n(offsets.data(static_cast<py::ssize_t>(k), 0), 6, wanted[k].offset.begin());
+      const double* in = offsets.data(static_cast<py::ssize_t>(k), 0);
+      std::copy_n(in, 6, wanted[k].offset.begin());
+      in += 6;
+      for (const auto& [joint, low, high] : joints_) wanted[k].hold[joint] = *in++;
     }
     std::function<void(const PlacementRow&)> done;
     if (!each.is_none())
@@ -435,6 +500,7 @@ class Placer {
  private:
   Planned planned_;
   Movable thing_;
+  std::vector<HeldRange> joints_;
   PlanOptions options_;
   // Stops all plans, because the planner keeps the options with which it was made.
   std::stop_source stop_;
@@ -490,10 +556,12 @@ class Campaigner {
 template <class Given>
 auto placer_of() {
   return py::init([](const Given& given, const std::optional<std::string>& object, bool path,
-                     bool base, const py::object& planner, int threads,
+                     bool base, bool only_held, const std::optional<std::string>& arm,
+                     std::vector<HeldRange> joints, const py::object& planner, int threads,
                      std::optional<double> timeout) {
-    return std::make_unique<Placer>(to_planned(given), to_movable(object, path, base), planner,
-                                    threads, timeout);
+    return std::make_unique<Placer>(to_planned(given),
+                                    to_movable(object, path, base, only_held, arm),
+                                    std::move(joints), planner, threads, timeout);
   });
 }
 template <class Given>
@@ -511,9 +579,10 @@ void bind_parts(py::module_& m) {
         for (const PlacementRow& row : *rows.rows) self.learn(row);
       });
   py::class_<Cells>(m, "_Cells")
-      .def(py::init<const std::array<std::optional<Range>, 6>&, std::optional<std::uint64_t>,
-                    std::uint64_t>())
+      .def(py::init<const std::array<std::optional<Range>, 6>&, const py::dict&,
+                    std::optional<std::uint64_t>, std::uint64_t>())
       .def("__len__", &Cells::size)
+      .def("joints", &Cells::joints)
       .def("offsets", &Cells::offsets)
       .def("refinement", &Cells::refinement);
   py::class_<Placer>(m, "_Placer")
@@ -542,12 +611,15 @@ void bind_parts(py::module_& m) {
 
 }  // namespace
 
-Movable to_movable(const std::optional<std::string>& object, bool path, bool base) {
+Movable to_movable(const std::optional<std::string>& object, bool path, bool base, bool only_held,
+                   const std::optional<std::string>& arm) {
+  if (arm && !path) throw InvalidArgument("arm: whose path is moved: allowed with path=True");
+  if (only_held && !object && !path && !base) return {Movable::Kind::kNothing, ""};
   if (static_cast<int>(object.has_value()) + static_cast<int>(path) + static_cast<int>(base) != 1)
     throw InvalidArgument(
         "object, path, base: what is to be moved: allowed is exactly one of the three");
   if (object) return {Movable::Kind::kObject, *object};
-  return {path ? Movable::Kind::kPath : Movable::Kind::kBase, {}};
+  return {path ? Movable::Kind::kPath : Movable::Kind::kBase, {}, arm.value_or("")};
 }
 
 void bind_runs(py::module_& m) {

@@ -19,12 +19,14 @@ def place(
     object=None,
     path=False,
     base=False,
+    arm=None,
     x=None,
     y=None,
     z=None,
     roll=None,
     pitch=None,
     yaw=None,
+    hold=None,
     sample=None,
     seed=1,
     refine_grid=False,
@@ -35,20 +37,22 @@ def place(
     progress=None,
     client=None,
 ):
-    """Plans many placements of one thing: where should the part, the path or the robot stand?
+    """Plans many placements: where should the part, the path, the robot or a held joint stand?
 
     Does what `swivel place` does.
 
     problem: a Problem, a Job, a Workcell, or the name of a file of one. object (a name of the
     scene), path, base: what is moved; exactly one of the three; with path, the paths of all strokes
-    of a job, or of both arms of a workcell. x, y, z (m), roll, pitch, yaw (rad): by how much it is
-    moved, in the base frame, where turns are about the thing's own origin: a number, or (from, to,
-    step).
+    of a job, or of both arms of a workcell. arm: the arm of a workcell whose path alone is moved.
+    x, y, z (m), roll, pitch, yaw (rad): by how much it is moved, in the base frame, where turns are
+    about the thing's own origin: a number, or (from, to, step).
+    hold: where joints that are not planned stand, by name, {"torso": (-0.5, 0.5, 0.1)}, rad, or m
+    of a prismatic one; with nothing moved, object, path and base are left out.
     sample: number of placements drawn at random, by seed, between from and to instead of a grid.
     refine_grid: plan a coarse grid first, then cells between neighbours of unlike verdict and
     beside the best: a third of the cells at most. best: one or several of 'cost', 'clearance',
-    'margin' and 'speed', by which refine_grid finds the best. planner: a PlannerKind or its name.
-    threads: 0 for all cores. timeout: s, after which the rows known so far are returned.
+    'margin', 'slide' and 'speed', by which refine_grid finds the best. planner: a PlannerKind or
+    its name. threads: 0 for all cores. timeout: s, after which the rows known so far are returned.
     progress(placements, done, of): called with new rows, the number of rows so far, and the number
     of all rows, which with refine_grid may still grow. client: a dask.distributed.Client; each
     thread of its workers plans one placement at a time, and `threads` has no effect. Other workers
@@ -57,12 +61,15 @@ def place(
     Returns Placements in the order of their numbers; the rows are the same at any number of
     threads, workers and batches. Clearances, margins and speeds of a job's rows are those of its
     strokes, those of a workcell's the least of both arms. Rows have no trajectories:
-    plan(problem.placed(row.offset, base=True)), or plan_job() of a job or plan_workcell() of a
-    workcell placed so, has that of a row. Raises InvalidArgument, InputError and TypeError; Ctrl-C
-    raises KeyboardInterrupt, whose attribute `rows` is the Placements known so far.
+    plan(problem.placed(row.offset, base=True, hold=row.hold)), or plan_job() of a job or
+    plan_workcell() of a workcell placed so, has that of a row. Raises InvalidArgument, InputError
+    and TypeError; Ctrl-C raises KeyboardInterrupt, whose attribute `rows` is the Placements known
+    so far.
     """
     problem = _loaded(problem)
-    cells = _swivel._Cells([x, y, z, roll, pitch, yaw], sample, seed)
+    moves = [x, y, z, roll, pitch, yaw]
+    hold = {} if hold is None else dict(hold)
+    cells = _swivel._Cells(moves, hold, sample, seed)
     refinement = (
         cells.refinement([best] if isinstance(best, str) else list(best)) if refine_grid else None
     )
@@ -73,6 +80,9 @@ def place(
         object,
         path,
         base,
+        bool(hold) and all(value is None for value in moves),
+        arm,
+        cells.joints(),
         planner,
         threads if here else 1,
         timeout if here else None,

@@ -22,25 +22,28 @@ namespace {
 /// Returns a merit as the value of its criterion with its unit, such as "9.9 mm" of clearance.
 std::string value_text(PlacementCriterion criterion, double merit) {
   using enum PlacementCriterion;
-  const char* const format = criterion == kClearance ? "%.3g mm"
-                             : criterion == kMargin  ? "%.3g deg"
-                             : criterion == kSpeed   ? "%.3g m/s"
-                                                     : "%.4g";
-  const double scale = criterion == kClearance ? 1e3
-                       : criterion == kMargin  ? 180 / kPi
-                       : criterion == kCost    ? -1
-                                               : 1;
+  const bool is_length = criterion == kClearance || criterion == kSlide;
+  const char* const format = is_length              ? "%.3g mm"
+                             : criterion == kMargin ? "%.3g deg"
+                             : criterion == kSpeed  ? "%.3g m/s"
+                                                    : "%.4g";
+  const double scale = is_length              ? 1e3
+                       : criterion == kMargin ? 180 / kPi
+                       : criterion == kCost   ? -1
+                                              : 1;
   return formatted(format, scale * merit);
 }
 
-/// Returns the unit of an axis: m for a shift, degrees for a turn.
+/// Returns the unit of an axis: m for a shift, degrees for a turn; of a joint that is held what its
+/// position is given in, m or rad.
 const char* unit_of(const PlacementAxis& axis) {
+  if (!axis.joint.empty()) return axis.slides ? "m" : "rad";
   return axis.coordinate < 3 ? "m" : "deg";
 }
 
 /// Returns place `k` of an axis in its unit.
 double value_at(const PlacementAxis& axis, int k) {
-  return axis.at(k) * (axis.coordinate < 3 ? 1 : 180 / kPi);
+  return axis.at(k) * (axis.joint.empty() && axis.coordinate >= 3 ? 180 / kPi : 1);
 }
 
 /// Returns the words for what the shades mean: the first criterion, from its least to its best
@@ -50,6 +53,7 @@ std::string title_of(const PlacementMap& map) {
   std::string title = to_string(criterion);
   if (criterion == PlacementCriterion::kClearance) title = "least clearance less what must be kept";
   if (criterion == PlacementCriterion::kMargin) title = "distance from the nearest joint limit";
+  if (criterion == PlacementCriterion::kSlide) title = "distance of the slide from its limit";
   if (criterion == PlacementCriterion::kSpeed) title = "top speed of the tool";
   return title + " from " + value_text(criterion, map.least) + " to " +
          value_text(criterion, map.most);
@@ -192,11 +196,10 @@ std::string colour_of(const PlacementMap& map, const PlacementRow* row,
 /// Returns the lines below the map in text: its axes, then what its letters mean.
 std::string text_legend(const PlacementMap& map, const TextCell& cell, int margin) {
   const std::string indent(static_cast<std::size_t>(margin), ' ');
-  std::string text = indent + kCoordinates[static_cast<std::size_t>(map.across.coordinate)];
+  std::string text = indent + printable(map.across.name());
   text += formatted(" %.4g to %.4g %s to the right, ", value_at(map.across, 0),
                     value_at(map.across, map.across.count - 1), unit_of(map.across)) +
-          std::string(kCoordinates[static_cast<std::size_t>(map.up.coordinate)]) + " (" +
-          unit_of(map.up) + ") upwards";
+          printable(map.up.name()) + " (" + unit_of(map.up) + ") upwards";
   if (cell.across * cell.up > 1)
     text += "; a letter stands for up to " + std::to_string(cell.across) + " x " +
             std::to_string(cell.up) + " placements, the best of them";
@@ -246,8 +249,7 @@ std::vector<int> marked_places(const PlacementAxis& axis) {
 
 /// Returns the name of an axis with its unit.
 std::string name_of(const PlacementAxis& axis) {
-  return std::string(kCoordinates[static_cast<std::size_t>(axis.coordinate)]) + " (" +
-         unit_of(axis) + ")";
+  return axis.name() + " (" + unit_of(axis) + ")";
 }
 
 /// Draws a map of placements: cells, axes, and below them the legend.

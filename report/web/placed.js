@@ -10,8 +10,7 @@ const kSeconds = 8; // that a path takes
 window.swivel = { cell: null, joints: null, frames: 0 };
 
 export class Placed {
-  constructor({ chain, plans }) {
-    this.chain = chain;
+  constructor({ plans }) {
     this.plans = new Map(plans.map((plan) => [plan.cell, plan]));
     Object.assign(this, { cursor: 0, playing: false });
     $('slider').addEventListener('input', ({ target }) => {
@@ -48,14 +47,17 @@ export class Placed {
   /** Shows the plan of one of its placements, from the beginning. */
   open(cell, offset) {
     const plan = this.plans.get(cell),
+      // Where joints are held as in this placement, the robot stands otherwise.
+      scene = { ...data.scene, ...plan.robot },
+      { chain } = scene,
       joints = new Float32Array(bytes(plan.joints)),
       s = new Float32Array(bytes(plan.s));
     const rows = [...s].map((at, k) => ({
       s: at,
-      q: [...joints.subarray(k * this.chain.joints.length, (k + 1) * this.chain.joints.length)],
+      q: [...joints.subarray(k * chain.joints.length, (k + 1) * chain.joints.length)],
     }));
-    const tool_path = rows.map(({ q }) => toolPose(this.chain, q).elements.slice(12, 15));
-    this.shown = { ...data.scene, rows, tool_path, poses: plan.poses, floor: true };
+    const tool_path = rows.map(({ q }) => toolPose(chain, q).elements.slice(12, 15));
+    this.shown = { ...scene, rows, tool_path, poses: plan.poses, floor: true };
     // One without a path is shown where paths end.
     Object.assign(this, { plan, offset, cursor: 0, isPartial: plan.past !== undefined });
     window.swivel.cell = cell;

@@ -18,9 +18,23 @@ const kQualities = {
   cost: ['cost', -1, 1, '', 'cost'],
   clearance: ['clearance_margin', 1, 1e3, ' mm', 'clearance beyond what must be kept'],
   margin: ['joint_margin', 1, kDegrees, '°', 'distance from a joint limit'],
+  slide: ['slide_margin', 1, 1e3, ' mm', 'distance of the slide from a limit'],
   speed: ['tool_speed', 1, 1, ' m/s', 'top speed of the tool'],
 };
-const { axes, columns } = data;
+const { columns } = data;
+// Of each axis: the key of its values in a row, its name, the joint whose position it is or null,
+// the unit that is shown, and the scale to it.
+const axes = data.axes.map(({ name, unit, values }) => {
+  const turns = !unit && !/^[xyz]$/.test(name);
+  return {
+    name: unit ? `hold.${name}` : name,
+    label: name,
+    joint: unit ? name : null,
+    unit: unit ?? (turns ? 'deg' : 'm'),
+    scale: turns ? kDegrees : 1,
+    values,
+  };
+});
 const varied = axes.filter((axis) => axis.values.length > 1 || data.sample),
   stem = data.problem.replace(/\.[^.]*$/, '');
 
@@ -31,10 +45,11 @@ const rows = columns.cell.map((cell, k) => {
     'clearance',
     'clearance_margin',
     'joint_margin',
+    'slide_margin',
     'tool_speed',
     'failed_s',
   ])
-    row[key] = columns[key][k];
+    row[key] = columns[key]?.[k] ?? null;
   let rest = cell;
   for (let a = axes.length - 1; a >= 0; --a) {
     const { name, values } = axes[a];
@@ -74,9 +89,9 @@ for (const [name, [key, , , , words]] of Object.entries(kQualities))
 $('colour').value = [...$('colour').options].some(({ value }) => value === data.criterion)
   ? data.criterion
   : 'end';
-for (const { name } of varied.length ? varied : axes) {
-  option($('across'), name, name);
-  option($('up'), name, name);
+for (const { name, label } of varied.length ? varied : axes) {
+  option($('across'), name, label);
+  option($('up'), name, label);
 }
 $('up').value = (varied[1] ?? varied[0] ?? axes[0]).name;
 $('axes').hidden = varied.length < 3;
@@ -139,12 +154,11 @@ function shown(x, y) {
   }
   return [...places.values()];
 }
-const turns = (name) => !/^[xyz]$/.test(name);
-/** Coordinates are shown in m and degrees. */
-const shownAt = (row, name) => (turns(name) ? kDegrees : 1) * row.offset[name];
 const axisOf = (name) => axes.find((a) => a.name === name);
+/** Coordinates are shown in m and degrees, positions of joints that are held in m and rad. */
+const shownAt = (row, name) => axisOf(name).scale * row.offset[name];
 /** The values of an axis as they are shown. */
-const valuesOf = (name) => axisOf(name).values.map((v) => (turns(name) ? kDegrees : 1) * v);
+const valuesOf = (name) => axisOf(name).values.map((v) => axisOf(name).scale * v);
 /** Half a step, so that cells touch. */
 function half(name) {
   const values = valuesOf(name);
@@ -207,7 +221,7 @@ function draw(width, ink) {
     y = $('up').value,
     { of } = colours();
   drawn = shown(x, y);
-  const unit = (name) => `${name}, ${turns(name) ? 'deg' : 'm'}`;
+  const unit = (name) => `${axisOf(name).label}, ${axisOf(name).unit}`;
   const hx = half(x),
     hy = flat ? 0.5 : half(y),
     at = (row) => (flat ? 0 : shownAt(row, y));
@@ -286,19 +300,23 @@ function draw(width, ink) {
   });
 }
 
+/** A word of a command line, in quotes where a shell would not take it as it is. */
+const word = (text) =>
+  /^[\w./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
+
 let picked = null;
 const placed = data.scene && new Placed(data.scene);
 $('view').hidden = $('controls').hidden = !placed;
 function pick(row) {
   picked = row;
-  const offsets = axes.map(({ name }) => [name, row.offset[name]]),
+  const offsets = axes.map((axis) => [axis, row.offset[axis.name]]),
     text = (v, scale, unit, digits = 4) =>
       v === null ? '–' : `${number(scale * v, digits)}${unit}`;
   $('facts').replaceChildren();
   table($('facts'), `Placement ${row.cell}`, [
-    ...offsets.map(([name, value]) => [
-      name,
-      turns(name) ? `${number(value * kDegrees, 6)}°` : `${number(value, 8)} m`,
+    ...offsets.map(([{ label, unit, scale }, value]) => [
+      label,
+      unit === 'deg' ? `${number(value * scale, 6)}°` : `${number(value, 8)} ${unit}`,
     ]),
     ['verdict', row.solved ? 'solved' : 'no path at this resolution'],
     ...(row.solved
@@ -307,6 +325,9 @@ function pick(row) {
           ['clearance', text(row.clearance, 1e3, ' mm')],
           ['more than must be kept by', text(row.clearance_margin, 1e3, ' mm')],
           ['from a joint limit', text(row.joint_margin, kDegrees, '°')],
+          ...(row.slide_margin === null
+            ? []
+            : [["from the slide's limit", text(row.slide_margin, 1e3, ' mm')]]),
           ['top speed of the tool', text(row.tool_speed, 1, ' m/s')],
         ]
       : [
@@ -320,8 +341,10 @@ function pick(row) {
         ]),
   ]);
   $('command').textContent = `${data.plan_command}${offsets
-    .filter(([, value]) => value !== 0)
-    .map(([name, value]) => ` --${name} ${value}`)
+    .filter(([{ joint }, value]) => joint || value !== 0)
+    .map(([{ joint, name }, value]) =>
+      joint ? ` --hold ${word(joint)}=${value}` : ` --${name} ${value}`,
+    )
     .join('')} --report placement_${row.cell}.html`;
   paintMap();
   for (const line of $('best').querySelectorAll('tbody tr'))
@@ -353,12 +376,14 @@ function showPlan(row) {
 }
 $('copy').addEventListener('click', () => navigator.clipboard?.writeText($('command').textContent));
 
-const head = $('best').querySelector('thead tr');
+const head = $('best').querySelector('thead tr'),
+  slides = solved.some(({ slide_margin }) => slide_margin !== null);
 for (const name of [
-  ...axes.map(({ name }) => `${name}, ${turns(name) ? '°' : 'm'}`),
+  ...axes.map(({ label, unit }) => `${label}, ${unit === 'deg' ? '°' : unit}`),
   'cost',
   'clearance, mm',
   'joint limit, °',
+  ...(slides ? ["slide's limit, mm"] : []),
   'speed, m/s',
 ]) {
   const cell = document.createElement('th');
@@ -383,6 +408,7 @@ function listBest() {
           number(row.cost, 6),
           number(row.clearance === null ? null : 1e3 * row.clearance),
           number(row.joint_margin === null ? null : kDegrees * row.joint_margin, 3),
+          ...(slides ? [number(row.slide_margin === null ? null : 1e3 * row.slide_margin)] : []),
           number(row.tool_speed, 3),
         ])
           line.insertCell().textContent = value;

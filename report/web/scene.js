@@ -124,15 +124,17 @@ class View {
     this.dirty = true;
   }
   /**
-   * Another plan of the same arm among the same bodies. poses: of the scene's objects in their
-   * order, where they stand elsewhere.
+   * Another plan of the same arm among the same bodies. poses, robot_poses: of the scene's objects
+   * and of the other bodies in their order, where they stand elsewhere.
    */
   show(data) {
     this.data = data;
-    if (data.poses)
+    const move = (poses, isOfScene) =>
       this.parts
-        .filter(({ body }) => body.kind === 'scene')
-        .forEach(({ rest }, k) => rest.copy(matrix(data.poses[k])));
+        .filter(({ body }) => (body.kind === 'scene') === isOfScene)
+        .forEach(({ rest }, k) => rest.copy(matrix(poses[k])));
+    if (data.poses) move(data.poses, true);
+    if (data.robot_poses) move(data.robot_poses, false);
     // Ghosts share the shapes of the arm.
     this.shown?.traverse(({ geometry, userData }) => userData.g ?? geometry?.dispose());
     for (const one of [this.shown, this.ghosts, this.trail]) one?.removeFromParent();

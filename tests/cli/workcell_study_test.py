@@ -134,6 +134,32 @@ class WorkcellPlacements(Studies):
 
         self.expect_cells(problem, ["--path"], changed)
 
+    def test_the_path_of_one_arm(self):
+        for problem, arm in ((cell(), 0), (follower(), 0), (follower(), 1)):
+            name = problem["arms"][arm]["name"]
+            file = self.file(problem)
+            options = ("--path", "--arm", name)
+            done, rows = self.place(file, *options, "--x", "-0.05:0.2:0.25", "--y", "-0.1:0.1:0.1")
+            for row in rows:
+                moved = (f"--x={row['x']}", f"--y={row['y']}")
+                self.expect_answer(row, self.planned(file, *options, *moved))
+                other = copy.deepcopy(problem)
+                for waypoint in other["arms"][arm]["path"]["waypoints"]:
+                    waypoint["xyz"][0] += float(row["x"])
+                    waypoint["xyz"][1] += float(row["y"])
+                changed = self.folder / "changed.yaml"
+                changed.write_text(json.dumps(other))
+                self.expect_answer(row, self.planned(changed), places=6)
+            self.assertIn("solved", {row["status"] for row in rows})
+            self.assertIn(f"--path --arm {name}", done.stdout)
+        self.expect_refused(
+            "place", file, "--path", "--arm", "middle", "--x", "0.1",
+            message="--arm: unknown arm 'middle': allowed are 'left' and 'right'"
+        )
+        self.expect_refused(
+            "place", file, "--base", "--arm", "left", "--x", "0.1", message="--arm: .*--path"
+        )
+
     def test_an_object_and_the_path_on_it(self):
         problem = with_fixture()
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A placement as a problem file: only the pose is changed, and it reads back as it was planned.
+#include <yaml-cpp/yaml.h>
+
+#include <map>
+
 #include "problem_support.hpp"
 #include "swivel/core/base/rpy.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/placement.hpp"
 #include "swivel/io/problems/problem.hpp"
 #include "swivel/io/tables/placement.hpp"
@@ -119,6 +124,40 @@ TEST(WithPoses, RefusesWhatItCannotChangeInPlace) {
   refused("[{name: part, sphere: 0.1}]", kMoved, {Movable::Kind::kBase, ""});
 }
 
+/// Positions of joints are changed in place, or put in, and nothing else is.
+TEST(WithPoses, HoldsJoints) {
+  const ProblemFolder folder;
+  const std::string head =
+      "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7";
+  const std::map<std::string, double> wanted{{"a", 0.30000000000000004}, {"b: c", -2e-3}};
+  const auto written = [&](const std::string& robot) {
+    const std::string text = "# head\n" + robot + "\npath: {file: weld.csv}  # path\n";
+    Problem problem;
+    problem.source = "problem.yaml";
+    const YAML::Node held = YAML::Load(text)["robot"]["hold"];
+    for (const auto& entry : held) problem.hold[entry.first.Scalar()] = entry.second.as<double>();
+    Problem placed = problem;
+    for (const auto& [joint, position] : wanted) placed.hold[joint] = position;
+    const std::string after = with_poses(text, problem, placed);
+    std::map<std::string, double> said;
+    for (const auto& entry : YAML::Load(after)["robot"]["hold"])
+      said[entry.first.Scalar()] = entry.second.as<double>();
+    EXPECT_EQ(said, placed.hold) << after;
+    EXPECT_EQ(after.find("# head\n"), 0u) << after;
+    EXPECT_NE(after.find("\npath: {file: weld.csv}  # path\n"), std::string::npos) << after;
+    return after;
+  };
+  written(head + "}");
+  written(head + ", hold: {a: 1, other: 2}}");
+  written(head + ", hold: {'b: c': 1, a: 0.0}}");
+  EXPECT_NE(written("robot:\n  urdf: u  # u\n  hold:  # held\n    a: 1  # one\n    z: 3")
+                .find("    a: 0.30000000000000004  # one\n    z: 3"),
+            std::string::npos);
+  written("robot:\n  urdf: u\n  tool: {xyz: [0, 0, 1]}");
+  EXPECT_THROW(written("robot: {urdf: u, hold: {a: \"1\", 'b: c': 1}}"), InputError);
+  EXPECT_THROW(written("robot: {urdf: u, hold: }"), InputError);
+}
+
 TEST(Placements, Csv) {
   PlacementRow solved, blocked;
   solved.cell = 3;
@@ -133,10 +172,17 @@ TEST(Placements, Csv) {
   blocked.by = "a, \"b\"";
   blocked.reason = "two\nlines";
   EXPECT_EQ(to_csv({solved, blocked}),
-            "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_"
-            "speed,failed_s,cause,by,reason\n"
-            "3,0.1,-0.2,0,0,0,0.001,solved,2.5,0.01,0.005,,1,,,,\n"
-            "0,0,0,0,0,0,0,infeasible,,,,,,0.25,pair,\"a, \"\"b\"\"\",two lines\n");
+            "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,"
+            "slide_margin,tool_speed,failed_s,cause,by,reason\n"
+            "3,0.1,-0.2,0,0,0,0.001,solved,2.5,0.01,0.005,,,1,,,,\n"
+            "0,0,0,0,0,0,0,infeasible,,,,,,,0.25,pair,\"a, \"\"b\"\"\",two lines\n");
+  PlacementRow held = solved;
+  held.hold = {{"torso", 0.3}, {"a, rail", -1}};
+  held.slide_margin = 0.125;
+  EXPECT_EQ(to_csv({held}),
+            "cell,x,y,z,roll,pitch,yaw,\"hold.a, rail\",hold.torso,status,cost,clearance,"
+            "clearance_margin,joint_margin,slide_margin,tool_speed,failed_s,cause,by,reason\n"
+            "3,0.1,-0.2,0,0,0,0.001,-1,0.3,solved,2.5,0.01,0.005,,0.125,1,,,,\n");
 }
 
 }  // namespace

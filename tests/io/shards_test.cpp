@@ -41,7 +41,7 @@ void fill(PlacementRow& row, std::uint64_t number, Random& random) {
   for (double& value : row.offset) value = random.coin() ? some_number(random) : 0;
   row.status = some_status(random);
   for (auto* const value : {&row.cost, &row.clearance, &row.clearance_margin, &row.joint_margin,
-                            &row.tool_speed, &row.failed_s})
+                            &row.slide_margin, &row.tool_speed, &row.failed_s})
     *value = maybe_number(random);
   row.cause = random.coin() ? "pair" : "";
   row.by = some_text(random);
@@ -68,7 +68,10 @@ std::string table_of(const std::vector<EpisodeRow>& rows, const ShardRecord& rec
   return to_csv(rows, record.settings.coordinates);
 }
 
-void move_by(PlacementRow&, std::size_t, Random&) {}
+void move_by(PlacementRow& row, std::size_t coordinates, Random& random) {
+  for (std::size_t k = 0; k < coordinates % 3; ++k)
+    row.hold["joint, \"" + std::to_string(k)] = random.uniform(-1, 1);
+}
 void move_by(EpisodeRow& row, std::size_t coordinates, Random& random) {
   for (std::size_t k = 0; k < coordinates; ++k) row.offsets.push_back(random.uniform(-1, 1));
 }

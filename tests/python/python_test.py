@@ -1013,6 +1013,14 @@ class Places(unittest.TestCase):
                 ),
                 {"object": "door", **fine, "refine_grid": True, "best": "speed"},
             ),
+            (
+                ("--hold", "torso_joint_b1=-0.2:0.2:0.1", "--base", "--y", "0:0.1:0.1"),
+                {"hold": {"torso_joint_b1": (-0.2, 0.2, 0.1)}, "base": True, "y": (0, 0.1, 0.1)},
+            ),
+            (
+                ("--hold", "torso_joint_b1=-0.2:0.2", "--sample", "5"),
+                {"hold": {"torso_joint_b1": (-0.2, 0.2)}, "sample": 5},
+            ),
         ):
             wanted = self.table("place", *options)
             for threads in (1, 2):
@@ -1020,6 +1028,36 @@ class Places(unittest.TestCase):
                 self.assertEqual(self.saved(rows), wanted)
                 count += len(rows)
         self.assertGreater(count, 100)
+
+    def test_joints_that_are_held(self):
+        problem = self.problem()
+        torso = {"torso_joint_b1": (-0.2, 0.2, 0.2)}
+        rows = swivel.place(problem, hold=torso, planner="lazy")
+        np.testing.assert_array_equal(rows.hold["torso_joint_b1"], [-0.2, 0, 0.2])
+        self.assertFalse(rows.offset.any())
+        self.assertTrue(rows.solved.any())
+        for row in rows:
+            self.assertEqual(list(row.hold), ["torso_joint_b1"])
+            held = problem.placed(row.offset, hold=row.hold)
+            self.assertEqual(held.robot.hold, {**problem.robot.hold, **row.hold})
+            plan = swivel.plan(held, planner="lazy", evidence=True)
+            self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
+            self.assertIn(f"torso_joint_b1 at {row.hold['torso_joint_b1']:.6g}", repr(row))
+        self.assertIsNone(rows[0].slide_margin)
+        again = pickle.loads(pickle.dumps(rows))
+        self.assertEqual(self.saved(again), self.saved(rows))
+        self.assertEqual(swivel.place(problem, object="door", x=0.1).hold, {})
+        for words, keywords in (
+            ("'torso', nearest is 'torso_joint_b1'", {"hold": {"torso": 0}}),
+            ("outside its limits", {"hold": {"torso_joint_b1": (0, 9, 1)}}),
+            ("is planned", {"hold": {"arm_left_joint_1_s": 0}}),
+            ("hold: 'torso_joint_b1': allowed is a number", {"hold": {"torso_joint_b1": (0, 1)}}),
+            ("exactly one", {"hold": torso, "x": 0.1}),
+            ("arm: ", {"path": True, "arm": "left", "x": 0.1}),
+            ("whose path", {"base": True, "arm": "left", "x": 0.1}),
+        ):
+            with self.assertRaisesRegex(swivel.InvalidArgument, words):
+                swivel.place(problem, **keywords)
 
     def test_rows_and_columns(self):
         problem = self.problem()
@@ -1136,7 +1174,7 @@ class Places(unittest.TestCase):
         for keywords, words in (
             ({"x": 0}, "exactly one"),
             ({"object": "door", "base": True, "x": 0}, "exactly one"),
-            ({"object": "door"}, "one to six"),
+            ({"object": "door"}, "one or more"),
             ({"object": "dor", "x": 0}, "'dor'"),
             ({"object": "door", "x": (0, 1)}, "step"),
             ({"object": "door", "x": (1, 0, 0.1)}, "from <= to"),

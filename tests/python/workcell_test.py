@@ -373,6 +373,10 @@ class WorkcellStudies(unittest.TestCase):
              {"path": True, "x": (-0.1, 0.2, 0.15), "y": (-0.2, 0.2, 0.2)}),
             (("--base", "--x", "-1:1", "--sample", "6", "--seed", "4"),
              {"base": True, "x": (-1, 1), "sample": 6, "seed": 4}),
+            (("--path", "--arm", "left", "--y", "-0.2:0.4:0.1"),
+             {"path": True, "arm": "left", "y": (-0.2, 0.4, 0.1)}),
+            (("--hold", "torso_joint_b1=-1:1:0.25", "--path", "--x", "0"),
+             {"path": True, "hold": {"torso_joint_b1": (-1, 1, 0.25)}, "x": 0}),
             (("--object", "post", "--y", "-0.6:0:0.1", "--refine-grid"),
              {"object": "post", "y": (-0.6, 0, 0.1), "refine_grid": True}),
         ):
@@ -383,7 +387,10 @@ class WorkcellStudies(unittest.TestCase):
             self.assertTrue(0 < rows.solved.sum() < len(rows), rows)
             thing, moved = next(iter(keywords.items()))
             for row in rows:
-                plan = swivel.plan_workcell(cell.placed(row.offset, **{thing: moved}))
+                which = {key: keywords[key] for key in ("arm",) if key in keywords}
+                plan = swivel.plan_workcell(
+                    cell.placed(row.offset, hold=row.hold, **which, **{thing: moved})
+                )
                 self.assertEqual(plan.status, row.status)
                 if row.solved:
                     self.assertEqual(plan.cost, row.cost)
@@ -424,6 +431,10 @@ class WorkcellStudies(unittest.TestCase):
             swivel.place(cell, base=True, x=0.1, planner="eager")
         with self.assertRaisesRegex(swivel.InvalidArgument, "exactly one"):
             cell.placed([0.1, 0, 0, 0, 0, 0])
+        with self.assertRaisesRegex(swivel.InvalidArgument, "unknown arm 'middle'"):
+            swivel.place(cell, path=True, arm="middle", x=0.1)
+        with self.assertRaisesRegex(swivel.InvalidArgument, "is planned"):
+            swivel.place(cell, hold={"arm_right_joint_1_s": 0})
         with self.assertRaisesRegex(swivel.InputError, "vary: missing"):
             swivel.campaign(PLATE, episodes=2)
 

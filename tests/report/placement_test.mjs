@@ -214,6 +214,50 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await assertFits(narrow.page, 390);
   await narrow.close();
 
+  // A joint that is held, over another coordinate: its axis is in rad, its command holds it, and
+  // the view shows the robot with the joint there, the tool at the begin of its path.
+  {
+    const torso = 'torso_joint_b1',
+      grid = ['--hold', `${torso}=-0.2:0.2:0.1`, '--y', '0:0.05:0.05'],
+      { html: held, rows: found } = place('held', ...grid);
+    const { page: view, close: done } = await open(held, {
+      viewport: { width: 1280, height: 800 },
+    });
+    assert.equal(await view.locator('.cells rect').count(), found.length);
+    assert.equal(
+      await view.textContent('#title'),
+      `experiment_c.yaml: where should door and ${torso} stand?`,
+    );
+    assert.ok((await view.textContent('#map svg')).includes(`${torso}, rad`));
+    await until(view, () => window.swivel.frames > 0);
+    const lines = await view.locator('#best tbody tr').count(),
+      stands = new Set();
+    assert.ok(lines >= 4, `${lines} have a path`);
+    for (let k = 0; k < lines; ++k) {
+      await view.locator('#best tbody tr').nth(k).click();
+      const chosen = await view.locator('#best tbody tr').nth(k).getAttribute('data-cell'),
+        command = await view.textContent('#command'),
+        at = found.find((row) => row[cell] === chosen)[7];
+      assert.ok(command.includes(` --hold ${torso}=${at} `), command);
+      execFileSync('sh', ['-c', `'${swivel}' ${command.slice('swivel '.length)} --quiet`], {
+        cwd: folder,
+      });
+      const { tool_path } = dataOf(join(folder, `placement_${chosen}.html`));
+      await view.locator('#slider').fill('0');
+      const [tool, arm] = await view.evaluate(() => {
+        const { view: shown } = window.swivel,
+          link = shown.arm.find(({ userData }) => userData.body.name === 'torso_link_b1');
+        return [shown.tools[0].matrix.elements.slice(12, 15), link?.matrix.elements ?? []];
+      });
+      tool.forEach((v, c) => assert.ok(Math.abs(v - tool_path[0][c]) < 1e-5, `${chosen}: ${tool}`));
+      stands.add(`${at} ${arm.map((v) => v.toFixed(6))}`);
+    }
+    const positions = new Set([...stands].map((text) => text.split(' ')[0]));
+    assert.equal(stands.size, positions.size);
+    assert.ok(positions.size >= 2);
+    await done();
+  }
+
   // One, three and sampled coordinates; a grid with holes.
   for (const [name, options, marks] of some([
     ['one', ['--yaw', '-0.2:0.2:0.05'], 'rect'],

@@ -43,7 +43,7 @@ inline TestRobot with_axis(const TestRobot& robot, int place, const MoreAxis& mo
   joint.parent_link = after.parent_link;
   joint.child_link = after.parent_link = link;
   after.origin = Pose::Identity();
-  model->links.push_back({"carriage", {}, static_cast<int>(model->joints.size())});
+  model->links.push_back({joint.name + "_link", {}, static_cast<int>(model->joints.size())});
   model->joints.push_back(joint);
   return {robot.name + " with a " + joint.name + " at " + std::to_string(place), model,
           robot.base_link, robot.tip_link};

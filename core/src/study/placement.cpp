@@ -8,9 +8,12 @@
 
 #include "base/split_mix.hpp"
 #include "swivel/core/base/rpy.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 
 namespace swivel {
 
@@ -64,6 +67,34 @@ bool in_base_frame(const Problem& problem) {
   return problem.path_frame.empty() || problem.path_frame == problem.base_link;
 }
 
+/// Throws InvalidArgument for an offset of nothing.
+void require_thing(const Movable& thing, const Offset& offset) {
+  if (thing.kind == Movable::Kind::kNothing && offset != Offset{})
+    throw InvalidArgument("offset: nothing is moved: allowed is an offset of zeros");
+}
+
+/// Throws InvalidArgument for one arm of a problem or a job, which has no other.
+void require_no_arm(const Movable& thing) {
+  if (!thing.arm.empty())
+    throw InvalidArgument("arm: '" + thing.arm + "': allowed is an arm of a workcell");
+}
+
+/// Returns the number of the arm whose path alone is moved. Throws InvalidArgument.
+std::size_t moved_arm(const Workcell& cell, const Movable& thing) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (cell.arms[k].name != thing.arm) continue;
+    if (thing.kind != Movable::Kind::kPath)
+      throw InvalidArgument("arm: both arms are of one robot: allowed is to move the path of one");
+    if (!cell.arms[k].given.empty())
+      throw InvalidArgument("arm: the motion of '" + thing.arm +
+                            "' is given, it has no path: allowed is '" + cell.arms[1 - k].name +
+                            "'");
+    return k;
+  }
+  throw InvalidArgument("arm: unknown arm '" + thing.arm + "': allowed are '" + cell.arms[0].name +
+                        "' and '" + cell.arms[1].name + "'");
+}
+
 /// Throws InvalidArgument for paths of a workcell that cannot be moved alike by `offset`.
 void require_paths_move(const Workcell& cell, const Offset& offset) {
   std::vector<std::string> frames;
@@ -72,7 +103,8 @@ void require_paths_move(const Workcell& cell, const Offset& offset) {
     if (cell.leader_of(k) >= 0 && !cell.arms[1 - k].given.empty())
       throw InvalidArgument("path: that of '" + arm.name + "' is on the tool of '" +
                             cell.arms[1 - k].name +
-                            "', whose motion is given: allowed is to move an object or the base");
+                            "', whose motion is given: allowed is to move that of '" + arm.name +
+                            "' alone, an object or the base");
     if (cell.leader_of(k) < 0 && arm.given.empty())
       frames.push_back(arm.path_frame.empty() ? arm.base_link : arm.path_frame);
   }
@@ -81,7 +113,46 @@ void require_paths_move(const Workcell& cell, const Offset& offset) {
         "path: roll, pitch and yaw turn paths about the origin of their frame, "
         "and those of '" +
         cell.arms[0].name + "' and '" + cell.arms[1].name + "' are in '" + frames[0] + "' and '" +
-        frames[1] + "': allowed are x, y and z, or to move an object or the base");
+        frames[1] + "': allowed are x, y and z, one arm, or to move an object or the base");
+}
+
+/// Returns the waypoints of an arm's path, moved about the origin of its frame. That of a follower
+/// is moved in the frame of its leader's tool, any other along the axes of the base frame.
+std::vector<Waypoint> moved_path(const Workcell& cell, std::size_t k, const Offset& offset) {
+  Problem arm;
+  static_cast<Task&>(arm) = cell.arms[k];
+  arm.scene = cell.scene;
+  if (cell.leader_of(k) >= 0) arm.path_frame.clear();
+  arm.base_link = cell.arms[k].base_link;
+  return placed_problem(arm, {Movable::Kind::kPath, ""}, offset).waypoints;
+}
+
+/// Throws InvalidArgument for a joint that is not there, cannot be held, or is one of the planned.
+void require_may_be_held(const RobotModel& model, const std::string& name,
+                         const std::array<std::string, kDof>& planned) {
+  const int number = model.find_joint(name);
+  if (number < 0) {
+    std::vector<std::string> names;
+    for (const Joint& joint : model.joints)
+      if (joint.movable() && !joint.mimic) names.push_back(joint.name);
+    throw InvalidArgument(
+        "unknown joint '" + name + "'" +
+        (names.empty() ? "" : ", nearest is '" + nearest_name(name, names) + "'") +
+        ": allowed are joints of the robot that are not planned");
+  }
+  const Joint& joint = model.joints[static_cast<std::size_t>(number)];
+  if (!joint.movable())
+    throw InvalidArgument("joint '" + name + "' is fixed: allowed are movable joints");
+  if (joint.mimic)
+    throw InvalidArgument("joint '" + name + "' mimics '" +
+                          model.joints[static_cast<std::size_t>(joint.mimic->joint)].name +
+                          "': allowed is that one, where it is not planned");
+  if (std::find(planned.begin(), planned.end(), name) != planned.end())
+    throw InvalidArgument("joint '" + name + "' is planned: allowed are joints that stand still");
+}
+
+const char* unit_of_position(const Joint& joint) {
+  return joint.type == Joint::Type::kPrismatic ? "m" : "rad";
 }
 
 }  // namespace
@@ -99,7 +170,40 @@ Vector3d written_rpy(const Matrix3d& r) {
   return {tidy(std::atan2(s * r(0, 2) - c * r(1, 2), c * r(1, 1) - s * r(0, 1))), pitch, yaw};
 }
 
+void hold_joints(Robot& robot, const HeldPositions& positions) {
+  if (positions.empty()) return;
+  const RobotModel& model = *robot.model;
+  const auto planned = [&] {
+    return build_arm(model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll)
+        .chain.joint_names;
+  };
+  const auto before = planned();
+  for (const auto& [name, position] : positions) {
+    require_may_be_held(model, name, before);
+    const Joint& joint = model.joints[static_cast<std::size_t>(model.find_joint(name))];
+    if (joint.type != Joint::Type::kContinuous &&
+        !(position >= joint.lower && position <= joint.upper))
+      throw InvalidArgument(
+          formatted("joint '%s' at %.9g %s is outside its limits: allowed is "
+                    "%.9g to %.9g",
+                    name.c_str(), position, unit_of_position(joint), joint.lower, joint.upper));
+    robot.hold[name] = position;
+  }
+  const auto after = planned();
+  for (std::size_t k = 0; k < kDof; ++k)
+    if (std::find(before.begin(), before.end(), after[k]) == before.end())
+      throw InvalidArgument("joint '" + positions.begin()->first +
+                            "': the arm would be planned with joint '" + after[k] +
+                            "' where it is held: allowed is a problem that holds one of both");
+}
+
+void hold_joints(Workcell& cell, const HeldPositions& positions) {
+  for (WorkcellArm& arm : cell.arms) hold_joints(arm, positions);
+}
+
 Problem placed_problem(const Problem& problem, const Movable& thing, const Offset& offset) {
+  require_no_arm(thing);
+  require_thing(thing, offset);
   Problem result = problem;
   const Motion motion = motion_of(offset);
   const auto named = [&](const std::string& name) {
@@ -119,7 +223,7 @@ Problem placed_problem(const Problem& problem, const Movable& thing, const Offse
                                : Matrix3d(named(problem.path_frame)->pose.linear());
     turn_and_shift(frame.transpose() * motion.turn * frame, frame.transpose() * motion.shift,
                    motion.turns, result.waypoints);
-  } else {
+  } else if (thing.kind == Movable::Kind::kBase) {
     const Matrix3d back = motion.turn.transpose();
     for (SceneObject& object : result.scene) {
       Pose& pose = object.pose;
@@ -149,8 +253,14 @@ Job placed_job(const Job& job, const Movable& thing, const Offset& offset) {
 }
 
 Workcell placed_workcell(const Workcell& cell, const Movable& thing, const Offset& offset) {
-  if (thing.kind == Movable::Kind::kPath) require_paths_move(cell, offset);
+  require_thing(thing, offset);
   Workcell result = cell;
+  if (!thing.arm.empty()) {
+    const std::size_t k = moved_arm(cell, thing);
+    result.arms[k].waypoints = moved_path(cell, k, offset);
+    return result;
+  }
+  if (thing.kind == Movable::Kind::kPath) require_paths_move(cell, offset);
   for (std::size_t k = 0; k < 2; ++k) {
     if (cell.leader_of(k) >= 0) continue;
     Problem arm;
@@ -168,14 +278,39 @@ double PlacementAxis::at(int k) const {
   return tidy(from + k * step);
 }
 
-PlacementAxis placement_axis(int coordinate, double from, double to, double step) {
-  const std::string name = kCoordinates[static_cast<std::size_t>(coordinate)];
+std::string PlacementAxis::name() const {
+  return joint.empty() ? kCoordinates[static_cast<std::size_t>(coordinate)] : joint;
+}
+
+namespace {
+
+/// Returns the number of values of an axis. Throws InvalidArgument as placement_axis() does.
+int count_of(const std::string& name, double from, double to, double step) {
   if (!(std::abs(from) <= kMostMetres && std::abs(to) <= kMostMetres && from <= to && step >= 0))
     throw InvalidArgument(name + ": allowed are from <= to, from -1000 to 1000, and step >= 0");
   const double steps = step > 0 ? (to - from) / step : 0;
   if (!(steps < std::numeric_limits<int>::max() - 1))
     throw InvalidArgument(name + ": too many values: allowed is a larger step");
-  return {coordinate, from, to, step, static_cast<int>(steps + 1e-6) + 1};
+  return static_cast<int>(steps + 1e-6) + 1;
+}
+
+/// Sets the coordinate of an axis, or the position of its joint, in a placement.
+void set(const PlacementAxis& axis, double value, Placement& placement) {
+  if (axis.joint.empty())
+    placement.offset[static_cast<std::size_t>(axis.coordinate)] = value;
+  else
+    placement.hold[axis.joint] = value;
+}
+
+}  // namespace
+
+PlacementAxis placement_axis(int coordinate, double from, double to, double step) {
+  const std::string name = kCoordinates[static_cast<std::size_t>(coordinate)];
+  return {coordinate, from, to, step, count_of(name, from, to, step)};
+}
+
+PlacementAxis held_axis(const std::string& joint, double from, double to, double step) {
+  return {0, from, to, step, count_of("hold: '" + joint + "'", from, to, step), joint};
 }
 
 PlacementGrid::PlacementGrid(std::vector<PlacementAxis> axes) : axes_(std::move(axes)) {
@@ -200,20 +335,19 @@ std::uint64_t PlacementGrid::cell(const std::vector<int>& indices) const {
   return result;
 }
 
-Offset PlacementGrid::offset(std::uint64_t cell) const {
-  Offset result{};
+Placement PlacementGrid::placement(std::uint64_t cell) const {
+  Placement result;
   const std::vector<int> index = indices(cell);
-  for (std::size_t a = 0; a < axes_.size(); ++a)
-    result[static_cast<std::size_t>(axes_[a].coordinate)] = axes_[a].at(index[a]);
+  for (std::size_t a = 0; a < axes_.size(); ++a) set(axes_[a], axes_[a].at(index[a]), result);
   return result;
 }
 
-Offset sampled_offset(const std::vector<PlacementAxis>& axes, std::uint64_t seed, std::uint64_t k) {
-  Offset result{};
+Placement sampled_placement(const std::vector<PlacementAxis>& axes, std::uint64_t seed,
+                            std::uint64_t k) {
+  Placement result;
   SplitMix64 random(seed, k);
   for (const PlacementAxis& axis : axes)
-    result[static_cast<std::size_t>(axis.coordinate)] =
-        tidy(std::lerp(axis.from, axis.to, (random.symmetric() + 1) / 2));
+    set(axis, tidy(std::lerp(axis.from, axis.to, (random.symmetric() + 1) / 2)), result);
   return result;
 }
 
@@ -237,6 +371,8 @@ const char* to_string(PlacementCriterion criterion) {
       return "cost";
     case PlacementCriterion::kMargin:
       return "margin";
+    case PlacementCriterion::kSlide:
+      return "slide";
     case PlacementCriterion::kSpeed:
       return "speed";
   }
@@ -245,9 +381,11 @@ const char* to_string(PlacementCriterion criterion) {
 
 PlacementCriterion placement_criterion_from_string(const std::string& name) {
   using enum PlacementCriterion;
-  for (const PlacementCriterion criterion : {kClearance, kCost, kMargin, kSpeed})
+  for (const PlacementCriterion criterion : {kClearance, kCost, kMargin, kSlide, kSpeed})
     if (name == to_string(criterion)) return criterion;
-  throw InputError("unknown criterion '" + name + "': allowed are clearance, cost, margin, speed");
+  throw InputError("unknown criterion '" + name +
+                   "': allowed are clearance, cost, margin, slide, "
+                   "speed");
 }
 
 std::optional<double> merit(const PlacementRow& row, PlacementCriterion criterion) {
@@ -255,6 +393,7 @@ std::optional<double> merit(const PlacementRow& row, PlacementCriterion criterio
   using enum PlacementCriterion;
   const std::optional<double> value = criterion == kClearance ? row.clearance_margin
                                       : criterion == kMargin  ? row.joint_margin
+                                      : criterion == kSlide   ? row.slide_margin
                                       : criterion == kSpeed   ? row.tool_speed
                                                               : row.cost;
   if (!value) return std::nullopt;

@@ -2,6 +2,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
+#include <map>
 #include <set>
 
 #include "files/bad_input.hpp"
@@ -16,8 +18,8 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 const char* const kAllowed =
-    "a pose written with xyz: [x, y, z] and rpy: [roll, pitch, yaw], of plain numbers without "
-    "anchors or aliases";
+    "a pose written with xyz: [x, y, z] and rpy: [roll, pitch, yaw], and hold: {JOINT: position}, "
+    "of plain numbers without anchors or aliases";
 
 std::string list(const Vector3d& v) {
   return "[" + csv_number(v.x()) + ", " + csv_number(v.y()) + ", " + csv_number(v.z()) + "]";
@@ -35,6 +37,25 @@ class TextEdits {
     if (!node.IsSequence() || node.size() != 3) fail(object, key);
     for (std::size_t k = 0; k < 3; ++k)
       word(node[k], csv_number(value[static_cast<Eigen::Index>(k)]), key);
+  }
+  /// Sets positions of joints under `hold` of the section `robot`.
+  void hold(const YAML::Node& robot, const std::map<std::string, double>& positions) {
+    const YAML::Node node = robot["hold"];
+    if (node && !node.IsMap()) fail(robot, "hold");
+    std::string more;
+    for (const auto& [joint, position] : positions) {
+      if (node && node[joint])
+        word(node[joint], csv_number(position), "hold");
+      else
+        more += (more.empty() ? "" : ", ") + quoted(joint) + ": " + csv_number(position);
+    }
+    if (more.empty()) return;
+    if (!node)
+      insert(robot, "hold: {" + more + "}");
+    else if (node.size() > 0)
+      insert(node, more);
+    else
+      fail(robot, "hold");
   }
   /// Replaces quat: [...] by rpy: [...].
   void quaternion(const YAML::Node& object, const Vector3d& rpy) {
@@ -79,6 +100,13 @@ class TextEdits {
     if (text_.compare(at, size, node.Scalar()) != 0) fail(node, key);
     edits_.push_back({at, size, text});
   }
+  /// Returns a key, in quotes where it is not a plain word.
+  static std::string quoted(const std::string& key) {
+    const bool plain = std::all_of(key.begin(), key.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/' || c == '.';
+    });
+    return plain ? key : YAML::Dump(YAML::Node(key));
+  }
   void insert(const YAML::Node& map, const std::string& entry) {
     const std::size_t at = place(map);
     if (text_[at] == '{')
@@ -92,11 +120,11 @@ class TextEdits {
   std::vector<Edit> edits_;
 };
 
-const std::set<std::string> kPoseKeys{"xyz", "rpy", "quat"};
+const std::set<std::string> kPoseKeys{"xyz", "rpy", "quat"}, kHoldKey{"hold"};
 
-/// Returns true if two nodes are equal, with keys in the same order; with `skip_poses`, apart from
-/// the pose keys of this map.
-bool same(const YAML::Node& a, const YAML::Node& b, bool skip_poses = false) {
+/// Returns true if two nodes are equal, with keys in the same order, apart from the keys `but` of
+/// this map.
+bool same(const YAML::Node& a, const YAML::Node& b, const std::set<std::string>& but = {}) {
   if (a.Type() != b.Type()) return false;
   if (a.IsScalar()) return a.Scalar() == b.Scalar();
   if (a.IsSequence()) {
@@ -108,8 +136,7 @@ bool same(const YAML::Node& a, const YAML::Node& b, bool skip_poses = false) {
     const auto entries = [&](const YAML::Node& node) {
       std::vector<std::pair<YAML::Node, YAML::Node>> kept;
       for (const auto& entry : node)
-        if (!skip_poses || !kPoseKeys.contains(entry.first.Scalar()))
-          kept.emplace_back(entry.first, entry.second);
+        if (!but.contains(entry.first.Scalar())) kept.emplace_back(entry.first, entry.second);
       return kept;
     };
     const auto x = entries(a), y = entries(b);
@@ -121,9 +148,9 @@ bool same(const YAML::Node& a, const YAML::Node& b, bool skip_poses = false) {
 }
 
 /// Returns true if two documents are equal, except that the scene objects `moved` may have other
-/// poses.
-bool same_but_for_poses(const YAML::Node& a, const YAML::Node& b,
-                        const std::set<std::size_t>& moved) {
+/// poses, and joints may be held elsewhere.
+bool same_but_for_placement(const YAML::Node& a, const YAML::Node& b,
+                            const std::set<std::size_t>& moved) {
   if (a.size() != b.size()) return false;
   auto other = b.begin();
   for (const auto& entry : a) {
@@ -131,12 +158,13 @@ bool same_but_for_poses(const YAML::Node& a, const YAML::Node& b,
     const YAML::Node x = entry.second, y = other->second;
     ++other;
     if (entry.first.Scalar() != "scene") {
-      if (!same(x, y)) return false;
+      if (!same(x, y, entry.first.Scalar() == "robot" ? kHoldKey : std::set<std::string>{}))
+        return false;
       continue;
     }
     if (x.size() != y.size()) return false;
     for (std::size_t k = 0; k < x.size(); ++k)
-      if (!same(x[k], y[k], moved.contains(k))) return false;
+      if (!same(x[k], y[k], moved.contains(k) ? kPoseKeys : std::set<std::string>{})) return false;
   }
   return true;
 }
@@ -150,13 +178,22 @@ bool kept(const YAML::Node& was, const YAML::Node& is, const char* key) {
   return was[key] ? is[key] && same(was[key], is[key]) : !is[key];
 }
 
+/// Returns true if `hold` of a section `robot` states these positions.
+bool says_hold(const YAML::Node& robot, const std::map<std::string, double>& positions) {
+  std::map<std::string, double> said;
+  if (robot["hold"])
+    for (const auto& entry : robot["hold"]) said[entry.first.Scalar()] = entry.second.as<double>();
+  return said == positions;
+}
+
 /// Returns true if a text states what `root` does, with the poses of `placed` for the objects that
-/// have moved.
+/// have moved and the positions of its joints that are held.
 bool says(const std::string& text, const YAML::Node& root, const Problem& placed,
           const std::set<std::size_t>& moved) {
   try {
     const YAML::Node written = YAML::Load(text);
-    return same_but_for_poses(root, written, moved) &&
+    return same_but_for_placement(root, written, moved) &&
+           says_hold(written["robot"], placed.hold) &&
            std::all_of(moved.begin(), moved.end(), [&](std::size_t k) {
              const YAML::Node was = root["scene"][k], is = written["scene"][k];
              const Pose& pose = placed.scene[k].pose;
@@ -193,9 +230,17 @@ std::string with_poses(const std::string& text, const Problem& problem, const Pr
     }
     if (before.matrix() != after.matrix()) moved.insert(k);
   }
+  std::map<std::string, double> held;
+  for (const auto& [joint, position] : placed.hold)
+    if (const auto was = problem.hold.find(joint);
+        was == problem.hold.end() || was->second != position)
+      held[joint] = position;
+  edits.hold(root["robot"], held);
   std::string result = edits.text();
-  if (!moved.empty() && !says(result, root, placed, moved))
+  if ((!moved.empty() || !held.empty()) && !says(result, root, placed, moved)) {
+    if (moved.empty()) edits.fail(root["robot"], "hold");
     edits.fail(root["scene"][*moved.begin()], "its pose");
+  }
   return result;
 }
 

@@ -148,17 +148,22 @@ ShardResults load_shard(const std::filesystem::path& csv) {
   if (!record || (record->command != "campaign" && record->command != "place"))
     bad_input(at_line(file, 1), "does not say which shard it is", kAllowed);
   ShardResults results{file, std::move(*record), {}};
+  const std::string_view table = std::string_view(text).substr(text.find('\n') + 1),
+                         header = table.substr(0, table.find('\n'));
   if (results.record.command == "campaign") {
-    const std::string_view table = std::string_view(text).substr(text.find('\n') + 1);
-    const auto coordinates = coordinates_of(table.substr(0, table.find('\n')));
+    const auto coordinates = coordinates_of(header);
     if (!coordinates) bad_input(at_line(file, 2), "another header", kAllowed);
     results.record.settings.coordinates = *coordinates;
     results.rows = rows_of<EpisodeRow>(
         text, file, results.record, episode_header(*coordinates),
         [&](std::string_view line) { return episode_row(line, coordinates->size()); });
-  } else
+  } else {
+    const auto joints = joints_of(header);
+    if (!joints) bad_input(at_line(file, 2), "another header", kAllowed);
     results.rows =
-        rows_of<PlacementRow>(text, file, results.record, kPlacementHeader, placement_row);
+        rows_of<PlacementRow>(text, file, results.record, placement_header(*joints),
+                              [&](std::string_view line) { return placement_row(line, *joints); });
+  }
   return results;
 }
 

@@ -27,13 +27,17 @@ namespace swivel::io {
 /// of offsets.
 [[nodiscard]] std::optional<EpisodeRow> episode_row(std::string_view line, std::size_t coordinates);
 
-inline constexpr const char* kPlacementHeader =
-    "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_speed,"
-    "failed_s,cause,by,reason\n";
+/// Returns the header of placement rows, with its line end; it has a column for each of the joints
+/// whose positions the rows have.
+[[nodiscard]] std::string placement_header(const std::vector<std::string>& joints);
+/// Returns the joints of a header, given without its line end; none if the line is no such header.
+[[nodiscard]] std::optional<std::vector<std::string>> joints_of(std::string_view line);
 /// Returns the line of a placement, with its end.
 [[nodiscard]] std::string csv_line(const PlacementRow& row);
-/// Returns the placement of a line, given without its end; none if it is not such a row.
-[[nodiscard]] std::optional<PlacementRow> placement_row(std::string_view line);
+/// Returns the placement of a line, given without its end; none if it is not a row with positions
+/// of these joints.
+[[nodiscard]] std::optional<PlacementRow> placement_row(std::string_view line,
+                                                        const std::vector<std::string>& joints);
 
 /// Reads a field of a row: a finite number, a number that may be missing, or the status of a row.
 /// Returns false if the field is not that.

@@ -114,8 +114,22 @@ void take_least(const Measures& measures, PlacementRow& row) {
     least = std::min(least.value_or(value), value);
   };
   if (measures.nearest_limit) lower(row.joint_margin, measures.nearest_limit->margin);
+  if (measures.nearest_slide_limit) lower(row.slide_margin, measures.nearest_slide_limit->margin);
   if (measures.top_tool_speed) lower(row.tool_speed, measures.top_tool_speed->speed);
   if (measures.min_margin) take_least(*measures.min_margin, row);
+}
+
+/// Returns where a cell is, for messages.
+std::string place_of(const PlacementCell& cell) {
+  std::string text;
+  const auto add = [&](const std::string& name, double value) {
+    text += (text.empty() ? "" : ", ") + name + formatted(" %.9g", value);
+  };
+  for (std::size_t c = 0; c < kCoordinates.size(); ++c)
+    if (cell.offset[c] != 0) add(kCoordinates[c], cell.offset[c]);
+  text = text.empty() ? "" : "moved by " + text;
+  for (const auto& [joint, position] : cell.hold) add(joint + " at", position);
+  return text.empty() ? "moved by nothing" : text;
 }
 
 }  // namespace
@@ -153,6 +167,7 @@ struct PlacementPlanner::Impl {
     PlacementRow row;
     row.cell = cell.cell;
     row.offset = cell.offset;
+    row.hold = cell.hold;
     try {
       if (!fill(row, worker)) return std::nullopt;
     } catch (const Stopped&) {
@@ -172,39 +187,62 @@ struct PlacementPlanner::Impl {
   }
   /// Plans a placement, and fills in its row. Returns false if it was stopped.
   virtual bool fill(PlacementRow& row, int worker) = 0;
-  using Found = std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>;
+  using Found = std::function<void(const PlacementCell&, const PlanResult&, const PlanView&,
+                                   const std::shared_ptr<const PreparedRobot>&)>;
   virtual void plan_again(const std::vector<PlacementCell>& cells, const Found& found) = 0;
 };
 
 struct PlacementPlanner::ProblemPlacements : Impl {
+  std::shared_ptr<const PreparedRobot> robot;
   Problem problem;
   Movable thing;
+  /// What one thread plans with, and where its robot's joints are held.
   struct Worker {
+    std::shared_ptr<const PreparedRobot> robot;
+    Problem problem;
+    HeldPositions hold;
     Planner planner;
     LeastMargins margins;
   };
   std::vector<Worker> workers;
 
-  ProblemPlacements(const std::shared_ptr<const PreparedRobot>& robot, Problem p, Movable t,
+  ProblemPlacements(std::shared_ptr<const PreparedRobot> r, Problem p, Movable t,
                     const PlanOptions& options)
-      : Impl(options), problem(std::move(p)), thing(std::move(t)) {
+      : Impl(options), robot(std::move(r)), problem(std::move(p)), thing(std::move(t)) {
     static_cast<void>(placed_problem(problem, thing, {}));
     for (int worker = 0; worker < executor.threads(); ++worker)
-      workers.push_back({Planner(robot, problem), LeastMargins(alone_moved(problem, thing))});
+      workers.push_back(made(robot, problem, {}));
+  }
+
+  Worker made(std::shared_ptr<const PreparedRobot> of, const Problem& held, HeldPositions hold) {
+    Planner planner(of, held);
+    return {std::move(of), held, std::move(hold), std::move(planner),
+            LeastMargins(alone_moved(problem, thing))};
+  }
+  /// Returns a worker, with the joints held as a cell has them and the thing placed.
+  Worker& placed(int number, const Offset& offset, const HeldPositions& hold,
+                 const Budget& budget) {
+    Worker& worker = workers[static_cast<std::size_t>(number)];
+    if (worker.hold != hold) {
+      Problem held = problem;
+      hold_joints(held, hold);
+      worker = made(std::make_shared<const PreparedRobot>(held, budget), held, hold);
+    }
+    worker.planner.set_problem(placed_problem(worker.problem, thing, offset));
+    return worker;
   }
 
   bool fill(PlacementRow& row, int worker) override {
-    auto& [planner, margins] = workers[static_cast<std::size_t>(worker)];
-    planner.set_problem(placed_problem(problem, thing, row.offset));
-    const PlanOptions options = options_now();
-    const Budget budget = options.budget();
-    const PlanResult result = planner.plan(options);
+    const Budget budget = options_now().budget();
+    Worker& with = placed(worker, row.offset, row.hold, budget);
+    const PlanResult result = with.planner.plan(options_now());
     row.status = result.status;
     if (result.status == PlanStatus::kSolved) {
       row.cost = result.cost;
       if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
+      if (result.nearest_slide_limit) row.slide_margin = result.nearest_slide_limit->margin;
       if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
-      if (const auto least = margins.of(planner.view(), result.trajectory, budget)) {
+      if (const auto least = with.margins.of(with.planner.view(), result.trajectory, budget)) {
         row.clearance = least->clearance.distance;
         row.clearance_margin = least->clearance.margin();
       }
@@ -221,20 +259,26 @@ struct PlacementPlanner::ProblemPlacements : Impl {
   }
 
   void plan_again(const std::vector<PlacementCell>& cells, const Found& found) override {
-    Planner& planner = workers.front().planner;
     for (const PlacementCell& cell : cells) {
-      planner.set_problem(placed_problem(problem, thing, cell.offset));
-      const PlanResult result = planner.plan(options_now());
+      Worker& with = placed(0, cell.offset, cell.hold, options_now().budget());
+      const PlanResult result = with.planner.plan(options_now());
       if (result.status == PlanStatus::kSolved || result.status == PlanStatus::kInfeasible)
-        found(cell, result, planner.view());
+        found(cell, result, with.planner.view(), with.robot);
     }
   }
 };
 
 struct PlacementPlanner::JobPlacements : Impl {
+  /// A job with its joints held as in one cell, and its robot.
+  struct Held {
+    std::shared_ptr<const PreparedRobot> robot;
+    Job job;
+    HeldPositions hold;
+  };
   std::shared_ptr<const PreparedRobot> robot;
   Job job;
   Movable thing;
+  std::vector<Held> workers;  ///< what each thread planned last
 
   JobPlacements(std::shared_ptr<const PreparedRobot> r, Job j, Movable t,
                 const PlanOptions& options)
@@ -244,12 +288,24 @@ struct PlacementPlanner::JobPlacements : Impl {
     require_supported(single, "jobs");
     robot->require_prepared_for(problem_of_run(job, {0, false}));
     static_cast<void>(placed_job(job, thing, {}));
+    workers.assign(static_cast<std::size_t>(executor.threads()), Held{robot, job, {}});
   }
 
-  bool fill(PlacementRow& row, int /*worker*/) override {
-    const PlanOptions options = options_now();
-    const Budget budget = options.budget();
-    const JobResult result = plan_job(*robot, placed_job(job, thing, row.offset), options);
+  const Held& held(int worker, const HeldPositions& hold, const Budget& budget) {
+    Held& last = workers[static_cast<std::size_t>(worker)];
+    if (last.hold == hold) return last;
+    Job changed = job;
+    hold_joints(changed, hold);
+    auto prepared =
+        std::make_shared<const PreparedRobot>(problem_of_run(changed, {0, false}), budget);
+    return last = {std::move(prepared), std::move(changed), hold};
+  }
+
+  bool fill(PlacementRow& row, int worker) override {
+    const Budget budget = options_now().budget();
+    const Held& with = held(worker, row.hold, budget);
+    const JobResult result =
+        plan_job(*with.robot, placed_job(with.job, thing, row.offset), options_now());
     if (!answered(result, budget)) return false;
     row.status = result.status;
     if (result.status == PlanStatus::kSolved) {
@@ -279,7 +335,8 @@ struct PlacementPlanner::WorkcellPlacements : Impl {
   bool fill(PlacementRow& row, int /*worker*/) override {
     const PlanOptions options = options_now();
     const Budget budget = options.budget();
-    const Workcell placed = placed_workcell(cell, thing, row.offset);
+    Workcell placed = placed_workcell(cell, thing, row.offset);
+    hold_joints(placed, row.hold);
     const StudiedWorkcell found = plan_studied(placed, options, budget);
     const WorkcellResult& result = found.result;
     if (!found.fault && !answered(result, budget)) return false;
@@ -316,9 +373,10 @@ bool PlacementPlanner::stopped() const {
 std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<PlacementCell>& cells) {
   std::vector<PlacedPlan> plans;
   impl_->plan_again(cells,
-                    [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view) {
+                    [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view,
+                        const std::shared_ptr<const PreparedRobot>& robot) {
                       if (result.status == PlanStatus::kSolved)
-                        plans.push_back({cell, view.problem.scene, result.trajectory});
+                        plans.push_back({cell, view.problem.scene, result.trajectory, robot});
                     });
   return plans;
 }
@@ -326,7 +384,9 @@ std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<Placeme
 void PlacementPlanner::plan_again(
     const std::vector<PlacementCell>& cells,
     const std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>& found) {
-  impl_->plan_again(cells, found);
+  impl_->plan_again(
+      cells, [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view,
+                 const std::shared_ptr<const PreparedRobot>&) { found(cell, result, view); });
 }
 
 std::vector<PlacementRow> PlacementPlanner::plan(
@@ -350,13 +410,7 @@ std::vector<PlacementRow> PlacementPlanner::plan(
       done(*rows[k]);
     } catch (const InputError& error) {
       impl_->stopped = true;
-      std::string place;
-      for (std::size_t c = 0; c < kCoordinates.size(); ++c)
-        if (cells[k].offset[c] != 0)
-          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " +
-                   formatted("%.9g", cells[k].offset[c]);
-      throw InputError(std::string(error.what()) + " (moved by " +
-                       (place.empty() ? "nothing" : place) + ")");
+      throw InputError(std::string(error.what()) + " (" + place_of(cells[k]) + ")");
     } catch (...) {
       impl_->stopped = true;
       throw;

@@ -257,14 +257,19 @@ void bind_cell(py::module_& m) {
       .def(
           "placed",
           [](const Workcell& w, const Offset& offset, const std::optional<std::string>& object,
-             bool path, bool base) {
-            return shared(placed_workcell(*w.cell, to_movable(object, path, base), offset));
+             bool path, bool base, const std::optional<std::string>& arm,
+             const HeldPositions& hold) {
+            return shared(placed_workcell(held_as(*w.cell, hold),
+                                          to_movable(object, path, base, !hold.empty(), arm),
+                                          offset));
           },
           py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
-          py::arg("base") = false,
+          py::arg("base") = false, py::arg("arm") = py::none(), py::arg("hold") = HeldPositions(),
           "The workcell of one placement: an object of the scene with the paths on it, the paths "
-          "of both arms (a follower's with its leader's tool) or the robot moved by x y z (m) roll "
-          "pitch yaw (rad) in the base frame, about its own origin.")
+          "of both arms (a follower's with its leader's tool) or that of `arm` alone, or the robot "
+          "moved by x y z (m) roll pitch yaw (rad) in the base frame, about its own origin, with "
+          "the joints of `hold` held there, rad or m. The path of a follower alone is moved in the "
+          "frame of its leader's tool.")
       .def(
           "episode",
           [](const Workcell& w, std::uint64_t seed, std::uint64_t episode) {

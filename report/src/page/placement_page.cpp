@@ -47,9 +47,20 @@ Pose still_frame(const Movable& thing, const Offset& offset) {
   return moved.inverse();
 }
 
-/// Returns rows in a placement for drawing.
+/// Returns the robot with joints held as in a cell: its chain, and the poses of its bodies at q = 0
+/// in the order of Bodies.
+Json robot_json(const PreparedRobot& robot, const RobotModel& model) {
+  Json poses = Json::array();
+  for (const RobotBody& body : robot.world().bodies()) poses.push_back(pose_json(body.pose));
+  return {{"chain", chain_json(robot.arm().chain)},
+          {"ground", ground_json(model, robot.arm())},
+          {"robot_poses", std::move(poses)}};
+}
+
+/// Returns rows in a placement for drawing. `robot`: robot_json() where its joints are held
+/// elsewhere than in other cells.
 Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows,
-               const std::vector<SceneObject>& scene, const Movable& thing) {
+               const std::vector<SceneObject>& scene, const Movable& thing, const Json& robot) {
   std::vector<float> s, joints;  // for drawing
   for (const TrajectoryRow& row : rows) {
     s.push_back(static_cast<float>(row.s));
@@ -57,11 +68,13 @@ Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows
   }
   Json poses = Json::array();
   for (const SceneObject& object : scene) poses.push_back(pose_json(object.pose));
-  return {{"cell", cell.cell},
-          {"s", Json::binary(bytes_of(s))},
-          {"joints", Json::binary(bytes_of(joints))},
-          {"poses", std::move(poses)},
-          {"still_frame", pose_json(still_frame(thing, cell.offset))}};
+  Json json = {{"cell", cell.cell},
+               {"s", Json::binary(bytes_of(s))},
+               {"joints", Json::binary(bytes_of(joints))},
+               {"poses", std::move(poses)},
+               {"still_frame", pose_json(still_frame(thing, cell.offset))}};
+  if (!robot.is_null()) json["robot"] = robot;
+  return json;
 }
 
 Json scene_json(const PlacementScene& scene) {
@@ -69,9 +82,12 @@ Json scene_json(const PlacementScene& scene) {
   Bodies bodies(scene.robot->world(), scene.problem->scene);
   Json plans = Json::array();
   for (const PlacedPlan& plan : scene.plans)
-    plans.push_back(plan_json(plan.cell, plan.trajectory, plan.scene, scene.thing));
+    plans.push_back(plan_json(
+        plan.cell, plan.trajectory, plan.scene, scene.thing,
+        plan.cell.hold.empty() ? Json() : robot_json(*plan.robot, *scene.problem->model)));
   for (const PlacedEnd& end : scene.ends) {
-    plans.push_back(plan_json(end.cell, end.rows, end.scene, scene.thing));
+    plans.push_back(plan_json(end.cell, end.rows, end.scene, scene.thing,
+                              end.robot.empty() ? Json() : Json::parse(end.robot)));
     plans.back()["past"] = Json::parse(end.past);
   }
   return {{"chain", chain_json(scene.robot->arm().chain)},
@@ -89,7 +105,7 @@ std::optional<PlacedEnd> placed_end(const PlacementCell& cell, const PlanView& v
   const Json result = Json::parse(result_json);
   if (!result["diagnosis"].is_object()) return std::nullopt;
   const LatticeMap map = make_map(view, false, budget);
-  PlacedEnd end{cell, view.problem.scene, rows_of(view.lattice, view.path), ""};
+  PlacedEnd end{cell, view.problem.scene, rows_of(view.lattice, view.path), "", ""};
   const std::vector<PageRow> rows = placed(view.lattice, map, end.rows, view.path);
   const Json past = cut_json(map, view.lattice, view.world, view.path, rows, result["diagnosis"]);
   if (past.is_null()) return std::nullopt;
@@ -99,6 +115,9 @@ std::optional<PlacedEnd> placed_end(const PlacementCell& cell, const PlanView& v
   end.rows.push_back(last);
   end.past = Json{{"pair", past["pair"]}, {"line", past["line"]}, {"what", past["what"]}}.dump(
       -1, ' ', false, Json::error_handler_t::replace);
+  if (!cell.hold.empty())
+    end.robot = robot_json(view.robot, *view.problem.model)
+                    .dump(-1, ' ', false, Json::error_handler_t::replace);
   return end;
 }
 
@@ -111,12 +130,14 @@ std::string to_placement_page(const std::vector<PlacementRow>& rows, const Place
       {"clearance", &PlacementRow::clearance},
       {"clearance_margin", &PlacementRow::clearance_margin},
       {"joint_margin", &PlacementRow::joint_margin},
+      {"slide_margin", &PlacementRow::slide_margin},
       {"tool_speed", &PlacementRow::tool_speed},
       {"failed_s", &PlacementRow::failed_s}};
   for (const auto& [name, member] : numbers) columns[name] = Json::array();
   if (facts.sample) columns["offsets"] = Json::array();
   std::map<std::tuple<std::string, std::string, std::string>, int> known;
   Json ends = Json::array();
+  bool has_slide = false;
   for (const PlacementRow& row : rows) {
     columns["cell"].push_back(row.cell);
     int end = -1;
@@ -131,19 +152,22 @@ std::string to_placement_page(const std::vector<PlacementRow>& rows, const Place
     }
     columns["end"].push_back(end);
     for (const auto& [name, member] : numbers) columns[name].push_back(rounded(row.*member));
+    has_slide = has_slide || row.slide_margin;
     if (!facts.sample) continue;
     Json offsets = Json::array();
     for (const PlacementAxis& axis : facts.axes)
-      offsets.push_back(row.offset[static_cast<std::size_t>(axis.coordinate)]);
+      offsets.push_back(axis.joint.empty() ? row.offset[static_cast<std::size_t>(axis.coordinate)]
+                                           : row.hold.at(axis.joint));
     columns["offsets"].push_back(std::move(offsets));
   }
+  if (!has_slide) columns.erase("slide_margin");
   Json axes = Json::array();
   for (const PlacementAxis& axis : facts.axes) {
     Json values = Json::array();
     for (int k = 0; k < axis.count; ++k) values.push_back(axis.at(k));
     if (facts.sample && axis.to > axis.from) values.push_back(axis.to);
-    axes.push_back({{"name", kCoordinates[static_cast<std::size_t>(axis.coordinate)]},
-                    {"values", std::move(values)}});
+    axes.push_back({{"name", axis.name()}, {"values", std::move(values)}});
+    if (!axis.joint.empty()) axes.back()["unit"] = axis.slides ? "m" : "rad";
   }
   Json data = {{"problem", facts.problem},  {"thing", facts.thing},
                {"axes", std::move(axes)},   {"sample", facts.sample},

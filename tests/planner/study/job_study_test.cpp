@@ -164,7 +164,7 @@ TEST(JobPlacements, EachRowIsThatOfThePlacedJobAtAnyThreadCount) {
     const PlacementGrid grid(
         {placement_axis(0, -0.15, 0.15, 0.15), placement_axis(5, 0, 0.2, 0.2)});
     std::vector<PlacementCell> cells;
-    for (std::uint64_t k = 0; k < grid.size(); ++k) cells.push_back({k, grid.offset(k)});
+    for (std::uint64_t k = 0; k < grid.size(); ++k) cells.push_back({k, grid.placement(k).offset});
     ASSERT_EQ(cells.size(), 6u);
     for (const int threads : {1, 3}) {
       PlanOptions options;

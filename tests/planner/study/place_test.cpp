@@ -56,11 +56,13 @@ Problem random_cell(const TestRobot& robot, Random& random) {
 void expect_same(const PlacementRow& a, const PlacementRow& b, const std::string& what) {
   EXPECT_EQ(a.cell, b.cell) << what;
   EXPECT_EQ(a.offset, b.offset) << what;
+  EXPECT_EQ(a.hold, b.hold) << what;
   EXPECT_EQ(a.status, b.status) << what;
   EXPECT_EQ(a.cost, b.cost) << what;
   EXPECT_EQ(a.clearance, b.clearance) << what;
   EXPECT_EQ(a.clearance_margin, b.clearance_margin) << what;
   EXPECT_EQ(a.joint_margin, b.joint_margin) << what;
+  EXPECT_EQ(a.slide_margin, b.slide_margin) << what;
   EXPECT_EQ(a.tool_speed, b.tool_speed) << what;
   EXPECT_EQ(a.failed_s, b.failed_s) << what;
   EXPECT_EQ(a.cause, b.cause) << what;
@@ -100,6 +102,7 @@ PlacementRow row_of(const PlacementCell& cell, const PlanResult& result, const P
       row.clearance_margin = result.min_margin->margin;
     }
     if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
+    if (result.nearest_slide_limit) row.slide_margin = result.nearest_slide_limit->margin;
     if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
   } else {
     row.failed_s = result.diagnosis.reached_s;
@@ -451,7 +454,7 @@ class Hill {
   [[nodiscard]] PlacementRow row_of(std::uint64_t cell) const {
     PlacementRow row;
     row.cell = cell;
-    row.offset = grid_.offset(cell);
+    row.offset = grid_.placement(cell).offset;
     Vector3d at = Vector3d::Zero(), hill = Vector3d::Zero(), middle = Vector3d::Zero();
     for (int a = 0; a < dimensions_; ++a) {
       at[a] = row.offset[static_cast<std::size_t>(a)];
@@ -556,14 +559,14 @@ TEST(Place, GridsAndSamples) {
   ASSERT_EQ(grid.size(), 164u);
   for (std::uint64_t cell = 0; cell < grid.size(); ++cell)
     ASSERT_EQ(grid.cell(grid.indices(cell)), cell);
-  EXPECT_EQ(grid.offset(80), (Offset{0, 0, 0.5, 0, 0, 0}));
-  EXPECT_FALSE(std::signbit(grid.offset(80)[0]));
-  EXPECT_EQ(grid.offset(163), (Offset{0.1, 0, 0.5, 0, 0, 0.3}));
+  EXPECT_EQ(grid.placement(80).offset, (Offset{0, 0, 0.5, 0, 0, 0}));
+  EXPECT_FALSE(std::signbit(grid.placement(80).offset[0]));
+  EXPECT_EQ(grid.placement(163).offset, (Offset{0.1, 0, 0.5, 0, 0, 0.3}));
   Offset least{}, most{};
   for (std::uint64_t k = 0; k < 1000; ++k) {
-    const Offset offset = sampled_offset(grid.axes(), 7, k);
-    EXPECT_EQ(offset, sampled_offset(grid.axes(), 7, k));
-    EXPECT_NE(offset, sampled_offset(grid.axes(), 8, k));
+    const Offset offset = sampled_placement(grid.axes(), 7, k).offset;
+    EXPECT_EQ(offset, sampled_placement(grid.axes(), 7, k).offset);
+    EXPECT_NE(offset, sampled_placement(grid.axes(), 8, k).offset);
     EXPECT_EQ(offset[2], 0.5);
     EXPECT_EQ(offset[1], 0);
     for (std::size_t c = 0; c < 6; ++c) {
@@ -575,6 +578,20 @@ TEST(Place, GridsAndSamples) {
   EXPECT_GT(most[0], 0.098);
   EXPECT_GT(most[5], 0.297);
   EXPECT_GE(least[5], 0);
+}
+
+TEST(Place, GridsOverJoints) {
+  const PlacementGrid grid({held_axis("torso", -0.5, 0.5, 0.25), held_axis("rail", 1, 1, 0),
+                            placement_axis(1, 0, 0.2, 0.1)});
+  ASSERT_EQ(grid.size(), 15u);
+  const Placement placement = grid.placement(7);
+  EXPECT_EQ(placement.offset, (Offset{0, 0.1, 0, 0, 0, 0}));
+  EXPECT_EQ(placement.hold, (HeldPositions{{"torso", 0}, {"rail", 1}}));
+  const Placement drawn = sampled_placement(grid.axes(), 7, 3);
+  EXPECT_LE(std::abs(drawn.hold.at("torso")), 0.5);
+  EXPECT_EQ(drawn.hold.at("rail"), 1);
+  EXPECT_EQ(drawn.hold, sampled_placement(grid.axes(), 7, 3).hold);
+  EXPECT_THROW(static_cast<void>(held_axis("torso", 1, 0, 0.1)), InvalidArgument);
 }
 
 }  // namespace

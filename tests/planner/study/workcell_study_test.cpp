@@ -71,10 +71,13 @@ Workcell cell_with_scene(Random& random, bool follows) {
 
 /// Returns the row that a plan of the placed workcell alone gives.
 PlacementRow row_alone(const Workcell& cell, const Movable& thing, const PlacementCell& at) {
-  PlacementRow row{.cell = at.cell, .offset = at.offset};
+  PlacementRow row{.cell = at.cell, .offset = at.offset, .hold = at.hold};
   PlanOptions options;
   options.evidence.postures = true;
-  const WorkcellResult result = plan_workcell(placed_workcell(cell, thing, at.offset), options);
+  Workcell placed = placed_workcell(cell, thing, at.offset);
+  for (WorkcellArm& arm : placed.arms)
+    for (const auto& [joint, position] : at.hold) arm.hold[joint] = position;
+  const WorkcellResult result = plan_workcell(placed, options);
   row.status = result.status;
   if (result.status != PlanStatus::kSolved) {
     const StudyFailure failure = failure_of(result, cell);
@@ -101,6 +104,7 @@ void expect_same(const PlacementRow& a, const PlacementRow& b) {
   SCOPED_TRACE("cell " + std::to_string(b.cell));
   EXPECT_EQ(a.cell, b.cell);
   EXPECT_EQ(a.offset, b.offset);
+  EXPECT_EQ(a.hold, b.hold);
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.cost, b.cost);
   EXPECT_EQ(a.clearance, b.clearance);
@@ -126,6 +130,89 @@ std::vector<PlacementRow> rows_of(const Workcell& cell, const Movable& thing,
   return rows;
 }
 
+/// Checks that the path of one arm was moved by an offset without turns, and nothing else.
+void expect_path_moved(const Workcell& cell, const Workcell& placed, std::size_t arm,
+                       const Offset& offset) {
+  EXPECT_EQ(placed.arms[1 - arm].waypoints, cell.arms[1 - arm].waypoints);
+  for (std::size_t k = 0; k < cell.scene.size(); ++k)
+    EXPECT_EQ(placed.scene[k].pose.matrix(), cell.scene[k].pose.matrix());
+  Matrix3d frame = Matrix3d::Identity();  // of a follower that of the leader's tool
+  for (const SceneObject& object : cell.scene)
+    if (object.name == cell.arms[arm].path_frame) frame = object.pose.linear();
+  for (std::size_t k = 0; k < cell.arms[arm].waypoints.size(); ++k) {
+    const Waypoint &before = cell.arms[arm].waypoints[k], &after = placed.arms[arm].waypoints[k];
+    EXPECT_LT(
+        (frame * (after.position - before.position) - Vector3d(offset[0], offset[1], offset[2]))
+            .norm(),
+        1e-12);
+    EXPECT_EQ(after.orientation.coeffs(), before.orientation.coeffs());
+  }
+}
+
+/// The path of one arm is moved by itself, that of a leader, of a follower, and of arms side by
+/// side; the torso is held elsewhere, alone and at the same time.
+TEST(WorkcellPlacements, OneArmsPathAndTheTorso) {
+  Random random(seed("WorkcellPlacements.OneArmsPath"));
+  std::map<std::string, int> met;
+  const int count = trials(12);
+  for (int trial = 0; trial < count; ++trial) {
+    SCOPED_TRACE(trial);
+    const bool follows = trial % 4 >= 2;
+    const Workcell cell = cell_with_scene(random, follows);
+    const auto arm = static_cast<std::size_t>(trial % 2);
+    const Movable thing = trial % 3 == 2 ? Movable{Movable::Kind::kNothing, ""}
+                                         : Movable{Movable::Kind::kPath, "", cell.arms[arm].name};
+    const bool moves = thing.kind == Movable::Kind::kPath, holds = trial % 3 > 0;
+    std::vector<PlacementCell> cells;
+    for (std::uint64_t k = 0; k < 5; ++k) {
+      PlacementCell& at = cells.emplace_back(PlacementCell{k});
+      for (std::size_t c = 0; moves && c < 3; ++c) at.offset[c] = random.uniform(-0.1, 0.1);
+      if (holds) at.hold["torso_joint_b1"] = random.uniform(-0.2, 0.2);
+      if (moves) expect_path_moved(cell, placed_workcell(cell, thing, at.offset), arm, at.offset);
+    }
+    const auto rows = rows_of(cell, thing, cells, 1), others = rows_of(cell, thing, cells, 3);
+    ASSERT_EQ(rows.size(), cells.size());
+    ASSERT_EQ(others.size(), cells.size());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      expect_same(rows[k], row_alone(cell, thing, cells[k]));
+      expect_same(others[k], rows[k]);
+      ++met[rows[k].status == PlanStatus::kSolved ? "solved" : "no plan"];
+      ++met[!moves ? "torso" : !follows ? "side by side" : arm == 0 ? "leader" : "follower"];
+    }
+  }
+  std::printf("%d workcells:", count);
+  for (const auto& [what, times] : met) std::printf(" %s %d", what.c_str(), times);
+  std::printf("\n");
+  for (const char* const what : {"torso", "side by side", "leader", "follower"})
+    EXPECT_GE(met[what], at_least(5)) << what;
+  EXPECT_GE(met["solved"], at_least(count));
+  EXPECT_GE(met["no plan"], at_least(3));
+}
+
+TEST(WorkcellPlacements, AnArmIsRefusedByLine) {
+  Random random(seed("WorkcellPlacements.Refused"));
+  const Workcell cell = cell_with_scene(random, false);
+  const auto refused = [&](const Movable& thing, const char* words) {
+    try {
+      static_cast<void>(placed_workcell(cell, thing, {}));
+      ADD_FAILURE() << words;
+    } catch (const InvalidArgument& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(words), std::string::npos) << message;
+      EXPECT_NE(message.find("allowed "), std::string::npos) << message;
+    }
+  };
+  refused({Movable::Kind::kPath, "", "middle"}, "unknown arm 'middle'");
+  refused({Movable::Kind::kBase, "", "left"}, "both arms are of one robot");
+  EXPECT_THROW(static_cast<void>(placed_workcell(cell, {Movable::Kind::kNothing, ""}, {0.1})),
+               InvalidArgument);
+  Workcell planned = cell;
+  EXPECT_THROW(hold_joints(planned, {{"arm_left_joint_1_s", 0}}), InvalidArgument);
+  Problem one;
+  EXPECT_THROW(static_cast<void>(placed_problem(one, {Movable::Kind::kPath, "", "left"}, {})),
+               InvalidArgument);
+}
+
 TEST(WorkcellPlacements, EachRowIsThatOfThePlacedWorkcellAtAnyThreadCount) {
   Random random(seed("WorkcellPlacements.EachRowIsThatOfThePlacedWorkcell"));
   std::map<std::string, int> met;
@@ -141,7 +228,7 @@ TEST(WorkcellPlacements, EachRowIsThatOfThePlacedWorkcellAtAnyThreadCount) {
     const PlacementGrid grid(
         {placement_axis(1, -0.2, 0.2, 0.1), placement_axis(5, 0, turns ? 0.2 : 0, 0.2)});
     std::vector<PlacementCell> cells;
-    for (std::uint64_t k = 0; k < grid.size(); ++k) cells.push_back({k, grid.offset(k)});
+    for (std::uint64_t k = 0; k < grid.size(); ++k) cells.push_back({k, grid.placement(k).offset});
     const auto rows = rows_of(cell, thing, cells, 1), others = rows_of(cell, thing, cells, 3);
     ASSERT_EQ(rows.size(), cells.size());
     ASSERT_EQ(others.size(), cells.size());

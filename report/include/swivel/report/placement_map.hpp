@@ -62,6 +62,7 @@ struct PlacedEnd {
   std::vector<SceneObject> scene;   ///< with the objects where they are in this placement
   std::vector<TrajectoryRow> rows;  ///< valid ones, and behind them the pose that none can move to
   std::string past;                 ///< JSON: what that pose is, and which bodies are in its way
+  std::string robot;  ///< JSON: the robot with joints held as in the cell; empty: as in all cells
 };
 /// Returns how far paths go in a placement without a path; nullopt where not even a pose that is
 /// not valid is known. `view`: of its plan; `result_json`: its result in the format of `--json`.
@@ -73,7 +74,7 @@ struct PlacedEnd {
 /// What the page's view in three dimensions shows.
 struct PlacementScene {
   const PreparedRobot* robot = nullptr;
-  const Problem* problem = nullptr;  ///< with nothing moved
+  const Problem* problem = nullptr;  ///< with nothing moved, and joints held as the file says
   Movable thing;
   std::vector<PlacedPlan> plans;  ///< of the best
   std::vector<PlacedEnd> ends;    ///< of some that have no path

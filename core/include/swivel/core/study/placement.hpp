@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,28 +24,45 @@ inline constexpr std::array<const char*, 6> kCoordinates{"x", "y", "z", "roll", 
 /// The thing that a placement study moves.
 struct Movable {
   enum class Kind {
-    kObject,  ///< an object of the scene, and the path if it is given in its frame
-    kPath,    ///< the path alone, about the origin of its frame
-    kBase,    ///< the robot: as seen from it everything else moves the other way
+    kObject,   ///< an object of the scene, and the path if it is given in its frame
+    kPath,     ///< the path alone, about the origin of its frame
+    kBase,     ///< the robot: as seen from it everything else moves the other way
+    kNothing,  ///< nothing: only joints that are held are varied
   };
   Kind kind = Kind::kObject;
   std::string object;  ///< for kObject: its name
+  /// For kPath in a workcell: the name of the arm whose path alone is moved, about the origin of
+  /// its frame, that of a follower in the frame of its leader's tool; empty: the paths of both
+  /// arms.
+  std::string arm = {};
 };
+
+/// Positions of joints that are held, by name: rad, or m of a prismatic one.
+using HeldPositions = std::map<std::string, double>;
+
+/// Holds joints of a robot at other positions, in Robot::hold. Throws InvalidArgument for a joint
+/// that is unknown, fixed, planned or mimics another, for a position outside of its limits, and for
+/// a position that makes another joint a planned one; InputError as build_arm() does.
+void hold_joints(Robot& robot, const HeldPositions& positions);
+/// Does so for both arms of a workcell, whose robot is one.
+void hold_joints(Workcell& cell, const HeldPositions& positions);
 
 /// Returns the problem with one thing moved. Coordinates that do not change keep their bits. Those
 /// of objects that do are multiples of 1e-12 m, and of 1e-12 rad as roll, pitch and yaw, so that a
-/// file can state them exactly. Throws InvalidArgument for an unknown object.
+/// file can state them exactly. Throws InvalidArgument for an unknown object, for an arm, and for
+/// an offset of kNothing.
 [[nodiscard]] Problem placed_problem(const Problem& problem, const Movable& thing,
                                      const Offset& offset);
 /// Returns the job with one thing moved as by placed_problem(), for Movable::Kind::kPath the paths
-/// of all strokes. Its home stays as it is, seven joints. Throws InvalidArgument for an unknown
-/// object.
+/// of all strokes. Its home stays as it is, seven joints. Throws InvalidArgument as
+/// placed_problem() does.
 [[nodiscard]] Job placed_job(const Job& job, const Movable& thing, const Offset& offset);
 /// Returns the workcell with one thing moved as by placed_problem(), for Movable::Kind::kPath the
-/// paths of both arms alike. The path of a follower stays on its leader's tool; a given motion,
-/// starts and ends stay as they are, joints. Throws InvalidArgument for an unknown object, for the
-/// path of a follower whose leader's motion is given, and for paths that are turned alike and have
-/// frames with an origin each.
+/// paths of both arms alike, or that of Movable::arm. Where both are moved, the path of a follower
+/// stays on its leader's tool; a given motion, starts and ends stay as they are, joints. Throws
+/// InvalidArgument for an unknown object or arm, for an offset of kNothing, for an arm whose motion
+/// is given, and, where both paths are moved, for that of a follower whose leader's motion is given
+/// and for paths that are turned alike and have frames with an origin each.
 [[nodiscard]] Workcell placed_workcell(const Workcell& cell, const Movable& thing,
                                        const Offset& offset);
 
@@ -52,20 +70,33 @@ struct Movable {
 /// placed_problem() has turned, a problem file with these angles gives its rotation bit for bit.
 [[nodiscard]] Vector3d written_rpy(const Matrix3d& rotation);
 
-/// The values that one coordinate of a placement takes: `from` + k `step`, multiples of 1e-12.
-/// Source: placement_axis().
+/// The values that one coordinate of a placement takes, or the positions of a joint that is held:
+/// `from` + k `step`, multiples of 1e-12. Source: placement_axis().
 struct PlacementAxis {
-  int coordinate = 0;  ///< index into kCoordinates
+  int coordinate = 0;  ///< index into kCoordinates; not used where `joint` is set
   double from = 0, to = 0, step = 0;
-  int count = 1;  ///< number of values; 1 with a step of 0
+  int count = 1;           ///< number of values; 1 with a step of 0
+  std::string joint = {};  ///< the held joint whose position is varied; empty: `coordinate` is
+  bool slides = false;     ///< that joint is prismatic: its positions are in m, else rad
   /// Returns the k-th value.
   [[nodiscard]] double at(int k) const;
+  /// Returns the name of the coordinate or of the joint.
+  [[nodiscard]] std::string name() const;
 };
 
 /// Returns the axis with the values from, from + step, ... up to `to`; with a step of 0 `from`
 /// alone, or the range that samples are drawn from. Throws InvalidArgument for numbers beyond 1000,
 /// from > to, a negative step, and 2^31 values or more.
 [[nodiscard]] PlacementAxis placement_axis(int coordinate, double from, double to, double step);
+/// Returns the axis with such positions of a joint that is held. Throws InvalidArgument alike.
+[[nodiscard]] PlacementAxis held_axis(const std::string& joint, double from, double to,
+                                      double step);
+
+/// By how much the thing of a placement is moved, and where joints are held.
+struct Placement {
+  Offset offset{};
+  HeldPositions hold = {};
+};
 
 /// A grid of placements. Cells are numbered in the order in which nested loops over the axes visit
 /// them, the last axis innermost.
@@ -80,8 +111,8 @@ class PlacementGrid {
   [[nodiscard]] std::vector<int> indices(std::uint64_t cell) const;
   /// Returns the number of the cell with these indices along each axis.
   [[nodiscard]] std::uint64_t cell(const std::vector<int>& indices) const;
-  /// Returns the offset of a cell; coordinates without an axis are 0.
-  [[nodiscard]] Offset offset(std::uint64_t cell) const;
+  /// Returns the placement of a cell; coordinates without an axis are 0.
+  [[nodiscard]] Placement placement(std::uint64_t cell) const;
 
  private:
   std::vector<PlacementAxis> axes_;
@@ -90,20 +121,23 @@ class PlacementGrid {
 
 /// Returns the k-th random placement, uniform between the ends of the axes, whatever their steps
 /// are. It depends on the seed and k alone.
-[[nodiscard]] Offset sampled_offset(const std::vector<PlacementAxis>& axes, std::uint64_t seed,
-                                    std::uint64_t k);
+[[nodiscard]] Placement sampled_placement(const std::vector<PlacementAxis>& axes,
+                                          std::uint64_t seed, std::uint64_t k);
 
 /// The result of planning one placement: a row of docs/formats.md "Placements, CSV".
 struct PlacementRow {
   std::uint64_t cell = 0;
   Offset offset{};
+  HeldPositions hold = {};  ///< the joints that are varied; the same ones in all rows
   PlanStatus status = PlanStatus::kInfeasible;
   std::optional<double> cost;  ///< set when solved
   /// Clearance of the pair that comes nearest to what it must keep, m; none where nothing is near.
   std::optional<double> clearance;
   std::optional<double> clearance_margin;  ///< that clearance less what the pair must keep, m
-  /// Distance from the nearest joint limit, rad; none where no joint has limits.
+  /// Distance from the nearest limit of a joint that turns, rad; none where none has limits.
   std::optional<double> joint_margin;
+  /// Distance of a joint that slides from its nearer limit, m; none where none slides.
+  std::optional<double> slide_margin;
   std::optional<double> tool_speed;  ///< highest constant speed of the tool, m/s
   /// Furthest that a valid path comes, m along the path; none where not even the first layer has a
   /// node.
@@ -119,9 +153,10 @@ struct PlacementRow {
 [[nodiscard]] std::string subject_of(const Cause& cause, const std::vector<SceneObject>& scene);
 
 /// A measure by which placements are compared.
-enum class PlacementCriterion { kClearance, kCost, kMargin, kSpeed };
+enum class PlacementCriterion { kClearance, kCost, kMargin, kSlide, kSpeed };
 /// Returns the name: "clearance" (least clearance less what must be kept), "cost", "margin" (to a
-/// joint limit) or "speed" (top speed of the tool).
+/// limit of a joint that turns), "slide" (to a limit of a joint that slides) or "speed" (top speed
+/// of the tool).
 [[nodiscard]] const char* to_string(PlacementCriterion criterion);
 /// Returns the criterion of a name that to_string() gives. Throws InputError for an unknown one.
 [[nodiscard]] PlacementCriterion placement_criterion_from_string(const std::string& name);

@@ -24,11 +24,11 @@ namespace swivel::io {
 /// stay, bit for bit.
 void choose_sides(std::vector<Waypoint>& waypoints);
 
-/// Returns the text of a problem file with the scene objects at the poses that they have in
-/// `placed` and nothing else changed: comments, order and layout stay. Loading it gives the poses
-/// of `placed` bit for bit. `text` is the text that `problem` was loaded from. Throws InputError,
-/// in the name of `problem.source`, if the text states a pose in a way that cannot be edited in
-/// place, and if waypoints in the base frame have moved.
+/// Returns the text of a problem file with the scene objects at the poses, and the joints of
+/// Robot::hold at the positions, that they have in `placed` and nothing else changed: comments,
+/// order and layout stay. Loading it gives them bit for bit. `text` is the text that `problem` was
+/// loaded from. Throws InputError, in the name of `problem.source`, if the text states one of them
+/// in a way that cannot be edited in place, and if waypoints in the base frame have moved.
 [[nodiscard]] std::string with_poses(const std::string& text, const Problem& problem,
                                      const Problem& placed);
 

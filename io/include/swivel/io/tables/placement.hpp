@@ -8,7 +8,8 @@
 
 namespace swivel::io {
 
-/// Returns the CSV table of placements with its header, one line for each, in the given order.
+/// Returns the CSV table of placements with its header, one line for each, in the given order. All
+/// have the same joints held.
 [[nodiscard]] std::string to_csv(const std::vector<PlacementRow>& rows);
 
 }  // namespace swivel::io

@@ -10,11 +10,12 @@
 
 namespace swivel {
 
-/// A placement to be planned: the cell's number in the grid, and the offset of the thing that is
-/// placed.
+/// A placement to be planned: the cell's number in the grid, the offset of the thing that is
+/// placed, and where joints are held, the same ones in all cells.
 struct PlacementCell {
   std::uint64_t cell = 0;
   Offset offset{};
+  HeldPositions hold = {};
 };
 
 /// The plan of a placement that has one.
@@ -22,11 +23,13 @@ struct PlacedPlan {
   PlacementCell cell;
   std::vector<SceneObject> scene;  ///< with the objects where they are in this placement
   std::vector<TrajectoryRow> trajectory;
+  std::shared_ptr<const PreparedRobot> robot;  ///< with the joints held where they are in it
 };
 
 /// Plans placements of one thing, each on one thread by a planner that reuses what earlier
 /// placements computed. A row depends on its placement alone, not on other cells or on the number
-/// of threads.
+/// of threads: it is what a plan of placed_problem() has, after hold_joints(). Cells with joints at
+/// other positions than in the cell before need a robot that is prepared anew.
 class PlacementPlanner {
  public:
   /// Prepares to plan placements of `thing` in `problem`. options.threads is the number of cells
@@ -49,7 +52,8 @@ class PlacementPlanner {
   /// Plans the cells and returns their rows in the order of `cells`, without those that were not
   /// answered in time. An internal error of a cell becomes its row, of status kError. `done` is
   /// called from the planning threads, one call at a time, as each row is finished. Throws
-  /// InputError, which names the cell, if a placed problem is invalid.
+  /// InputError, which names the cell, if a placed problem is invalid or its joints cannot be held
+  /// so.
   std::vector<PlacementRow> plan(const std::vector<PlacementCell>& cells,
                                  const std::function<void(const PlacementRow&)>& done = {});
   /// Plans the cells again and returns their trajectories, which rows do not hold, in the order of
