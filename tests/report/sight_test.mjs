@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The first picture of a page shows the work: of all problems of one arm, jobs included, four
 // fifths of the path, and where the arm is nearest to something, by rays past all bodies, the arm's
-// own among them. Arguments: the program, the problems' folder, the folder whose node_modules has
-// playwright-core.
+// own among them. Of those with one path, every jump of the answer leads to what it says.
+// Arguments: the program, the problems' folder, the folder whose node_modules has playwright-core.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { some, until, withBrowser } from './browser.mjs';
+import { dataOf, some, until, withBrowser } from './browser.mjs';
+import { checkJumps } from './jumps.mjs';
 
 const [swivel, problems, packages] = process.argv.slice(2).map((path) => resolve(path)),
   screens = { desktop: { width: 1280, height: 800 }, phone: { width: 390, height: 844 } },
@@ -66,11 +67,14 @@ assert.ok(files.length >= 20, `${files.length} problems`);
 
 await withBrowser({ packages }, async ({ folder, open }) => {
   let short = 0,
-    nearest = 0;
+    nearest = 0,
+    jumps = 0,
+    solved = 0;
   for (const name of some(files)) {
     const html = join(folder, `${name}.html`),
       done = spawnSync(swivel, ['plan', join(problems, name), '--quiet', '--report', html]);
     assert.ok(existsSync(html), String(done.stderr));
+    const data = dataOf(html);
     for (const [screen, viewport] of Object.entries(screens)) {
       const { page, close } = await open(html, { viewport });
       await until(page, () => window.swivel?.frames > 0);
@@ -89,8 +93,14 @@ await withBrowser({ packages }, async ({ folder, open }) => {
       assert.ok(!ends.length || ends.some(Boolean), 'the nearest place is hidden');
       short += isShort;
       nearest += ends.length > 0;
+      if (screen === 'desktop' && data.result.trajectory) {
+        jumps += await checkJumps(page, data);
+        solved += data.result.status === 'solved';
+      }
       await close();
     }
   }
   console.log(`${short} pictures show less of the path; ${nearest} have a nearest place`);
+  console.log(`${jumps} jumps of ${solved} plans agree with their results`);
+  assert.ok(jumps >= 3 * solved);
 });
