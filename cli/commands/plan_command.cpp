@@ -231,7 +231,7 @@ std::string page_of(const PlanRequest& request, const PlanAnswer& answer, const 
   PageMotion motion;
   if (plan.refinement && plan.refinement->refined) motion.refined = &plan.result.trajectory;
   if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-  const io::VisualRobot visual = io::load_visuals(view.problem.source);
+  const io::VisualRobot visual = io::load_visuals(*view.problem.model);
   return to_page(view, *answer.map, io::to_json(plan.result, extras), motion, budget,
                  {request.arguments.episode.words(),
                   answer_text(plan.result) + (answer.advice ? advice_text(*answer.advice) : ""),

@@ -127,7 +127,7 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
     if (answer.advice) text += advice_text(*answer.advice);
     if (plan.timing) text += job_motion_text(*plan.timing, result.parts, job);
     const JobMotion* motion = plan.timing && plan.timing->motion ? &*plan.timing->motion : nullptr;
-    const io::VisualRobot visual = io::load_visuals(job.source);
+    const io::VisualRobot visual = io::load_visuals(*job.model);
     return to_job_page({robot, job, result, view, motion},
                        io::to_job_json(result, job, extras_of(answer)), budget,
                        {request.which, text, visual.model.get(), visual.left_out});

@@ -101,9 +101,14 @@ void serialize(A& archive, Joint& x) {
           mimic, hard, passive, line);
 }
 template <class A>
+void serialize(A& archive, RobotFiles& x) {
+  auto& [urdf, packages, without] = x;
+  archive(urdf, packages, without);
+}
+template <class A>
 void serialize(A& archive, RobotModel& x) {
-  auto& [name, source, links, joints, root_link, has_srdf, disabled_pairs, warnings] = x;
-  archive(name, source, links, joints, root_link, has_srdf, disabled_pairs, warnings);
+  auto& [name, source, links, joints, root_link, has_srdf, disabled_pairs, warnings, files] = x;
+  archive(name, source, links, joints, root_link, has_srdf, disabled_pairs, warnings, files);
 }
 template <class A>
 void serialize(A& archive, Waypoint& x) {

@@ -17,6 +17,7 @@ from pathlib import Path
 from unittest import mock
 
 import swivel
+from pages import data_of
 
 PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
 PROBLEMS = DATA / "problems"
@@ -73,6 +74,28 @@ class Drawings(unittest.TestCase):
                 self.compare((Path(folder) / "own.html").read_text(), page)
                 again = pickle.loads(pickle.dumps(plan))
                 self.compare(swivel.report(PROBLEMS / f"{name}.yaml", again), page)
+
+    @unittest.skipUnless(PAGES, "built without pages")
+    def test_pages_have_the_visual_shapes_of_the_program(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            urdf = (DATA / "robots" / "iiwa14.urdf").read_text()
+            shape = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
+            (folder / "arm.urdf").write_text(
+                urdf.replace('<link name="link_2">', f'<link name="link_2">{shape}')
+            )
+            text = (PROBLEMS / "iiwa14_bench.yaml").read_text()
+            file = folder / "bench.yaml"
+            file.write_text(
+                text.replace("../robots/iiwa14.urdf", "arm.urdf").replace("../", f"{DATA}/")
+            )
+            program("plan", file, "--threads", "1", "--quiet", "--report", folder / "page.html")
+            plan = swivel.plan(file, threads=1)
+            self.compare(plan.report(), (folder / "page.html").read_text())
+            self.assertEqual([body["name"] for body in data_of(folder / "page.html")["visual"]],
+                             ["link_2"])
+            problem = pickle.loads(pickle.dumps(swivel.load_problem(file)))
+            self.compare(swivel.report(problem, plan), plan.report())
 
     def compare(self, page, other):
         self.assertGreater(len(page), 100_000)

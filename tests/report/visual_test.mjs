@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: BSD-3-Clause
 // Visual shapes of a robot on its page: what the URDF has, in place of the collision shapes while
-// the switch is on.
+// the switch is on; of problem files that can be read but once, too.
 //   visual_test.mjs SWIVEL PROBLEMS PACKAGES
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -13,25 +13,36 @@ import { heldBy, press, until, withBrowser } from './browser.mjs';
 const [swivel, problems, packages] = process.argv.slice(2).map((path) => resolve(path)),
   data = resolve(problems, '..');
 
-/** A page of the arm at the bench, to whose links some elements are added, and what it holds. */
-function planned(folder, name, added) {
-  const urdf = readFileSync(join(data, 'robots/iiwa14.urdf'), 'utf8').replace(
+/** A problem file with a URDF of its own, to whose links some elements are added. */
+function written(folder, name, added, { robot = 'iiwa14', problem = 'iiwa14_bench' } = {}) {
+  const urdf = readFileSync(join(data, `robots/${robot}.urdf`), 'utf8').replace(
       /<link name="(\w+)">/g,
       (open, link) => open + (added[link] ?? ''),
     ),
-    html = join(folder, `${name}.html`),
     file = join(folder, `${name}.yaml`);
   writeFileSync(join(folder, `${name}.urdf`), urdf);
   writeFileSync(
     file,
-    readFileSync(join(problems, 'iiwa14_bench.yaml'), 'utf8')
-      .replace(/urdf: \S*iiwa14.urdf/, `urdf: ${name}.urdf`)
+    readFileSync(join(problems, `${problem}.yaml`), 'utf8')
+      .replace(new RegExp(`urdf: \\S*${robot}.urdf`), `urdf: ${join(folder, name)}.urdf`)
       .replaceAll('../', `${data}/`),
   );
-  const done = spawnSync(swivel, ['plan', file, '--ds', '0.02', '--dphi', '0.1', '--report', html]);
+  return file;
+}
+const kQuick = ['--ds', '0.02', '--dphi', '0.1'];
+/** A page that the program makes, and what it holds. from: a file to pipe into it, or null. */
+function made(folder, name, words, from = null) {
+  const html = join(folder, `${name}.html`),
+    command = [...words, '--report', html],
+    done = from
+      ? spawnSync('sh', ['-c', 'cat "$0" | "$@"', from, swivel, ...command])
+      : spawnSync(swivel, command);
   assert.equal(done.status, 0, String(done.stderr));
   return { html, ...heldBy(html), bytes: statSync(html).size };
 }
+/** A page of the arm at the bench, to whose links some elements are added. */
+const planned = (folder, name, added) =>
+  made(folder, name, ['plan', written(folder, name, added), ...kQuick]);
 const visualOf = (geometry, origin = '') =>
   `<visual>${origin}<geometry>${geometry}</geometry><material name="m"/></visual>`;
 
@@ -72,17 +83,53 @@ const drawn = (page) =>
       })),
   );
 
+/** The collision shapes of a link of a robot. */
+const collisionsOf = (robot, link) =>
+  readFileSync(join(data, `robots/${robot}.urdf`), 'utf8')
+    .split(`<link name="${link}">`)[1]
+    .split('</link>')[0]
+    .match(/<collision>.*?<\/collision>/gs);
+const asVisuals = (robot, link) =>
+  collisionsOf(robot, link).join('').replaceAll('collision>', 'visual>');
+/**
+ * Where the visual shapes of a link are its collision shapes, they stand where these stand. Two
+ * spheres about the ends of a cylinder are one capsule among the collision shapes.
+ */
+async function checkSamePlaces(page, link, where) {
+  const poses = (await drawn(page)).filter(({ name }) => name === link).map(({ at }) => at),
+    own = await page.evaluate(
+      (name) =>
+        window.swivel.view.arm
+          .filter(({ userData: { body } }) => body.name === name && !body.visual)
+          .map(({ matrix }) => [...matrix.elements]),
+      link,
+    );
+  assert.ok(own.length > 0 && poses.length > 0, link);
+  for (const at of own)
+    assert.ok(
+      poses.some((other) => other.every((value, k) => Math.abs(value - at[k]) < 1e-9)),
+      `${link}, ${where}: ${at}`,
+    );
+}
+
+/** A problem file that can be read once, as one from a pipe; the URDF as well. */
+function checkPipes(folder) {
+  const added = { link_2: asVisuals('iiwa14', 'link_2') },
+    file = written(folder, 'piped', added),
+    urdf = join(folder, 'piped.urdf'),
+    page = (problem, from) => made(folder, 'piped', ['plan', problem, ...kQuick], from).data;
+  const { visual } = page(file);
+  assert.ok(visual.length > 0);
+  assert.deepEqual(page('/dev/stdin', file).visual, visual);
+  writeFileSync(file, readFileSync(file, 'utf8').replace(urdf, '/dev/stdin'));
+  const once = page(file, urdf);
+  assert.deepEqual([once.visual, once.unread], [[], []]);
+}
+
 await withBrowser({ packages }, async ({ folder, open }) => {
   // Of link 2 the collision shapes once more; of link 4 a mesh, of link 3 one that is missing.
-  const text = readFileSync(join(data, 'robots/iiwa14.urdf'), 'utf8'),
-    collisions = (link) =>
-      text
-        .slice(text.indexOf(`<link name="${link}">`))
-        .split('</link>')[0]
-        .match(/<collision>.*?<\/collision>/gs);
-  const again = collisions('link_2').join('').replaceAll('collision>', 'visual>');
   const { html, data: held } = planned(folder, 'visual', {
-    link_2: again,
+    link_2: asVisuals('iiwa14', 'link_2'),
     link_3: visualOf('<mesh filename="missing.dae"/>'),
     link_4: visualOf(
       `<mesh filename="${data}/meshes/door_2k.stl" scale="0.2 0.2 0.2"/>`,
@@ -103,25 +150,13 @@ await withBrowser({ packages }, async ({ folder, open }) => {
   await page.check('#visual');
   for (const key of [null, 'End', 'Home']) {
     if (key) await press(page, key);
-    const shown = await drawn(page),
-      own = await page.evaluate(() =>
-        window.swivel.view.arm
-          .filter(({ userData: { body } }) => body.name === 'link_2' && !body.visual)
-          .map(({ matrix }) => [...matrix.elements]),
-      );
+    const shown = await drawn(page);
     for (const { name, visual } of shown) assert.equal(visual, names.includes(name), name);
     assert.deepEqual(
       new Set(shown.map(({ name }) => name)),
       new Set(before.map(({ name }) => name)),
     );
-    // Where the visual shapes are the collision shapes, they stand where these stand. Two spheres
-    // about the ends of a cylinder are one capsule among the collision shapes.
-    const poses = shown.filter(({ name }) => name === 'link_2').map(({ at }) => at);
-    for (const at of own)
-      assert.ok(
-        poses.some((other) => other.every((value, k) => Math.abs(value - at[k]) < 1e-9)),
-        `${key}: ${at}`,
-      );
+    await checkSamePlaces(page, 'link_2', key);
   }
   // The legend hides what it is of, and a click names the link.
   await page.locator('#bodies button').filter({ hasText: 'arm' }).click();
@@ -143,6 +178,8 @@ await withBrowser({ packages }, async ({ folder, open }) => {
   await until(plain.page, () => window.swivel.frames > 0);
   assert.ok(!(await plain.page.isVisible('#visual-option')));
   await plain.close();
+
+  checkPipes(folder);
 
   // Meshes of 300,000 triangles become lighter, as those of 200,000 are.
   writeFileSync(join(folder, 'tube.stl'), bumpyTube(150_000));

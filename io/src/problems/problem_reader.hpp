@@ -42,8 +42,6 @@ class ProblemReader {
 
   /// Reads the file as a problem, which has one path. Throws InputError for a job.
   Problem read();
-  /// Reads the visual shapes of the section `robot` alone.
-  [[nodiscard]] VisualRobot read_visuals() const;
 
  protected:
   /// Reads the robot and the bodies about it into `problem_`: `robot`, `scene`.

@@ -275,12 +275,6 @@ void ProblemReader::read_hand(const YamlValue& value) {
                "at most " + std::to_string(kMostBodies));
 }
 
-VisualRobot ProblemReader::read_visuals() const {
-  const YamlSection section = root_.require("robot").section();
-  return load_visual_urdf(resolve(section.require("urdf")), read_packages(section),
-                          {.without = read_without(section)});
-}
-
 std::vector<std::string> ProblemReader::read_without(const YamlSection& section) {
   std::vector<std::string> links;
   if (const auto without = section.find_filled("without"))
@@ -762,14 +756,6 @@ void ProblemReader::set(const YamlSection& section, const char* key,
   if (!value->is_sequence()) return target->fill(value->number());
   const std::vector<double> values = joint_numbers(*value);
   std::copy(values.begin(), values.end(), target->begin());
-}
-
-VisualRobot load_visuals(const fs::path& yaml) {
-  try {
-    return ProblemReader(yaml, load_yaml(yaml, problem_schema()).section()).read_visuals();
-  } catch (const InputError&) {
-    return {};
-  }
 }
 
 Problem load_problem(const fs::path& yaml) {

@@ -243,6 +243,7 @@ class ModelBuilder {
     leave_out(robot);
     model_->name = robot.Attribute("name");
     model_->source = file_;
+    note_files();
     for_each_kept(robot, "link", links_,
                   [&](const auto& element, const std::string& owner) { add_link(element, owner); });
     for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) {
@@ -271,6 +272,16 @@ class ModelBuilder {
   }
   [[nodiscard]] static std::string owner(const tinyxml2::XMLElement& element) {
     return std::string(element.Name()) + " '" + element.Attribute("name") + "'";
+  }
+
+  /// Notes the files of the model where they can be read once more.
+  void note_files() {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (source_.text || !fs::is_regular_file(source_.file, error)) return;
+    const auto absolute = [&](const fs::path& path) { return fs::absolute(path, error).string(); };
+    model_->files = {absolute(source_.file), {}, options_.without};
+    for (const auto& [name, folder] : packages_) model_->files.packages[name] = absolute(folder);
   }
 
   void check(const tinyxml2::XMLElement& robot) {
@@ -667,12 +678,22 @@ std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path
   return ModelBuilder(source, packages, options, Shapes::kVisualWhereNoCollision).build().model;
 }
 
-VisualRobot load_visual_urdf(const std::filesystem::path& urdf, const Packages& packages,
-                             const RobotOptions& options) {
-  const XmlSource source{urdf};
-  ModelBuilder builder(source, packages, options, Shapes::kVisual);
-  const UrdfRobot robot = builder.build();
-  return {robot.model, builder.unread()};
+VisualRobot load_visuals(const RobotModel& robot) {
+  const RobotFiles& files = robot.files;
+  if (files.urdf.empty()) return {};
+  const Packages packages(files.packages.begin(), files.packages.end());
+  const XmlSource source{files.urdf};
+  const RobotOptions options{.without = files.without};
+  try {
+    ModelBuilder builder(source, packages, options, Shapes::kVisual);
+    const UrdfRobot shown = builder.build();
+    VisualRobot visual{shown.model, builder.unread()};
+    for (std::string& message : visual.left_out)  // names the file as other messages do
+      if (message.starts_with(files.urdf)) message.replace(0, files.urdf.size(), robot.source);
+    return visual;
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,

@@ -22,9 +22,4 @@ struct UrdfRobot {
 [[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages,
                                   const RobotOptions& options);
 
-/// Loads a robot with its visual shapes in place of its collision shapes, which are not read.
-/// Throws InputError for all else that load_urdf() refuses.
-[[nodiscard]] VisualRobot load_visual_urdf(const std::filesystem::path& urdf,
-                                           const Packages& packages, const RobotOptions& options);
-
 }  // namespace swivel::io

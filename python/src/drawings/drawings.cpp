@@ -7,6 +7,7 @@
 #include "results.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
@@ -59,8 +60,9 @@ std::string page_of(const PlanView& view, const LatticeMap& map, const MotionPla
   if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
   const io::PlanExtras extras{plan.refinement ? &*plan.refinement : nullptr,
                               plan.motion ? &*plan.motion : nullptr, timing, nullptr};
+  const io::VisualRobot visual = io::load_visuals(*view.problem.model);
   return to_page(view, map, io::to_json(plan.result, extras), motion, budget,
-                 {"", answer_text(plan.result)});
+                 {"", answer_text(plan.result), visual.model.get(), visual.left_out});
 }
 
 /// Plans again what a plan is of, and draws it. `full`: the clearance of every node is asked.

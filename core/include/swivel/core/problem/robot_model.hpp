@@ -54,6 +54,13 @@ struct Joint {
   [[nodiscard]] bool movable() const { return type != Type::kFixed && type != Type::kFree; }
 };
 
+/// The files of a robot, which say more of it than a model holds, such as its visual shapes.
+struct RobotFiles {
+  std::string urdf;  ///< absolute path; empty: the robot is not of a file, or of one like a pipe
+  std::map<std::string, std::string> packages;  ///< name -> folder
+  std::vector<std::string> without;  ///< links that are left out, with all that they carry
+};
+
 /// A robot as its URDF (and SRDF) describe it: a tree of links and joints. It does not change once
 /// it is loaded. Source: io::load_robot.
 struct RobotModel {
@@ -68,6 +75,7 @@ struct RobotModel {
   std::vector<std::pair<std::string, std::string>> disabled_pairs;
   /// One sentence, with file and line, for everything in the files that the model leaves out.
   std::vector<std::string> warnings;
+  RobotFiles files;
 
   /// Returns the index of a link by name, -1 if there is none.
   [[nodiscard]] int find_link(const std::string& link_name) const;

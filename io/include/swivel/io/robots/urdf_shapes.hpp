@@ -38,9 +38,8 @@ struct VisualRobot {
   std::shared_ptr<const RobotModel> model;
   std::vector<std::string> left_out;  ///< a message for each visual shape that cannot be read
 };
-/// Loads the visual shapes of the robot of a problem file, or of a job's, with the links that
-/// load_problem() gave it. Returns no robot where the file cannot be read once more, as one from a
-/// pipe cannot.
-[[nodiscard]] VisualRobot load_visuals(const std::filesystem::path& yaml);
+/// Loads the visual shapes of a robot from its files. Returns no robot if it has none, or if its
+/// URDF cannot be read once more, as one from a pipe cannot.
+[[nodiscard]] VisualRobot load_visuals(const RobotModel& robot);
 
 }  // namespace swivel::io
