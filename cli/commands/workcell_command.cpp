@@ -19,6 +19,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
@@ -156,9 +157,11 @@ std::optional<std::string> page_of(const WorkcellRequest& request, const Prepare
   try {
     const auto& timing = plan.timing;
     const WorkcellMotion* motion = timing && timing->motion ? &*timing->motion : nullptr;
-    return to_workcell_page({prepared, request.cell, plan.result, view, motion},
-                            io::to_workcell_json(plan.result, extras_of(request, answer)), budget,
-                            {.which = request.which, .answer = plan_text(answer)});
+    const io::VisualRobot visual = io::load_visuals(*request.cell.arms[0].model);
+    return to_workcell_page(
+        {prepared, request.cell, plan.result, view, motion},
+        io::to_workcell_json(plan.result, extras_of(request, answer)), budget,
+        {request.which, plan_text(answer), visual.model.get(), visual.left_out});
   } catch (const Stopped&) {
     plan.result.warnings.push_back("stopped before the page was made: there is no report");
     return std::nullopt;

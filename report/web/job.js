@@ -5,7 +5,7 @@ import { savers } from './figure.js';
 import { JobList, strokeName } from './joblist.js';
 import { jobSummary, strokeTable, verdict } from './jobtables.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { Nearness, nearWords, nearWordsAt } from './nearness.js';
+import { Nearness, nearWords, nearWordsAt, placesOf } from './nearness.js';
 import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
@@ -28,7 +28,7 @@ import { Strip } from './strip.js';
 const { chain, motion, home } = data,
   list = new JobList(data),
   { strokes, parts } = list,
-  nearness = strokes.map(({ near, rows }) => new Nearness(near, rows)),
+  nearness = strokes.map(({ near, rows }) => new Nearness(near, placesOf(rows))),
   solved = data.result.cost !== null,
   objects = [
     ...new Set(data.bodies.filter(({ kind }) => kind === 'scene').map(({ name }) => name)),

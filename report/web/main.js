@@ -2,7 +2,7 @@
 // The report of one plan: text, map and plots first, then the arm; one cursor moves in all of them.
 import { savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { Nearness, nearWords, nearWordsAt } from './nearness.js';
+import { Nearness, nearWords, nearWordsAt, placesOf } from './nearness.js';
 import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
@@ -56,7 +56,7 @@ const player = new Player(() => {
 });
 const pause = () => player.pause();
 const steps = stepsOf(rows, chain),
-  nearness = new Nearness(data.near, rows);
+  nearness = new Nearness(data.near, placesOf(rows));
 const plots = new Plots(
   $('plots'),
   rows.map((row) => row.s),

@@ -7,39 +7,41 @@ const kMicrometre = 1e-3; // mm
 
 export class Nearness {
   /**
-   * near: { names, distance, other } of the page's data (src/page/page_rows.cpp), or null; rows: of
-   * the same path.
+   * near: { names, distance, other } of the page's data (src/page/page_rows.cpp), or null; places:
+   * of each of its rows, in words.
    */
-  constructor(near, rows) {
-    this.rows = near ? rows : [];
+  constructor(near, places) {
+    this.places = near ? places : [];
     this.names = near?.names ?? [];
     [this.distances, this.others] = near
       ? [near.distance, near.other].map((place) => samples(place, near.names.length))
       : [[], []];
   }
-  /** The nearest of all to a body at a row: { mm, other, s }; null where nothing is known. */
+  /** The nearest of all to a body at a row: { mm, other, place }; null where nothing is known. */
   at(name, row) {
     const body = this.names.indexOf(name);
-    if (body < 0 || !this.rows[row]) return null;
+    if (body < 0 || !this.places[row]) return null;
     const k = row * this.names.length + body;
     return {
       mm: kMicrometre * this.distances[k],
       other: this.names[this.others[k]],
-      s: this.rows[row].s,
+      place: this.places[row],
     };
   }
   /** As at(), of the first row at which the body is nearest to something. */
   least(name) {
-    return this.rows.reduce((best, _, row) => {
+    return this.places.reduce((best, _, row) => {
       const here = this.at(name, row);
       return here && (!best || here.mm < best.mm) ? here : best;
     }, null);
   }
 }
 
+/** The places of rows of one path, in words. */
+export const placesOf = (rows) => rows.map(({ s }) => `s ${s.toFixed(4)} m`);
 /** What is nearest to a body, in words. near: of Nearness. */
 export const nearWords = ({ mm, other }) =>
   mm > 0 ? `${number(mm, 3)} mm from ${other}` : `touches ${other}`;
 /** As nearWords(), with where that is. */
 export const nearWordsAt = (near, stroke = '') =>
-  `${nearWords(near)} at s ${near.s.toFixed(4)} m${stroke && ` of ${stroke}`}`;
+  `${nearWords(near)} at ${near.place}${stroke && ` of ${stroke}`}`;

@@ -2,6 +2,7 @@
 // The report of a workcell: two arms that work at one time, a map of each; one cursor moves both.
 import { sheet, savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
+import { Nearness, nearWords, nearWordsAt } from './nearness.js';
 import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
 import { Pair } from './pair.js';
 import { kDark, kLight, kLines } from './palette.js';
@@ -25,6 +26,10 @@ import { armTable, verdict, workcellSummary } from './workcelltables.js';
 
 const pair = new Pair(data),
   { arms, conflict } = pair,
+  nearness = new Nearness(
+    data.near,
+    Array.from({ length: pair.last + 1 }, (_, row) => `row ${row}`),
+  ),
   solved = data.result.cost !== null,
   barredArm = arms.findIndex(({ cut }) => cut);
 
@@ -226,10 +231,20 @@ function present() {
   gapReadout.textContent = between?.note ?? '';
   gap?.draw(Math.min(cursor, arms[0].rows.length - 1), { mm: between?.mm ?? null });
 }
+/** What is nearest to a body of either arm or of the scene, at a row and along both paths. */
+function nearLines(name, { poses }) {
+  const least = nearness.least(name),
+    here = poses.some(({ off }) => off) ? null : nearness.at(name, Math.round(cursor)),
+    isRow = Number.isInteger(cursor) && !pair.timed;
+  if (!least) return [];
+  const lines = [`nearest along the paths: ${nearWordsAt(least)}`];
+  if (here) lines.unshift(isRow ? nearWords(here) : nearWordsAt(here));
+  return lines;
+}
 function draw(now) {
   const q = pair.joints(now.poses),
     { pair: bodies, line, hit } = marked(now);
-  view?.pose(q, bodies ?? null, line ?? null, hit);
+  view?.pose(q, bodies ?? null, line ?? null, hit, (name) => nearLines(name, now));
   Object.assign(window.swivel, { joints: q, line, row: cursor });
 }
 // What is between the arms stands before both.

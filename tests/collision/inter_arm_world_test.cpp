@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "robots.hpp"
 #include "seed.hpp"
@@ -63,45 +64,52 @@ struct TwoArms {
   std::optional<InterArmWorld> world;
 };
 
-/// Returns whether arm 0 at q[0] is too near to arm 1 at q[1], by a World of arm 0 alone in which
-/// the bodies of arm 1 are scene objects. Pairs that the inter-arm world does not have may touch.
-bool too_near_as_objects(const TwoArms& two, const std::array<Config, 2>& q) {
-  Problem problem;
-  auto model = std::make_shared<RobotModel>(*two.robot.model);
-  for (std::size_t l = 0; l < model->links.size(); ++l)
-    if (two.arms[0].links[l].group == 0) model->links[l].collision.clear();
-  problem.model = model;
-  problem.base_link = two.robot.base_link;
-  problem.tip_link = "arm_left_link_tool0";
-  problem.attached = two.attached[0];
-  problem.limits = two.limits;
-  problem.limits.self_clearance = 0;  // its own pairs are not asked about
-  const auto moved = two.arms[1].chain.all_displacements(q[1]);
-  int number = 0;
-  for (const RobotBody& body : robot_bodies(*two.robot.model, two.arms[1], two.attached[1])) {
-    if (body.group == 0) continue;
-    SceneObject object;
-    object.name = "object" + std::to_string(number++);
-    object.shape = body.shape;
-    object.pose = moved[static_cast<std::size_t>(body.group)] * body.pose;
-    for (const RobotBody& own : robot_bodies(*model, two.arms[0], two.attached[0])) {
-      if (own.group == 0) continue;
-      const bool kept = std::any_of(
-          two.world->pairs().begin(), two.world->pairs().end(), [&](const RobotPair& pair) {
-            const auto names = two.world->names(pair.pair);
-            return !pair.dropped && names[0] == own.name && names[1] == body.name;
-          });
-      if (!kept) object.allow.emplace_back(own.name);
+/// A World of arm 0 alone in which the bodies of arm 1 at q[1] are scene objects. Pairs that the
+/// inter-arm world does not have may touch.
+struct OtherArmAsObjects {
+  OtherArmAsObjects(const TwoArms& two, const std::array<Config, 2>& q) {
+    auto model = std::make_shared<RobotModel>(*two.robot.model);
+    for (std::size_t l = 0; l < model->links.size(); ++l)
+      if (two.arms[0].links[l].group == 0) model->links[l].collision.clear();
+    problem.model = model;
+    problem.base_link = two.robot.base_link;
+    problem.tip_link = "arm_left_link_tool0";
+    problem.attached = two.attached[0];
+    problem.limits = two.limits;
+    problem.limits.self_clearance = 0;  // its own pairs are not asked about
+    const auto moved = two.arms[1].chain.all_displacements(q[1]);
+    for (const RobotBody& body : robot_bodies(*two.robot.model, two.arms[1], two.attached[1])) {
+      if (body.group == 0) continue;
+      SceneObject object;
+      object.name = "object" + std::to_string(problem.scene.size());
+      object.shape = body.shape;
+      object.pose = moved[static_cast<std::size_t>(body.group)] * body.pose;
+      for (const RobotBody& own : robot_bodies(*model, two.arms[0], two.attached[0])) {
+        if (own.group == 0) continue;
+        const bool kept = std::any_of(
+            two.world->pairs().begin(), two.world->pairs().end(), [&](const RobotPair& pair) {
+              const auto names = two.world->names(pair.pair);
+              return !pair.dropped && names[0] == own.name && names[1] == body.name;
+            });
+        if (!kept) object.allow.emplace_back(own.name);
+      }
+      problem.scene.push_back(object);
     }
-    problem.scene.push_back(object);
+    const World whole(*model, two.arms[0], problem, {});
+    std::vector<int> objects(problem.scene.size());
+    std::iota(objects.begin(), objects.end(), 0);
+    world.emplace(whole, objects);
   }
-  const World world(*model, two.arms[0], problem, {});
-  World::Query query(world, DistanceProofs::kOff);
-  for (std::size_t k = 0; k < world.pairs().size(); ++k) {
-    const BodyPair& pair = world.pairs()[k];
-    if (pair.b < static_cast<int>(world.bodies().size())) continue;
+  Problem problem;
+  std::optional<World> world;  ///< of the pairs with an object
+};
+
+/// Returns whether arm 0 at q[0] is too near to arm 1 at q[1], by a World of objects.
+bool too_near_as_objects(const TwoArms& two, const std::array<Config, 2>& q) {
+  const OtherArmAsObjects as(two, q);
+  World::Query query(*as.world, DistanceProofs::kOff);
+  for (const BodyPair& pair : as.world->pairs())
     if (query.pair_violates(q[0], pair, ClearanceRule::kNode)) return true;
-  }
   return false;
 }
 
@@ -126,6 +134,37 @@ TEST(InterArmWorld, AnswersAsAWorldInWhichTheOtherArmStandsAsObjects) {
   }
   std::printf("%d postures, %d too near\n", count, near);
   EXPECT_GE(near, at_least(count / 20));
+}
+
+TEST(InterArmWorld, BodiesAreAsNearAsToObjects) {
+  Random random(seed("InterArmWorld.BodiesAreAsNearAsToObjects"));
+  const TwoArms two("sda10f");
+  InterArmWorld::Query query(*two.world);
+  int compared = 0, touching = 0;
+  const int count = trials(400);
+  for (int trial = 0; trial < count; ++trial) {
+    const auto q = two.postures(random);
+    const OtherArmAsObjects as(two, q);
+    const auto expected = World::Query(*as.world, DistanceProofs::kOff).body_clearances(q[0]);
+    const auto found = query.body_clearances(q);
+    ASSERT_EQ(found.size(), two.world->body_names().size());
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t body = 0; body < found.size(); ++body) {
+      ASSERT_EQ(found[body].has_value(), expected[body].has_value());
+      if (!found[body]) continue;
+      const BodyPair& pair = found[body]->pair;
+      EXPECT_TRUE(pair.a == static_cast<int>(body) || pair.b == static_cast<int>(body));
+      EXPECT_NEAR(found[body]->distance, expected[body]->distance, 1e-9)
+          << two.world->body_names()[body];
+      ++compared;
+      touching += found[body]->distance == 0;
+    }
+    const auto least = query.clearance(q);
+    EXPECT_EQ(found[static_cast<std::size_t>(least->pair.a)]->required, least->required);
+  }
+  std::printf("%d bodies of %d postures, %d touch\n", compared, count, touching);
+  EXPECT_GE(compared, at_least(10 * count));
+  EXPECT_GE(touching, at_least(count / 20));
 }
 
 TEST(InterArmWorld, StancesAnswerAsPostures) {

@@ -241,6 +241,18 @@ class Workcells(unittest.TestCase):
         file.write_text(json.dumps(cell))
         return file
 
+    def drawn(self):
+        """The file of the plate, of a robot that has visual shapes as well."""
+        urdf = (DATA / "robots" / "sda10f.urdf").read_text()
+        for link in ("arm_left_link_2_l", "arm_right_link_3_e"):
+            shape = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
+            urdf = urdf.replace(f'<link name="{link}">', f'<link name="{link}">{shape}')
+        (self.folder / "drawn.urdf").write_text(urdf)
+        text = PLATE.read_text().replace("../robots/sda10f.urdf", "drawn.urdf")
+        file = self.folder / "drawn.yaml"
+        file.write_text(text.replace("../", f"{DATA}/"))
+        return file
+
     def test_certificates(self):
         file, proof = self.barred(), self.folder / "proof.json"
         done = subprocess.run(
@@ -292,7 +304,7 @@ class Workcells(unittest.TestCase):
     @unittest.skipUnless(swivel._swivel._page_available(), "built without pages")
     def test_pages(self):
         for file, keywords, options in (
-            (PLATE, {}, ()),
+            (self.drawn(), {}, ()),
             (self.barred(), {}, ()),
             (PLATE, {"speed": 0.05, "refine": True}, ("--speed", "0.05", "--refine")),
         ):
@@ -303,6 +315,9 @@ class Workcells(unittest.TestCase):
             other = self.folder / "other.html"
             self.assertIsNone(plan.report(other))
             program, here = data_of(page), data_of(other)
+            shown = sorted(body["name"] for body in here["visual"])
+            drawn = file.name == "drawn.yaml"
+            self.assertEqual(shown, ["arm_left_link_2_l", "arm_right_link_3_e"] if drawn else [])
             for data in (program, here):
                 data["result"]["time_ms"] = None
                 if not keywords:

@@ -153,6 +153,30 @@ export async function press(page, key) {
   await page.keyboard.press(key);
 }
 
+/**
+ * Clicks on every body that the view shows. told: called with the name of each and the lines that
+ * the page then tells.
+ */
+export async function clickBodies(page, told) {
+  const box = await page.locator('#scene').boundingBox(),
+    places = await page.evaluate(() => {
+      const { view } = window.swivel,
+        found = {};
+      for (let y = 8; y < view.size.height - 8; y += 8)
+        for (let x = 8; x < view.size.width - 8; x += 8)
+          found[view.pick(x, y)?.body.name ?? ''] ??= [x, y];
+      return found;
+    });
+  delete places[''];
+  for (const [name, [x, y]] of Object.entries(places)) {
+    await page.mouse.click(box.x + x, box.y + y);
+    const lines = (await page.textContent('#tip')).split('\n');
+    assert.ok(lines[0] === name || lines[0].startsWith(`${name} (`), lines[0]);
+    assert.match(lines.at(-1), /^point (-?\d+\.\d{3}, ){2}-?\d+\.\d{3} m$/);
+    told(name, lines);
+  }
+}
+
 /** What a click on the page's button saves. */
 export async function saved(page, button) {
   const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);

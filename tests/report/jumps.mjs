@@ -64,8 +64,9 @@ function jumpsOf({ result, rows, chain }) {
     async (page) => {
       const { margin_deg: margin, s } = limit;
       assert.equal((kDegrees * roomAt(rowAt(s, roomAt))).toFixed(2), margin.toFixed(2));
-      const title = await page.locator('#readout .joint').nth(named).getAttribute('title');
-      assert.ok(title.endsWith(`, ${margin.toFixed(margin < 10 ? 1 : 0)}° from the nearer`), title);
+      const title = await page.locator('#readout .joint').nth(named).getAttribute('title'),
+        told = margin.toFixed(margin < 10 ? 1 : 0);
+      assert.ok(title.endsWith(`, ${told}° from the nearer`), title);
     },
   );
   add(

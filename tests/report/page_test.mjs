@@ -10,6 +10,7 @@ import { triangles } from '../../report/web/bytes.js';
 import {
   assertFits,
   assertPrints,
+  clickBodies,
   dataOf,
   heldBy,
   elements,
@@ -123,40 +124,26 @@ async function checkNearest(page, data) {
  * the row what the row says, and between two rows what the nearer one says; along the path no more.
  */
 async function checkClicks(page, data) {
-  const box = await page.locator('#scene').boundingBox(),
-    last = data.rows.length - 1;
+  const last = data.rows.length - 1;
   let alike = 0,
     seen = 0;
   for (const at of [0, Math.floor(last / 3) + 0.3, last]) {
     await slide(page, at);
     const row = data.rows[Math.round(at)];
-    const places = await page.evaluate(() => {
-      const { view } = window.swivel,
-        found = {};
-      for (let y = 8; y < view.size.height - 8; y += 8)
-        for (let x = 8; x < view.size.width - 8; x += 8)
-          found[view.pick(x, y)?.body.name ?? ''] ??= [x, y];
-      return found;
-    });
-    delete places[''];
-    for (const [name, [x, y]] of Object.entries(places)) {
-      await page.mouse.click(box.x + x, box.y + y);
-      const lines = (await page.textContent('#tip')).split('\n');
-      assert.ok(lines[0] === name || lines[0].startsWith(`${name} (`), lines[0]);
-      assert.match(lines.at(-1), /^point (-?\d+\.\d{3}, ){2}-?\d+\.\d{3} m$/);
+    await clickBodies(page, (name, lines) => {
       ++seen;
-      if (lines.length === 2) continue; // it has nothing to keep clear of
+      if (lines.length === 2) return; // it has nothing to keep clear of
       const [, here, mm, other] = lines[1].match(/^(([\d.]+) mm from|touches) (\S+)/),
         [, least] = lines[2].match(
           /^nearest along the path: (?:([\d.]+) mm from|touches) \S+ at s/,
         );
       assert.ok(here && Number(least ?? 0) <= Number(mm ?? 0), lines.join('\n'));
       if (at % 1) assert.ok(lines[1].endsWith(` at s ${row.s.toFixed(4)} m`), lines[1]);
-      if (!row.pair?.includes(name)) continue;
+      if (!row.pair?.includes(name)) return;
       assert.deepEqual([name, other].sort(), [...row.pair].sort());
       assert.equal(Number(mm), Number(row.clearance_mm.toPrecision(3)));
       ++alike;
-    }
+    });
   }
   assert.ok(alike >= 2 && seen >= 10, `${alike} of ${seen} bodies are of the row's pair`);
 }

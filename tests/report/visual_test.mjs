@@ -1,14 +1,14 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: BSD-3-Clause
 // Visual shapes of a robot on its page: what the URDF has, in place of the collision shapes while
-// the switch is on; of problem files that can be read but once, too.
+// the switch is on. On pages of plans and of two arms; of problem files that can be read but once.
 //   visual_test.mjs SWIVEL PROBLEMS PACKAGES
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { triangles } from '../../report/web/bytes.js';
-import { heldBy, press, until, withBrowser } from './browser.mjs';
+import { clickBodies, heldBy, press, until, withBrowser } from './browser.mjs';
 
 const [swivel, problems, packages] = process.argv.slice(2).map((path) => resolve(path)),
   data = resolve(problems, '..');
@@ -112,6 +112,35 @@ async function checkSamePlaces(page, link, where) {
     );
 }
 
+/** Both arms of a workcell and what stands: a switch for all, an entry of the legend for each. */
+async function checkWorkcell(folder, open) {
+  const links = ['arm_left_link_2_l', 'arm_right_link_3_e', 'torso_link_b1'],
+    added = Object.fromEntries(links.map((link) => [link, asVisuals('sda10f', link)])),
+    of = { robot: 'sda10f', problem: 'sda10f_plate_workcell' },
+    { html, data: held } = made(folder, 'cell', ['plan', written(folder, 'cell', added, of)]);
+  const arms = Object.fromEntries(held.visual.map(({ name, arm }) => [name, arm]));
+  assert.deepEqual(arms, { [links[0]]: 'left', [links[1]]: 'right', [links[2]]: undefined });
+  const { page, close } = await open(html, { viewport: { width: 1000, height: 800 } });
+  await until(page, () => window.swivel.frames > 0);
+  await page.check('#visual');
+  for (const key of ['Home', 'End']) {
+    await press(page, key);
+    for (const link of links) await checkSamePlaces(page, link, key);
+  }
+  const right = page.locator('#bodies button').filter({ hasText: 'arm of right' });
+  await right.click();
+  await right.click();
+  const left = new Set((await drawn(page)).filter(({ visual }) => visual).map(({ name }) => name));
+  assert.deepEqual([...left].sort(), [links[0], links[2]].sort());
+  await right.click();
+  let clicked = 0;
+  await clickBodies(page, (name, lines) => {
+    clicked += links.includes(name) && lines.length > 2;
+  });
+  assert.ok(clicked > 0, 'no visual shape tells what is nearest');
+  await close();
+}
+
 /** A problem file that can be read once, as one from a pipe; the URDF as well. */
 function checkPipes(folder) {
   const added = { link_2: asVisuals('iiwa14', 'link_2') },
@@ -179,6 +208,7 @@ await withBrowser({ packages }, async ({ folder, open }) => {
   assert.ok(!(await plain.page.isVisible('#visual-option')));
   await plain.close();
 
+  await checkWorkcell(folder, open);
   checkPipes(folder);
 
   // Meshes of 300,000 triangles become lighter, as those of 200,000 are.

@@ -8,6 +8,7 @@ import { join, resolve } from 'node:path';
 import {
   assertFits,
   assertPrints,
+  clickBodies,
   dataOf,
   elements,
   press,
@@ -233,6 +234,45 @@ async function checkBetween(page, { data, result }) {
   assert.deepEqual((await shown(page)).line.points, data.arms[1].rows[row].nearest);
   await page.selectOption('#line-of', 'between');
 }
+/**
+ * A click on a body says what is nearest to it at the row and along both paths, of either arm and
+ * of the scene: nothing that the rows name is nearer. Returns of how many it is the other arm's.
+ */
+async function checkClicks(page, { data }) {
+  const { arms, between, bodies } = data,
+    last = arms[0].rows.length - 1,
+    armOf = (name) => bodies.find((body) => body.name === name)?.arm;
+  let across = 0,
+    alike = 0;
+  for (const at of [0, Math.floor(last / 2) + 0.3, last]) {
+    await slide(page, at);
+    const row = Math.round(at),
+      pairs = [
+        between[row],
+        ...arms.map(({ rows }) => ({ pair: rows[row].pair, mm: rows[row].clearance_mm })),
+      ];
+    await clickBodies(page, (name, lines) => {
+      if (lines.length === 2) return; // it has nothing to keep clear of
+      const [, mm = '0', other] = lines[1].match(/^(?:([\d.]+) mm from|touches) ([^\s]+)/),
+        [, least = '0', when] = lines[2].match(
+          /^nearest along the paths: (?:([\d.]+) mm from|touches) [^\s]+ at row (\d+)$/,
+        );
+      assert.ok(Number(least) <= Number(mm) && Number(when) <= last, lines.join('\n'));
+      if (at % 1) assert.ok(lines[1].endsWith(` at row ${row}`), lines[1]);
+      for (const one of pairs) {
+        if (!one.pair?.includes(name)) continue;
+        const told = Number(rounded(one.mm, 3));
+        assert.ok(Number(mm) <= told, `${lines.join('\n')}\n${one.pair}: ${one.mm}`);
+        if (!one.pair.includes(other)) continue;
+        assert.equal(Number(mm), told);
+        ++alike;
+      }
+      across += [armOf(name), armOf(other)].sort().join() === 'left,right';
+    });
+  }
+  assert.ok(alike >= 2, `${alike} of the pairs that rows name`);
+  return across;
+}
 /** The table has the numbers of the answer. */
 async function checkTable(page, { result }) {
   const heads = await page.$$eval('#arms th', (all) => all.map((one) => one.textContent)),
@@ -340,6 +380,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await checkBetween(page, plate);
   await checkTable(page, plate);
   await checkNumbers(page, plate);
+  await checkClicks(page, plate);
   await checkMaps(page, plate);
   assert.ok(!(await page.isVisible('#blocked')));
   assert.match(await page.textContent('#verdict'), /held: torso_joint_b1 at 0 rad/);
@@ -400,6 +441,11 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   );
   await checkTable(small.page, crossing);
   await checkRegion(small.page, crossing);
+  await small.page.setViewportSize(wide);
+  const across = await checkClicks(small.page, crossing);
+  console.log(`${across} clicks name a body of the other arm`);
+  assert.ok(across >= 2);
+  await small.page.setViewportSize(phone);
   const given = crossing.data.arms.filter(({ beside }) => beside.length).map(({ name }) => name);
   assert.ok(given.length > 0);
   assert.match(

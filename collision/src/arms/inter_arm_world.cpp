@@ -430,6 +430,35 @@ std::optional<InterArmWorld::Query::Clearance> InterArmWorld::Query::clearance(
   return least;
 }
 
+std::vector<std::optional<InterArmWorld::Query::Clearance>> InterArmWorld::Query::body_clearances(
+    const std::array<Config, 2>& q) {
+  impl_->move_to(q);
+  const std::vector<RobotPair>& kept = impl_->world->kept;
+  std::vector<std::pair<double, std::size_t>> order;  // least possible distance, m, and pair
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const Impl::Placed two = impl_->placed(kept[k].pair);
+    order.emplace_back(
+        distance_bound(two.a.shape->bound, *two.bound_a, two.b.shape->bound, *two.bound_b), k);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::optional<Clearance>> nearest(impl_->world->bodies.size());
+  for (const auto& [at_least, k] : order) {
+    const RobotPair& pair = kept[k];
+    const auto may_be = [&](int body) {
+      const auto& known = nearest[at(body)];
+      return !known || at_least - kRounding <= known->distance;
+    };
+    if (!may_be(pair.pair.a) && !may_be(pair.pair.b)) continue;
+    const Impl::Placed two = impl_->placed(pair.pair);
+    const Clearance found{impl_->test.clearance(two.a, two.b, &impl_->warm_start[k]),
+                          pair.required.node, pair.pair};
+    for (const int body : {pair.pair.a, pair.pair.b})
+      if (auto& known = nearest[at(body)]; !known || found.distance < known->distance)
+        known = found;
+  }
+  return nearest;
+}
+
 std::optional<std::array<Vector3d, 2>> InterArmWorld::Query::nearest_points(
     const std::array<Config, 2>& q, const Clearance& clearance) {
   impl_->move_to(q);

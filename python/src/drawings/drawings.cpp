@@ -131,9 +131,10 @@ std::string page_of(const WorkcellPlan& plan) {
                                     timing ? &*timing : nullptr,
                                     plan.timing.value_or(TimingOptions{}), nullptr};
     const WorkcellMotion* const motion = timing && timing->motion ? &*timing->motion : nullptr;
+    const io::VisualRobot visual = io::load_visuals(*cell.arms[0].model);
     return to_workcell_page({prepared, cell, again.result, view, motion},
                             io::to_workcell_json(again.result, extras), budget,
-                            {"", answer_text(again.result)});
+                            {"", answer_text(again.result), visual.model.get(), visual.left_out});
   });
 }
 

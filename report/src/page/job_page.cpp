@@ -38,7 +38,7 @@ class JobPage {
   /// Returns the data of the page. Throws Stopped.
   Json data(const std::string& name, const PageWords& words) {
     Bodies bodies(world_, job_.scene);
-    if (words.visual != nullptr) bodies.add_visual(*words.visual, *job_.model, robot_.arm());
+    if (words.visual != nullptr) bodies.add_visual(*words.visual, *job_.model, {{robot_.arm()}});
     Json strokes = Json::array();
     for (std::size_t k = 0; k < order_.size(); ++k) strokes.push_back(stroke(k));
     Json parts = result_.parts.empty() ? partial_parts() : parts_of_job();

@@ -39,7 +39,8 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
   Bodies bodies(world, problem.scene);
-  if (words.visual != nullptr) bodies.add_visual(*words.visual, *problem.model, view.robot.arm());
+  if (words.visual != nullptr)
+    bodies.add_visual(*words.visual, *problem.model, {{view.robot.arm()}});
   const std::vector<PageRow> found = placed(lattice, map, rows_of(lattice, view.path), view.path);
   const std::vector<PageRow> rows =
       motion.refined ? placed(lattice, map, *motion.refined, view.path) : found;

@@ -2,6 +2,7 @@
 // What the pages of plans and of jobs say of one path: rows, motion, map, and where it ends.
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,12 +42,28 @@ struct PageRow {
 /// Returns the rows with their clearances, which it asks for. Throws Stopped.
 [[nodiscard]] Json rows_json(const World& world, const Lattice& lattice,
                              const std::vector<PageRow>& shown, const Budget& budget);
-/// Returns how near each body comes, row by row, to those that it must keep clear of: `names` of
-/// bodies; `distance` to the nearest other one, in um, and `other`, the index of its name, of
-/// all names at one row after the other, as encode_samples() writes them. Bodies without pairs are
-/// left out; bodies of one name are as near as the nearest of them. Throws Stopped.
+
+/// How near bodies are to those that they must keep clear of, by name. Bodies without pairs are not
+/// there; bodies of one name are as near as the nearest of them.
+struct NearBodies {
+  struct Nearest {
+    double distance;  ///< m
+    std::string other;
+  };
+  /// Adds one body, or keeps the nearer one.
+  void add(const std::string& name, double distance, const std::string& other);
+  /// Adds all bodies of a world at joints q. `query`: of that world.
+  void add(const World& world, World::Query& query, const Config& q);
+  std::map<std::string, Nearest> by_name;
+};
+/// Writes how near bodies are, row by row, at rows that have the same bodies: `names` of bodies;
+/// `distance` to the nearest other one, in um, and `other`, the index of its name, of all names at
+/// one row after the other, as encode_samples() writes them.
+[[nodiscard]] Json near_json(const std::vector<NearBodies>& rows);
+/// Writes how near the bodies of a world are at each row of a path. Throws Stopped.
 [[nodiscard]] Json near_json(const World& world, const std::vector<PageRow>& rows,
                              const Budget& budget);
+
 /// Returns the path beside which a refined one is drawn.
 [[nodiscard]] Json beside_json(const std::vector<PageRow>& rows);
 /// Returns the points of the tool in each layer.

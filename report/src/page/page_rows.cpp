@@ -113,40 +113,52 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Pag
   return rows;
 }
 
-Json near_json(const World& world, const std::vector<PageRow>& rows, const Budget& budget) {
-  using Near = World::Query::BodyClearance;
-  constexpr double kGrain = 1e-6;  // m
+void NearBodies::add(const std::string& name, double distance, const std::string& other) {
+  const auto [known, is_new] = by_name.try_emplace(name, Nearest{distance, other});
+  if (!is_new && distance < known->second.distance) known->second = {distance, other};
+}
+
+void NearBodies::add(const World& world, World::Query& query, const Config& q) {
   const std::vector<std::string>& bodies = world.body_names();
-  World::Query query(world, DistanceProofs::kOn);
+  const auto found = query.body_clearances(q);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!found[k]) continue;
+    const std::array<std::string, 2> pair = world.names(found[k]->pair);
+    add(bodies[k], found[k]->distance, pair[pair[0] == bodies[k] ? 1 : 0]);
+  }
+}
+
+Json near_json(const std::vector<NearBodies>& rows) {
+  constexpr double kGrain = 1e-6;  // m
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max() / 4;
   Json names = Json::array();
   std::map<std::string, std::int32_t> index;
   std::vector<std::int32_t> distances, others;
-  for (const PageRow& row : rows) {
-    budget.poll();
-    const std::vector<std::optional<Near>> found = query.body_clearances(row.at.q);
-    std::map<std::string, Near> nearest;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      if (!found[k]) continue;
-      const auto [known, is_new] = nearest.try_emplace(bodies[k], *found[k]);
-      if (!is_new && found[k]->distance < known->second.distance) known->second = *found[k];
-    }
-    // The pairs of a world, and so the bodies that are in one, are the same at every row.
+  for (const NearBodies& row : rows) {
     if (index.empty())
-      for (const auto& [name, near] : nearest) {
+      for (const auto& [name, near] : row.by_name) {
         index.emplace(name, static_cast<std::int32_t>(names.size()));
         names.push_back(name);
       }
-    for (const auto& [name, near] : nearest) {
-      const std::array<std::string, 2> pair = world.names(near.pair);
-      constexpr double kMost = std::numeric_limits<std::int32_t>::max() / 4;
+    for (const auto& [name, near] : row.by_name) {
       distances.push_back(
           static_cast<std::int32_t>(std::lround(std::min(near.distance / kGrain, kMost))));
-      others.push_back(index.at(pair[pair[0] == name ? 1 : 0]));
+      others.push_back(index.at(near.other));
     }
   }
   return {{"names", names},
           {"distance", Json::binary(encode_samples(distances, names.size()))},
           {"other", Json::binary(encode_samples(others, names.size()))}};
+}
+
+Json near_json(const World& world, const std::vector<PageRow>& rows, const Budget& budget) {
+  World::Query query(world, DistanceProofs::kOn);
+  std::vector<NearBodies> near(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    budget.poll();
+    near[k].add(world, query, rows[k].at.q);
+  }
+  return near_json(near);
 }
 
 Json beside_json(const std::vector<PageRow>& rows) {

@@ -75,7 +75,8 @@ void Bodies::add(const RobotBody& body, int group) {
   add(body.name, body.attached ? "tool" : "robot", group, body.shape, body.pose);
 }
 
-void Bodies::add_visual(const RobotModel& shapes, const RobotModel& robot, const ArmModel& arm) {
+void Bodies::add_visual(const RobotModel& shapes, const RobotModel& robot,
+                        const std::vector<DrawnArm>& arms) {
   constexpr std::size_t kMost = 200'000;  // triangles
   std::map<const TriangleMesh*, MeshPtr> used;
   std::size_t all = 0;
@@ -89,13 +90,23 @@ void Bodies::add_visual(const RobotModel& shapes, const RobotModel& robot, const
   for (const Link& link : shapes.links) {
     const int index = robot.find_link(link.name);
     if (index < 0) continue;
-    const LinkPlacement& at = arm.links[static_cast<std::size_t>(index)];
+    const auto place = [&](const DrawnArm& drawn) -> const LinkPlacement& {
+      return drawn.arm.links[static_cast<std::size_t>(index)];
+    };
+    auto mover = std::find_if(arms.begin(), arms.end(),
+                              [&](const DrawnArm& drawn) { return place(drawn).group != 0; });
+    const bool stands = mover == arms.end();
+    if (stands) mover = arms.begin();
+    const LinkPlacement& at = place(*mover);
+    const int group =
+        mover->groups.empty() ? at.group : mover->groups[static_cast<std::size_t>(at.group)];
     for (const PlacedShape& placed : link.collision) {
       const auto* mesh = std::get_if<MeshPtr>(&placed.shape);
       const auto fewer = mesh == nullptr ? thinned_.end() : thinned_.find(mesh->get());
-      visual.push_back(body(link.name, "robot", at.group,
+      visual.push_back(body(link.name, "robot", group,
                             fewer == thinned_.end() ? placed.shape : Shape(fewer->second),
                             at.pose * placed.pose));
+      if (!stands && !mover->name.empty()) visual.back()["arm"] = mover->name;
     }
   }
 }

@@ -37,9 +37,17 @@ class Bodies {
   void add_arm(const World& world, const std::string& name, const std::vector<int>& groups,
                bool standing);
   void add_scene(const std::vector<SceneObject>& scene);
-  /// Adds the visual shapes of a robot's links, which a model has in place of collision shapes.
-  /// Meshes are drawn with fewer triangles where all together have more than 200,000.
-  void add_visual(const RobotModel& shapes, const RobotModel& robot, const ArmModel& arm);
+  /// An arm whose links are drawn. Of one of several arms `name` and `groups` are as in add_arm().
+  struct DrawnArm {
+    const ArmModel& arm;
+    std::string name = {};
+    std::vector<int> groups = {};
+  };
+  /// Adds the visual shapes of a robot's links, which a model has in place of collision shapes. A
+  /// link moves with the first of the arms that moves it. Meshes are drawn with fewer triangles
+  /// where all together have more than 200,000.
+  void add_visual(const RobotModel& shapes, const RobotModel& robot,
+                  const std::vector<DrawnArm>& arms);
   Json bodies = Json::array(), meshes = Json::array(), visual = Json::array();
 
  private:

@@ -90,6 +90,10 @@ class WorkcellPage {
       if (!ground.is_null()) ground["group"] = groups.of(k)[ground["group"].get<std::size_t>()];
     }
     bodies.add_scene(planned_.cell.scene);
+    if (words.visual != nullptr)
+      bodies.add_visual(*words.visual, *planned_.cell.arms[0].model,
+                        {{view(0).robot.arm(), result_.names[0], groups.of(0)},
+                         {view(1).robot.arm(), result_.names[1], groups.of(1)}});
     Json meeting = meetings(), conflict = conflict_json();
     return {{"problem", name},
             {"answer", words.answer},
@@ -97,8 +101,11 @@ class WorkcellPage {
             {"chain", chain_of_both(chains, result_.names, groups)},
             {"ground", std::move(ground)},
             {"bodies", std::move(bodies.bodies)},
+            {"visual", std::move(bodies.visual)},
+            {"unread", words.unread},
             {"meshes", std::move(bodies.meshes)},
             {"arms", std::move(arms)},
+            {"near", near()},
             {"between", std::move(meeting)},
             {"conflict", std::move(conflict)}};
   }
@@ -243,6 +250,32 @@ class WorkcellPage {
       list.push_back(meeting(q, *found));
     }
     return list;
+  }
+
+  /// Returns how near the bodies of both arms and of the scene are at each row: an arm is at its
+  /// last row beyond that, and is left out if it has no row.
+  Json near() {
+    std::array<World::Query, 2> own{World::Query(view(0).world, DistanceProofs::kOn),
+                                    World::Query(view(1).world, DistanceProofs::kOn)};
+    std::vector<NearBodies> rows(std::max(shown_[0].size(), shown_[1].size()));
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      budget_.poll();
+      std::array<Config, 2> q;
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (shown_[k].empty()) continue;
+        q[k] = shown_[k][std::min(row, shown_[k].size() - 1)];
+        rows[row].add(view(k).world, own[k], q[k]);
+      }
+      if (shown_[0].empty() || shown_[1].empty()) continue;
+      const auto between = query_.body_clearances(q);
+      for (std::size_t body = 0; body < between.size(); ++body) {
+        if (!between[body]) continue;
+        const std::string& name = between_.body_names()[body];
+        const std::array<std::string, 2> pair = between_.names(between[body]->pair);
+        rows[row].add(name, between[body]->distance, pair[pair[0] == name ? 1 : 0]);
+      }
+    }
+    return near_json(rows);
   }
 
   /// Returns where the cheapest paths of both arms meet, as a place in their rows.

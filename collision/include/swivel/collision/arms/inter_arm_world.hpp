@@ -116,6 +116,11 @@ class InterArmWorld {
     /// Returns the pair with the least margin over what it keeps at layers, as FCL tells; nothing
     /// if there are no pairs.
     [[nodiscard]] std::optional<Clearance> clearance(const std::array<Config, 2>& q);
+    /// Returns for each body, by its index in body_names(), the nearest of the bodies of the other
+    /// arm that it must keep clear of, as FCL tells: the pair, how far the two are apart, and what
+    /// the pair keeps. Nothing for a body without pairs.
+    [[nodiscard]] std::vector<std::optional<Clearance>> body_clearances(
+        const std::array<Config, 2>& q);
     /// Returns a point of each of the two bodies of clearance(q), in the base frame, that are as
     /// far apart as the bodies are, within 0.1 mm; meant for drawing. Returns nothing if the bodies
     /// touch or if FCL's points are not credible.
