@@ -24,6 +24,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -407,10 +408,17 @@ int run(PlaceArguments arguments) {
   std::snprintf(rate, sizeof rate, "; %.1f s, %.0f a second", seconds,
                 static_cast<double>(rows.size()) / seconds);
   PlacementScene scene;
-  if (outputs.wants("--report") && placed.has_one_path())
-    scene = {prepared.get(), &placed.problem, placed.thing,
+  io::VisualRobot visual;
+  if (outputs.wants("--report") && placed.has_one_path()) {
+    visual = io::load_visuals(*placed.problem.model);
+    scene = {prepared.get(),
+             &placed.problem,
+             placed.thing,
              planner.trajectories(cells_on_page(rows, asked.criteria)),
-             ends_on_page(planner, rows)};
+             ends_on_page(planner, rows),
+             visual.model.get(),
+             visual.left_out};
+  }
   show_placements(outputs, rows, arguments.request, record, arguments.top, rate, scene);
   const int code = placement_exit_code(rows);
   if (code == kInternalError) return code;

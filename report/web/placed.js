@@ -22,6 +22,7 @@ export class Placed {
       this.view?.look(target.value);
       target.value = '';
     });
+    $('visual').addEventListener('change', ({ target }) => this.view?.showVisual(target.checked));
     $('names').addEventListener('change', ({ target }) =>
       $('view').classList.toggle('nameless', !target.checked),
     );

@@ -1,7 +1,8 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: BSD-3-Clause
 // Visual shapes of a robot on its page: what the URDF has, in place of the collision shapes while
-// the switch is on. On pages of plans and of two arms; of problem files that can be read but once.
+// the switch is on. On pages of plans, of two arms and of placements; of problem files that can be
+// read but once.
 //   visual_test.mjs SWIVEL PROBLEMS PACKAGES
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -141,6 +142,27 @@ async function checkWorkcell(folder, open) {
   await close();
 }
 
+/** The plans of placements. */
+async function checkPlacements(folder, open) {
+  const file = written(folder, 'placed', { link_2: asVisuals('iiwa14', 'link_2') }),
+    words = ['place', file, ...kQuick, '--object', 'casting', '--x', '0:0.02:0.02'],
+    { html, data: held } = made(folder, 'placed', words);
+  assert.deepEqual([...new Set(held.scene.visual.map(({ name }) => name))], ['link_2']);
+  const { page, close } = await open(html, { viewport: { width: 1000, height: 800 } });
+  await until(page, () => window.swivel.frames > 0);
+  await page.check('#visual');
+  await page.locator('#best tbody tr').last().click();
+  await page.locator('#slider').focus();
+  for (const key of ['End', 'Home']) {
+    await page.keyboard.press(key);
+    await checkSamePlaces(page, 'link_2', key);
+    assert.ok((await drawn(page)).every(({ name, visual }) => visual === (name === 'link_2')));
+  }
+  await page.uncheck('#visual');
+  assert.ok((await drawn(page)).every(({ visual }) => !visual));
+  await close();
+}
+
 /** A problem file that can be read once, as one from a pipe; the URDF as well. */
 function checkPipes(folder) {
   const added = { link_2: asVisuals('iiwa14', 'link_2') },
@@ -209,6 +231,7 @@ await withBrowser({ packages }, async ({ folder, open }) => {
   await plain.close();
 
   await checkWorkcell(folder, open);
+  await checkPlacements(folder, open);
   checkPipes(folder);
 
   // Meshes of 300,000 triangles become lighter, as those of 200,000 are.

@@ -80,6 +80,8 @@ Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows
 Json scene_json(const PlacementScene& scene) {
   if (scene.plans.empty() && scene.ends.empty()) return nullptr;
   Bodies bodies(scene.robot->world(), scene.problem->scene);
+  if (scene.visual != nullptr)
+    bodies.add_visual(*scene.visual, *scene.problem->model, {{scene.robot->arm()}});
   Json plans = Json::array();
   for (const PlacedPlan& plan : scene.plans)
     plans.push_back(plan_json(
@@ -93,6 +95,8 @@ Json scene_json(const PlacementScene& scene) {
   return {{"chain", chain_json(scene.robot->arm().chain)},
           {"ground", ground_json(*scene.problem->model, scene.robot->arm())},
           {"bodies", std::move(bodies.bodies)},
+          {"visual", std::move(bodies.visual)},
+          {"unread", scene.unread},
           {"meshes", std::move(bodies.meshes)},
           {"origin", vector_json(origin_of(*scene.problem, scene.thing))},
           {"plans", std::move(plans)}};

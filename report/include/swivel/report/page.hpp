@@ -26,7 +26,7 @@ struct PageWords {
   std::string
       answer;  ///< shown with the map where JavaScript is switched off: answer_text, advice_text
   /// The robot with its visual shapes in place of its collision shapes, which the page may then
-  /// show; null: none. Pages of plans and of jobs show them.
+  /// show; null: none.
   const RobotModel* visual = nullptr;
   std::vector<std::string> unread;  ///< a message for each visual shape that is missing there
 };

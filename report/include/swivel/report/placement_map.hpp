@@ -76,8 +76,10 @@ struct PlacementScene {
   const PreparedRobot* robot = nullptr;
   const Problem* problem = nullptr;  ///< with nothing moved, and joints held as the file says
   Movable thing;
-  std::vector<PlacedPlan> plans;  ///< of the best
-  std::vector<PlacedEnd> ends;    ///< of some that have no path
+  std::vector<PlacedPlan> plans;       ///< of the best
+  std::vector<PlacedEnd> ends;         ///< of some that have no path
+  const RobotModel* visual = nullptr;  ///< as in PageWords
+  std::vector<std::string> unread{};   ///< as in PageWords
 };
 
 /// Returns one HTML file that needs nothing else: maps by verdict, by what ends the paths and by
