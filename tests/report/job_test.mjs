@@ -256,6 +256,38 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await shoot(small.page, 'job_phone.png', { fullPage: true });
   await small.close();
 
+  // Runs between lift-offs count s along their whole stroke: rows, maps and answers.
+  const ring = planned(folder, join(problems, 'iiwa14_ring_job.yaml')),
+    runs = ring.result.parts.filter(({ stroke }) => stroke !== null);
+  assert.equal(ring.status, 0);
+  assert.deepEqual([runs.length, ring.result.lift_offs.length], [2, 1]);
+  assert.equal(runs[1].rows[0].s, ring.result.lift_offs[0].resumed_s);
+  ring.data.strokes.forEach(({ rows, map, run: { summary } }, k) => {
+    const s = runs[k].rows.map((row) => row.s);
+    assert.deepEqual(
+      rows.map((row) => row.s),
+      s,
+    );
+    assertNear([map.s[0], map.s.at(-1)], [s[0], s.at(-1)], 1e-9, `map of run ${k}`);
+    for (const key of ['clearance', 'joint_limit', 'tool_path_error', 'top_tool_speed'])
+      assert.ok(s.includes(summary[key].s), `${key} of run ${k} at s ${summary[key].s}`);
+  });
+  const lifted = await open(ring.html, { viewport: wide });
+  await until(lifted.page, () => window.swivel?.frames > 0);
+  const nearest = lifted.page.locator('#verdict button'),
+    [, at] = (await nearest.textContent()).match(/ at s ([\d.]+)$/);
+  await nearest.click();
+  const [, there] = (await lifted.page.textContent('#readout')).match(/\ns ([\d.]+) m/);
+  assert.equal(Number(there).toFixed(3), at);
+  await lifted.page.selectOption('#stroke', '1');
+  const ticks = await lifted.page
+    .locator('#map > div:visible .panel')
+    .first()
+    .locator('[aria-label="x-axis tick label"] text')
+    .allTextContents();
+  assert.ok(ticks.length > 2 && ticks.every((tick) => Number(tick) >= runs[1].rows[0].s - 1e-9));
+  await lifted.close();
+
   // A stroke without a path: a knob stands on it.
   const waypoint = readFileSync(join(problems, '../paths/door_stroke_0.csv'), 'utf8')
     .split('\n')[10]

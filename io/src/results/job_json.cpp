@@ -82,19 +82,27 @@ class JobWriter {
     return nullptr;
   }
 
+  /// Returns the rows of a part; those of a run count s along the whole of its stroke.
+  [[nodiscard]] std::vector<TrajectoryRow> rows_of(const JobPart& part) const {
+    std::vector<TrajectoryRow> rows = part.rows;
+    if (part.run)
+      for (TrajectoryRow& row : rows) row.s += s_of_piece(job_.strokes[part.run->stroke]);
+    return rows;
+  }
+
   [[nodiscard]] Json runs() const {
     Json list = Json::array();
     for (const RunResult& one : result_.runs) {
       const JobPart* const part = part_of(one.run);
       const bool has_path = one.status == PlanStatus::kSolved;
-      Json json = {
-          {"stroke", name(one.run)},
-          {"reversed", one.run.reversed},
-          {"status", to_string(one.status)},
-          {"least_cost", has_path ? Json(one.least_cost) : Json(nullptr)},
-          {"cost", part ? Json(part->cost) : Json(nullptr)},
-          {"summary", summary_json(one.measures, part ? part->rows : std::vector<TrajectoryRow>())},
-          {"lattice", lattice_json(one.lattice, has_path)}};
+      Json json = {{"stroke", name(one.run)},
+                   {"reversed", one.run.reversed},
+                   {"status", to_string(one.status)},
+                   {"least_cost", has_path ? Json(one.least_cost) : Json(nullptr)},
+                   {"cost", part ? Json(part->cost) : Json(nullptr)},
+                   {"summary", summary_json(one.measures,
+                                            part ? rows_of(*part) : std::vector<TrajectoryRow>())},
+                   {"lattice", lattice_json(one.lattice, has_path)}};
       add_measures(json, one.measures, part != nullptr);
       json["diagnosis"] = one.diagnosis ? diagnosis_json(*one.diagnosis) : Json(nullptr);
       list.push_back(std::move(json));
@@ -195,11 +203,9 @@ class JobWriter {
     for (const JobPart& part : result_.parts) {
       const std::vector<bool> process = process_of_rows(part, job_);
       Json rows = Json::array();
-      for (std::size_t k = 0; k < part.rows.size(); ++k) {
-        TrajectoryRow row = part.rows[k];
-        if (part.run) row.s += s_of_piece(job_.strokes[part.run->stroke]);
+      for (const TrajectoryRow& row : rows_of(part)) {
         rows.push_back(part.run ? row_json(row, roll_) : Json{{"joints", joints_json(row)}});
-        rows.back()["process"] = process[k];
+        rows.back()["process"] = process[rows.size() - 1];
       }
       list.push_back({{"stroke", part.run ? Json(name(*part.run)) : Json(nullptr)},
                       {"reversed", part.run && part.run->reversed},

@@ -70,9 +70,10 @@ class JobPage {
   }
 
   /// Returns a stroke in its direction: where the tool goes, its rows, map, and where its paths
-  /// end.
+  /// end. A run between lift-offs counts s along the whole of its stroke.
   Json stroke(std::size_t k) {
     const std::string& name = job_.strokes[order_[k].stroke].name;
+    const double begin = s_of_piece(job_.strokes[order_[k].stroke]);
     Json json = {{"name", name}, {"reversed", order_[k].reversed}, {"rows", Json::array()}};
     if (runs_.empty()) {
       json["tool_path"] =
@@ -83,10 +84,11 @@ class JobPage {
     const PlanView& view = runs_[k];
     const Lattice& lattice = view.lattice;
     const auto part = part_of(k);
-    const LatticeMap map = make_map(view, false, budget_);
-    const std::vector<PageRow> rows =
-        part ? placed_part(*part, view, map)
-             : placed(lattice, map, rows_of(lattice, view.path), view.path);
+    LatticeMap map = make_map(view, false, budget_);
+    std::vector<PageRow> rows = part ? placed_part(*part, view, map)
+                                     : placed(lattice, map, rows_of(lattice, view.path), view.path);
+    for (double& s : map.s) s += begin;
+    for (PageRow& row : rows) row.at.s += begin;
     json["run"] = json_["runs"][k];
     json["settings"] = settings_json(view.problem, lattice);
     json["tool_path"] = tool_path_json(lattice.path_of_rows());
@@ -99,6 +101,7 @@ class JobPage {
     json["cut"] = diagnosis.is_object()
                       ? cut_json(map, lattice, view.world, view.path, rows, diagnosis)
                       : Json(nullptr);
+    if (!json["cut"].is_null()) json["cut"]["s"] = json["cut"]["s"].get<double>() + begin;
     json["map"] = map_json(map, lattice, view.world, view.path, rows, cells_each(), budget_);
     maps_ += "<h2>" + std::to_string(k + 1) + " " + escaped(name) +
              (order_[k].reversed ? " (backwards)" : "") + "</h2>\n" + to_svg(map);
