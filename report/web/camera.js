@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From where the work is seen, and how near the camera may stand.
 import { Vector3 } from 'three';
-import { displacements, standing, vector } from './kinematics.js';
+import { displacements, standing, toolPose, vector } from './kinematics.js';
 import { cornersOf, Occluder, Sight } from './sight.js';
 
 // Where the camera may stand: turns about the vertical, degrees from nearly ahead of -y, and angles
@@ -57,6 +57,15 @@ export function subject(data, parts) {
         if (body.kind !== 'scene' && !body.stands)
           points.push(...cornersOf(coarse.boundingBox, pose));
       });
+  // The tool on moves between strokes, and halfway between their corners.
+  for (const corners of data.moves ?? [])
+    corners.forEach((q, k) => {
+      for (const share of k ? [0.5, 1] : [1]) {
+        const at = q.map((v, j) => v + (1 - share) * ((corners[k - 1]?.[j] ?? v) - v)),
+          way = standing(data, displacements(chain, at));
+        points.push(new Vector3().setFromMatrixPosition(way.multiply(toolPose(chain, at))));
+      }
+    });
   const bodies = poses(open).map((pose, k) => {
     const { coarse, fine, off } = parts[k];
     parts[k].occluder ??= new Occluder(off ? coarse : fine, off, fine);

@@ -14,6 +14,7 @@ export const style = (name) =>
  */
 export function themes(changed) {
   const page = document.documentElement;
+  measureHeader();
   const set = (dark) => {
     page.dataset.theme = dark ? 'dark' : 'light';
     changed();
@@ -33,6 +34,12 @@ export function themes(changed) {
   });
   set(matchMedia('(prefers-color-scheme: dark)').matches);
   return turn;
+}
+
+/** Leaves to view and map the height that the header does not take (page.css). */
+function measureHeader() {
+  const { offsetHeight } = document.querySelector('header');
+  document.documentElement.style.setProperty('--head', `${offsetHeight}px`);
 }
 
 /** A note beside the pointer, or none for a text of null. */
@@ -61,7 +68,10 @@ export function whenResized(changed) {
   addEventListener('resize', () => {
     clearTimeout(timer);
     timer = setTimeout(() => {
-      if (innerWidth !== width) changed();
+      if (innerWidth !== width) {
+        measureHeader();
+        changed();
+      }
       width = innerWidth;
     }, 100);
   });

@@ -25,6 +25,7 @@ const kFine = 24, // corners of a circle
   kCoarse = 10;
 const kTrail = 7; // poses
 const kDash = 0.012; // m, of a move between strokes, with the gap behind it
+const kAside = [0, 18, -18, 36, -36]; // pixels down, from where a name belongs
 const toolPoint = (chain, q) => new THREE.Vector3().setFromMatrixPosition(toolPose(chain, q));
 function rodBetween(from, to) {
   const rod = new THREE.CylinderGeometry(0.003, 0.003, from.distanceTo(to), 5),
@@ -223,7 +224,13 @@ class View {
       [rows.at(-1), kBodies.end],
     ])
       this.ghosts.add(...this.ghost(row.q, surface(colour, { opacity: 0.06, rim: 0.5 })));
+    this.paintGhosts();
     if (this.trail) this.showTrail(true);
+  }
+  /** Outlines are seen less on a dark ground. */
+  paintGhosts() {
+    for (const { material } of this.ghosts?.children ?? [])
+      material.uniforms.rim.value = isDark() ? 1 : 0.5;
   }
   /** The bodies that move, at joints q. */
   ghost(q, material) {
@@ -417,17 +424,21 @@ class View {
       this.gap.parentElement.append(label);
       return { label, at };
     };
-    this.names = [...objects].map(([name, box]) => {
-      const top = box.getCenter(new THREE.Vector3());
-      top.z = Math.min(box.max.z, top.z + 0.25);
-      return labelled(name, 'name', top);
-    });
     this.toolNames = (this.data.chain.tools ?? []).map(({ name }) =>
       labelled(name, 'name', new THREE.Vector3()),
     );
-    this.names.push(...this.toolNames);
-    for (const { text, point } of this.data.numbers ?? [])
-      this.names.push(labelled(text, 'number', vector(point)));
+    // In the order in which they take their places.
+    this.names = [
+      ...(this.data.numbers ?? []).map(({ text, point }) =>
+        labelled(text, 'number', vector(point)),
+      ),
+      ...this.toolNames,
+      ...[...objects].map(([name, box]) => {
+        const top = box.getCenter(new THREE.Vector3());
+        top.z = Math.min(box.max.z, top.z + 0.25);
+        return labelled(name, 'name', top);
+      }),
+    ];
   }
   /**
    * 'best', 'fit' (from where it is seen now), 'front', 'side', 'top': arm and path into the
@@ -540,6 +551,7 @@ class View {
   /** Takes the colours of the page's theme. */
   paint() {
     this.scene.background = new THREE.Color(isDark() ? '#1a2027' : '#ffffff');
+    this.paintGhosts();
     this.dirty = true;
   }
   resize() {
@@ -561,8 +573,7 @@ class View {
     if (!this.dirty) return false;
     this.dirty = this.moving = false;
     this.renderer.render(this.scene, this.camera);
-    if (this.nearest.visible) this.place(this.gap, this.nearest.children[0].position, 12, -26);
-    for (const { label, at } of this.names) this.place(label, at, 0, 0);
+    this.placeLabels();
     return true;
   }
   /** The picture as it is shown, with the labels: a canvas. */
@@ -579,7 +590,9 @@ class View {
     // They may be hidden on paper, where this picture has them.
     const named = !canvas.closest('.nameless'),
       labels = [
-        ...this.names.map(({ label }) => label).filter((one) => named || one.className !== 'name'),
+        ...this.names
+          .map(({ label }) => label)
+          .filter((one) => (named || one.className !== 'name') && !one.style.visibility),
         ...(this.gap.hidden ? [] : [this.gap]),
       ];
     for (const label of labels) {
@@ -593,15 +606,40 @@ class View {
     this.dirty = true;
     return result;
   }
-  /** An element beside a point of the base frame. */
+  /**
+   * The line's length and the numbers of strokes stand where they belong; names, too, or a little
+   * above or below, where they cover nothing else, or else nowhere.
+   */
+  placeLabels() {
+    const taken = [];
+    const isFree = ([left, top, right, bottom]) =>
+      taken.every(([l, t, r, b]) => right <= l || r <= left || bottom <= t || b <= top);
+    if (this.nearest.visible)
+      taken.push(this.place(this.gap, this.nearest.children[0].position, 12, -26));
+    for (const { label, at } of this.names) {
+      const isName = label.className === 'name';
+      let box = null;
+      for (const down of isName ? kAside : [0]) {
+        box = this.place(label, at, 0, down);
+        if (!isName || isFree(box)) break;
+        box = null;
+      }
+      label.style.visibility = box ? '' : 'hidden';
+      if (box) taken.push(box);
+    }
+  }
+  /** An element beside a point of the base frame. Returns its left, top, right and bottom. */
   place(element, point, right, down) {
     const at = point.clone().applyMatrix4(this.world.matrix).project(this.camera),
       { width, height } = this.size;
     const x = ((at.x + 1) / 2) * width + right,
       y = ((1 - at.y) / 2) * height + down;
-    const left = Math.min(Math.max(4, x), width - element.offsetWidth - 4).toFixed(0);
-    const top = Math.min(Math.max(4, y), height - 24).toFixed(0);
+    const { offsetWidth: wide, offsetHeight: high } = element,
+      left = Math.round(Math.min(Math.max(4, x), width - wide - 4)),
+      top = Math.round(Math.min(Math.max(4, y), height - 24)),
+      before = element.className === 'number' ? 9 : 0; // its margin
     element.style.transform = `translate(${left}px, ${top}px)`;
+    return [left - before, top - before, left - before + wide, top - before + high];
   }
 }
 

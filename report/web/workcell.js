@@ -341,6 +341,7 @@ function addLineChoice() {
   $('path-colour').addEventListener('change', colourPaths);
 }
 addLineChoice();
+$('view-options').before($('bodies'));
 
 $('controls').hidden = $('plots-section').hidden = !pair.moves;
 $('motion-section').hidden = !pair.timed;

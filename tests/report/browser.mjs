@@ -200,6 +200,26 @@ export async function assertFits(page, width) {
   assert.ok(wide <= width, `${wide} pixels wide on a screen of ${width}`);
 }
 
+/** No name in the view stands over another one, over a stroke's number or a line's length. */
+export async function assertLabelsApart(page) {
+  const over = await page.evaluate(() => {
+    const all = [...document.querySelectorAll('#stage .name, #stage .number, #gap')]
+      .filter((one) => one.checkVisibility({ visibilityProperty: true }))
+      .map((one) => ({ one, ...one.getBoundingClientRect().toJSON() }));
+    // A pixel is rounding.
+    const meet = (a, b) =>
+      a.left < b.right - 1 &&
+      b.left < a.right - 1 &&
+      a.top < b.bottom - 1 &&
+      b.top < a.bottom - 1;
+    return all
+      .filter(({ one }) => one.className === 'name')
+      .flatMap((a) => all.filter((b) => b !== a && meet(a, b)).map((b) => [a, b]))
+      .map((two) => two.map(({ one }) => one.textContent).join(' over '));
+  });
+  assert.deepEqual(over, []);
+}
+
 /** On paper all is light, the arm is a picture, and afterwards all is as before. */
 export async function assertPrints(page) {
   const dark = () => page.evaluate(() => document.documentElement.dataset.theme === 'dark'),

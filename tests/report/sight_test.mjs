@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The first picture of a page shows the work: of all problems of one arm, jobs included, four
 // fifths of the path, and where the arm is nearest to something, by rays past all bodies, the arm's
-// own among them. Of those with one path, every jump of the answer leads to what it says.
-// Arguments: the program, the problems' folder, the folder whose node_modules has playwright-core.
+// own among them; names do not stand over each other. Of those with one path, every jump of the
+// answer leads to what it says. Arguments: the program, the problems' folder, the folder whose
+// node_modules has playwright-core.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { dataOf, some, until, withBrowser } from './browser.mjs';
+import { assertLabelsApart, dataOf, some, until, withBrowser } from './browser.mjs';
 import { checkJumps } from './jumps.mjs';
 
 const [swivel, problems, packages] = process.argv.slice(2).map((path) => resolve(path)),
@@ -78,6 +79,7 @@ await withBrowser({ packages }, async ({ folder, open }) => {
     for (const [screen, viewport] of Object.entries(screens)) {
       const { page, close } = await open(html, { viewport });
       await until(page, () => window.swivel?.frames > 0);
+      await assertLabelsApart(page);
       await page.evaluate(define);
       const { path, ends } = await page.evaluate(() => window.test.now()),
         isShort = path < kShare,

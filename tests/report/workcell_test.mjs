@@ -7,6 +7,7 @@ import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import {
   assertFits,
+  assertLabelsApart,
   assertPrints,
   clickBodies,
   dataOf,
@@ -102,6 +103,16 @@ function assertNear(found, expected, tolerance, what) {
 }
 const rounded = (value, count) => String(Number(value.toPrecision(count)));
 
+/** Picture, legend and options are seen above the slider without scrolling, on a laptop, too. */
+async function checkWhole(page) {
+  for (const viewport of [{ width: 1100, height: 700 }, wide]) {
+    await page.setViewportSize(viewport);
+    const box = (id) => page.locator(id).boundingBox(),
+      [view, legend, controls] = [await box('#view'), await box('#bodies'), await box('#controls')];
+    assert.ok(view.y + view.height <= controls.y, JSON.stringify([viewport, view, controls]));
+    assert.ok(legend.y + legend.height <= view.y + view.height && legend.height > 20);
+  }
+}
 /** Each body is in the scene once, and the bodies that an arm moves are those of that arm. */
 function checkBodies({ data }) {
   const all = data.bodies.map(({ arm, ...body }) => JSON.stringify(body));
@@ -374,6 +385,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     /^Solved: two arms, 33 rows, cost 0.9728: that of both arms alone, which do not meet/,
   );
   await assertFits(page, wide.width);
+  await assertLabelsApart(page);
+  await checkWhole(page);
   checkBodies(plate);
   await checkMotion(page, plate);
   await checkCarried(page, plate);
