@@ -70,8 +70,8 @@ void serialize(A& archive, Capsule& x) {
 }
 template <class A>
 void serialize(A& archive, TriangleMesh& x) {
-  auto& [vertices, triangles, source, closed] = x;
-  archive(vertices, triangles, source, closed);
+  auto& [vertices, triangles, source, closed, scale] = x;
+  archive(vertices, triangles, source, closed, scale);
 }
 template <class A>
 void serialize(A& archive, PlacedShape& x) {
@@ -101,9 +101,9 @@ void serialize(A& archive, Joint& x) {
           mimic, hard, passive, line);
 }
 template <class A>
-void serialize(A& archive, RobotFiles& x) {
-  auto& [urdf, packages, without] = x;
-  archive(urdf, packages, without);
+void serialize(A& archive, ModelFiles& x) {
+  auto& [urdf, srdf, packages, without, soft_limits, joint_limits, limits, joint_margin] = x;
+  archive(urdf, srdf, packages, without, soft_limits, joint_limits, limits, joint_margin);
 }
 template <class A>
 void serialize(A& archive, RobotModel& x) {

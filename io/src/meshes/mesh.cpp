@@ -68,7 +68,7 @@ MeshPtr read_mesh(const fs::path& path, Reader read, const Vector3d& scale) {
   const MeshFile file{path.string(), read_file(path, "mesh file",
                                                read == read_dae ? kMostXmlBytes : kMostMeshBytes)};
   const auto mesh = std::make_shared<TriangleMesh>();
-  mesh->source = file.name;
+  mesh->source = file.name, mesh->scale = scale;
   std::size_t work = 0;
   read(file, [&](const Surface& surface, const Eigen::Affine3d& pose) {
     // A surface that is placed often costs time even if it adds little.

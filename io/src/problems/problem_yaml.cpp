@@ -258,10 +258,13 @@ void ProblemReader::read_robot_limits(const YamlValue& value, RobotModel& robot)
     for (const auto& [joint, range] : joints->entries()) {
       const std::vector<double> ends = range.numbers();
       require(range, narrow_range(robot, joint, {ends[0], ends[1]}));
+      robot.files.limits[joint] = {ends[0], ends[1]};
     }
   if (const auto margins = section.find("joint_margin"); margins && margins->is_map())
-    for (const auto& [joint, margin] : margins->entries())
+    for (const auto& [joint, margin] : margins->entries()) {
       require(margin, keep_off_limits(robot, joint, margin.number()));
+      robot.files.joint_margin[joint] = margin.number();
+    }
 }
 
 void ProblemReader::read_hand(const YamlValue& value) {

@@ -197,6 +197,7 @@ std::optional<LimitFault> keep_off_limits(RobotModel& robot, const std::string& 
 }
 
 void read_joint_limits(const std::filesystem::path& yaml, RobotModel& robot) {
+  robot.files.joint_limits = std::filesystem::absolute(yaml).string();
   JointLimitsReader(robot).read(load_yaml(yaml, joint_limits_schema()));
 }
 
@@ -206,6 +207,7 @@ void keep_limits(const RobotOptions& options, RobotModel& robot) {
     if (const auto fault = narrow_range(robot, joint, range))
       throw InputError(robot.source + ": limits of joint '" + joint + "': " + fault->what +
                        ": allowed is " + fault->allowed);
+  robot.files.limits = options.limits;
 }
 
 }  // namespace swivel::io

@@ -122,6 +122,7 @@ Pair ordered(std::string a, std::string b) {
 
 void load_srdf(const XmlSource& srdf, RobotModel& robot, const std::set<std::string>& left_out) {
   const std::string file = srdf.file.string();
+  if (!srdf.text) robot.files.srdf = std::filesystem::absolute(srdf.file).string();
   tinyxml2::XMLDocument document;
   const tinyxml2::XMLElement& root = load_robot_xml(srdf, "SRDF", document);
   XmlWarnings warnings;

@@ -274,14 +274,17 @@ class ModelBuilder {
     return std::string(element.Name()) + " '" + element.Attribute("name") + "'";
   }
 
-  /// Notes the files of the model where they can be read once more.
+  /// Notes what the model is made from, its file where that can be read once more.
   void note_files() {
     namespace fs = std::filesystem;
     std::error_code error;
-    if (source_.text || !fs::is_regular_file(source_.file, error)) return;
     const auto absolute = [&](const fs::path& path) { return fs::absolute(path, error).string(); };
-    model_->files = {absolute(source_.file), {}, options_.without};
-    for (const auto& [name, folder] : packages_) model_->files.packages[name] = absolute(folder);
+    ModelFiles& files = model_->files;
+    if (!source_.text && fs::is_regular_file(source_.file, error))
+      files.urdf = absolute(source_.file);
+    for (const auto& [name, folder] : packages_) files.packages[name] = absolute(folder);
+    files.without = options_.without;
+    files.soft_limits = options_.soft_limits;
   }
 
   void check(const tinyxml2::XMLElement& robot) {
@@ -679,7 +682,7 @@ std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path
 }
 
 VisualRobot load_visuals(const RobotModel& robot) {
-  const RobotFiles& files = robot.files;
+  const ModelFiles& files = robot.files;
   if (files.urdf.empty()) return {};
   const Packages packages(files.packages.begin(), files.packages.end());
   const XmlSource source{files.urdf};

@@ -54,11 +54,18 @@ struct Joint {
   [[nodiscard]] bool movable() const { return type != Type::kFixed && type != Type::kFree; }
 };
 
-/// The files of a robot, which say more of it than a model holds, such as its visual shapes.
-struct RobotFiles {
-  std::string urdf;  ///< absolute path; empty: the robot is not of a file, or of one like a pipe
-  std::map<std::string, std::string> packages;  ///< name -> folder
-  std::vector<std::string> without;  ///< links that are left out, with all that they carry
+/// The files that a robot model was loaded from, and what it was told besides: what a problem file
+/// says of the model. File names are absolute.
+struct ModelFiles {
+  std::string urdf;                             ///< empty: it comes from no file, or from a pipe
+  std::string srdf;                             ///< empty: none
+  std::map<std::string, std::string> packages;  ///< package -> folder
+  std::vector<std::string> without;             ///< links that were left out
+  bool soft_limits = true;   ///< joints keep the soft limits of their <safety_controller>
+  std::string joint_limits;  ///< joint_limits.yaml of MoveIt; empty: none
+  /// joint -> range that narrows that of the URDF, rad or m
+  std::map<std::string, Joint::Range> limits;
+  std::map<std::string, double> joint_margin;  ///< joint -> distance kept from its limits, rad or m
 };
 
 /// A robot as its URDF (and SRDF) describe it: a tree of links and joints. It does not change once
@@ -75,7 +82,7 @@ struct RobotModel {
   std::vector<std::pair<std::string, std::string>> disabled_pairs;
   /// One sentence, with file and line, for everything in the files that the model leaves out.
   std::vector<std::string> warnings;
-  RobotFiles files;
+  ModelFiles files;
 
   /// Returns the index of a link by name, -1 if there is none.
   [[nodiscard]] int find_link(const std::string& link_name) const;

@@ -42,6 +42,7 @@ struct TriangleMesh {
   std::string source;  ///< file that it came from, for messages
   /// true: it bounds a solid, see is_closed().
   bool closed = false;
+  Vector3d scale = Vector3d::Ones();  ///< factors by which the vertices of the file were multiplied
 };
 // shared: one file serves several links and all episodes
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
