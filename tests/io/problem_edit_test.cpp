@@ -44,6 +44,11 @@ TEST(WithPoses, ReadsBackBitForBitAndKeepsTheRest) {
       "rpy: [0.1, 0.2,\n          0.3]",
       "\n  - name: part\n    box: [0.1, 0.1, 0.2]",
       "[{name: part, sphere: 0.1}, {name: post, sphere: 0.1}]",
+      "[{name: part, sphere: 0.1, xyz: [1, 2, \"3\"]}]",
+      "[{name: part, sphere: 0.1, xyz: }]",
+      "[{name: shelf, sphere: 0.1, frame: link_2}, {name: part, sphere: 0.1}]",
+      "\n  - name: part\n    sphere: 0.1\n    quat:\n      - 0.5\n      - 0.5\n      - 0.5\n      "
+      "- 0.5",
       "\n  - {quat: [0.5, 0.5, 0.5, 0.5], name: part, sphere: 0.1}",
       "\n  - {sphere: 0.1, name: 'part', xyz: [1e-3, +.2, 3]}",
   };
@@ -63,7 +68,7 @@ TEST(WithPoses, ReadsBackBitForBitAndKeepsTheRest) {
             << e.after;
       turned += offset[4] != 0;
     }
-  EXPECT_EQ(turned, 12);
+  EXPECT_EQ(turned, 20);
   const Edited e = edited(folder, scenes[0], kMoved);
   EXPECT_NE(e.after.find("{name: part, sphere: 0.1, xyz: [0.81, 0.27, 0.8], rpy: [0, 0, "
                          "-1.5707963267948966]}  # the part"),
@@ -114,12 +119,6 @@ TEST(WithPoses, RefusesWhatItCannotChangeInPlace) {
   };
   refused("[{name: post, sphere: 0.1, xyz: &p [1, 2, 3]}, {name: part, sphere: 0.1, xyz: *p}]",
           kMoved);
-  refused("[{name: part, sphere: 0.1, xyz: [1, 2, \"3\"]}]", kMoved);
-  refused("[{name: part, sphere: 0.1, xyz: }]", kMoved);
-  refused(
-      "\n  - name: part\n    sphere: 0.1\n    quat:\n      - 0.5\n      - 0.5\n      - 0.5\n      "
-      "- 0.5",
-      kTurned);
   refused("[{name: part, sphere: 0.1}]", kMoved, {Movable::Kind::kPath, ""});
   refused("[{name: part, sphere: 0.1}]", kMoved, {Movable::Kind::kBase, ""});
 }
@@ -154,8 +153,8 @@ TEST(WithPoses, HoldsJoints) {
                 .find("    a: 0.30000000000000004  # one\n    z: 3"),
             std::string::npos);
   written("robot:\n  urdf: u\n  tool: {xyz: [0, 0, 1]}");
-  EXPECT_THROW(written("robot: {urdf: u, hold: {a: \"1\", 'b: c': 1}}"), InputError);
-  EXPECT_THROW(written("robot: {urdf: u, hold: }"), InputError);
+  written("robot: {urdf: u, hold: {a: \"1\", 'b: c': 1}}");
+  written("robot: {urdf: u, hold: }");
 }
 
 TEST(Placements, Csv) {

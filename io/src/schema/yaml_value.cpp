@@ -244,9 +244,7 @@ int documents_in(const std::string& text) {
 
 }  // namespace
 
-YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
-  const std::string name = file.string();
-  const std::string text = read_file(file, "YAML file", kMostYamlBytes);
+YamlValue parse_yaml(const std::string& text, const std::string& name, const Schema& schema) {
   if (const std::size_t first = text.find_first_not_of(" \t\r\n");
       first != std::string::npos && text[first] == '<')
     bad_input(name, "is XML, as a URDF is, and no problem file",
@@ -264,6 +262,10 @@ YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
     bad_input(name, documents == 0 ? "holds no YAML document" : "holds more than one YAML document",
               "one document");
   return {std::make_shared<YamlFile>(YamlFile{name}), document, schema, "", 1};
+}
+
+YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
+  return parse_yaml(read_file(file, "YAML file", kMostYamlBytes), file.string(), schema);
 }
 
 }  // namespace swivel::io

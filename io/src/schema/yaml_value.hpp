@@ -101,6 +101,10 @@ class YamlSection {
   std::vector<std::pair<std::string, YamlValue>> entries_;
 };
 
+/// Parses a YAML text of one document, which is that of the file `name`. The schema must outlive
+/// the values. Throws InputError.
+[[nodiscard]] YamlValue parse_yaml(const std::string& text, const std::string& name,
+                                   const Schema& schema);
 /// Loads a YAML file with one document. The schema must outlive the values. Throws InputError.
 [[nodiscard]] YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema);
 
