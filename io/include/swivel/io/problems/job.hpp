@@ -2,6 +2,7 @@
 // Reads jobs: problem files with several strokes. docs/formats.md "Jobs".
 #pragma once
 #include <filesystem>
+#include <string>
 #include <variant>
 
 #include "swivel/core/problem/job.hpp"
@@ -16,6 +17,14 @@ namespace swivel::io {
 /// Loads a job and the files that it names, docs/formats.md "Jobs". A problem file with `path`
 /// instead of `strokes` is a job of one stroke named "path". Throws InputError.
 [[nodiscard]] Job load_job(const std::filesystem::path& yaml);
+
+/// Returns the text of a problem file that gives this job when it is loaded as `file`, as
+/// problem_text() of a problem does. Throws as that does.
+[[nodiscard]] std::string problem_text(const Job& job, const std::filesystem::path& file);
+
+/// Writes problem_text() to a file, which is replaced as a whole or left as it was. Throws as
+/// problem_text() does, and InputError if the file cannot be written.
+void save_problem(const Job& job, const std::filesystem::path& file);
 
 /// Loads a file by load_job() if is_job(), else by load_problem(). It reads the
 /// file once, which may be a pipe. Throws InputError.

@@ -17,6 +17,20 @@ namespace swivel::io {
 /// unknown key it names the nearest known key.
 [[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
 
+/// Returns the text of a problem file that gives this problem when it is loaded as `file`:
+/// rotations to a rounding error, everything else bit for bit. Of a problem that was loaded from a
+/// file it is the text of that file with what has changed since: the rest keeps its text, order and
+/// comments, new keys are added in the order of docs/formats.md, and names of files are changed to
+/// mean the same files from the folder of `file`. A problem without a source is written whole,
+/// without defaults. Throws InvalidArgument for a problem that makes no sense, and InputError for
+/// what no file can say or what cannot be changed in place, if the file that it was loaded from
+/// cannot be read any more, and if `file` is one of those that it names.
+[[nodiscard]] std::string problem_text(const Problem& problem, const std::filesystem::path& file);
+
+/// Writes problem_text() to a file, which is replaced as a whole or left as it was. Throws as
+/// problem_text() does, and InputError if the file cannot be written.
+void save_problem(const Problem& problem, const std::filesystem::path& file);
+
 /// Turns waypoints of a tool that may turn freely about its z axis by half a turn about that axis
 /// where they would turn by 180 deg from the one before, about another axis: which way such a turn
 /// leads is undefined, and half a turn about the tool's axis changes nothing for the work. Readers
