@@ -362,6 +362,18 @@ void bind_job(py::module_& m) {
           },
           py::arg("seed"), py::arg("episode"),
           "The job of this episode of a campaign: objects moved as the file's `vary` says.")
+      .def(
+          "save",
+          [](const Job& job, const std::filesystem::path& file) {
+            const swivel::Job core = to_core(job);
+            interruptible([&](const std::stop_token&) {
+              io::save_problem(core, file);
+              return true;
+            });
+          },
+          py::arg("file"),
+          "Writes a problem file that gives this job when it is loaded, as Problem.save() does. "
+          "Raises InputError for what no file can say, and InvalidArgument.")
       .def("__repr__", [](const Job& job) {
         return "<Job" + (job.source.empty() ? "" : " '" + job.source + "'") + ": " +
                py::repr(py::cast(Robot(job))).cast<std::string>() + ", " +

@@ -868,6 +868,20 @@ void bind_problem(py::module_& m) {
           "base frame, about its own origin, with the joints of `hold` held there, rad or m.")
       .def("episode", &episode_problem, py::arg("seed"), py::arg("episode"),
            "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
+      .def(
+          "save",
+          [](Problem problem, const std::filesystem::path& file) {
+            interruptible([&](const std::stop_token&) {
+              io::save_problem(problem, file);
+              return true;
+            });
+          },
+          py::arg("file"),
+          "Writes a problem file that gives this problem when it is loaded. Of a problem that was "
+          "loaded from a file it is that file with what has changed since: comments, order and "
+          "layout stay, names of files are as seen from the new place. A problem made in memory is "
+          "written whole. The file is replaced as a whole, or left as it was. Raises InputError "
+          "for what no file can say, and InvalidArgument.")
       .def("__repr__", [](const Problem& problem) {
         return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " +
                robot_words(problem) + "; " + std::to_string(problem.waypoints.size()) +
