@@ -49,6 +49,8 @@ struct Check {
   io::JointNames joint_names;
 };
 
+/// Throws ValueError if this build has no pages.
+void require_pages();
 /// Returns work done by name, as JSON names it.
 [[nodiscard]] py::dict counters_of(const Counters& c);
 

@@ -23,10 +23,8 @@ _OPEN = (
 )
 
 
-def _loaded(problem):
-    if isinstance(problem, (str, os.PathLike)):
-        return _swivel.load_problem(problem)
-    return problem
+def _loaded(problem, load=_swivel.load_problem):
+    return load(problem) if isinstance(problem, (str, os.PathLike)) else problem
 
 
 def _written(text, file):
@@ -39,14 +37,17 @@ def _written(text, file):
 def report(problem, plan, file=None):
     """Makes the page of a plan: what `swivel plan --report` writes, one HTML file.
 
-    problem: the Problem that was planned, or the name of its file; None for the one that the plan
-    keeps, which it does until it is pickled. plan: Plan. file: where the page is written.
+    problem: the Problem or Workcell that was planned, or the name of its file; None for the one
+    that the plan keeps, which it does until it is pickled. plan: Plan or WorkcellPlan. file: where
+    the page is written.
 
     Returns the page as text, or None where it was written. The problem is planned again, which
     gives the same path, in the time of one plan. Raises ValueError for plans without a verdict, for
     those that depend on functions of Python, for a problem with another answer, and where the
     package was built without pages.
     """
+    if isinstance(plan, _swivel.WorkcellPlan):
+        return _written(_swivel._draw_workcell(plan, _loaded(problem, _swivel.load_workcell)), file)
     return _written(_swivel._draw(plan, _loaded(problem), True, False)[1], file)
 
 
@@ -156,32 +157,23 @@ def _plan_html(self):
     return answer + drawn + button
 
 
-def _workcell_report(self, file=None):
-    """Makes the page of the plan: what `swivel plan WORKCELL --report` writes, one HTML file.
-
-    file: where the page is written.
-
-    Returns the page as text, or None where it was written. The workcell is planned again, which
-    gives the same plan. Raises ValueError for plans that were stopped, and where the package was
-    built without pages.
-    """
-    return _written(_swivel._draw_workcell(self), file)
-
-
-def _workcell_certificate(self, *, timeout=None):
+def _workcell_certificate(self, workcell=None, *, timeout=None):
     """Proves that the workcell has no plan, as `swivel plan WORKCELL --certificate` does.
 
-    timeout: s, or None.
+    workcell: the Workcell that was planned, or the name of its file; None for the one that the plan
+    keeps until it is pickled. timeout: s, or None.
 
     Returns a WorkcellCertificate. The proof comes from a search of its own. Raises ValueError for
     plans that are not infeasible, or were made with refine or speed, and TimeoutError.
     """
-    return _swivel._workcell_certificate(self, timeout)
+    return _swivel._workcell_certificate(
+        self, _loaded(workcell, _swivel.load_workcell), timeout
+    )
 
 
 def extend():
     """Gives the classes of plans what is written in this file."""
-    _swivel.WorkcellPlan.report = _workcell_report
+    _swivel.WorkcellPlan.report = _plan_report
     _swivel.WorkcellPlan.show = _plan_show
     _swivel.WorkcellPlan.certificate = _workcell_certificate
     for name, method in (

@@ -332,6 +332,70 @@ class Workcells(unittest.TestCase):
         self.addCleanup(shown.unlink)
         self.assertEqual(data_of(shown)["result"]["cost"], here["result"]["cost"])
 
+    def test_trajectories_are_timed_as_the_program_does(self):
+        csv, theirs, own = (self.folder / name for name in ("both.csv", "theirs.csv", "own.csv"))
+        cell = swivel.load_workcell(PLATE)
+        plan = swivel.plan_workcell(cell)
+        plan.save(csv)
+        for keywords, options in (({}, ()), ({"refine": True}, ("--refine", ))):
+            words = ["time", PLATE, csv, "--speed", "0.05", "--out", theirs, "--quiet", *options]
+            subprocess.run([PROGRAM, *words], check=True)
+            for rows in (plan, plan.trajectories, csv):
+                motion = swivel.time_workcell(cell, rows, speed=0.05, **keywords)
+                motion.save(own)
+                self.assertEqual(own.read_bytes(), theirs.read_bytes())
+            self.assertTrue(motion.executable)
+            self.assertIsNone(motion.not_executable)
+            self.assertEqual(len(motion.refinements), 2 if keywords else 0)
+            rest = motion.motions["left"].t[-1] - motion.duration  # of the last sample
+            self.assertTrue(0 <= rest < 1 / 250)
+            self.assertTrue(swivel.check_workcell(cell, motion))
+            self.assertTrue(swivel.check_workcell(cell, motion.motions))
+            again = pickle.loads(pickle.dumps(motion))
+            again.save(own)
+            self.assertEqual(own.read_bytes(), theirs.read_bytes())
+            self.assertEqual(repr(again), repr(motion))
+        with self.assertRaisesRegex(swivel.InputError, "has times"):
+            swivel.time_workcell(cell, own, speed=0.05)
+        with self.assertRaisesRegex(ValueError, "allowed are Trajectories"):
+            swivel.time_workcell(cell, motion.motions, speed=0.05)
+        with self.assertRaisesRegex(ValueError, "speed: is not given"):
+            swivel.time_workcell(cell, plan)
+        with self.assertRaisesRegex(ValueError, "rate"):
+            swivel.time_workcell(cell, plan, speed=0.05, rate=0)
+        with self.assertRaises(TimeoutError):
+            swivel.time_workcell(cell, plan, speed=0.05, timeout=1e-6)
+        with self.assertRaisesRegex(ValueError, "has no trajectories"):
+            swivel.time_workcell(self.barred(), swivel.plan_workcell(self.barred()), speed=0.05)
+
+    def test_plans_are_pickled(self):
+        cell = swivel.Workcell(self.arms(0.5))
+        for plan in (
+            swivel.plan_workcell(cell, evidence=True),
+            swivel.plan_workcell(cell, speed=0.1, refine=True),
+            swivel.plan_workcell(swivel.Workcell(self.arms(0.02))),
+        ):
+            again = pickle.loads(pickle.dumps(plan))
+            self.assertEqual(again.to_json(), plan.to_json())
+            self.assertEqual(repr(again), repr(plan))
+            for name, rows in plan.trajectories.items():
+                np.testing.assert_array_equal(again.trajectories[name].joints, rows.joints)
+            self.assertEqual(list(again.motions), list(plan.motions))
+            self.assertEqual(list(again.refinements), list(plan.refinements))
+            self.assertLess(len(pickle.dumps(plan)), len(pickle.dumps(cell)) + 1_000_000)
+        with self.assertRaisesRegex(ValueError, "unpickled has none"):
+            again.certificate()
+        self.assertEqual(
+            again.certificate(swivel.Workcell(self.arms(0.02))), plan.certificate()
+        )
+        if swivel._swivel._page_available():
+            again = pickle.loads(pickle.dumps(swivel.plan_workcell(cell)))
+            with self.assertRaisesRegex(ValueError, "unpickled has none"):
+                again.report()
+            self.assertGreater(len(swivel.report(cell, again)), 100_000)
+            with self.assertRaisesRegex(ValueError, "another answer"):
+                swivel.report(swivel.Workcell(self.arms(0.4)), again)
+
     def test_bad_input(self):
         with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
             swivel.load_workcell(DATA / "problems" / "experiment_c.yaml")

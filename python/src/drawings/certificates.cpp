@@ -119,7 +119,8 @@ std::string words_of(const InfeasibilityCertificate& certificate) {
 }
 
 /// Returns the certificate that a workcell has no plan. Throws ValueError for another plan.
-WorkcellCertificate proof_of(const WorkcellPlan& plan, std::optional<double> timeout) {
+WorkcellCertificate proof_of(const WorkcellPlan& plan, const Workcell* given,
+                             std::optional<double> timeout) {
   if (plan.plan->result.status != PlanStatus::kInfeasible)
     throw py::value_error(std::string("the plan is '") + to_string(plan.plan->result.status) +
                           "': allowed is one that is infeasible");
@@ -128,7 +129,7 @@ WorkcellCertificate proof_of(const WorkcellPlan& plan, std::optional<double> tim
         "a certificate is of the workcell as it is: allowed is a plan without refine and speed");
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
-    return prove_infeasible(PreparedWorkcell(*plan.cell, budget), budget);
+    return prove_infeasible(PreparedWorkcell(completed(plan, given), budget), budget);
   });
 }
 
@@ -230,7 +231,8 @@ void bind_workcell_certificates(py::module_& m) {
         "does: WorkcellCertificateCheck.\n\n"
         "workcell, certificate: a Workcell and a WorkcellCertificate, or the names of their files. "
         "timeout: s. Raises InputError for the certificate of another workcell, and TimeoutError.");
-  m.def("_workcell_certificate", &proof_of, py::arg("plan"), py::arg("timeout"));
+  m.def("_workcell_certificate", &proof_of, py::arg("plan"), py::arg("workcell"),
+        py::arg("timeout"));
 }
 
 }  // namespace

@@ -68,8 +68,7 @@ std::string page_of(const PlanView& view, const LatticeMap& map, const MotionPla
 /// Plans again what a plan is of, and draws it. `full`: the clearance of every node is asked.
 /// Throws ValueError for plans without a verdict, and if another path is found.
 Drawing draw(const Plan& plan, const Problem* given, bool with_page, bool full) {
-  if (with_page && !page_available())
-    throw py::value_error("report: this build has no pages: allowed is one with SWIVEL_REPORT");
+  if (with_page) require_pages();
   const PlanStatus status = plan.result().status;
   if (status != PlanStatus::kSolved && status != PlanStatus::kInfeasible)
     throw py::value_error("the plan has no verdict: allowed are those that were not stopped");
@@ -104,9 +103,8 @@ bool same_rows(const WorkcellResult& a, const WorkcellResult& b) {
 
 /// Plans a workcell again and returns its page. Throws ValueError for plans without a verdict, and
 /// if another plan is found.
-std::string page_of(const WorkcellPlan& plan) {
-  if (!page_available())
-    throw py::value_error("report: this build has no pages: allowed is one with SWIVEL_REPORT");
+std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
+  require_pages();
   const WorkcellResult& known = plan.plan->result;
   if ((known.status != PlanStatus::kSolved && known.status != PlanStatus::kInfeasible) ||
       plan.plan->stopped)
@@ -119,18 +117,19 @@ std::string page_of(const WorkcellPlan& plan) {
   return interruptible([&](const std::stop_token& stop) {
     options.stop = stop;
     const Budget budget({}, nullptr, stop);
-    const Workcell cell = plan.completed();
+    const swivel::Workcell cell = completed(plan, given);
     const PreparedWorkcell prepared(cell, budget);
     WorkcellView view;
     const WorkcellMotionPlan again =
         plan_workcell_motion(prepared, options, plan.refined, plan.timing, &view);
     if (again.result.status != known.status || !same_rows(again.result, known))
-      throw std::logic_error("planned again, the workcell has another plan");
+      throw py::value_error("workcell: has another answer than the plan: allowed is its own");
     const auto& timing = again.timing;
     const io::WorkcellExtras extras{again.refinement ? &*again.refinement : nullptr,
                                     timing ? &*timing : nullptr,
                                     plan.timing.value_or(TimingOptions{}), nullptr};
-    const WorkcellMotion* const motion = timing && timing->motion ? &*timing->motion : nullptr;
+    const swivel::WorkcellMotion* const motion =
+        timing && timing->motion ? &*timing->motion : nullptr;
     const io::VisualRobot visual = io::load_visuals(*cell.arms[0].model);
     return to_workcell_page({prepared, cell, again.result, view, motion},
                             io::to_workcell_json(again.result, extras), budget,
@@ -140,10 +139,19 @@ std::string page_of(const WorkcellPlan& plan) {
 
 }  // namespace
 
+void require_pages() {
+  if (!page_available())
+    throw py::value_error(
+        "report: the package was built without pages, since node, npm or their network was "
+        "missing: allowed is one that was built with them, see docs/guide/python.md");
+}
+
 void bind_drawings(py::module_& m) {
   m.def(
-      "_draw_workcell", [](const WorkcellPlan& plan) { return page_of(plan); }, py::arg("plan"),
-      "The page of a workcell's plan as HTML; used by the package's WorkcellPlan.report().");
+      "_draw_workcell",
+      [](const WorkcellPlan& plan, const Workcell* workcell) { return page_of(plan, workcell); },
+      py::arg("plan"), py::arg("workcell"),
+      "The page of a workcell's plan as HTML; used by the package's report().");
   m.def("_page_available", &page_available);
   m.def(
       "_draw",

@@ -9,7 +9,6 @@
 
 #include "interruptible.hpp"
 #include "job.hpp"
-#include "job_archive.hpp"
 #include "plan_keywords.hpp"
 #include "results.hpp"
 #include "runs.hpp"
@@ -23,7 +22,7 @@
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
-#include "workcells/workcell_plan.hpp"
+#include "workcells/workcell_archive.hpp"
 
 namespace swivel::python {
 
@@ -32,14 +31,6 @@ namespace {
 struct WorkcellCheck {
   WorkcellCheckResult result;
 };
-
-using WorkcellOrFile = std::variant<const Workcell*, std::filesystem::path>;
-
-std::shared_ptr<const swivel::Workcell> to_core(const WorkcellOrFile& cell) {
-  if (const auto* made = std::get_if<const Workcell*>(&cell)) return (*made)->cell;
-  return std::make_shared<const swivel::Workcell>(
-      io::load_workcell(std::get<std::filesystem::path>(cell)));
-}
 
 Workcell shared(swivel::Workcell cell) {
   return {std::make_shared<const swivel::Workcell>(std::move(cell))};
@@ -143,36 +134,15 @@ Trajectory trajectory_of(const WorkcellPlan& plan, std::size_t arm) {
           result.joint_names};
 }
 
-/// Returns the refinement of both arms by name; none where it was not asked for.
-py::dict refinements_of(const WorkcellPlan& plan) {
-  py::dict all;
-  if (!plan.plan->refinement) return all;
-  for (std::size_t k = 0; k < 2; ++k)
-    all[plan.plan->result.names[k].c_str()] = py::cast(
-        RefinedPath{std::shared_ptr<const Refined>(plan.plan, &plan.plan->refinement->arms[k]),
-                    plan.plan->result.arms[k].joint_names});
-  return all;
-}
-
-/// Returns the motion of the plan. Throws ValueError if there is none.
-const WorkcellMotion& motion_of(const WorkcellPlan& plan) {
-  const auto& timing = plan.plan->timing;
-  if (!timing || !timing->motion)
-    throw py::value_error(!timing ? "there is no motion: it was not asked for, or there is no plan"
-                                  : "not executable: " + timing->failure->reason);
-  return *timing->motion;
-}
-
-/// Returns the motions of both arms by name; none where there is no motion.
-py::dict motions_of(const WorkcellPlan& plan) {
-  py::dict all;
-  if (!plan.plan->timing || !plan.plan->timing->motion) return all;
-  const WorkcellMotion& motion = motion_of(plan);
-  for (std::size_t k = 0; k < 2; ++k)
-    all[motion.names[k].c_str()] = py::cast(
-        Motion{std::make_shared<const TimingResult>(TimingResult{motion.arms[k], std::nullopt}),
-               plan.plan->result.arms[k].joint_names, plan.frame});
-  return all;
+/// Returns the refinement and the motion of a plan, as far as these were asked for.
+WorkcellMotion motion_of(const WorkcellPlan& plan) {
+  const auto& [result, refinement, timing, stopped] = *plan.plan;
+  WorkcellMotion made{.names = result.names,
+                      .joint_names = {result.arms[0].joint_names, result.arms[1].joint_names},
+                      .frame = plan.frame};
+  if (timing) made.timing = std::shared_ptr<const WorkcellTiming>(plan.plan, &*timing);
+  if (refinement) made.refinement = std::shared_ptr<const RefinedWorkcell>(plan.plan, &*refinement);
+  return made;
 }
 
 WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
@@ -184,8 +154,8 @@ WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
       std::make_shared<const WorkcellMotionPlan>(interruptible([&](const std::stop_token& stop) {
         options.stop = stop;
         const Budget budget({}, nullptr, stop);
-        return plan_workcell_motion(PreparedWorkcell(made.completed(), budget), options, refine,
-                                    timing);
+        return plan_workcell_motion(PreparedWorkcell(completed(made, nullptr), budget), options,
+                                    refine, timing);
       }));
   return made;
 }
@@ -204,22 +174,14 @@ std::optional<TimingOptions> timing_of(std::optional<double> speed,
   return timing;
 }
 
-using Checked = std::variant<WorkcellPlan, py::dict, std::filesystem::path>;
+using Checked = std::variant<WorkcellPlan, WorkcellMotion, py::dict, std::filesystem::path>;
 WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
   const auto cell = to_core(of);
   const auto names = names_of(*cell);
   io::WorkcellRows given;
-  if (const auto* dict = std::get_if<py::dict>(&rows))
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (!dict->contains(names[k])) throw py::key_error("'" + names[k] + "': is missing");
-      const py::object one = (*dict)[names[k].c_str()];
-      if (py::isinstance<Motion>(one))
-        given.timed[k] = *one.cast<const Motion&>().rows();
-      else
-        given.rows[k] = *one.cast<const Trajectory&>().rows;
-    }
-  if (given.timed[0].empty() != given.timed[1].empty())
-    throw py::value_error("rows: one is a motion, the other one is none: allowed are two alike");
+  if (const auto* const dict = std::get_if<py::dict>(&rows)) given = rows_of(*dict, names);
+  if (const auto* const motion = std::get_if<WorkcellMotion>(&rows))
+    for (std::size_t k = 0; k < 2; ++k) given.timed[k] = motion->motion().arms[k].rows;
   if (const auto* made = std::get_if<WorkcellPlan>(&rows))
     for (std::size_t k = 0; k < 2; ++k) given.rows[k] = made->plan->result.arms[k].trajectory;
   const auto* file = std::get_if<std::filesystem::path>(&rows);
@@ -292,6 +254,7 @@ void bind_cell(py::module_& m) {
 void bind_plan(py::module_& m) {
   py::class_<WorkcellPlan>(m, "WorkcellPlan",
                            "What was planned for two arms. None: does not apply.")
+      .def(pickling<WorkcellPlan>())
       .def_property_readonly("status", [](const WorkcellPlan& p) { return p.plan->result.status; })
       .def_property_readonly(
           "solved",
@@ -373,14 +336,16 @@ void bind_plan(py::module_& m) {
             io::write_file(file, io::to_workcell_csv(p.plan->result));
           },
           py::arg("file"), "The trajectories of both arms as CSV, docs/formats.md.")
-      .def_property_readonly("refinements", &refinements_of,
-                             "Name of the arm -> Refined, with refine=True and a plan.")
+      .def_property_readonly(
+          "refinements", [](const WorkcellPlan& p) { return motion_of(p).refinements(); },
+          "Name of the arm -> Refined, with refine=True and a plan.")
       .def_property_readonly(
           "stopped", [](const WorkcellPlan& p) { return p.plan->stopped; },
           "With a plan: time ran out before all that was asked for was done.")
-      .def_property_readonly("motions", &motions_of,
-                             "Name of the arm -> Motion, with speed=; samples of one number are "
-                             "simultaneous. Empty: there is none.")
+      .def_property_readonly(
+          "motions", [](const WorkcellPlan& p) { return motion_of(p).motions(); },
+          "Name of the arm -> Motion, with speed=; samples of one number are simultaneous. Empty: "
+          "there is none.")
       .def_property_readonly(
           "not_executable",
           [](const WorkcellPlan& p) -> std::optional<std::string> {
@@ -391,12 +356,7 @@ void bind_plan(py::module_& m) {
           "Why the plan has no motion, with speed=; None: it has one, or none was asked for.")
       .def(
           "save_motion",
-          [](const WorkcellPlan& p, const std::filesystem::path& file) {
-            const auto& arms = p.plan->result.arms;
-            io::write_file(
-                file, io::workcell_motion_text(
-                          motion_of(p), {arms[0].joint_names, arms[1].joint_names}, p.frame, file));
-          },
+          [](const WorkcellPlan& p, const std::filesystem::path& file) { motion_of(p).save(file); },
           py::arg("file"),
           "The motion of both arms as .csv, .json or .yaml (JointTrajectory), or .mcap.")
       .def("__repr__", [](const WorkcellPlan& p) {
@@ -503,10 +463,35 @@ void bind_advice(py::module_& m) {
 
 }  // namespace
 
-swivel::Workcell WorkcellPlan::completed() const {
-  swivel::Workcell whole = timing ? with_motion_defaults(*cell) : *cell;
+std::shared_ptr<const swivel::Workcell> to_core(const WorkcellOrFile& cell) {
+  if (const auto* made = std::get_if<const Workcell*>(&cell)) return (*made)->cell;
+  return std::make_shared<const swivel::Workcell>(
+      io::load_workcell(std::get<std::filesystem::path>(cell)));
+}
+
+io::WorkcellRows rows_of(const py::dict& rows, const std::array<std::string, 2>& names) {
+  io::WorkcellRows all;
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!rows.contains(names[k])) throw py::key_error("'" + names[k] + "': is missing");
+    const py::object one = rows[names[k].c_str()];
+    if (py::isinstance<Motion>(one))
+      all.timed[k] = *one.cast<const Motion&>().rows();
+    else
+      all.rows[k] = *one.cast<const Trajectory&>().rows;
+  }
+  if (all.timed[0].empty() != all.timed[1].empty())
+    throw py::value_error("rows: one is a motion, the other one is none: allowed are two alike");
+  return all;
+}
+
+swivel::Workcell completed(const WorkcellPlan& plan, const Workcell* given) {
+  if (given == nullptr && !plan.cell)
+    throw py::value_error(
+        "workcell: a plan that was unpickled has none: allowed is the workcell that was planned");
+  const swivel::Workcell& cell = given != nullptr ? *given->cell : *plan.cell;
+  swivel::Workcell whole = plan.timing ? with_motion_defaults(cell) : cell;
   for (WorkcellArm& arm : whole.arms)
-    if (refined) keep_clearance_between_layers(arm.limits);
+    if (plan.refined) keep_clearance_between_layers(arm.limits);
   return whole;
 }
 
@@ -515,6 +500,7 @@ void bind_workcell(py::module_& m) {
   bind_plan(m);
   bind_advice(m);
   bind_check(m);
+  bind_workcell_motion(m);
   m.def(
       "plan_workcell",
       [](const WorkcellOrFile& workcell, const py::object& planner, int threads,
@@ -544,8 +530,9 @@ void bind_workcell(py::module_& m) {
   m.def("check_workcell", &check, py::arg("workcell").none(false), py::arg("rows").none(false),
         "Proves the trajectories of two arms from the workcell alone, or says what is wrong with "
         "them: WorkcellCheck.\n\n"
-        "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, name -> Trajectory "
-        "or Motion, or the name of a CSV file. Raises InputError and InvalidArgument.");
+        "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, a WorkcellMotion, "
+        "name -> Trajectory or Motion, or the name of a CSV file. Raises InputError and "
+        "InvalidArgument.");
 }
 
 }  // namespace swivel::python
