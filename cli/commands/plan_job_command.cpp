@@ -10,9 +10,9 @@
 
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
-#include "output/job_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/motion/job_text.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"

@@ -6,7 +6,7 @@
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 
-namespace swivel::cli {
+namespace swivel {
 
 /// Returns the answer of a job for people: first the verdict, then a table with a line for each
 /// stroke, in the order in which they are run, and a line about the transitions. Where there is no
@@ -18,4 +18,4 @@ namespace swivel::cli {
 [[nodiscard]] std::string job_motion_text(const JobTimingResult& timing,
                                           const std::vector<JobPart>& parts, const Job& job);
 
-}  // namespace swivel::cli
+}  // namespace swivel

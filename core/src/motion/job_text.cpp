@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "output/job_output.hpp"
+#include "swivel/core/motion/job_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
-namespace swivel::cli {
+namespace swivel {
 
 namespace {
 
@@ -225,4 +225,4 @@ std::string job_motion_text(const JobTimingResult& timing, const std::vector<Job
       motion.events.size());
 }
 
-}  // namespace swivel::cli
+}  // namespace swivel
