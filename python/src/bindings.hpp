@@ -195,6 +195,7 @@ void bind_workcell(py::module_& m);
 void bind_states(py::module_& m);
 void bind_drawings(py::module_& m);
 void bind_certificates(py::module_& m);
+void bind_job_drawings(py::module_& m);
 
 }  // namespace swivel::python
 

@@ -127,6 +127,11 @@ void serialize(A& archive, JobTimingResult& x) {
   archive(motion, failure, failed_part);
 }
 template <class A>
+void serialize(A& archive, JobTimingOptions& x) {
+  auto& [speed, turn_speed, rate] = x;
+  archive(speed, turn_speed, rate);
+}
+template <class A>
 void serialize(A& archive, JobMotionPlan& x) {
   auto& [result, timing, stopped] = x;
   archive(result, timing, stopped);
@@ -193,10 +198,11 @@ void serialize(A& archive, JobRun& x) {
   auto& [result, stroke, cost] = x;
   archive(result, stroke, cost);
 }
+/// Leaves out the job as it was given, which would be most of a plan.
 template <class A>
 void serialize(A& archive, JobPlan& x) {
-  auto& [plan, job] = x;
-  archive(plan, job);
+  auto& [plan, job, timing, given] = x;
+  archive(plan, job, timing);
 }
 template <class A>
 void serialize(A& archive, JobMotion& x) {

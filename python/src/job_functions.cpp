@@ -229,6 +229,8 @@ JobPlan plan(const JobOrFile& of, PlanOptions options,
     return plan_job_motion(prepared(job, stop), job, options, *timing);
   }));
   plan.job = without_surroundings(executed_job(job, plan.plan->result));
+  plan.timing = timing;
+  plan.given = std::make_shared<const swivel::Job>(job);
   return plan;
 }
 

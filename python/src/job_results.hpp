@@ -47,6 +47,9 @@ struct JobPlan {
   /// The job's strokes, home and order, by which the answer is written; without robot and scene.
   /// Runs between lift-offs are strokes of their own.
   std::shared_ptr<const swivel::Job> job;
+  std::optional<JobTimingOptions> timing = {};  ///< set where a motion was asked for
+  /// The job as it was given, of which reports are made. Null after unpickling.
+  std::shared_ptr<const swivel::Job> given = nullptr;
   [[nodiscard]] const JobResult& result() const { return plan->result; }
 };
 

@@ -25,6 +25,7 @@ PYBIND11_MODULE(_swivel, m) {
   swivel::python::bind_workcell(m);
   swivel::python::bind_drawings(m);
   swivel::python::bind_certificates(m);
+  swivel::python::bind_job_drawings(m);
   py::module_::import("atexit").attr("register")(
       py::cpp_function(&swivel::python::UnderWay::end_all));
 }

@@ -37,15 +37,17 @@ def _written(text, file):
 def report(problem, plan, file=None):
     """Makes the page of a plan: what `swivel plan --report` writes, one HTML file.
 
-    problem: the Problem or Workcell that was planned, or the name of its file; None for the one
-    that the plan keeps, which it does until it is pickled. plan: Plan or WorkcellPlan. file: where
-    the page is written.
+    problem: the Problem, Job or Workcell that was planned, or the name of its file; None for the
+    one that the plan keeps, which it does until it is pickled. plan: Plan, JobPlan or WorkcellPlan.
+    file: where the page is written.
 
     Returns the page as text, or None where it was written. The problem is planned again, which
     gives the same path, in the time of one plan. Raises ValueError for plans without a verdict, for
     those that depend on functions of Python, for a problem with another answer, and where the
     package was built without pages.
     """
+    if isinstance(plan, _swivel.JobPlan):
+        return _written(_swivel._draw_job(plan, _loaded(problem, _swivel.load_job)), file)
     if isinstance(plan, _swivel.WorkcellPlan):
         return _written(_swivel._draw_workcell(plan, _loaded(problem, _swivel.load_workcell)), file)
     return _written(_swivel._draw(plan, _loaded(problem), True, False)[1], file)
@@ -75,15 +77,16 @@ def certificate(problem, *, planner="parallel", threads=0, timeout=None):
 def check_certificate(problem, certificate, *, timeout=None):
     """Verifies a certificate from the problem alone, as `swivel check --certificate` does.
 
-    problem: a Problem, or the name of its file. certificate: a Certificate, or the name of its
-    file. timeout: s, or None.
+    problem: a Problem, or the Job of the stroke that the certificate is of, or the name of its
+    file. certificate: a Certificate, or the name of its file. timeout: s, or None.
 
     Returns a CertificateCheck. Raises InputError for the certificate of another problem, and
     TimeoutError.
     """
     if isinstance(certificate, (str, os.PathLike)):
         certificate = _swivel.load_certificate(certificate)
-    return _swivel._check_certificate(_loaded(problem), certificate, timeout)
+    load = _swivel.load_job if certificate.stroke else _swivel.load_problem
+    return _swivel._check_certificate(_loaded(problem, load), certificate, timeout)
 
 
 class _Frame:
@@ -171,11 +174,26 @@ def _workcell_certificate(self, workcell=None, *, timeout=None):
     )
 
 
+def _job_certificate(self, job=None, *, timeout=None):
+    """Proves that a stroke has no path by itself, as `swivel plan JOB --certificate` does.
+
+    job: the Job that was planned, or the name of its file; None for the one that the plan keeps
+    until it is pickled. timeout: s, or None.
+
+    Returns a Certificate, of the first such stroke; check_certificate() verifies it. The job is
+    planned again. Raises ValueError for plans in which each stroke has a path by itself and for
+    those with a motion, and TimeoutError.
+    """
+    return _swivel._job_certificate(self, _loaded(job, _swivel.load_job), timeout)
+
+
 def extend():
     """Gives the classes of plans what is written in this file."""
-    _swivel.WorkcellPlan.report = _plan_report
-    _swivel.WorkcellPlan.show = _plan_show
-    _swivel.WorkcellPlan.certificate = _workcell_certificate
+    for kind, proof in (
+        (_swivel.JobPlan, _job_certificate),
+        (_swivel.WorkcellPlan, _workcell_certificate),
+    ):
+        kind.report, kind.show, kind.certificate = _plan_report, _plan_show, proof
     for name, method in (
         ("report", _plan_report),
         ("map_svg", _plan_map_svg),

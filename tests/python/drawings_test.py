@@ -217,5 +217,91 @@ class Certificates(unittest.TestCase):
             swivel.certificate(file, planner="eager_dp", timeout=1e-6)
 
 
+class JobDrawings(unittest.TestCase):
+    """Pages of jobs, and certificates that a stroke has no path, are those of the program."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def job(self, *strokes):
+        """The file of a job on the door: its first two strokes, and others."""
+        text = (PROBLEMS / "door_job.yaml").read_text().replace("../", f"{DATA}/")
+        text = re.sub(r"  - {name: row_[2-5].*\n", "", text)
+        text = text.replace("ds: 0.005, dphi: 0.05", "ds: 0.02, dphi: 0.2")
+        text = text.replace("scene:\n", "".join(f"  - {one}\n" for one in strokes) + "scene:\n")
+        file = self.folder / "job.yaml"
+        file.write_text(text)
+        return file
+
+    FAR = "{name: far, path: {waypoints: [{xyz: [3, 0, 1]}, {xyz: [3, 0.1, 1]}]}}"
+
+    @unittest.skipUnless(PAGES, "built without pages")
+    def test_pages_are_those_of_the_program(self):
+        page, own = self.folder / "page.html", self.folder / "own.html"
+        for strokes, keywords, options in (
+            ((), {}, ()),
+            ((), {"speed": 0.05}, ("--speed", "0.05")),
+            ((self.FAR, ), {}, ()),
+        ):
+            file = self.job(*strokes)
+            words = ["--threads", "1", "--quiet", "--report", page, *options]
+            program("plan", file, *words, codes=(0, 1))
+            plan = swivel.plan_job(file, threads=1, **keywords)
+            self.assertEqual(plan.solved, not strokes)
+            self.assertIsNone(plan.report(own))
+            texts = [without_times(text.read_text()) for text in (own, page)]
+            self.assertTrue(texts[0] == texts[1], "another page")
+            again = pickle.loads(pickle.dumps(plan))
+            with self.assertRaisesRegex(ValueError, "unpickled has none"):
+                again.report()
+            text = without_times(swivel.report(file, again))
+            self.assertTrue(text == texts[1], "another page")
+        with self.assertRaisesRegex(ValueError, "another answer"):
+            swivel.report(self.job(), plan)
+        with mock.patch("webbrowser.open") as opened:
+            plan.show()
+        shown = Path(opened.call_args[0][0].removeprefix("file://"))
+        self.addCleanup(shown.unlink)
+        self.assertEqual(without_times(shown.read_text()), texts[1])
+
+    def test_certificates_are_those_of_the_program(self):
+        file, theirs, own = self.job(self.FAR), self.folder / "theirs", self.folder / "own"
+        program("plan", file, "--certificate", theirs, "--quiet", codes=(1, ))
+        plan = swivel.plan_job(file)
+        certificate = plan.certificate()
+        certificate.save(own)
+        self.assertEqual(own.read_bytes(), theirs.read_bytes())
+        self.assertEqual((certificate.stroke, certificate.reversed), ("far", False))
+        self.assertIn("stroke 'far', no path", repr(certificate))
+        self.assertEqual(pickle.loads(pickle.dumps(certificate)), certificate)
+        self.assertIn("passed", program("check", file, "--certificate", own).stdout)
+        job = swivel.load_job(file)
+        for of, what in ((job, certificate), (file, own)):
+            self.assertTrue(swivel.check_certificate(of, what))
+        again = pickle.loads(pickle.dumps(plan))
+        self.assertEqual(again.certificate(file), certificate)
+        with self.assertRaisesRegex(ValueError, "unpickled has none"):
+            again.certificate()
+        job.strokes[-1].waypoints = job.strokes[0].waypoints
+        job.strokes[-1].frame = "door"
+        with self.assertRaises(swivel.InputError):  # of other layers
+            swivel.check_certificate(job, certificate)
+        job.strokes = job.strokes[:2]
+        with self.assertRaisesRegex(swivel.InputError, "'far' is none of the job"):
+            swivel.check_certificate(job, certificate)
+        with self.assertRaisesRegex(swivel.InputError, "is of stroke 'far' of a job"):
+            swivel.check_certificate(
+                swivel.load_problem(PROBLEMS / "experiment_c.yaml"), certificate
+            )
+        with self.assertRaisesRegex(ValueError, "no stroke is known to have no path"):
+            swivel.plan_job(self.job()).certificate()
+        with self.assertRaisesRegex(ValueError, "without speed"):
+            swivel.plan_job(file, speed=0.1).certificate()
+        with self.assertRaises(TimeoutError):
+            plan.certificate(timeout=1e-6)
+
+
 if __name__ == "__main__":
     unittest.main(argv=["drawings_test"] + sys.argv[1:])

@@ -112,8 +112,30 @@ CertificateCheck verdict_on(const Problem& problem, const InfeasibilityCertifica
   });
 }
 
+/// Verifies the certificate that a stroke of a job has no path. Throws InputError for a stroke that
+/// the job does not have.
+CertificateCheck verdict_on_stroke(const Job& of, const InfeasibilityCertificate& certificate,
+                                   std::optional<double> timeout) {
+  const swivel::Job job = to_core(of);
+  const auto stroke = find_stroke(job, certificate.stroke);
+  if (!stroke)
+    throw InputError("certificate", "stroke: '" + certificate.stroke +
+                                        "' is none of the job: allowed are the names of its "
+                                        "strokes");
+  const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
+  return interruptible([&](const std::stop_token& stop) {
+    const Budget budget(timeout, nullptr, stop);
+    return verify_certificate(PreparedRobot(problem, budget), problem, certificate, budget);
+  });
+}
+
 std::string words_of(const InfeasibilityCertificate& certificate) {
-  return formatted("<Certificate: no path, layers %d to %zu of %d: ", certificate.first_layer,
+  const std::string of =
+      certificate.stroke.empty()
+          ? ""
+          : "stroke '" + certificate.stroke + (certificate.reversed ? "' backwards, " : "', ");
+  return "<Certificate: " + of +
+         formatted("no path, layers %d to %zu of %d: ", certificate.first_layer,
                    certificate.first_layer + certificate.band.size() - 1, certificate.layers) +
          removed_text(certificate) + ">";
 }
@@ -243,6 +265,15 @@ void bind_certificates(py::module_& m) {
       m, "Certificate",
       "Proves that a problem has no path at its resolution: a band of layers that nothing crosses.")
       .def(pickling<InfeasibilityCertificate>())
+      .def_property_readonly(
+          "stroke",
+          [](const InfeasibilityCertificate& x) -> std::optional<std::string> {
+            if (x.stroke.empty()) return {};
+            return x.stroke;
+          },
+          "Name of the stroke of a job that has no path; None: it is of a problem.")
+      .def_readonly("reversed", &InfeasibilityCertificate::reversed,
+                    "Whether that stroke is run from its last waypoint to the first.")
       .def_readonly("layers", &InfeasibilityCertificate::layers, "Of the whole lattice.")
       .def_property_readonly(
           "band",
@@ -300,6 +331,8 @@ void bind_certificates(py::module_& m) {
   m.def("_certificate", &certificate_of, py::arg("problem"), py::arg("planner"), py::arg("threads"),
         py::arg("timeout"));
   m.def("_check_certificate", &verdict_on, py::arg("problem"), py::arg("certificate"),
+        py::arg("timeout"));
+  m.def("_check_certificate", &verdict_on_stroke, py::arg("problem"), py::arg("certificate"),
         py::arg("timeout"));
 }
 
