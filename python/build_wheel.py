@@ -3,7 +3,8 @@
 and this packs it as a wheel.
 
 CMAKE_ARGS, as elsewhere, are more arguments for CMake. The build folder is build/pip, so that a
-second call builds what changed.
+second call builds what changed. The package has the pages of report() where node, npm and their
+network are there; CMAKE_ARGS=-DSWIVEL_REPORT=ON makes it fail without them, OFF leaves them out.
 """
 import base64
 import hashlib
@@ -55,9 +56,10 @@ def build_package(folder):
     arguments = [
         "-DCMAKE_BUILD_TYPE=Release", "-DSWIVEL_PYTHON=ON", "-DSWIVEL_PYTHON_DIR=.",
         f"-DPython_EXECUTABLE={sys.executable}", "-DBUILD_SHARED_LIBS=OFF", "-DSWIVEL_TESTS=OFF",
-        "-DSWIVEL_BENCH=OFF", "-DSWIVEL_REPORT=OFF"
+        "-DSWIVEL_BENCH=OFF", "-DSWIVEL_REPORT=AUTO"
     ]
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+    forget_missing_pages(build)
     # --fresh: a virtual environment of an earlier call may be gone.
     run(
         "cmake", "--fresh", "-S", ROOT, "-B", build, *generator, *arguments,
@@ -65,6 +67,35 @@ def build_package(folder):
     )
     run("cmake", "--build", build, "--target", "swivel_python", "--parallel", jobs())
     run("cmake", "--install", build, "--component", "python", "--prefix", folder, "--strip")
+    add_notices(build, Path(folder) / "swivel")
+
+
+def has_pages(build):
+    """Whether the pages of report() were bundled: their files are empty where that failed."""
+    page = build / "report" / "web" / "report.html"
+    return page.exists() and page.stat().st_size > 0
+
+
+def forget_missing_pages(build):
+    """Makes the next build try again to bundle pages that an earlier one could not."""
+    if not has_pages(build):
+        (build / "report" / "web" / "report.html").unlink(missing_ok=True)
+
+
+def add_notices(build, package):
+    """Says whether the package has pages; if so, adds the licences of what they are made of."""
+    cache = (build / "CMakeCache.txt").read_text()
+    off = re.search(r"^SWIVEL_REPORT:\w+=(OFF|NO|FALSE|N|0)$", cache, re.MULTILINE)
+    without = re.search(r"^SWIVEL_(NODE|NPM):\w+=.*-NOTFOUND$", cache, re.MULTILINE)
+    if has_pages(build) and not off and not without:
+        shutil.copy(build / "report" / "web" / "THIRD-PARTY.txt", package)
+        print("swivel: this package has the pages of report() and show()", flush=True)
+        return
+    why = "SWIVEL_REPORT is OFF" if off else "node, npm or their network is missing"
+    print(
+        f"swivel: this package has no pages, since {why}: report() and show() will say so",
+        file=sys.stderr, flush=True
+    )
 
 
 def tag():

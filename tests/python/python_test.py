@@ -3,9 +3,11 @@
 # SWIVEL_DATA the data folder.
 import ast
 import base64
+import contextlib
 import copy
 import gc
 import hashlib
+import io
 import os
 import pickle
 import re
@@ -1496,6 +1498,37 @@ class Wheels(unittest.TestCase):
                 env={**os.environ, "PYTHONPATH": str(where)},
             )
             self.assertEqual(run.stdout, f"{where}/swivel/__init__.py solved\n")
+
+    def test_pages_are_packed_or_their_lack_is_told(self):
+        sys.path.insert(0, os.environ["SWIVEL_BACKEND"])
+        import build_wheel
+
+        page, node = "<html>", "SWIVEL_NODE:FILEPATH=/usr/bin/node\nSWIVEL_NPM:FILEPATH=/npm\n"
+        for content, cache, words in (
+            (page, f"SWIVEL_REPORT:STRING=AUTO\n{node}", "has the pages of report()"),
+            ("", f"SWIVEL_REPORT:STRING=AUTO\n{node}", "no pages, since node, npm or their"),
+            (None, "SWIVEL_NODE:FILEPATH=SWIVEL_NODE-NOTFOUND\n", "no pages, since node, npm"),
+            (page, "SWIVEL_NPM:FILEPATH=SWIVEL_NPM-NOTFOUND\n", "no pages, since node, npm"),
+            (page, f"SWIVEL_REPORT:STRING=OFF\n{node}", "no pages, since SWIVEL_REPORT is OFF"),
+        ):
+            with self.subTest(words=words), tempfile.TemporaryDirectory() as folder:
+                build, package = Path(folder) / "build", Path(folder) / "swivel"
+                web = build / "report" / "web"
+                web.mkdir(parents=True)
+                package.mkdir()
+                (build / "CMakeCache.txt").write_text(cache)
+                (web / "THIRD-PARTY.txt").write_text("licences")
+                if content is not None:
+                    (web / "report.html").write_text(content)
+                out, err = io.StringIO(), io.StringIO()
+                with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+                    build_wheel.add_notices(build, package)
+                self.assertIn(words, out.getvalue() + err.getvalue())
+                self.assertEqual(
+                    (package / "THIRD-PARTY.txt").exists(), words.startswith("has the pages")
+                )
+                build_wheel.forget_missing_pages(build)
+                self.assertEqual((web / "report.html").exists(), content == page)
 
     def test_source_distribution(self):
         sys.path.insert(0, os.environ["SWIVEL_BACKEND"])
