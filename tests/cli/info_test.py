@@ -992,9 +992,11 @@ class FirstProblem(WithFolder):
     def plans(self, urdf, *options, file="first.yaml"):
         done = self.write(urdf, *options, file=file)
         self.assertEqual((done.returncode, done.stderr), (0, ""), urdf)
-        self.assertIn("\nwritten    ", done.stdout)
+        said = re.search(r"\nwritten    .* planned with cost ([\d.]+);", done.stdout)
         done = run("plan", self.folder / file)
         self.assertEqual(done.returncode, 0, f"{urdf}: {done.stdout}{done.stderr}")
+        found = re.search(r" cost ([\d.]+) ", done.stdout)
+        self.assertAlmostEqual(float(said[1]), float(found[1]), delta=2e-4)
         return (self.folder / file).read_text()
 
     def test_every_robot(self):

@@ -22,8 +22,8 @@ Sweep sweep_of(const Lattice& lattice, const std::vector<int>& slots, Eigen::Ind
   Sweep sweep{value, value, value, value};
   for (std::size_t i = 1; i < slots.size(); ++i) {
     const int layer = static_cast<int>(i);
-    value +=
-        lattice.delta(*lattice.node(layer - 1, slots[i - 1]), *lattice.node(layer, slots[i]))[joint];
+    value += lattice.delta(*lattice.node(layer - 1, slots[i - 1]),
+                           *lattice.node(layer, slots[i]))[joint];
     sweep.least = std::min(sweep.least, value);
     sweep.most = std::max(sweep.most, value);
   }

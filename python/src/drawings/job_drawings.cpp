@@ -79,7 +79,7 @@ std::string page_of(const JobPlan& plan, const Job* given) {
     const swivel::Job executed = executed_job(job, result);
     std::string text = job_text(result, executed);
     if (timing) text += swivel::job_motion_text(*timing, result.parts, executed);
-    const io::VisualRobot visual = io::load_visuals(job.source);
+    const io::VisualRobot visual = io::load_visuals(*job.model);
     return to_job_page(
         {robot, executed, result, view, timing && timing->motion ? &*timing->motion : nullptr},
         io::to_job_json(result, executed, {timing ? &*timing : nullptr, stopped, nullptr}), budget,
