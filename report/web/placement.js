@@ -292,9 +292,9 @@ function draw(width, ink) {
     marginLeft: 54,
     marginRight: 16,
     marginTop: 22,
-    marginBottom: 36,
+    marginBottom: 40,
     style: { color: ink, background: 'none', fontSize: '11px' },
-    x: { label: unit(x), domain: range(x), ticks: 6 },
+    x: { label: unit(x), labelOffset: 34, domain: range(x), ticks: 6 },
     y: flat ? { axis: null, domain: [-0.5, 0.5] } : { label: unit(y), domain: range(y), ticks: 6 },
     marks,
   });

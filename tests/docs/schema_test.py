@@ -190,6 +190,7 @@ class Results(unittest.TestCase):
         ("experiment_a_start.yaml", "--advise", "1", "--certificate", "cut.json"),
         ("kr6_weld_pipe.yaml", "--speed", "0.2"),
         ("torch_door.yaml", "--refine"),
+        ("ur10e_rail_seam.yaml", "--ds", "0.1"),
         (made_problem(smooth=None), "--speed", "0.1"),
         (made_problem(walls=["one", "two"]),),
         (made_problem(walls=["one"], roll=[0.3, 0.6]),),
@@ -291,7 +292,7 @@ class Results(unittest.TestCase):
         alike = (
             ".arms[].diagnosis.", ".arms[].deepest_contact.", ".arms[].lattice.",
             ".arms[].trajectory[].roll", ".motion.arms[].slow[]", ".motion.arms[].corners.stops[]",
-            ".advice.arms[].advice[].",
+            ".advice.arms[].advice[].", ".arms[].summary.slide_limit.",
         )
         self.assertEqual({key for key in known - seen if not key.startswith(alike)}, set())
         self.assertEqual(len(statuses), 4, statuses)

@@ -160,9 +160,9 @@ TEST(WorkcellPlacements, OneArmsPathAndTheTorso) {
     const bool follows = trial % 4 >= 2;
     const Workcell cell = cell_with_scene(random, follows);
     const auto arm = static_cast<std::size_t>(trial % 2);
-    const Movable thing = trial % 3 == 2 ? Movable{Movable::Kind::kNothing, ""}
+    const Movable thing = trial % 5 == 4 ? Movable{Movable::Kind::kNothing, ""}
                                          : Movable{Movable::Kind::kPath, "", cell.arms[arm].name};
-    const bool moves = thing.kind == Movable::Kind::kPath, holds = trial % 3 > 0;
+    const bool moves = thing.kind == Movable::Kind::kPath, holds = !moves || trial % 3 > 0;
     std::vector<PlacementCell> cells;
     for (std::uint64_t k = 0; k < 5; ++k) {
       PlacementCell& at = cells.emplace_back(PlacementCell{k});

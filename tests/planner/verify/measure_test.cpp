@@ -104,8 +104,13 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    Problem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    if (arm_of({"", problem.model, problem.base_link, problem.tip_link}).chain.slide() >= 0) {
+      problem.limits.arm_slope = Limits().arm_slope;  // these arms have no arm angle
+      problem.limits.step_error.reset();
+      problem.resolution.arc = random.uniform(0.3, 0.6);
+    }
     const PreparedRobot robot(problem);
     PlanOptions options;
     options.evidence = Evidence::all();
