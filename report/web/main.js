@@ -2,7 +2,7 @@
 // The report of one plan: text, map and plots first, then the arm; one cursor moves in all of them.
 import { savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { Nearness, nearWords, nearWordsAt, placesOf } from './nearness.js';
+import { Nearness, placesOf } from './nearness.js';
 import { $, data, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
@@ -155,17 +155,8 @@ function present() {
   tellPose($('readout'), chain, placeWords(pose, data.map.letter, 4), pose, digits);
   plots.draw(pose.row, pose);
 }
-/** What is nearest to a body, at a pose of the path and along all of it. */
-function nearLines(name, { off, row }) {
-  const least = nearness.least(name),
-    here = off ? null : nearness.at(name, Math.round(row));
-  if (!least) return [];
-  const lines = [`nearest along the path: ${nearWordsAt(least)}`];
-  if (here) lines.unshift(Number.isInteger(row) ? nearWords(here) : nearWordsAt(here));
-  return lines;
-}
 function draw({ q, pair, line, hit, off, row }) {
-  view?.pose(q, pair, line, hit, (name) => nearLines(name, { off, row }));
+  view?.pose(q, pair, line, hit, (name) => nearness.lines(name, off ? null : row));
   Object.assign(window.swivel, { joints: q, line });
 }
 /** To row k, not always whole. */

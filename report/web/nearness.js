@@ -35,6 +35,18 @@ export class Nearness {
       return here && (!best || here.mm < best.mm) ? here : best;
     }, null);
   }
+  /**
+   * What is nearest to a body at a row, not always whole, or null off the rows, and at all of them
+   * (`along`), a line each. isWhole: whether the pose that is shown is that of the row.
+   */
+  lines(name, row, along = 'along the path', isWhole = Number.isInteger(row)) {
+    const least = this.least(name),
+      here = row === null ? null : this.at(name, Math.round(row));
+    if (!least) return [];
+    const lines = [`nearest ${along}: ${nearWordsAt(least)}`];
+    if (here) lines.unshift(isWhole ? nearWords(here) : nearWordsAt(here));
+    return lines;
+  }
 }
 
 /** The places of rows of one path, in words. */

@@ -2,6 +2,7 @@
 // The plans of the best placements in three dimensions, above the map of placements as a floor.
 import { bytes } from './bytes.js';
 import { toolPose } from './kinematics.js';
+import { Nearness, placesOf } from './nearness.js';
 import { $, data } from './page.js';
 import { startView } from './scene.js';
 
@@ -59,6 +60,7 @@ export class Placed {
     }));
     const tool_path = rows.map(({ q }) => toolPose(chain, q).elements.slice(12, 15));
     this.shown = { ...scene, rows, tool_path, poses: plan.poses, floor: true };
+    this.nearness = new Nearness(plan.near, placesOf(rows));
     // One without a path is shown where paths end.
     Object.assign(this, { plan, offset, cursor: 0, isPartial: plan.past !== undefined });
     window.swivel.cell = cell;
@@ -106,7 +108,9 @@ export class Placed {
     const q = a.q.map((v, j) => v + f * (b.q[j] - v));
     window.swivel.joints = q;
     const past = this.isPartial && this.cursor === last ? this.plan.past : null;
-    this.view?.pose(q, past?.pair ?? null, past?.line ?? null, true);
+    this.view?.pose(q, past?.pair ?? null, past?.line ?? null, true, (name) =>
+      this.nearness.lines(name, this.cursor),
+    );
     $('slider').value = this.cursor;
     $('where').textContent =
       `s ${(a.s + f * (b.s - a.s)).toFixed(3)} of ${rows[last].s.toFixed(3)} m`;

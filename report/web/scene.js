@@ -607,8 +607,8 @@ class View {
     return result;
   }
   /**
-   * The line's length and the numbers of strokes stand where they belong; names, too, or a little
-   * above or below, where they cover nothing else, or else nowhere.
+   * The line's length stands where it belongs; numbers of strokes and names, too, or a little above
+   * or below, where they cover nothing else. A name for which there is no room is left out.
    */
   placeLabels() {
     const taken = [];
@@ -617,13 +617,13 @@ class View {
     if (this.nearest.visible)
       taken.push(this.place(this.gap, this.nearest.children[0].position, 12, -26));
     for (const { label, at } of this.names) {
-      const isName = label.className === 'name';
       let box = null;
-      for (const down of isName ? kAside : [0]) {
+      for (const down of kAside) {
         box = this.place(label, at, 0, down);
-        if (!isName || isFree(box)) break;
+        if (isFree(box)) break;
         box = null;
       }
+      if (!box && label.className === 'number') box = this.place(label, at, 0, 0);
       label.style.visibility = box ? '' : 'hidden';
       if (box) taken.push(box);
     }

@@ -2,7 +2,7 @@
 // The report of a workcell: two arms that work at one time, a map of each; one cursor moves both.
 import { sheet, savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
-import { Nearness, nearWords, nearWordsAt } from './nearness.js';
+import { Nearness } from './nearness.js';
 import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
 import { Pair } from './pair.js';
 import { kDark, kLight, kLines } from './palette.js';
@@ -233,13 +233,8 @@ function present() {
 }
 /** What is nearest to a body of either arm or of the scene, at a row and along both paths. */
 function nearLines(name, { poses }) {
-  const least = nearness.least(name),
-    here = poses.some(({ off }) => off) ? null : nearness.at(name, Math.round(cursor)),
-    isRow = Number.isInteger(cursor) && !pair.timed;
-  if (!least) return [];
-  const lines = [`nearest along the paths: ${nearWordsAt(least)}`];
-  if (here) lines.unshift(isRow ? nearWords(here) : nearWordsAt(here));
-  return lines;
+  const row = poses.some(({ off }) => off) ? null : cursor;
+  return nearness.lines(name, row, 'along the paths', Number.isInteger(row) && !pair.timed);
 }
 function draw(now) {
   const q = pair.joints(now.poses),

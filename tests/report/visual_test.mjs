@@ -160,6 +160,16 @@ async function checkPlacements(folder, open) {
   }
   await page.uncheck('#visual');
   assert.ok((await drawn(page)).every(({ visual }) => !visual));
+  // A click tells what is nearest in this placement.
+  let told = 0;
+  await clickBodies(page, (name, lines) => {
+    if (lines.length === 2) return;
+    const [, mm] = lines[1].match(/^([\d.]+) mm from \S+$/),
+      [, least] = lines[2].match(/^nearest along the path: ([\d.]+) mm from \S+ at s [\d.]+ m$/);
+    assert.ok(Number(least) <= Number(mm), lines.join('\n'));
+    ++told;
+  });
+  assert.ok(told >= 3, `${told} bodies`);
   await close();
 }
 

@@ -445,6 +445,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   const small = await open(crossing.html, { viewport: phone, colorScheme: 'dark', hash: '#row=5' });
   await drawn(small.page);
   await assertFits(small.page, phone.width);
+  assert.equal((await small.page.locator('#stage').boundingBox()).height, 320);
   assert.equal((await shown(small.page)).row, 5);
   const more = 100 * (crossing.result.cost / crossing.result.bound - 1);
   assert.ok(Math.abs(more) < 1e-6);

@@ -72,9 +72,19 @@ Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows
                {"s", Json::binary(bytes_of(s))},
                {"joints", Json::binary(bytes_of(joints))},
                {"poses", std::move(poses)},
-               {"still_frame", pose_json(still_frame(thing, cell.offset))}};
+               {"still_frame", pose_json(still_frame(thing, cell.offset))},
+               {"near", nullptr}};
   if (!robot.is_null()) json["robot"] = robot;
   return json;
+}
+
+/// Writes how near the bodies are in the plan of a placement. `like`: the world of the robot.
+Json near_of_plan(const World& like, const PlacedPlan& plan) {
+  const World world(like, plan.scene);
+  World::Query query(world, DistanceProofs::kOn);
+  std::vector<NearBodies> near(plan.trajectory.size());
+  for (std::size_t k = 0; k < near.size(); ++k) near[k].add(world, query, plan.trajectory[k].q);
+  return near_json(near);
 }
 
 Json scene_json(const PlacementScene& scene) {
@@ -83,10 +93,13 @@ Json scene_json(const PlacementScene& scene) {
   if (scene.visual != nullptr)
     bodies.add_visual(*scene.visual, *scene.problem->model, {{scene.robot->arm()}});
   Json plans = Json::array();
-  for (const PlacedPlan& plan : scene.plans)
-    plans.push_back(plan_json(
-        plan.cell, plan.trajectory, plan.scene, scene.thing,
-        plan.cell.hold.empty() ? Json() : robot_json(*plan.robot, *scene.problem->model)));
+  for (const PlacedPlan& plan : scene.plans) {
+    const bool elsewhere = !plan.cell.hold.empty();  // joints are held elsewhere
+    plans.push_back(plan_json(plan.cell, plan.trajectory, plan.scene, scene.thing,
+                              elsewhere ? robot_json(*plan.robot, *scene.problem->model) : Json()));
+    plans.back()["near"] =
+        near_of_plan(elsewhere ? plan.robot->world() : scene.robot->world(), plan);
+  }
   for (const PlacedEnd& end : scene.ends) {
     plans.push_back(plan_json(end.cell, end.rows, end.scene, scene.thing,
                               end.robot.empty() ? Json() : Json::parse(end.robot)));
