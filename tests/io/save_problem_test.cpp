@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems written as files: changes of the file that they come from, and whole ones.
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <functional>
 
@@ -364,6 +366,45 @@ std::vector<std::string> comments_of(const std::string& text) {
     if (const std::size_t at = line.find_first_not_of(' '); at != line.npos && line[at] == '#')
       comments.push_back(line.substr(at));
   return comments;
+}
+
+void set_style(YAML::Node node, YAML::EmitterStyle::value style) {
+  node.SetStyle(style);
+  for (const auto& part : node) set_style(node.IsMap() ? part.second : part, style);
+}
+/// Returns a document with all of its maps and lists in one style, without its comments.
+std::string laid_out(const std::string& text, YAML::EmitterStyle::value style) {
+  YAML::Node root = YAML::Load(text);
+  set_style(root, style);
+  return YAML::Dump(root) + "\n";
+}
+
+TEST(SavedProblems, RandomChangesOfOtherLayoutsAreReadBack) {
+  const std::uint64_t seed = swivel::test::seed("SavedProblems");
+  const TempFolder folder;
+  const fs::path file = folder.path() / "problem.yaml";
+  int cases = 0;
+  for (const char* const name :
+       {"experiment_c", "kr6_turntable_pipe", "panda_weld_seam", "panda_polish_cover"})
+    for (const auto style : {YAML::EmitterStyle::Block, YAML::EmitterStyle::Flow}) {
+      const fs::path data = fs::path(SWIVEL_DATA_DIR) / "problems" / (name + std::string(".yaml"));
+      const std::string text = laid_out(problem_text(load_problem(data), file), style);
+      for (int k = 0; k < swivel::test::trials(10); ++k) {
+        SCOPED_TRACE(data.string() + ", case " + std::to_string(cases));
+        folder.write("problem.yaml", text);
+        swivel::test::Random random(seed + static_cast<std::uint64_t>(cases++));
+        Problem problem = load_problem(file);
+        change_limits(problem, random);
+        change_scene(problem, random);
+        change_path(problem, random);
+        change_rest(problem, random);
+        save_problem(problem, file);
+        if (!problem.start) problem.start_tolerance = Task().start_tolerance;
+        expect_equal(load_problem(file), problem);
+      }
+    }
+  std::printf("%d cases\n", cases);
+  EXPECT_GE(cases, swivel::test::at_least(80));
 }
 
 TEST(SavedProblems, RandomChangesAreReadBack) {
