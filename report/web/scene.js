@@ -108,6 +108,7 @@ class View {
     if (on && !this.arm.some(({ userData }) => userData.body.visual))
       for (const one of visual) {
         const mesh = this.meshOf(this.part({ ...one, visual: true }, this.data));
+        mesh.userData.rest.copy(this.restOfVisual(one));
         mesh.matrix.multiplyMatrices(g[one.group], mesh.userData.rest);
         this.arm.push(mesh);
       }
@@ -124,6 +125,12 @@ class View {
     }
     this.dirty = true;
   }
+  /** The pose of a visual shape at q = 0, with its link where joints are held elsewhere. */
+  restOfVisual({ name, pose }) {
+    const link = this.parts.find(({ body }) => body.kind === 'robot' && body.name === name);
+    if (!link) return matrix(pose);
+    return link.rest.clone().multiply(matrix(link.body.pose).invert()).multiply(matrix(pose));
+  }
   /**
    * Another plan of the same arm among the same bodies. poses, robot_poses: of the scene's objects
    * and of the other bodies in their order, where they stand elsewhere.
@@ -136,6 +143,8 @@ class View {
         .forEach(({ rest }, k) => rest.copy(matrix(poses[k])));
     if (data.poses) move(data.poses, true);
     if (data.robot_poses) move(data.robot_poses, false);
+    for (const { userData } of this.arm)
+      if (userData.body.visual) userData.rest.copy(this.restOfVisual(userData.body));
     // Ghosts share the shapes of the arm.
     this.shown?.traverse(({ geometry, userData }) => userData.g ?? geometry?.dispose());
     for (const one of [this.shown, this.ghosts, this.trail]) one?.removeFromParent();

@@ -173,6 +173,25 @@ async function checkPlacements(folder, open) {
   await close();
 }
 
+/** Plans of placements that hold a joint elsewhere. */
+async function checkHeldElsewhere(folder, open) {
+  const links = ['arm_left_link_2_l', 'torso_link_b1'],
+    added = Object.fromEntries(links.map((link) => [link, asVisuals('sda5f', link)])),
+    file = written(folder, 'held', added, { robot: 'sda5f', problem: 'experiment_c' }),
+    hold = ['--object', 'door', '--hold', 'torso_joint_b1=-0.1:0.1:0.2'],
+    { html } = made(folder, 'held', ['place', file, '--ds', '0.05', '--dphi', '0.3', ...hold]);
+  const { page, close } = await open(html, { viewport: { width: 1000, height: 800 } });
+  await until(page, () => window.swivel.frames > 0);
+  await page.check('#visual');
+  const lines = page.locator('#best tbody tr');
+  assert.equal(await lines.count(), 2);
+  for (const k of [1, 0]) {
+    await lines.nth(k).click();
+    for (const link of links) await checkSamePlaces(page, link, `plan ${k}`);
+  }
+  await close();
+}
+
 /** A problem file that can be read once, as one from a pipe; the URDF as well. */
 function checkPipes(folder) {
   const added = { link_2: asVisuals('iiwa14', 'link_2') },
@@ -242,6 +261,7 @@ await withBrowser({ packages }, async ({ folder, open }) => {
 
   await checkWorkcell(folder, open);
   await checkPlacements(folder, open);
+  await checkHeldElsewhere(folder, open);
   checkPipes(folder);
 
   // Meshes of 300,000 triangles become lighter, as those of 200,000 are.
