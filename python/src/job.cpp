@@ -74,7 +74,7 @@ void share(std::vector<Stroke>& strokes, std::optional<Value> Stroke::*own, Valu
 std::string stroke_words(const Stroke& stroke) {
   return "'" + stroke.name + "': " + std::to_string(stroke.waypoints.size()) + " waypoints" +
          (stroke.frame.empty() ? "" : " in '" + stroke.frame + "'") +
-         (stroke.reversible ? ", reversible" : "");
+         (stroke.reversible ? ", reversible" : "") + (stroke.closed ? ", closed" : "");
 }
 
 void bind_stroke(py::module_& m) {
@@ -87,7 +87,7 @@ void bind_stroke(py::module_& m) {
                        py::handle approach, py::handle retract, std::optional<double> process_speed,
                        std::optional<double> approach_speed, py::handle feed,
                        const std::optional<Limits>& limits,
-                       const std::optional<Resolution>& resolution, py::handle end) {
+                       const std::optional<Resolution>& resolution, py::handle end, bool closed) {
              return Stroke{std::move(name),
                            std::move(waypoints),
                            std::move(frame),
@@ -100,7 +100,8 @@ void bind_stroke(py::module_& m) {
                            to_feed(feed),
                            limits,
                            resolution,
-                           to_posture(end, "end")};
+                           to_posture(end, "end"),
+                           closed};
            }),
            py::arg("name"), py::arg("waypoints"), py::kw_only(), py::arg("frame") = "",
            py::arg("smooth") = py::none(), py::arg("reversible") = false,
@@ -108,12 +109,15 @@ void bind_stroke(py::module_& m) {
            py::arg("process_speed") = py::none(), py::arg("approach_speed") = py::none(),
            py::arg("feed") = py::none(), py::arg("limits") = py::none(),
            py::arg("resolution") = py::none(), py::arg("end") = py::none(),
+           py::arg("closed") = false,
            "name: of its own among the strokes of the job. waypoints, frame, smooth: as of a Task. "
            "reversible: the tool may run from the last waypoint to the first. approach, retract: "
            "from where the tool comes and where it goes, on straight lines without turning: m "
            "against its z axis, or (3,), m in the tool frame there. process_speed, approach_speed: "
            "m/s, on the stroke and on these lines. feed: (n,), m/s, from each waypoint on. end: "
-           "(7,) joints to end in after the retract, rad; not of reversible strokes.")
+           "(7,) joints to end in after the retract, rad; not of reversible strokes. closed: the "
+           "run must end, after the retract, in the joints in which it begins; approach and "
+           "retract are equal then.")
       .def_readwrite("name", &Stroke::name)
       .def_readwrite("waypoints", &Stroke::waypoints,
                      "(n, 7): x y z (m) qw qx qy qz, in `frame`; with roll_min and roll_max (rad) "
@@ -148,6 +152,8 @@ void bind_stroke(py::module_& m) {
           "end", [](const Stroke& stroke) { return stroke.end; },
           [](Stroke& stroke, py::handle end) { stroke.end = to_posture(end, "end"); },
           "(7,) joints to end in after the retract, rad, or None. A copy; assign to change it.")
+      .def_readwrite("closed", &Stroke::closed,
+                     "Whether the run must end in the joints in which it begins.")
       .def(
           "__eq__", [](const Stroke& a, const Stroke& b) { return a == b; }, py::is_operator())
       .def("__repr__", [](const Stroke& stroke) { return "<Stroke " + stroke_words(stroke) + ">"; })
@@ -212,7 +218,7 @@ swivel::Job to_core(const Job& job) {
     made.approach = stroke.approach.value_or(job.approach);
     made.retract = stroke.retract.value_or(job.retract);
     made.process_speed = stroke.process_speed, made.approach_speed = stroke.approach_speed;
-    made.feed = std::move(stroke.feed), made.end = stroke.end;
+    made.feed = std::move(stroke.feed), made.end = stroke.end, made.closed = stroke.closed;
   }
   validate(core);
   return core;
@@ -230,11 +236,12 @@ Job from_core(swivel::Job core) {
   for (swivel::Stroke& stroke : core.strokes) {
     job.cost = stroke.cost, job.refinement = stroke.refinement;  // files have one for all
     const bool own_limits = stroke.limits != core.limits;
-    strokes.push_back(
-        {std::move(stroke.name), std::move(stroke.waypoints), std::move(stroke.path_frame),
-         stroke.smooth, stroke.reversible, stroke.approach, stroke.retract, stroke.process_speed,
-         stroke.approach_speed, std::move(stroke.feed),
-         own_limits ? std::optional(stroke.limits) : std::nullopt, stroke.resolution, stroke.end});
+    strokes.push_back({std::move(stroke.name), std::move(stroke.waypoints),
+                       std::move(stroke.path_frame), stroke.smooth, stroke.reversible,
+                       stroke.approach, stroke.retract, stroke.process_speed, stroke.approach_speed,
+                       std::move(stroke.feed),
+                       own_limits ? std::optional(stroke.limits) : std::nullopt, stroke.resolution,
+                       stroke.end, stroke.closed});
   }
   share(strokes, &Stroke::resolution, job.resolution);
   share(strokes, &Stroke::approach, job.approach);

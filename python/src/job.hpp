@@ -31,6 +31,7 @@ struct Stroke {
   std::optional<Limits> limits;
   std::optional<Resolution> resolution;
   std::optional<Config> end;
+  bool closed = false;
   bool operator==(const Stroke&) const = default;
 };
 

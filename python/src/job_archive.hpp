@@ -147,9 +147,9 @@ namespace python {
 template <class A>
 void serialize(A& archive, Stroke& x) {
   auto& [name, waypoints, frame, smooth, reversible, approach, retract, process_speed,
-         approach_speed, feed, limits, resolution, end] = x;
+         approach_speed, feed, limits, resolution, end, closed] = x;
   archive(name, waypoints, frame, smooth, reversible, approach, retract, process_speed,
-          approach_speed, feed, limits, resolution, end);
+          approach_speed, feed, limits, resolution, end, closed);
 }
 /// Lists the members of a Job and of its base, which no structured binding takes apart together.
 template <class A>

@@ -966,6 +966,7 @@ class Stroke:
     def end(self) -> _Array | None: ...
     @end.setter
     def end(self, joints: ArrayLike | None) -> None: ...
+    closed: bool
     def __init__(
         self,
         name: str,
@@ -982,6 +983,7 @@ class Stroke:
         limits: Limits | None = None,
         resolution: Resolution | None = None,
         end: ArrayLike | None = None,
+        closed: bool = False,
     ) -> None: ...
 
 class LiftOffs:

@@ -7,6 +7,8 @@ import unittest
 
 from cli_test import DATA, PROBLEMS, WithFolder, run
 
+COVERS = "panda_polish_covers_job.yaml"
+
 
 class Closed(WithFolder):
     def problem(self, name, *changes, closed=True):
@@ -52,6 +54,48 @@ class Closed(WithFolder):
                 done = run("check", problem, out)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
+    def test_strokes_of_a_job_close(self):
+        lines = ("approach: 0.05\nretract: 0.05\n", "approach: 0\nretract: 0\n")
+        out, told = self.folder / "out.csv", self.folder / "out.json"
+        for changes in ((), (lines,)):
+            with self.subTest(changes=changes):
+                job = self.problem(COVERS, *changes, closed=False)
+                done = run("plan", job, "--out", out, "--json", told)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                strokes = {}
+                for part in json.loads(told.read_text())["parts"]:
+                    if part["stroke"] is not None:
+                        rows = part["rows"]
+                        strokes[part["stroke"]] = (rows[0]["joints"], rows[-1]["joints"])
+                self.assertEqual(set(strokes), {"left", "right"})
+                for first, last in strokes.values():
+                    self.assertLess(max(abs(a - b) for a, b in zip(first, last)), 1e-9)
+                done = run("check", job, out)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        opened = self.problem(COVERS, *2 * (("closed: true, ", ""),), closed=False)
+        self.assertEqual(run("plan", opened, "--out", out).returncode, 0)
+        done = run("check", self.problem(COVERS, closed=False), out)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the path is closed", done.stdout)
+
+    def test_the_stroke_that_does_not_close_is_named(self):
+        # a seam all round a pipe on a table, which turns on
+        path = "strokes:\n  - name: seam\n    path:\n      closed: true\n      frame: pipe\n"
+        job = self.problem(
+            "kr6_turntable_pipe.yaml",
+            ("path:\n  frame: pipe\n", path),
+            ("\n  file:", "\n      file:"),
+            ("ds: 0.005, arc: 0.175", "ds: 0.01, arc: 0.6"),
+            closed=False,
+        )
+        out = self.folder / "out.json"
+        done = run("plan", job, "--json", out)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("seam", done.stdout)
+        self.assertIn("path.closed", done.stdout)
+        cause = json.loads(out.read_text())["runs"][0]["diagnosis"]["cause"]["cause"]
+        self.assertEqual(cause, "not_closed")
+
     def test_check_refuses_rows_that_do_not_close(self):
         out = self.folder / "out.csv"
         self.assertEqual(run("plan", self.lap(closed=False), "--out", out).returncode, 0)
@@ -79,7 +123,11 @@ class Closed(WithFolder):
         self.assertRefused(run("plan", self.problem(kr6), *certificate), "closed")
         for name in ("kr6_weld_pipe_job.yaml", "door_job.yaml"):
             job = self.problem(name, ("path: {", "path: {closed: true, "), closed=False)
-            self.assertRefused(run("plan", job), "closed", "not supported yet")
+            self.assertRefused(run("plan", job), "strokes[0].path.closed", "from the first")
+        job = self.problem(COVERS, ("retract: 0.05", "retract: 0.04"), closed=False)
+        self.assertRefused(run("plan", job), "strokes[0].path.closed", "`approach`", "`retract`")
+        job = self.problem(COVERS, ("order: best", "lift: {allowed: true}"), closed=False)
+        self.assertRefused(run("plan", job), "lift", "'left'", "closed")
         closed = ("    path:\n", "    path:\n      closed: true\n")
         cell = self.problem("sda10f_plate_workcell.yaml", closed, closed=False)
         self.assertRefused(run("plan", cell), "closed", "not supported yet")

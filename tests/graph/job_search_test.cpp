@@ -12,6 +12,7 @@
 #include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/search/job_search.hpp"
 
 namespace swivel {
@@ -105,18 +106,20 @@ std::unique_ptr<Lattice> random_list(const Chain& chain, const ToolPath& path,
       for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.6, 0.6);
       layer.push_back({.q = q});
     }
+  if (path.closed()) points.back() = points.front();
   return std::make_unique<ExplicitLattice>(chain, path, problem, std::move(points));
 }
 
-/// Draws a job. With `grids`, its runs are lattices of arm angles, else lists of nodes.
+/// Draws a job. With `grids`, its runs are lattices of arm angles, else lists of nodes; with
+/// `closed`, some end where they begin, and no node costs anything.
 RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& srs, bool grids,
-                     Random& random) {
+                     bool closed, Random& random) {
   RandomJob job;
   const std::uint64_t base = static_cast<std::uint64_t>(random.uniform(0, 1e15));
   const int runs = 1 + random.below(grids ? 3 : 5);
   const double nodes_fail = random.coin(0.3) ? 0 : random.uniform(0, 0.4),
                edges_fail = random.coin(0.3) ? 0 : random.uniform(0, 0.4),
-               cost = random.coin(0.3) ? random.uniform(0, 0.5) : 0;
+               cost = !closed && random.coin(0.3) ? random.uniform(0, 0.5) : 0;
   const Config q0 = random_config(arm.chain, random);
   for (int k = 0; k < runs; ++k) {
     Problem problem = problem_for(robot);
@@ -131,8 +134,11 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
         .ds = length / (1 + random.below(4)), .dphi = random.uniform(0.35, 0.5), .dalpha = 10};
     problem.limits.arm_slope = 1e6;
     problem.limits.joint_step = random.uniform(0.6, 1.5);
-    job.paths.push_back(
-        std::make_unique<ToolPath>(waypoints_in_base(problem), problem.resolution, "test"));
+    if (closed && random.coin(0.7)) {
+      problem.closed = true;
+      problem.waypoints.push_back(problem.waypoints.front());
+    }
+    job.paths.push_back(std::make_unique<ToolPath>(problem_path(problem, arm.chain)));
     const ToolPath& path = *job.paths.back();
     if (grids)
       job.lattices.push_back(std::make_unique<SrsLattice>(arm.chain, srs, path, problem));
@@ -154,6 +160,45 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
   return job;
 }
 
+/// Returns the least cost of a run from each node of layer 0 back to it by the definition: a plain
+/// program for each. There are as many nodes in the last layer.
+std::vector<double> plain_loops(const Lattice& lattice, const ChanceValidity& validity) {
+  struct Edge {
+    std::size_t from, to;
+    double cost;
+  };
+  std::vector<std::vector<Edge>> edges(static_cast<std::size_t>(lattice.layers()));
+  std::vector<Lattice::Node> nodes, next;
+  lattice.layer_nodes(lattice.layers() - 1, next);
+  const std::size_t count = next.size();
+  for (int layer = lattice.layers() - 2; layer >= 0; --layer) {
+    lattice.layer_nodes(layer, nodes);
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      for (std::size_t b = 0; b < next.size(); ++b) {
+        const int from = nodes[a].slot, to = next[b].slot;
+        const Config delta = lattice.delta(nodes[a].q, next[b].q);
+        if (lattice.in_window(layer, from, to) && lattice.step_allowed(layer, delta) &&
+            validity.node(layer, from) && validity.node(layer + 1, to) &&
+            (!validity.asks_edges() || validity.edge(layer, from, to)))
+          edges[static_cast<std::size_t>(layer)].push_back({a, b, lattice.edge_cost(delta)});
+      }
+    next.swap(nodes);
+  }
+  std::vector<double> loops;
+  for (std::size_t start = 0; start < count; ++start) {
+    std::vector<double> here(count, kUnreachable);
+    here[start] = 0;
+    for (int layer = 0; layer + 1 < lattice.layers(); ++layer) {
+      std::vector<double> ahead(static_cast<std::size_t>(lattice.slots(layer + 1)), kUnreachable);
+      for (const Edge& edge : edges[static_cast<std::size_t>(layer)])
+        ahead[edge.to] = std::min(ahead[edge.to], here[edge.from] + edge.cost);
+      here.swap(ahead);
+    }
+    loops.push_back(here[start]);
+  }
+  return loops;
+}
+
 /// Returns the least cost of a job by the definition, over every node of every run; transitions
 /// cost what `transition(k, from, to)` says. Sets `alone` to the least costs of the runs alone.
 template <class Cost>
@@ -167,6 +212,12 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
   for (int k = runs - 1; k >= 0; --k) {
     const Lattice& lattice = *job.lattices[static_cast<std::size_t>(k)];
     const ChanceValidity& validity = *job.validities[static_cast<std::size_t>(k)];
+    const auto onward = [&](const Config& q) {
+      double least = k + 1 == runs && !job.home ? 0 : kUnreachable;
+      for (std::size_t f = 0; f < begins.size(); ++f)
+        least = std::min(least, transition(k + 1, q, begins[f].q) + rest[f]);
+      return least;
+    };
     std::vector<double> values, own, after, after_own;
     for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
       lattice.layer_nodes(layer, nodes);
@@ -177,10 +228,7 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
         const double cost = validity.cost(layer, nodes[a].slot);
         if (layer + 1 == lattice.layers()) {
           own[a] = cost;
-          if (k + 1 == runs && !job.home) values[a] = cost;
-          for (std::size_t f = 0; f < begins.size(); ++f)
-            values[a] =
-                std::min(values[a], cost + (transition(k + 1, nodes[a].q, begins[f].q) + rest[f]));
+          values[a] = cost + onward(nodes[a].q);
           continue;
         }
         for (std::size_t b = 0; b < next.size(); ++b) {
@@ -197,6 +245,10 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
       after.swap(values);
       after_own.swap(own);
       next.swap(nodes);
+    }
+    if (lattice.is_closed()) {
+      after_own = plain_loops(lattice, validity);
+      for (std::size_t f = 0; f < next.size(); ++f) after[f] = after_own[f] + onward(next[f].q);
     }
     for (const double value : after_own)
       alone[static_cast<std::size_t>(k)] = std::min(alone[static_cast<std::size_t>(k)], value);
@@ -236,6 +288,7 @@ ParallelFor threads(int count) {
 /// Counts what the jobs met.
 struct Met {
   int jobs = 0, solved = 0, without_run = 0, without_way = 0, barred = 0, dearer = 0, rounds = 0;
+  int closed = 0, elsewhere = 0;
 };
 
 /// Expects a job's paths to be valid, joined, and to cost what it says.
@@ -247,6 +300,9 @@ void expect_valid(const RandomJob& job, const JobOutcome& found, const std::stri
     const ChanceValidity& validity = *job.validities[k];
     const SlotPath& path = found.paths[k];
     ASSERT_EQ(static_cast<int>(path.size()), lattice.layers()) << what;
+    if (lattice.is_closed()) {
+      ASSERT_EQ(path.front(), path.back()) << what;
+    }
     const Config first = *lattice.node(0, path[0]);
     if (before) cost += job.transitions->cost(static_cast<int>(k), *before, first);
     double run = 0;
@@ -306,6 +362,11 @@ void expect_plain_program(const RandomJob& job, const std::string& what, Met& me
   if (best == kUnreachable) return;
   ++met.solved;
   met.dearer += best > straight;
+  for (std::size_t k = 0; k < job.lattices.size(); ++k) {
+    if (!job.lattices[k]->is_closed()) continue;
+    ++met.closed;
+    met.elsewhere += found.run_costs[k] > alone[k];
+  }
   ASSERT_EQ(found.bound, best) << what;
   ASSERT_LE(found.bound_any, straight) << what;
   expect_valid(job, found, what);
@@ -316,7 +377,7 @@ void expect_plain_program(const RandomJob& job, const std::string& what, Met& me
   ASSERT_EQ(again.rounds, found.rounds) << what;
 }
 
-void expect_plain_programs(bool grids, int usual) {
+void expect_plain_programs(bool grids, bool closed, int usual) {
   const std::uint64_t base = seed(grids ? "JobSearch grids" : "JobSearch lists");
   Random random(base);
   Met met;
@@ -324,7 +385,7 @@ void expect_plain_programs(bool grids, int usual) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(usual); ++trial) {
-      const RandomJob job = random_job(robot, arm, srs, grids, random);
+      const RandomJob job = random_job(robot, arm, srs, grids, closed, random);
       expect_plain_program(job,
                            "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name +
                                " trial " + std::to_string(trial),
@@ -334,8 +395,17 @@ void expect_plain_programs(bool grids, int usual) {
   }
   std::printf(
       "%d jobs, %d solved (%d dearer than straight transitions), %d with a run without "
-      "path, %d without a way (%d since all ends or begins of a run are barred), %d rounds\n",
-      met.jobs, met.solved, met.dearer, met.without_run, met.without_way, met.barred, met.rounds);
+      "path, %d without a way (%d since all ends or begins of a run are barred), %d rounds; %d "
+      "closed runs in solved jobs, %d of them dearer than the best by itself\n",
+      met.jobs, met.solved, met.dearer, met.without_run, met.without_way, met.barred, met.rounds,
+      met.closed, met.elsewhere);
+  EXPECT_EQ(met.closed > 0, closed);
+  if (closed) {
+    EXPECT_GE(met.solved, at_least(grids ? 40 : 100));
+    EXPECT_GE(met.closed, at_least(grids ? 40 : 100));
+    EXPECT_GE(met.elsewhere, at_least(20));
+    return;
+  }
   EXPECT_GE(met.solved, at_least(100));
   EXPECT_GE(met.dearer, at_least(60));
   EXPECT_GE(met.without_run, at_least(5));
@@ -343,10 +413,16 @@ void expect_plain_programs(bool grids, int usual) {
 }
 
 TEST(JobSearch, CostsAreThoseOfAPlainProgramOverListsOfNodes) {
-  expect_plain_programs(false, 150);
+  expect_plain_programs(false, false, 150);
 }
 TEST(JobSearch, CostsAreThoseOfAPlainProgramOverArmAngles) {
-  expect_plain_programs(true, 40);
+  expect_plain_programs(true, false, 40);
+}
+TEST(JobSearch, ClosedRunsCostWhatPlainProgramsFromEveryStartSay) {
+  expect_plain_programs(false, true, 60);
+}
+TEST(JobSearch, ClosedRunsOfArmAnglesCostWhatPlainProgramsFromEveryStartSay) {
+  expect_plain_programs(true, true, 12);
 }
 
 }  // namespace

@@ -241,7 +241,7 @@ TEST(JobFile, WhatStrokesMayNotHave) {
     std::vector<std::string> needles;
   };
   const Case cases[] = {
-      {"closed: true", {"strokes[0].closed: is not supported yet"}},
+      {"closed: true", {"strokes[0].closed: is of the path", "`path` of the stroke"}},
       {"end: {joints: []}", {"strokes[0].end: is of the path", "`path` of the stroke"}},
       {"lift: {allowed: true}", {"strokes[0].lift: is not supported yet"}},
       {"start: {joints: [0, 0, 0, 0, 0, 0, 0]}", {"strokes[0].start: is of problems", "`home`"}},
@@ -301,7 +301,7 @@ TEST(JobFile, WhatJobsMayNotHave) {
        {"strokes[1].name", "'a' is the name of another stroke"}},
       {"strokes",
        "[{name: a, path: {file: weld.csv, closed: true}}]",
-       {"strokes[0].path.closed: is not supported yet"}},
+       {"strokes[0].path.closed: is true, but the last waypoint is"}},
       {"strokes",
        "[{name: a, path: {file: weld.csv, end: {joints: [1, 2]}}}]",
        {"strokes[0].path.end.joints: has 2 entries", "7 numbers"}},

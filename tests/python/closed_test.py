@@ -13,6 +13,7 @@ import swivel
 
 DATA = Path(os.environ["SWIVEL_DATA"])
 COVER = DATA / "problems" / "panda_polish_cover.yaml"
+COVERS = DATA / "problems" / "panda_polish_covers_job.yaml"
 DOWN = [0, 1, 0, 0]
 
 
@@ -70,6 +71,34 @@ class ClosedPaths(unittest.TestCase):
         self.assertLess(gap(plan.motion.joints), 1e-9)
         self.assertLess(plan.cost, swivel.plan(COVER).cost)
         self.assertTrue(swivel.check(COVER, plan.motion).passed)
+
+    def test_strokes_of_a_job_close(self):
+        job = swivel.load_job(COVERS)
+        self.assertEqual([stroke.closed for stroke in job.strokes], [True, True])
+        self.assertIn("closed", repr(job.strokes[0]))
+        plan = swivel.plan_job(job)
+        laps = [part.trajectory for part in plan.parts if part.stroke]
+        self.assertEqual(len(laps), 2)
+        for lap in laps:
+            self.assertLess(gap(lap.joints), 1e-9)
+        self.assertTrue(swivel.check_job(job, plan.parts).passed)
+        again = pickle.loads(pickle.dumps(job))
+        self.assertEqual(list(again.strokes), list(job.strokes))
+        opened = pickle.loads(pickle.dumps(job))
+        for stroke in opened.strokes:
+            stroke.closed = False
+        self.assertNotEqual(list(opened.strokes), list(job.strokes))
+        drifting = swivel.plan_job(opened)
+        self.assertLess(drifting.cost, plan.cost)
+        check = swivel.check_job(job, drifting.parts)
+        self.assertFalse(check.passed)
+        self.assertIn("the path is closed", check.failures[0])
+        lap = job.strokes[0]
+        made = swivel.Stroke(lap.name, lap.waypoints, frame=lap.frame, closed=True)
+        self.assertEqual(made, lap)
+        job.retract = 0.01
+        with self.assertRaisesRegex(ValueError, "'left': closed"):
+            swivel.plan_job(job)
 
     def test_pickled(self):
         for problem in (swivel.load_problem(COVER), square(closed=True)):

@@ -32,6 +32,10 @@ void validate(const Stroke& stroke) {
     throw InvalidArgument(name + "start: allowed is the home of the job");
   if (stroke.end && stroke.reversible)
     throw InvalidArgument(name + "end: allowed in strokes that are not reversible");
+  if (stroke.closed && stroke.approach != stroke.retract)
+    throw InvalidArgument(name +
+                          "closed: is of the whole run: allowed are an approach and a "
+                          "retract that are equal");
   if (!stroke.rolls.empty()) throw InvalidArgument(name + "rolls: allowed are none");
   if (!stroke.steps.empty()) throw InvalidArgument(name + "steps: allowed are none");
   if (!stroke.approach.allFinite() || !stroke.retract.allFinite())
@@ -49,10 +53,14 @@ void validate(const LiftOffs& lift, const Job& job) {
       throw InvalidArgument("lift: cost, overlap: allowed are numbers from 0 on");
   if (job.order != StrokeOrder::kGiven)
     throw InvalidArgument("lift: allowed is the order of strokes that is given");
-  for (const Stroke& stroke : job.strokes)
+  for (const Stroke& stroke : job.strokes) {
     if (!stroke.piece && stroke.name.find('/') != std::string::npos)
       throw InvalidArgument("strokes: name '" + stroke.name +
                             "': with lift-offs allowed are names without a slash");
+    if (stroke.closed)
+      throw InvalidArgument("lift: stroke '" + stroke.name +
+                            "' is closed and is done in one run: allowed is no lift");
+  }
 }
 
 constexpr double kSamePlace = 1e-9;  // m

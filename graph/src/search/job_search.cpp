@@ -4,6 +4,9 @@
 // the runs, each with the cheapest way on as the exit costs of its last layer, computed from the
 // last run to the first. As with single paths, what turns out to be invalid is removed and what
 // turns out to cost more is raised, so that the value of the best job left is always a lower bound.
+// A closed run ends in the node in which it begins: its value at a node is what a loop from there
+// costs at least (LoopCosts) and the exit cost of that node, and is made exact once the cheapest
+// job left begins it there.
 #include "swivel/graph/search/job_search.hpp"
 
 #include <algorithm>
@@ -11,9 +14,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cost_to_go/best_start.hpp"
+#include "search/loop_costs.hpp"
 #include "search/path_validator.hpp"
 #include "search/transition_costs.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/graph/search/closed_path.hpp"
 
 namespace swivel {
 
@@ -34,9 +40,40 @@ struct Run {
   SearchCounters counters;
   std::vector<TransitionCosts::Onward> onward;  // from each end node of the transition behind it
   bool swept_with_exits = false;
-  SlotPath path;       // of the candidate job
-  bool valid = false;  // the last answer about `path`
+  std::optional<LoopCosts> loops;  // of a closed run, once its transitions are laid out
+  std::vector<double> exits;       // of a closed run, by slot; empty where all are 0
+  SlotPath path;                   // of the candidate job
+  bool valid = false;              // the last answer about `path`
 };
+
+/// Returns the least cost from a node of a run's first layer to the end of the job.
+double rest_from(const Run& run, int slot) {
+  if (!run.loops) return run.cost_to_go->at(0, slot);
+  const double exit = run.exits.empty() ? 0 : run.exits[static_cast<std::size_t>(slot)];
+  return run.loops->at(slot) + exit;
+}
+
+/// Returns the slot at which a job begins that comes from nowhere; -1 where there is none.
+int first_slot(const Run& run) {
+  if (!run.loops) return run.cost_to_go->first_slot();
+  const Lattice& lattice = run.cost_to_go->lattice();
+  const int slots = lattice.slots(0);
+  double least = kUnreachable;
+  for (int slot = 0; slot < slots; ++slot) least = std::min(least, rest_from(run, slot));
+  return best_start(
+      lattice, slots, least, [&](int slot) { return rest_from(run, slot); },
+      [&](int slot) { return run.cost_to_go->config(0, slot); });
+}
+
+/// Finds the best path of a run by itself.
+SearchOutcome best_alone(Run& run, const PathFirstOptions& options) {
+  const Lattice& lattice = run.cost_to_go->lattice();
+  run.cost_to_go->sweep(lattice.layers() - 1);
+  SearchOutcome found =
+      first_valid_path(*run.cost_to_go, *run.validity, run.validator, run.earlier, run.counters);
+  if (!lattice.is_closed() || found.path.empty()) return found;
+  return closed_path_first(*run.cost_to_go, *run.validity, options, run.counters);
+}
 
 /// A pair of nodes of one transition.
 struct Pair {
@@ -102,10 +139,7 @@ class JobSearch {
     const TraceSpan span("runs alone");
     std::vector<SearchOutcome> found(runs_.size());
     options_.work.for_each(last(), [&](int k, int) {
-      Run& run = at(k);
-      run.cost_to_go->sweep(run.cost_to_go->lattice().layers() - 1);
-      found[static_cast<std::size_t>(k)] = first_valid_path(
-          *run.cost_to_go, *run.validity, run.validator, run.earlier, run.counters);
+      found[static_cast<std::size_t>(k)] = best_alone(at(k), options_.paths);
     });
     outcome_.least_costs.assign(runs_.size(), kUnreachable);
     for (std::size_t k = 0; k < runs_.size(); ++k) {
@@ -122,6 +156,9 @@ class JobSearch {
 
   void begin_transitions() {
     const TraceSpan span("distances");
+    options_.work.for_each(last(), [&](int k, int) {
+      if (at(k).cost_to_go->lattice().is_closed()) at(k).loops.emplace(*at(k).cost_to_go);
+    });
     const std::vector<EndNode> home =
         home_ ? std::vector<EndNode>{{0, *home_}} : std::vector<EndNode>();
     costs_.resize(runs_.size() + 1);
@@ -166,8 +203,9 @@ class JobSearch {
     for (int k = 0; k < last(); ++k) {
       Run& run = at(k);
       TransitionCosts::Onward onward;
+      int slot = 0;
       do {
-        int slot = run.cost_to_go->first_slot();
+        slot = exists(k) ? -1 : first_slot(run);
         if (exists(k)) {
           take_rest(k);
           onward = costs(k).onward(end);
@@ -175,8 +213,7 @@ class JobSearch {
           slot = costs(k).nodes(Side::kBegin)[onward.begin].slot;
         }
         if (slot < 0) return false;
-        run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
-      } while (!validate(run));
+      } while (!find_path(run, slot) || !validate(run));
       if (exists(k)) greedy_.pairs.push_back({k, end, onward.begin});
       greedy_.paths.push_back(run.path);
       greedy_costs_.push_back(run.cost_to_go->at(0, run.path.front()));
@@ -219,6 +256,15 @@ class JobSearch {
     take_greedy_job();
   }
 
+  /// Finds the best path of a run from a slot. Returns false if it costs more than was known.
+  static bool find_path(Run& run, int slot) {
+    if (run.loops)
+      run.path = run.loops->loop_from(slot, run.counters.expansions);
+    else
+      run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
+    return !run.path.empty();
+  }
+
   // --- questions
 
   /// Asks about the candidate path of a run and what its nodes cost. Returns true if it is valid
@@ -235,6 +281,7 @@ class JobSearch {
         throw std::logic_error("a round of the search removed nothing: it would never end");
     }
     if (!run.cost_to_go->verdicts().pending.empty()) run.cost_to_go->repair();
+    if (run.loops) run.loops->take_values();
     return run.valid;
   }
 
@@ -322,8 +369,9 @@ class JobSearch {
     ++outcome_.rounds;
     at(0).cost_to_go->budget().poll();
     update_values();
-    Candidate job = cheapest_job();
-    if (job.paths.empty()) {
+    Candidate job;
+    const int slot = begin_cheapest_job(job);
+    if (slot < 0) {
       if (outcome_.cost == kUnreachable) note_without_way(static_cast<int>(first_barred()));
       outcome_.bound = outcome_.cost;
       return false;
@@ -331,6 +379,7 @@ class JobSearch {
     outcome_.bound = std::min(value_, outcome_.cost);
     if (!raised_) outcome_.bound_any = outcome_.bound;
     if (outcome_.cost <= value_ || value_ >= options_.most_cost) return false;
+    if (!lay_paths(slot, job)) return true;
     if (!validate_runs() || raise_noted()) return true;
     return !take_if_transitions_hold(job);
   }
@@ -367,6 +416,10 @@ class JobSearch {
   /// Sets what must be paid for going on from each slot of a run's last layer, and makes its values
   /// exact.
   static void raise_exit_costs(Run& run, const std::vector<double>& exits) {
+    if (run.loops) {
+      run.exits = exits;
+      return;
+    }
     Verdicts& verdicts = run.cost_to_go->verdicts();
     verdicts.raise_exit_costs(exits);
     if (!std::exchange(run.swept_with_exits, true))
@@ -381,38 +434,39 @@ class JobSearch {
   void take_rest(int k) {
     std::vector<double> rest;
     for (const EndNode& begin : costs(k).nodes(Side::kBegin))
-      rest.push_back(at(k).cost_to_go->at(0, begin.slot));
+      rest.push_back(rest_from(at(k), begin.slot));
     costs(k).set_rest(std::move(rest));
   }
 
-  /// Returns the cheapest job by what is known, and sets value_ to its cost; an empty one if none
-  /// is left.
-  Candidate cheapest_job() {
-    Candidate job;
+  /// Begins the cheapest job by what is known, and sets value_ to its cost. Returns the slot at
+  /// which its first run begins; -1 if no job is left.
+  int begin_cheapest_job(Candidate& job) {
     value_ = kUnreachable;
-    int slot = -1;
     if (home_) {
       const auto onward = costs(0).onward(0);
-      if (onward.cost == kUnreachable) return job;
+      if (onward.cost == kUnreachable) return -1;
       value_ = onward.cost;
       job.pairs.push_back({0, 0, onward.begin});
-      slot = costs(0).nodes(Side::kBegin)[onward.begin].slot;
-    } else {
-      slot = at(0).cost_to_go->first_slot();
-      if (slot < 0) return job;
-      value_ = at(0).cost_to_go->at(0, slot);
+      return costs(0).nodes(Side::kBegin)[onward.begin].slot;
     }
+    const int slot = first_slot(at(0));
+    if (slot >= 0) value_ = rest_from(at(0), slot);
+    return slot;
+  }
+  /// Lays out the cheapest job from the slot at which its first run begins. Returns false if a run
+  /// costs more than was known.
+  bool lay_paths(int slot, Candidate& job) {
     for (int k = 0; k < last(); ++k) {
       Run& run = at(k);
-      run.path = best_path_from(slot, *run.cost_to_go, run.counters.expansions, &run.earlier);
-      run.earlier.add(run.path, *run.cost_to_go);
+      if (!find_path(run, slot)) return false;
+      if (!run.loops) run.earlier.add(run.path, *run.cost_to_go);
       job.paths.push_back(run.path);
       if (!exists(k + 1)) continue;
       const std::size_t end = index_of(costs(k + 1).nodes(Side::kEnd), run.path.back());
       job.pairs.push_back({k + 1, end, run.onward[end].begin});
       if (k + 1 < last()) slot = costs(k + 1).nodes(Side::kBegin)[run.onward[end].begin].slot;
     }
-    return job;
+    return true;
   }
 
   bool validate_runs() {
@@ -549,10 +603,19 @@ class JobSearch {
   /// Returns the last transition over which no begin node has a way to the end of the job.
   [[nodiscard]] std::size_t first_barred() {
     for (int k = last(); k > 0; --k)
-      if (exists(k) && std::all_of(at(k - 1).onward.begin(), at(k - 1).onward.end(),
-                                   [](const auto& x) { return x.cost == kUnreachable; }))
-        return static_cast<std::size_t>(k);
+      if (exists(k) && !leads_on(k)) return static_cast<std::size_t>(k);
     return 0;
+  }
+  /// Returns true if a transition leads to the end of the job from a node at which the run before
+  /// it may end.
+  [[nodiscard]] bool leads_on(int transition) {
+    const Run& run = at(transition - 1);
+    const std::vector<EndNode>& ends = costs(transition).nodes(Side::kEnd);
+    for (std::size_t k = 0; k < ends.size(); ++k)
+      if (run.onward[k].cost < kUnreachable &&
+          (!run.loops || run.loops->at(ends[k].slot) < kUnreachable))
+        return true;
+    return false;
   }
 
   static constexpr int kLeastReach = 4, kMostReach = 24;

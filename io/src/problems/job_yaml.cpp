@@ -161,7 +161,7 @@ class JobReader : ProblemReader {
     }
     require_in_scale(*model_, place.path, limits);
     read_end(place.path, model_->chain);
-    refuse_closed(place.path, "a stroke of a job");
+    read_closed(place.path, model_->chain);
     static_cast<Task&>(stroke) = std::move(static_cast<Task&>(problem_));
     if (const auto value = place.find("reversible")) stroke.reversible = value->boolean();
     if (const auto end = place.path.section().find_filled("end"); end && stroke.reversible)
@@ -169,9 +169,18 @@ class JobReader : ProblemReader {
                 "`end` in strokes that are not `reversible`");
     stroke.approach = offset(place, "approach");
     stroke.retract = offset(place, "retract");
+    require_one_line(place, stroke);
     if (const auto value = place.find("process_speed")) stroke.process_speed = speed(*value);
     if (const auto value = place.find("approach_speed")) stroke.approach_speed = speed(*value);
     for (const double feed : stroke.feed) require_speed(feed, place.path);
+  }
+
+  /// Throws InputError for a closed stroke whose run would end elsewhere than it begins.
+  static void require_one_line(const Place& place, const Stroke& stroke) {
+    if (stroke.closed && stroke.approach != stroke.retract)
+      place.path.section().find("closed")->fail(
+          "is of the whole run, and the stroke's `approach` and `retract` differ",
+          "the same value for both");
   }
 
   /// Returns where the tool stands before a stroke or after it, m in the tool frame: as the stroke
@@ -236,11 +245,16 @@ class JobReader : ProblemReader {
     if (job_.order != StrokeOrder::kGiven)
       lift->fail("is given with `order: best`, and strokes in several runs are ordered as given",
                  "`order: given`, or no lift-offs");
-    for (const Stroke& stroke : job_.strokes)
+    for (const Stroke& stroke : job_.strokes) {
       if (stroke.name.find('/') != std::string::npos)
         lift->fail("is given with a stroke named '" + stroke.name +
                        "', and runs of strokes are named by a slash and a number",
                    "names without a slash");
+      if (stroke.closed)
+        lift->fail("is given with stroke '" + stroke.name +
+                       "', whose path is closed and is done in one run",
+                   "paths that are not closed, or no lift-offs");
+    }
   }
 
   Job job_;

@@ -73,7 +73,7 @@ class ProblemReader {
   void read_end(const YamlValue& path, const Chain& chain);
   /// Reads `closed` of a path, if it is there, into `problem_`, which must have the path's
   /// waypoints, start and end.
-  void read_closed(const YamlValue& path);
+  void read_closed(const YamlValue& path, const Chain& chain);
   /// Throws InputError where a path is closed; `what` says of what paths are not.
   static void refuse_closed(const YamlValue& path, const std::string& what);
 

@@ -125,11 +125,7 @@ Problem ProblemReader::read() {
   if (const auto value = root_.find_filled("start")) read_start(*value);
   read_start_place();
   read_end(path, model.chain);
-  read_closed(path);
-  if (problem_.closed && model.chain.free_roll)
-    path.section().find("closed")->fail(
-        "is given for an arm of seven joints whose roll is free, which is not supported yet",
-        "this key or path.roll");
+  read_closed(path, model.chain);
   read_cost();
   read_vary();
   return std::move(problem_);
@@ -653,9 +649,13 @@ void ProblemReader::read_end(const YamlValue& path, const Chain& chain) {
                                                 : Config(Config::Map(joint_numbers(joints).data()));
 }
 
-void ProblemReader::read_closed(const YamlValue& path) {
+void ProblemReader::read_closed(const YamlValue& path, const Chain& chain) {
   const auto closed = path.section().find_filled("closed");
   if (!closed || !closed->boolean()) return;
+  if (chain.free_roll)
+    closed->fail(
+        "is given for an arm of seven joints whose roll is free, which is not supported yet",
+        "this key or path.roll");
   if ((problem_.start || problem_.end) && problem_.start != problem_.end)
     closed->fail("is given beside `start` or `end`", "neither, or both with the same joints");
   if (problem_.start_at) closed->fail("is given beside `start_at`", "one of the two");

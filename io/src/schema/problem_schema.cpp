@@ -379,7 +379,7 @@ Schema strokes() {
   Schema stroke = section("stroke", join(join(first, keys_of_strokes("that of the job")), last));
   return list(refusing(std::move(stroke),
                        {not_yet("lift"),
-                        not_yet("closed"),
+                        {"closed", "is of the path", "this key in the `path` of the stroke"},
                         {"end", "is of the path", "this key in the `path` of the stroke"},
                         {"start", "is of problems with one path", "`home`, of a job as a whole"}}));
 }

@@ -475,6 +475,7 @@ class JobPlan {
       part.run = runs_[k]->run;
       part.cost = outcome.run_costs[k];
       part.rows = lattice.path_rows(path);
+      if (!part.rows.empty()) require_same_turns(lattice, part.rows, runs_[k]->problem.source);
       if (runs_[k]->other_planes) measure_arm_angles(*runs_[k], part.rows);
       parts.push_back(std::move(part));
       end = *lattice.exact_config(lattice.layers() - 1, path.back());

@@ -536,7 +536,7 @@ struct Planner::Impl {
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
       result.trajectory = lattice.path_rows(path);
-      require_same_turns(lattice, result.trajectory);
+      require_same_turns(lattice, result.trajectory, problem.source);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
       if (lattice.is_approximate() || lattice.has_layers_between())
         result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
@@ -549,20 +549,6 @@ struct Planner::Impl {
     }
     explain(rule, found, options, budget, result);
     result.time_ms["report"] = watch.lap();
-  }
-  /// Throws InputError where a joint of over 64 turns, whose turns no lattice tells apart, comes
-  /// back on a closed path in another turn.
-  void require_same_turns(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) const {
-    for (int j = 0; j < kDof && lattice.is_closed(); ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      const double turns = std::round((rows.back().q[j] - rows.front().q[j]) / kTwoPi);
-      if (lattice.chain().limit[k].wide() && turns != 0)
-        throw InputError(problem.source,
-                         "path.closed: joint '" + lattice.chain().joint_names[k] + "' comes back " +
-                             formatted("%+.0f", turns) +
-                             " turn(s) on, and whether another path brings it back is not known: "
-                             "allowed are joints without limits, or of at most 64 turns");
-    }
   }
   /// Proves the trajectory. If that does not end in time, the trajectory is moved to `partial`,
   /// since an unproved path is no answer; throws Stopped then.

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
@@ -20,6 +25,22 @@ namespace swivel {
                  !(lattice.chain().roll && j + 1 == kDof);
   }
   return circles;
+}
+
+/// Throws InputError where a joint of over 64 turns, whose turns no lattice tells apart, comes back
+/// on a closed path in another turn. There must be rows; `source` names the problem.
+inline void require_same_turns(const Lattice& lattice, const std::vector<TrajectoryRow>& rows,
+                               const std::string& source) {
+  for (int j = 0; j < kDof && lattice.is_closed(); ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const double turns = std::round((rows.back().q[j] - rows.front().q[j]) / kTwoPi);
+    if (lattice.chain().limit[k].wide() && turns != 0)
+      throw InputError(source, "path.closed: joint '" + lattice.chain().joint_names[k] +
+                                   "' comes back " + formatted("%+.0f", turns) +
+                                   " turn(s) on, and whether another path brings it back is not "
+                                   "known: allowed are joints without limits, or of at most 64 "
+                                   "turns");
+  }
 }
 
 /// Returns a lattice like `lattice` that treats no bounded joint as a circle.

@@ -165,6 +165,8 @@ class JobTrials {
       };
       JobAdvice advice{.change = change, .strokes = {}, .length = length};
       for (const std::size_t stroke : strokes) {
+        // the lines of a closed stroke are equal
+        if (job_.strokes[stroke].closed && change != JobAdvice::Change::kLines) continue;
         if (change != JobAdvice::Change::kRetract) extend(changed.strokes[stroke].approach);
         // a given end stands where the retract ends
         if (change != JobAdvice::Change::kApproach && !job_.strokes[stroke].end)

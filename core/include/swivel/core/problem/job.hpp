@@ -20,7 +20,8 @@ struct StrokePiece {
 
 /// One run of the tool on the workpiece, as a job has many of them: a task with a name. Its
 /// `start`, `start_at`, `rolls` and `steps` are unset. Its `end` is the posture in which the run
-/// ends, after the retract; a reversible stroke has none.
+/// ends, after the retract; a reversible stroke has none. Where it is `closed`, the run ends after
+/// the retract in the joints in which it begins before the approach, and both lines are equal.
 struct Stroke : Task {
   std::string name;
   /// True: the tool may run from the last waypoint to the first.
