@@ -11,6 +11,7 @@
 #include "chance.hpp"
 #include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
+#include "search/closing_slots.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/search/job_search.hpp"
@@ -423,6 +424,62 @@ TEST(JobSearch, ClosedRunsCostWhatPlainProgramsFromEveryStartSay) {
 }
 TEST(JobSearch, ClosedRunsOfArmAnglesCostWhatPlainProgramsFromEveryStartSay) {
   expect_plain_programs(true, true, 12);
+}
+
+/// Removes what a validity says is invalid from a cost-to-go.
+void remove_invalid(const ChanceValidity& validity, CostToGo& cost_to_go) {
+  const Lattice& lattice = cost_to_go.lattice();
+  std::vector<Lattice::Node> nodes, next;
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    lattice.layer_nodes(layer, nodes);
+    for (const Lattice::Node& a : nodes)
+      if (!validity.node(layer, a.slot)) cost_to_go.verdicts().remove_node(layer, a.slot);
+    if (!validity.asks_edges() || layer + 1 == lattice.layers()) continue;
+    lattice.layer_nodes(layer + 1, next);
+    for (const Lattice::Node& a : nodes)
+      for (const Lattice::Node& b : next)
+        if (lattice.in_window(layer, a.slot, b.slot) &&
+            lattice.step_allowed(layer, lattice.delta(a.q, b.q)) &&
+            !validity.edge(layer, a.slot, b.slot))
+          cost_to_go.remove_edge(layer, a.slot, b.slot);
+  }
+}
+
+TEST(JobSearch, OpenSlotsAreThoseFromWhichNoPlainProgramComesBack) {
+  Random random(seed("JobSearch open slots"));
+  const TestRobot robot = all_robots().front();
+  const ArmModel arm = arm_of(robot);
+  const SrsArm srs = fit_srs(arm.chain, robot.name);
+  int lattices = 0, open = 0, closed = 0;
+  for (int trial = 0; trial < trials(80); ++trial) {
+    const RandomJob job = random_job(robot, arm, srs, trial % 8 == 0, true, random);
+    for (std::size_t k = 0; k < job.lattices.size(); ++k) {
+      const Lattice& lattice = *job.lattices[k];
+      if (!lattice.is_closed()) continue;
+      const auto cost_to_go = make_cost_to_go(lattice);
+      remove_invalid(*job.validities[k], *cost_to_go);
+      cost_to_go->sweep(lattice.layers() - 1);
+      std::vector<std::uint8_t> may_close(static_cast<std::size_t>(lattice.slots(0)), 1);
+      leave_out_open_slots(*cost_to_go, may_close);
+      const std::vector<double> loops = plain_loops(lattice, *job.validities[k]);
+      std::vector<Lattice::Node> nodes;
+      lattice.layer_nodes(0, nodes);
+      ++lattices;
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const bool may = may_close[static_cast<std::size_t>(nodes[n].slot)] != 0;
+        if (lattice.slots(0) <= 1024) {
+          ASSERT_EQ(may, loops[n] < kUnreachable) << "trial " << trial;
+        } else if (!may) {
+          ASSERT_EQ(loops[n], kUnreachable) << "trial " << trial;
+        }
+        ++(may ? closed : open);
+      }
+    }
+  }
+  std::printf("%d lattices, %d slots close, %d do not\n", lattices, closed, open);
+  EXPECT_GE(lattices, at_least(100));
+  EXPECT_GE(closed, at_least(100));
+  EXPECT_GE(open, at_least(100));
 }
 
 }  // namespace

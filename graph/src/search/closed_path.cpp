@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "cost_to_go/best_start.hpp"
+#include "search/closing_slots.hpp"
+#include "search/loop_costs.hpp"
 #include "search/path_validator.hpp"
 #include "swivel/core/base/timeline.hpp"
 
@@ -25,7 +27,8 @@ struct Bounded {
   }
 };
 
-/// Finds the best paths within runs of slots by sweeps of one cost-to-go.
+/// Finds the best paths within runs of slots by sweeps of one cost-to-go. Where several have found
+/// none that closes, it finds out from which slots none can, and leaves these out.
 class Sweeps {
  public:
   Sweeps(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
@@ -33,10 +36,12 @@ class Sweeps {
       : cost_to_go_(cost_to_go),
         validator_(cost_to_go, validity, options),
         counters_(counters),
-        last_(cost_to_go.lattice().layers() - 1) {}
+        may_close_(static_cast<std::size_t>(cost_to_go.lattice().slots(0)), 1) {}
 
   SearchOutcome best_within(const Lattice::SlotRun& run) {
-    restrict_goals(run);
+    if (++solves_ == next_reach_) leave_out_open();
+    if (!any_may_close(run)) return {};
+    sweep_to(run, cost_to_go_, may_close_);
     PathCache earlier;
     for (;;) {
       cost_to_go_.budget().poll();
@@ -56,31 +61,38 @@ class Sweeps {
   }
 
  private:
-  /// Makes nodes of the last layer beyond a run cost infinitely much.
-  void restrict_goals(const Lattice::SlotRun& run) {
-    Verdicts& verdicts = cost_to_go_.verdicts();
-    verdicts.forget_exit_costs();
-    const int slots = cost_to_go_.lattice().slots(last_);
-    if (run.first > 0 || run.last < slots) {
-      std::vector<double> costs(static_cast<std::size_t>(slots), kUnreachable);
-      std::fill(costs.begin() + run.first, costs.begin() + run.last, 0.0);
-      verdicts.raise_exit_costs(costs);
-    }
-    cost_to_go_.sweep(last_);
+  void leave_out_open() {
+    next_reach_ *= 2;
+    if (removed_then_ == cost_to_go_.verdicts().removed()) return;
+    sweep_to({0, static_cast<int>(may_close_.size())}, cost_to_go_, may_close_);
+    leave_out_open_slots(cost_to_go_, may_close_);
+    removed_then_ = cost_to_go_.verdicts().removed();
   }
-  /// Returns the first slot of a run from which the cheapest path leads; -1 where none does.
+  [[nodiscard]] bool may_close(int slot) const {
+    return may_close_[static_cast<std::size_t>(slot)] != 0;
+  }
+  [[nodiscard]] bool any_may_close(const Lattice::SlotRun& run) const {
+    return std::any_of(may_close_.begin() + run.first, may_close_.begin() + run.last,
+                       [](std::uint8_t may) { return may != 0; });
+  }
+  /// Returns the first slot of a run from which the cheapest path leads that may close; -1 where
+  /// none does.
   [[nodiscard]] int cheapest_slot(const Lattice::SlotRun& run) const {
     int best = -1;
     double least = kUnreachable;
     for (int slot = run.first; slot < run.last; ++slot)
-      if (const double cost = cost_to_go_.at(0, slot); cost < least) least = cost, best = slot;
+      if (const double cost = cost_to_go_.at(0, slot); cost < least && may_close(slot))
+        least = cost, best = slot;
     return best;
   }
 
   CostToGo& cost_to_go_;
   PathValidator validator_;
   SearchCounters& counters_;
-  int last_;
+  static constexpr int kFew = 8;  // sweeps, which take about as long as a pass through all edges
+  int solves_ = 0, next_reach_ = kFew;
+  std::int64_t removed_then_ = -1;       // when edges were gone through last
+  std::vector<std::uint8_t> may_close_;  // by slot
 };
 
 }  // namespace

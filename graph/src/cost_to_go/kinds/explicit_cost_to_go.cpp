@@ -2,6 +2,7 @@
 #include "cost_to_go/kinds/explicit_cost_to_go.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cost_to_go/kernels/relax_task.hpp"
 
@@ -137,10 +138,21 @@ Config ExplicitCostToGo::config(int layer, int slot) {
 void ExplicitCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
   const Config q = config(layer, slot);
   const double own = verdicts_.cost(layer, slot);
+  const Joints& next = joints_[static_cast<std::size_t>(layer) + 1];
+  const Config& most = lattice_->step_bound(layer);
+  // most nodes are too far off in one joint
+  const auto too_far = [&](std::size_t b) {
+    for (std::size_t k = 0; k < kDof; ++k) {
+      const auto joint = static_cast<Eigen::Index>(k);
+      if (!lattice_->continuous()[k] && !(std::abs(next[k][b] - q[joint]) <= most[joint]))
+        return true;
+    }
+    return false;
+  };
   out.clear();
   for (int b = 0; b < lattice_->slots(layer + 1); ++b) {
     const double rest = at(layer + 1, b);
-    if (rest == kUnreachable || rest > bound) continue;
+    if (rest == kUnreachable || rest > bound || too_far(static_cast<std::size_t>(b))) continue;
     const Config delta = lattice_->delta(q, config(layer + 1, b));
     if (!lattice_->step_allowed(layer, delta)) continue;
     const double cost = lattice_->edge_cost(delta);
