@@ -100,6 +100,14 @@ class ClosedPaths(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "'left': closed"):
             swivel.plan_job(job)
 
+    def test_certificates(self):
+        near = square(closed=True)
+        self.assertIsNone(swivel.certificate(near))
+        up = swivel.Task(near.waypoints + [0, 0, 2, 0, 0, 0, 0], closed=True)
+        far = swivel.Problem(near.robot, up)
+        proof = swivel.certificate(far)  # no path leads to the end, let alone back
+        self.assertTrue(swivel.check_certificate(far, proof).passed)
+
     def test_pickled(self):
         for problem in (swivel.load_problem(COVER), square(closed=True)):
             for protocol in (2, pickle.HIGHEST_PROTOCOL):
@@ -129,7 +137,7 @@ class ClosedPaths(unittest.TestCase):
         plan = swivel.plan(problem)
         self.assertFalse(plan.solved)
         self.assertEqual(plan.diagnosis.cause.kind, swivel.CauseKind.NOT_CLOSED)
-        with self.assertRaisesRegex(swivel.InputError, "path.closed: a certificate"):
+        with self.assertRaisesRegex(swivel.InputError, "path.closed: paths lead to the end"):
             swivel.certificate(problem)
 
 

@@ -310,10 +310,10 @@ InfeasibilityCertificate find_cut(const Lattice& lattice, const World& world, co
 InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget,
                                           const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("cut");
-  if (view.problem.closed)
+  if (view.problem.closed && static_cast<int>(view.path.size()) == view.lattice.layers())
     throw InputError(view.problem.source,
-                     "path.closed: a certificate that no path closes is not supported yet: allowed "
-                     "is a certificate without path.closed");
+                     "path.closed: paths lead to the end, and a certificate that none closes is "
+                     "not supported yet: allowed is a closed path to whose end none leads");
   std::unique_ptr<CostToGo> own;  // for the eager planners, which keep no verdicts
   if (view.verdicts == nullptr) {
     own = make_cost_to_go(view.lattice, Pruning::kNone, budget);
