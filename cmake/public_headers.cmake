@@ -50,6 +50,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/job/job_view.hpp
   swivel/planner/job/plan_job.hpp
   swivel/planner/job/time_job.hpp
+  swivel/planner/plan/path_range.hpp
   swivel/planner/plan/plan_options.hpp
   swivel/planner/plan/plan_view.hpp
   swivel/planner/plan/planner.hpp

@@ -17,6 +17,7 @@
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/plan/path_range.hpp"
 #include "swivel/planner/robot/planning_arm.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -882,6 +883,16 @@ void bind_problem(py::module_& m) {
           "layout stay, names of files are as seen from the new place. A problem made in memory is "
           "written whole. The file is replaced as a whole, or left as it was. Raises InputError "
           "for what no file can say, and InvalidArgument.")
+      .def(
+          "stretch",
+          [](const Problem& problem, double begin, std::optional<double> end) {
+            PathRange range{begin};
+            if (end) range.to = *end;
+            return problem_of_range(problem, range);
+          },
+          py::arg("begin"), py::arg("end") = py::none(),
+          "The problem of a stretch of the path alone, between two arc lengths, m, which the arm "
+          "begins and ends in any posture. end: None for the path's end. Raises InvalidArgument.")
       .def("__repr__", [](const Problem& problem) {
         return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " +
                robot_words(problem) + "; " + std::to_string(problem.waypoints.size()) +

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/plan/path_range.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/problem/job.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kSameLength = 1e-9;  // m
+
+double length_of(const std::vector<Waypoint>& waypoints) {
+  double length = 0;
+  for (std::size_t k = 1; k < waypoints.size(); ++k)
+    length += (waypoints[k].position - waypoints[k - 1].position).norm();
+  return length;
+}
+
+}  // namespace
+
+Problem problem_of_range(const Problem& problem, const PathRange& range) {
+  if (!problem.rolls.empty() || !problem.steps.empty())
+    throw InvalidArgument("path range: rolls, steps: allowed are none, since they are of the path");
+  const double length = length_of(problem.waypoints), to = std::min(range.to, length);
+  if (!(range.from >= 0 && range.from + kSameLength < to))
+    throw InvalidArgument(
+        formatted("path range: from %.6g to %.6g m: allowed are ranges forwards "
+                  "within 0 to %.6g m",
+                  range.from, range.to, length));
+  Problem found = problem;
+  found.start.reset();
+  found.start_at.reset();
+  found.end.reset();
+  found.closed = false;
+  Job job;
+  static_cast<Task&>(job.strokes.emplace_back()) = found;
+  std::vector<LiftOff> cuts;
+  if (range.from > kSameLength) cuts.push_back({0, range.from, range.from});
+  if (to < length - kSameLength) cuts.push_back({0, to, to});
+  const std::size_t stretch = range.from > kSameLength ? 1 : 0;
+  found.waypoints = with_lift_offs(job, cuts).strokes[stretch].waypoints;
+  return found;
+}
+
+PathReach reach_from(const PreparedRobot& robot, const Problem& problem, double from,
+                     PathDirection direction, const PlanOptions& options) {
+  const bool backwards = direction == PathDirection::kBackwards;
+  Problem ahead = problem_of_range(problem, backwards ? PathRange{0, from} : PathRange{from});
+  if (backwards) std::reverse(ahead.waypoints.begin(), ahead.waypoints.end());
+  PathReach reach;
+  reach.plan = plan(robot, ahead, options);
+  const std::vector<TrajectoryRow>& rows =
+      reach.plan.status == PlanStatus::kSolved ? reach.plan.trajectory : reach.plan.partial;
+  double along = reach.plan.diagnosis.reached_s.value_or(0);
+  if (!rows.empty()) along = std::max(along, rows.back().s);
+  from = std::min(from, length_of(problem.waypoints));
+  reach.s = backwards ? from - along : from + along;
+  return reach;
+}
+
+}  // namespace swivel
