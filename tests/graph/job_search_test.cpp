@@ -402,8 +402,8 @@ void expect_plain_programs(bool grids, bool closed, int usual) {
       met.closed, met.elsewhere);
   EXPECT_EQ(met.closed > 0, closed);
   if (closed) {
-    EXPECT_GE(met.solved, at_least(grids ? 40 : 100));
-    EXPECT_GE(met.closed, at_least(grids ? 40 : 100));
+    EXPECT_GE(met.solved, at_least(grids ? 40 : 80));
+    EXPECT_GE(met.closed, at_least(grids ? 40 : 80));
     EXPECT_GE(met.elsewhere, at_least(20));
     return;
   }
