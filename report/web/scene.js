@@ -108,7 +108,7 @@ class View {
     if (on && !this.arm.some(({ userData }) => userData.body.visual))
       for (const one of visual) {
         const mesh = this.meshOf(this.part({ ...one, visual: true }, this.data));
-        mesh.userData.rest.copy(this.restOfVisual(one));
+        this.placeVisual(mesh.userData);
         mesh.matrix.multiplyMatrices(g[one.group], mesh.userData.rest);
         this.arm.push(mesh);
       }
@@ -125,15 +125,17 @@ class View {
     }
     this.dirty = true;
   }
-  /** The pose of a visual shape at q = 0, with its link where joints are held elsewhere. */
-  restOfVisual({ name, pose }) {
-    const link = this.parts.find(({ body }) => body.kind === 'robot' && body.name === name);
-    if (!link) return matrix(pose);
-    return link.rest.clone().multiply(matrix(link.body.pose).invert()).multiply(matrix(pose));
+  /** Puts a visual shape onto its link, which may stand elsewhere than the shape's pose says. */
+  placeVisual({ body, rest }) {
+    const { links, own_links: own } = this.data;
+    rest.copy(matrix(body.pose));
+    if (links && own)
+      rest.premultiply(matrix(links[body.name]).multiply(matrix(own[body.name]).invert()));
   }
   /**
    * Another plan of the same arm among the same bodies. poses, robot_poses: of the scene's objects
-   * and of the other bodies in their order, where they stand elsewhere.
+   * and of the other bodies in their order, where they stand elsewhere; links, own_links: of the
+   * links as they stand here and as the shapes are given.
    */
   show(data) {
     this.data = data;
@@ -143,8 +145,7 @@ class View {
         .forEach(({ rest }, k) => rest.copy(matrix(poses[k])));
     if (data.poses) move(data.poses, true);
     if (data.robot_poses) move(data.robot_poses, false);
-    for (const { userData } of this.arm)
-      if (userData.body.visual) userData.rest.copy(this.restOfVisual(userData.body));
+    for (const { userData } of this.arm) if (userData.body.visual) this.placeVisual(userData);
     // Ghosts share the shapes of the arm.
     this.shown?.traverse(({ geometry, userData }) => userData.g ?? geometry?.dispose());
     for (const one of [this.shown, this.ghosts, this.trail]) one?.removeFromParent();

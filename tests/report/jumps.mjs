@@ -35,7 +35,13 @@ function jumpsOf({ result, rows, chain }) {
   };
   const add = (key, part, row, says, holds) =>
     part && row !== undefined && jumps.push({ key, row, says, holds });
-  const { clearance, joint_limit: limit, tool_path_error: error, top_tool_speed: speed } = summary,
+  const {
+      clearance,
+      joint_limit: limit,
+      slide_limit: slide,
+      tool_path_error: error,
+      top_tool_speed: speed,
+    } = summary,
     contact = result.deepest_contact;
   add(
     'clearance',
@@ -54,21 +60,25 @@ function jumpsOf({ result, rows, chain }) {
     },
   );
   add('contact', contact, contact?.row, () => `${digits(1e3 * contact.depth, 3)} mm deep`);
-  const named = chain.joints.findIndex(({ name }) => name === limit?.joint),
-    roomAt = (k) => room(chain.joints[named], trajectory[k].joints[named]);
-  add(
-    'joint_limit',
-    limit,
-    limit && rowAt(limit.s, roomAt),
-    () => `${limit.joint} ${digits(limit.margin_deg, 2)}° from its limit`,
-    async (page) => {
-      const { margin_deg: margin, s } = limit;
-      assert.equal((kDegrees * roomAt(rowAt(s, roomAt))).toFixed(2), margin.toFixed(2));
-      const title = await page.locator('#readout .joint').nth(named).getAttribute('title'),
-        told = margin.toFixed(margin < 10 ? 1 : 0);
-      assert.ok(title.endsWith(`, ${told}° from the nearer`), title);
-    },
-  );
+  for (const [key, near, margin, scale, unit] of [
+    ['joint_limit', limit, limit?.margin_deg, kDegrees, '°'],
+    ['slide_limit', slide, slide?.margin_mm, 1000, ' mm'],
+  ]) {
+    const named = chain.joints.findIndex(({ name }) => name === near?.joint),
+      roomAt = (k) => room(chain.joints[named], trajectory[k].joints[named]);
+    add(
+      key,
+      near,
+      near && rowAt(near.s, roomAt),
+      () => `${near.joint} ${digits(margin, 2)}${unit} from its limit`,
+      async (page) => {
+        assert.equal((scale * roomAt(rowAt(near.s, roomAt))).toFixed(2), margin.toFixed(2));
+        const title = await page.locator('#readout .joint').nth(named).getAttribute('title'),
+          told = margin.toFixed(margin < 10 ? 1 : 0);
+        assert.ok(title.endsWith(`, ${told}${unit} from the nearer`), title);
+      },
+    );
+  }
   add(
     'tool_path_error',
     (error?.s ?? null) !== null && error,

@@ -47,14 +47,23 @@ Pose still_frame(const Movable& thing, const Offset& offset) {
   return moved.inverse();
 }
 
-/// Returns the robot with joints held as in a cell: its chain, and the poses of its bodies at q = 0
-/// in the order of Bodies.
+/// Returns the poses of the links at q = 0, by name.
+Json links_json(const RobotModel& model, const ArmModel& arm) {
+  Json links = Json::object();
+  for (std::size_t k = 0; k < model.links.size(); ++k)
+    links[model.links[k].name] = pose_json(arm.links[k].pose);
+  return links;
+}
+
+/// Returns the robot with joints held as in a cell: its chain, the poses of its bodies at q = 0 in
+/// the order of Bodies, and those of its links, which carry visual shapes.
 Json robot_json(const PreparedRobot& robot, const RobotModel& model) {
   Json poses = Json::array();
   for (const RobotBody& body : robot.world().bodies()) poses.push_back(pose_json(body.pose));
   return {{"chain", chain_json(robot.arm().chain)},
           {"ground", ground_json(model, robot.arm())},
-          {"robot_poses", std::move(poses)}};
+          {"robot_poses", std::move(poses)},
+          {"links", links_json(model, robot.arm())}};
 }
 
 /// Returns rows in a placement for drawing. `robot`: robot_json() where its joints are held
@@ -110,6 +119,7 @@ Json scene_json(const PlacementScene& scene) {
           {"bodies", std::move(bodies.bodies)},
           {"visual", std::move(bodies.visual)},
           {"unread", scene.unread},
+          {"own_links", links_json(*scene.problem->model, scene.robot->arm())},
           {"meshes", std::move(bodies.meshes)},
           {"origin", vector_json(origin_of(*scene.problem, scene.thing))},
           {"plans", std::move(plans)}};
