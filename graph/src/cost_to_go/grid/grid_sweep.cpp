@@ -158,6 +158,9 @@ void GridCostToGo::compute(int goal_layer) {
   for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
   if (goal_layer == lattice_->layers() - 1) {
     forget_reach();
+    // From one node, forward, it takes little to see that turns which are told apart run out.
+    if (!hopeless && bounded_ && lattice_->has_start() && lattice_->windings() > 1)
+      hopeless = deepest_reachable() < goal_;
     if (!hopeless && bounded_) {
       if (!chord_bound_) {
         chord_bound_ = std::make_unique<ChordLowerBound>(*lattice_, budget_, work_);
