@@ -154,8 +154,8 @@ export async function press(page, key) {
 }
 
 /**
- * Clicks on every body that the view shows wide enough to be hit. told: called with the name of each and the lines that
- * the page then tells.
+ * Clicks on every body that the view shows wide enough to be hit. told: called with the name of
+ * each and the lines that the page then tells.
  */
 export async function clickBodies(page, told) {
   // The height of the view follows that of the header, a few pictures later.

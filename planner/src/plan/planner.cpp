@@ -391,11 +391,12 @@ struct Planner::Impl {
       if (!found.decided || found.outcome.path.empty()) return found;
       const Lattice::Joints off = lattice.off_nearest(found.outcome.path);
       if (off == Lattice::Joints{}) return found;
-      Searched apart{lattice.with_windings(off), nullptr};
+      Searched wound{lattice.with_windings(off), nullptr};
       if (problem.start && !was_eager && !lattice.has_layers_between() && robot->arm_class().srs) {
         try {
-          apart.cost_to_go = make_cost_to_go(*apart.lattice, pruning_of(*apart.lattice), budget);
-          if (apart.cost_to_go->deepest_reachable() + 1 == lattice.layers())
+          // Where the turns run out, as they mostly do then, going forward once shows it.
+          wound.cost_to_go = make_cost_to_go(*wound.lattice, pruning_of(*wound.lattice), budget);
+          if (wound.cost_to_go->deepest_reachable() + 1 == lattice.layers())
             if (const auto turned = search_turns(layout->last(), rule, options, budget, result))
               return *turned;
         } catch (const Stopped&) {
@@ -403,7 +404,7 @@ struct Planner::Impl {
         }
       }
       if (note.empty()) note = turns_note(lattice, found.outcome.path, off, problem);
-      layout->second = std::move(apart);
+      layout->second = std::move(wound);
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
       found = search(*layout->second, false, rule, options, budget, result);
     }
