@@ -165,26 +165,26 @@ void BetweenArms::moves(std::span<const MovePair> questions, std::span<std::uint
 }
 
 void BetweenArms::find_barred(int layer, const std::array<std::vector<int>, 2>& slots,
-                              const std::array<std::vector<Config>, 2>& q,
+                              const std::array<std::vector<Config>, 2>&,
                               std::span<std::uint8_t> barred) {
-  const std::size_t columns = slots[1].size();
-  if (slots[0].empty() || slots[1].empty()) return;
-  std::array<std::vector<Config>, 2> exact = q;
-  std::array<std::vector<bool>, 2> found;  // whether a slot has exact joints
-  for (std::size_t arm = 0; arm < 2; ++arm)
-    for (std::size_t k = 0; k < q[arm].size(); ++k) {
-      const auto row = lattices_[arm]->exact_config(layer, slots[arm][k], q[arm][k]);
-      found[arm].push_back(row.has_value());
-      if (row) exact[arm][k] = *row;
+  std::array<std::optional<InterArmWorld::Stances>, 2> stances;
+  std::array<std::vector<std::optional<std::size_t>>, 2> stance;  // of a slot with exact joints
+  for (std::size_t arm = 0; arm < 2; ++arm) {
+    if (slots[arm].empty()) return;
+    const LayerNodes nodes(*lattices_[arm], layer);
+    stances[arm].emplace(query_.stances(static_cast<int>(arm), -1, nodes.rows));
+    for (const int slot : slots[arm]) {
+      const auto node = nodes.find(slot);
+      stance[arm].push_back(node ? std::optional(stances[arm]->stance_of(*node)) : std::nullopt);
     }
-  const InterArmWorld::Stances first = query_.stances(0, -1, exact[0]),
-                               second = query_.stances(1, -1, exact[1]);
-  for (std::size_t k = 0; k < barred.size(); ++k) {
-    if (k % columns == 0) budget_.poll();
-    const std::size_t a = k / columns, b = k % columns;
-    if (!barred[k])
-      barred[k] = !found[0][a] || !found[1][b] ||
-                  query_.any_violates(first, first.stance_of(a), second, second.stance_of(b));
+  }
+  std::size_t k = 0;
+  for (const auto& a : stance[0]) {
+    budget_.poll();
+    for (const auto& b : stance[1]) {
+      if (!barred[k]) barred[k] = !a || !b || query_.any_violates(*stances[0], *a, *stances[1], *b);
+      ++k;
+    }
   }
 }
 
