@@ -79,7 +79,8 @@ class PairSearch {
       if (options_.rounds > 0 && regions.run(regions_alone ? -1 : rounds)) return;
       if (product.run(options_.rounds > 0 ? pops : -1)) return;
       // The cost-to-go of pairs takes less than many rounds of regions.
-      if (outcome_.turns == 1 && product.has_few_pairs() && product.run(pops *= options_.growth))
+      if (outcome_.turns == 1 && pops * options_.growth <= options_.most_pops &&
+          product.has_few_pairs() && product.run(pops *= options_.growth))
         return;
       rounds *= options_.growth;
     }
