@@ -168,7 +168,7 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
   const Job job = request.timing ? with_motion_defaults(request.job) : request.job;
-  // Of certificate, advice and page; plans have their own.
+  // This budget covers the certificate, the advice and the page; planning has one of its own.
   const Budget budget = request.options.budget();
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   JobView view;

@@ -22,8 +22,8 @@ const kQualities = {
   speed: ['tool_speed', 1, 1, ' m/s', 'top speed of the tool'],
 };
 const { columns } = data;
-// Of each axis: the key of its values in a row, its name, the joint whose position it is or null,
-// the unit that is shown, and the scale to it.
+// The axes of the grid. `name` is the key of the axis in a row, `label` what people read, `joint`
+// the held joint that the axis varies, or null; values in rows times `scale` are in `unit`.
 const axes = data.axes.map(({ name, unit, values }) => {
   const turns = !unit && !/^[xyz]$/.test(name);
   return {

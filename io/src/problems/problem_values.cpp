@@ -46,7 +46,8 @@ YAML::Node joints_node(const Config& joints) {
   section["joints"] = numbers_node(std::vector<double>(joints.data(), joints.data() + kDof));
   return section;
 }
-/// Returns a number if all are the same, else a list of them; null if there are none.
+/// Returns a limit of the seven joints: one number where it is the same for all, else a list of
+/// seven; null where the problem does not give it.
 YAML::Node of_joints_node(const std::optional<std::array<double, kDof>>& numbers) {
   if (!numbers) return YAML::Node(YAML::NodeType::Null);
   const bool same = std::all_of(numbers->begin(), numbers->end(),
