@@ -153,17 +153,11 @@ bool BasinLattice::step_good(int layer, int a, int b) {
   if (const auto known = steps_.find(key); known != steps_.end()) return known->second;
   const Config &p = points_[at(layer)][at(a)].q, &q = points_[at(layer + 1)][at(b)].q, move = q - p;
   const Limits& limits = lattice_->limits();
-  const auto within = [](const std::array<double, 3>& deviation, double limit) {
-    return std::all_of(deviation.begin(), deviation.end(),
-                       [limit](double x) { return x <= limit; });
-  };
   const Chain& chain = lattice_->chain();
   const ToolPath& path = lattice_->path();
-  bool good = lattice_->step_allowed(layer, move);
-  if (limits.tool_path_error)
-    good = good && within(path_deviation(chain, path, layer, p, move), *limits.tool_path_error);
-  if (limits.tool_angle_error)
-    good = good && within(angle_deviation(chain, path, layer, p, move), *limits.tool_angle_error);
+  bool good = lattice_->step_allowed(layer, move) &&
+              keeps_path_error(chain, path, layer, p, move, limits.tool_path_error) &&
+              keeps_angle_error(chain, path, layer, p, move, limits.tool_angle_error);
   if (limits.edges == EdgeMode::kContinuous) good = good && !edge_blocked(between_, rule_, p, q);
   return steps_[key] = good;
 }

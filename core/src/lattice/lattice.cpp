@@ -242,18 +242,10 @@ double Lattice::edge_cost(const Config& delta) const {
 }
 
 bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {
-  const auto stays_within = [](const std::array<double, 3>& deviation, double limit) {
-    return std::all_of(deviation.begin(), deviation.end(),
-                       [limit](double x) { return x <= limit; });
-  };
   const Config move = delta(q0, q1);
-  if (limits_.tool_path_error &&
-      !stays_within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error))
-    return false;
-  if (limits_.tool_angle_error &&
-      !stays_within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
-    return false;
-  return keeps_step_error(layer, a, b);
+  return keeps_path_error(*chain_, *path_, layer, q0, move, limits_.tool_path_error) &&
+         keeps_angle_error(*chain_, *path_, layer, q0, move, limits_.tool_angle_error) &&
+         keeps_step_error(layer, a, b);
 }
 
 double roll_step_bound(const ToolPath& path, int step, const Limits& limits,
@@ -262,43 +254,87 @@ double roll_step_bound(const ToolPath& path, int step, const Limits& limits,
   return std::min(kPi, limits.roll_slope * std::max(travel, resolution.ds / 2));
 }
 
+namespace {
+
+/// The sines and cosines of a joint-linear move at t = 1/2, and of a quarter of the move, by whose
+/// addition theorem those at t = 1/4 and 3/4 follow. A slide has its position for its sine.
+class QuartersOfMove {
+ public:
+  QuartersOfMove(const Chain& chain, const Config& q0, const Config& delta)
+      : chain_(chain), middle_(q0 + 0.5 * delta), quarter_(0.25 * delta) {
+    for (int k = 0; k < kDof; ++k) c_[k] = std::cos(middle_[k]), s_[k] = std::sin(middle_[k]);
+    if (const int k = chain.slide(); k >= 0) c_[k] = 0, s_[k] = middle_[k];
+  }
+  /// Returns where the tool is at t = 1/2.
+  [[nodiscard]] Vector3d tool_halfway() const { return chain_.tool_point(c_, s_); }
+  /// Returns where the tool is at t = 1/4 and t = 3/4.
+  [[nodiscard]] std::array<Vector3d, 2> tool_at_quarters() const {
+    Config c_before, s_before, c_after, s_after;
+    for (int k = 0; k < kDof; ++k) {
+      const double c = std::cos(quarter_[k]), s = std::sin(quarter_[k]);
+      c_before[k] = c_[k] * c + s_[k] * s, s_before[k] = s_[k] * c - c_[k] * s;
+      c_after[k] = c_[k] * c - s_[k] * s, s_after[k] = s_[k] * c + c_[k] * s;
+    }
+    if (const int k = chain_.slide(); k >= 0) {
+      c_before[k] = c_after[k] = 0;
+      s_before[k] = middle_[k] - quarter_[k], s_after[k] = middle_[k] + quarter_[k];
+    }
+    return {chain_.tool_point(c_before, s_before), chain_.tool_point(c_after, s_after)};
+  }
+
+ private:
+  const Chain& chain_;
+  Config middle_, quarter_, c_, s_;
+};
+
+/// Returns the angle between the tool and the path at t of a move from q0 by `delta`, rad.
+double angle_deviation_at(const Chain& chain, const ToolPath& path, int layer, const Step& step,
+                          const Config& q0, const Config& delta, double t) {
+  const Pose tool = chain.tool(q0 + t * delta);
+  const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
+  // For a tool that may turn about its z axis, only the angle between the z axes counts.
+  return chain.tool_may_turn()
+             ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
+                          asked.linear().col(2).dot(tool.linear().col(2)))
+             : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
+}
+
+}  // namespace
+
 std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer,
                                      const Config& q0, const Config& delta) {
   const Step step(path, layer);
-  // Sines and cosines at t = 1/2 are computed; those at t = 1/4 and 3/4 follow by the addition
-  // theorem for a quarter of the move, h.
-  Config c, s, c_before, s_before, c_after, s_after;
-  for (int k = 0; k < kDof; ++k) {
-    const double middle = q0[k] + 0.5 * delta[k], h = 0.25 * delta[k];
-    c[k] = std::cos(middle), s[k] = std::sin(middle);
-    const double ch = std::cos(h), sh = std::sin(h);
-    c_before[k] = c[k] * ch + s[k] * sh, s_before[k] = s[k] * ch - c[k] * sh;
-    c_after[k] = c[k] * ch - s[k] * sh, s_after[k] = s[k] * ch + c[k] * sh;
-  }
-  if (const int k = chain.slide(); k >= 0) {
-    c_before[k] = c[k] = c_after[k] = 0;
-    s[k] = q0[k] + 0.5 * delta[k];
-    s_before[k] = s[k] - 0.25 * delta[k], s_after[k] = s[k] + 0.25 * delta[k];
-  }
-  return {step.aside(chain.tool_point(c_before, s_before)), step.aside(chain.tool_point(c, s)),
-          step.aside(chain.tool_point(c_after, s_after))};
+  const QuartersOfMove move(chain, q0, delta);
+  const auto quarters = move.tool_at_quarters();
+  return {step.aside(quarters[0]), step.aside(move.tool_halfway()), step.aside(quarters[1])};
+}
+
+bool keeps_path_error(const Chain& chain, const ToolPath& path, int layer, const Config& q0,
+                      const Config& delta, const std::optional<double>& most) {
+  if (!most) return true;
+  const Step step(path, layer);
+  const QuartersOfMove move(chain, q0, delta);
+  if (!(step.aside(move.tool_halfway()) <= *most)) return false;
+  const auto quarters = move.tool_at_quarters();
+  return step.aside(quarters[0]) <= *most && step.aside(quarters[1]) <= *most;
 }
 
 std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, int layer,
                                       const Config& q0, const Config& delta) {
   const Step step(path, layer);
-  std::array<double, 3> deviation{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double t = 0.25 * static_cast<double>(k + 1);
-    const Pose tool = chain.tool(q0 + t * delta);
-    const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
-    // For a tool that may turn about its z axis, only the angle between the z axes counts.
-    deviation[k] = chain.tool_may_turn()
-                       ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
-                                    asked.linear().col(2).dot(tool.linear().col(2)))
-                       : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
-  }
-  return deviation;
+  const auto at = [&](double t) {
+    return angle_deviation_at(chain, path, layer, step, q0, delta, t);
+  };
+  return {at(0.25), at(0.5), at(0.75)};
+}
+
+bool keeps_angle_error(const Chain& chain, const ToolPath& path, int layer, const Config& q0,
+                       const Config& delta, const std::optional<double>& most) {
+  if (!most) return true;
+  const Step step(path, layer);
+  for (const double t : {0.5, 0.25, 0.75})
+    if (!(angle_deviation_at(chain, path, layer, step, q0, delta, t) <= *most)) return false;
+  return true;
 }
 
 PoseErrorBound BodyPoseClasses::pose_error_of_node(int, int, const Config&) const {

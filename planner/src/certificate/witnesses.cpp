@@ -8,14 +8,6 @@
 
 namespace swivel {
 
-namespace {
-
-bool beyond(const std::array<double, 3>& deviation, double most) {
-  return !std::all_of(deviation.begin(), deviation.end(), [most](double x) { return x <= most; });
-}
-
-}  // namespace
-
 Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule,
                      DistanceProofs distance_proofs, const std::shared_ptr<StateCheck>& check,
                      const Budget& budget)
@@ -180,13 +172,11 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
     case Cause::Kind::kSpeed:
       return !lattice_.row_step_allowed(layer, moved);
     case Cause::Kind::kPathError:
-      return limits.tool_path_error &&
-             beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, move.from, moved),
-                    *limits.tool_path_error);
+      return !keeps_path_error(lattice_.chain(), lattice_.path(), layer, move.from, moved,
+                               limits.tool_path_error);
     case Cause::Kind::kAngleError:
-      return limits.tool_angle_error &&
-             beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, move.from, moved),
-                    *limits.tool_angle_error);
+      return !keeps_angle_error(lattice_.chain(), lattice_.path(), layer, move.from, moved,
+                                limits.tool_angle_error);
     case Cause::Kind::kStepError:
       return !lattice_.keeps_step_error(layer, a, b);
     case Cause::Kind::kPair:

@@ -122,17 +122,10 @@ class RefinementChecker {
     if (!lattice_->step_allowed(layer, move) ||
         std::abs(b.phi - a.phi) > redundancy_->most_change_on(layer))
       return false;
-    const auto within = [](const std::array<double, 3>& deviation, double limit) {
-      return std::all_of(deviation.begin(), deviation.end(),
-                         [limit](double x) { return x <= limit; });
-    };
     const Chain& chain = lattice_->chain();
-    if (limits.tool_path_error &&
-        !within(path_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_path_error))
-      return false;
-    if (limits.tool_angle_error &&
-        !within(angle_deviation(chain, lattice_->path(), layer, a.q, move),
-                *limits.tool_angle_error))
+    const ToolPath& path = lattice_->path();
+    if (!keeps_path_error(chain, path, layer, a.q, move, limits.tool_path_error) ||
+        !keeps_angle_error(chain, path, layer, a.q, move, limits.tool_angle_error))
       return false;
     if (limits.step_error && !(redundancy_->step_error(layer, a, b) <= *limits.step_error))
       return false;

@@ -63,12 +63,6 @@ int cells_per_step(int angles, double turn, double dphi) {
       angles / 2, std::max<double>(std::min(1, angles / 2), std::floor(turn / dphi + 1e-9))));
 }
 
-/// Returns true if no deviation is above `most`.
-bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& most) {
-  return !most ||
-         std::all_of(deviation.begin(), deviation.end(), [&](double x) { return x <= *most; });
-}
-
 }  // namespace
 
 std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm,
@@ -510,11 +504,9 @@ Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, 
     } else if ((last_joint_ || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
       interpolated.fault = InterpolatedEdge::Fault::kRollSlope;
       interpolated.roll = {turned, most_turn, travel, false};
-    } else if (limits_.tool_path_error &&
-               !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
+    } else if (!keeps_path_error(*chain_, *whole_, i, from, move, limits_.tool_path_error)) {
       interpolated.fault = InterpolatedEdge::Fault::kPathError;
-    } else if (limits_.tool_angle_error &&
-               !keeps(angle_deviation(*chain_, *whole_, i, from, move), limits_.tool_angle_error)) {
+    } else if (!keeps_angle_error(*chain_, *whole_, i, from, move, limits_.tool_angle_error)) {
       interpolated.fault = InterpolatedEdge::Fault::kAngleError;
     }
     if (interpolated.fault != InterpolatedEdge::Fault::kNone) return interpolated;

@@ -353,5 +353,13 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
 [[nodiscard]] std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path,
                                                     int layer, const Config& q0,
                                                     const Config& delta);
+/// Returns whether none of path_deviation() is above `most`, m, without which any is allowed.
+[[nodiscard]] bool keeps_path_error(const Chain& chain, const ToolPath& path, int layer,
+                                    const Config& q0, const Config& delta,
+                                    const std::optional<double>& most);
+/// Returns whether none of angle_deviation() is above `most`, rad, without which any is allowed.
+[[nodiscard]] bool keeps_angle_error(const Chain& chain, const ToolPath& path, int layer,
+                                     const Config& q0, const Config& delta,
+                                     const std::optional<double>& most);
 
 }  // namespace swivel
