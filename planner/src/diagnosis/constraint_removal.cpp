@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "swivel/core/base/angle.hpp"
+
 namespace swivel {
 
 namespace {
@@ -14,6 +16,15 @@ template <class Each>
 void for_each_bit(ConstraintSet set, const Each& each) {
   for (; set != 0; set &= set - 1) each(std::countr_zero(set));
 }
+
+/// Returns the constraints that bar nodes, with the bit that stands for all constraints.
+constexpr ConstraintSet that_bar_nodes() {
+  ConstraintSet set = Constraints::of(Constraints::kCount);
+  for (int c = 0; c < Constraints::kCount; ++c)
+    if (Constraints::bars_nodes(c)) set |= Constraints::of(c);
+  return set;
+}
+constexpr ConstraintSet kBarsNodes = that_bar_nodes();
 
 constexpr int kMostMeasured = 16;  // causes per layer: measuring a clearance takes many queries
 
@@ -54,9 +65,21 @@ void ConstraintRemoval::enter(int layer) {
 
 const Constraints::Node& ConstraintRemoval::at(int layer, int slot) {
   Known& known = layers_[index(layer % 2)].nodes[index(slot)];
-  if (!known.known) {
+  static_cast<void>(placed(layer, slot));
+  if (!known.complete) {
     budget_.poll();
-    known = {true, constraints_.node(layer, slot, waived_, Constraints::Until::kNoRemoval)};
+    constraints_.complete(known.node, waived_, Constraints::Until::kNoRemoval);
+    known.complete = true;
+  }
+  return known.node;
+}
+
+const Constraints::Node& ConstraintRemoval::placed(int layer, int slot) {
+  Known& known = layers_[index(layer % 2)].nodes[index(slot)];
+  if (!known.placed) {
+    known.node = constraints_.place(layer, slot);
+    known.placed = true;
+    known.complete = !known.node.exists;
   }
   return known.node;
 }
@@ -89,8 +112,8 @@ void ConstraintRemoval::see(Pass& pass, int removal, int layer, const Constraint
 
 ConstraintSet ConstraintRemoval::reach(int layer, int slot, ConstraintSet bits) {
   ConstraintSet& reached = layers_[index(layer % 2)].reached[index(slot)];
-  const ConstraintSet fresh = bits & ~reached;
-  reached |= bits;
+  const ConstraintSet fresh = bits & followed_ & ~reached;
+  reached |= fresh;
   return fresh;
 }
 
@@ -125,20 +148,70 @@ void ConstraintRemoval::move(Pass& pass, int layer, int a, int b) {
   const ConstraintSet open = layers_[index(layer % 2)].reached[index(a)] &
                              ~layers_[index((layer + 1) % 2)].reached[index(b)];
   if (open == 0) return;
+  const bool blames = (open & kWithAll) != 0 && followed_ == kAlways;
   const Constraints::Node& tail = at(layer, a);
+  if (!blames) {
+    const Constraints::Node& there = placed(layer + 1, b);
+    if (!there.exists) return;
+    const ConstraintSet by_steps = constraints_.steps(layer, a, tail.q, b, there.q, waived_, open);
+    if (by_steps != 0 && (exists(by_steps) & open) == 0) return;
+  }
   const Constraints::Node& head = at(layer + 1, b);
   if (!head.exists) return;
   if (open & kWithAll) blame(pass, head.violated);
   const ConstraintSet own = exists(head.violated), wanted = open & own;
   if (wanted == 0) return;
+  const ConstraintSet asked = blames ? kAlways : wanted;
   const ConstraintSet violated =
-      constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval);
+      constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval, asked);
   if (open & kWithAll) blame(pass, violated);
   const ConstraintSet on_edge = exists(violated), fresh = reach(layer + 1, b, wanted & on_edge);
   if (own != kAlways) for_each_bit(fresh & own, [&](int c) { see(pass, c, layer + 1, head); });
   if (on_edge == kAlways) return;
   for_each_bit(fresh & on_edge,
                [&](int c) { see_edge(pass, c, layer, violated, a, tail.q, b, head.q); });
+}
+
+bool ConstraintRemoval::sort_heads(int layer) {
+  constexpr double kShare = 0.25;  // of a turn: wider steps leave out too few
+  std::vector<Lattice::SlotRun> runs;
+  const int slots = lattice_.slots(layer);
+  lattice_.successors(layer - 1, 0, runs);
+  if (lattice_.has_layers_between() || runs.size() != 1 || runs[0].first != 0 ||
+      runs[0].last != slots)
+    return false;
+  const Config steps = joint_steps(lattice_.chain(), lattice_.limits());
+  double widest = 0;
+  for (int j = 0; j < kDof; ++j) {
+    if (j == lattice_.chain().slide() || steps[j] > kShare * kTwoPi) continue;
+    double sum = 0, across = 0;  // the spread of the joint's directions about their mean
+    for (int slot = 0; slot < slots; ++slot) {
+      const double q = placed(layer, slot).q[j];
+      sum += std::cos(q), across += std::sin(q);
+    }
+    const double spread = (slots - std::hypot(sum, across)) / steps[j];
+    if (spread > widest) widest = spread, sorted_joint_ = j;
+  }
+  if (widest == 0) return false;
+  sorted_step_ = steps[sorted_joint_];
+  heads_.clear();
+  for (int slot = 0; slot < slots; ++slot)
+    if (placed(layer, slot).exists)
+      heads_.emplace_back(wrap_angle(placed(layer, slot).q[sorted_joint_]), slot);
+  std::sort(heads_.begin(), heads_.end());
+  return true;
+}
+
+const std::vector<int>& ConstraintRemoval::heads_near(const Config& q) {
+  constexpr double kRounding = 1e-6;  // rad
+  near_.clear();
+  const double at = wrap_angle(q[sorted_joint_]), step = sorted_step_ + kRounding;
+  for (const double turn : {-kTwoPi, 0.0, kTwoPi})
+    for (auto head = std::lower_bound(heads_.begin(), heads_.end(), std::pair(at + turn - step, 0));
+         head != heads_.end() && head->first <= at + turn + step; ++head)
+      near_.push_back(head->second);
+  std::sort(near_.begin(), near_.end());
+  return near_;
 }
 
 void ConstraintRemoval::move_on(Pass& pass, int layer, bool any_slope) {
@@ -148,11 +221,17 @@ void ConstraintRemoval::move_on(Pass& pass, int layer, bool any_slope) {
   for (int a = 0; a < slots; ++a)
     if (reached[index(a)] != 0)
       if (const int b = lattice_.neighbour_along_path(layer, a, 1); b >= 0) move(pass, layer, a, b);
+  // Where every node may follow every other one, most are told to be too far by one joint.
+  const bool by_joint = followed_ != kAlways && !any_slope && sort_heads(layer + 1);
   std::vector<Lattice::SlotRun> runs;
   for (int a = 0; a < slots && pass.whole; ++a) {
     if (reached[index(a)] == 0) continue;
     budget_.poll();
     if (!affordable()) pass.whole = false;
+    if (by_joint) {
+      for (const int b : heads_near(placed(layer, a).q)) move(pass, layer, a, b);
+      continue;
+    }
     if (any_slope)
       runs.assign(1, {0, lattice_.slots(layer + 1)});
     else
@@ -163,10 +242,11 @@ void ConstraintRemoval::move_on(Pass& pass, int layer, bool any_slope) {
 }
 
 ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waived,
-                                                    bool any_slope) {
+                                                    ConstraintSet followed, bool any_slope) {
   Pass pass;
   pass.furthest.fill(-1);
   waived_ = waived;
+  followed_ = followed;
   enter(from);
   if (from <= 0) reach_first_layer(pass);
   for (int layer = std::max(0, from);; ++layer) {
@@ -245,13 +325,17 @@ std::optional<ConstraintRemoval::Answer> ConstraintRemoval::find(double most_us)
       return c.has_value();
     };
     for (const int from : begins) {
-      passes.push_back(run_pass(from, waived, false));
-      if (take(passes.back(), What::kOnNodes) || take(passes.back(), What::kObject)) break;
+      const Pass pass = run_pass(from, waived, kBarsNodes, false);
+      if (take(pass, What::kOnNodes) || take(pass, What::kObject)) break;
     }
-    for (std::size_t k = 0; k < passes.size() && !answer; ++k) take(passes[k], What::kOnMoves);
+    for (const int from : begins)
+      if (!answer) {
+        passes.push_back(run_pass(from, waived, kAlways, false));
+        take(passes.back(), What::kOnMoves);
+      }
     for (const int from : {begins.front(), 0})
       if (!answer && affordable()) {
-        passes.push_back(run_pass(from, waived, true));
+        passes.push_back(run_pass(from, waived, kAlways, true));
         take(passes.back(), What::kOnMoves);
       }
     if (answer) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/constraints.hpp"
@@ -67,8 +68,14 @@ class ConstraintRemoval {
     std::array<std::int64_t, 64> blamed{};
     bool whole = true;  // false: stopped because of the estimated time
   };
-  [[nodiscard]] Pass run_pass(int from, ConstraintSet waived, bool any_slope);
+  /// Goes from layer `from` as far as paths come without each constraint of `followed`. What
+  /// follows only constraints that bar nodes is done with most edges at their steps.
+  [[nodiscard]] Pass run_pass(int from, ConstraintSet waived, ConstraintSet followed,
+                              bool any_slope);
+  /// Returns a node with all that it violates.
   [[nodiscard]] const Constraints::Node& at(int layer, int slot);
+  /// Returns a node with its joints and at least the limits that they violate.
+  [[nodiscard]] const Constraints::Node& placed(int layer, int slot);
   void enter(int layer);
   void blame(Pass& pass, ConstraintSet violated) const;
   void see(Pass& pass, int removal, int layer, const Constraints::Node& node);
@@ -83,6 +90,13 @@ class ConstraintRemoval {
   void move(Pass& pass, int layer, int a, int b);
   /// Follows all edges from the reached nodes of `layer`; with `any_slope`, those to all slots.
   void move_on(Pass& pass, int layer, bool any_slope);
+  /// Sorts the nodes of a layer by the joint that tells them apart best, for heads_near(). Returns
+  /// false where not every node of the layer before leads to every one of these, or where steps of
+  /// joints are too wide for it.
+  [[nodiscard]] bool sort_heads(int layer);
+  /// Returns the slots of the nodes sorted last that no step of that joint from q keeps from it,
+  /// whole turns aside, in order.
+  [[nodiscard]] const std::vector<int>& heads_near(const Config& q);
   /// What a constraint removes. Kinds are tried in this order.
   enum class What { kOnNodes, kObject, kOnMoves };
   [[nodiscard]] What what(int constraint) const;
@@ -98,9 +112,9 @@ class ConstraintRemoval {
   const Budget& budget_;
   int deepest_, wanted_;  // layers: furthest reached, and what counts as further
   double most_us_ = 0;
-  ConstraintSet waived_ = 0;
+  ConstraintSet waived_ = 0, followed_ = kAlways;  // of the pass that runs
   struct Known {
-    bool known = false;
+    bool placed = false, complete = false;  // the node has its joints; it has all its violations
     Constraints::Node node;
   };
   struct Layer {
@@ -108,6 +122,10 @@ class ConstraintRemoval {
     std::vector<ConstraintSet> reached;
   };
   std::array<Layer, 2> layers_;  // by the parity of their number
+  int sorted_joint_ = 0;
+  double sorted_step_ = 0;                     // rad
+  std::vector<std::pair<double, int>> heads_;  // wrapped value of that joint, slot
+  std::vector<int> near_;
 };
 
 }  // namespace swivel

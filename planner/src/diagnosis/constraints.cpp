@@ -14,6 +14,7 @@ struct Constraints::Violations {
   const Constraints& constraints;
   ConstraintSet waived = 0;
   Until until = Until::kNoRemoval;
+  ConstraintSet asked = ~ConstraintSet{0};  // with kNoRemoval: the removals that matter
   ConstraintSet set = 0;
   bool uncounted = false;  // violates a constraint that has no number
   /// Adds a constraint; returns true if no more need be found.
@@ -26,7 +27,8 @@ struct Constraints::Violations {
   }
   [[nodiscard]] bool done() const {
     const ConstraintSet left = constraints.left(set, waived);
-    return uncounted || (left != 0 && (until == Until::kFirst || constraints.removals(left) == 0));
+    return uncounted ||
+           (left != 0 && (until == Until::kFirst || (constraints.removals(left) & asked) == 0));
   }
   [[nodiscard]] bool has(int constraint) const {
     return constraint >= 0 && (set & of(constraint)) != 0;
@@ -38,6 +40,7 @@ Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeR
     : lattice_(lattice),
       world_(world),
       rule_(rule),
+      joint_steps_(joint_steps(lattice.chain(), lattice.limits())),
       budget_(budget),
       check_(check, budget),
       query_(world, DistanceProofs::kOn),
@@ -158,10 +161,9 @@ void Constraints::add_other_pairs(const Config& q, const Threshold& threshold, V
   }
 }
 
-Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, Until until) {
+Constraints::Node Constraints::place(int layer, int slot) {
   ++nodes_;
   Node node;
-  Violations found{*this, waived, until};
   if (const auto q = lattice_.exact_config(layer, slot)) {
     node.q = *q;
   } else {
@@ -170,9 +172,15 @@ Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, U
     if (fault.status != NodeStatus::kLimit) return node;
     node.q = fault.q;
     for (int k = 0; k < kDof; ++k)
-      if (fault.joints >> k & 1) found.add(limit_beyond(k, node.q));
+      if (fault.joints >> k & 1) node.violated |= of(limit_beyond(k, node.q));
   }
   node.exists = true;
+  return node;
+}
+
+void Constraints::complete(Node& node, ConstraintSet waived, Until until) {
+  Violations found{*this, waived, until};
+  found.set = node.violated;
   if (!found.done() && !lattice_.manipulable(node.q)) found.add(kManipulability);
   if (!found.done())
     if (const auto first = query_.find_violating_pair(node.q, ClearanceRule::kNode))
@@ -183,43 +191,37 @@ Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, U
   }
   node.exists = !found.uncounted;
   node.violated = found.set;
-  return node;
+}
+
+ConstraintSet Constraints::steps(int layer, int a, const Config& qa, int b, const Config& qb,
+                                 ConstraintSet waived, ConstraintSet asked) const {
+  Violations found{*this, waived, Until::kNoRemoval, asked};
+  if (!lattice_.has_layers_between()) add_steps_of_layer(layer, a, qa, b, qb, found);
+  return found.set;
 }
 
 ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const Node& to,
-                                ConstraintSet waived, Until until) {
+                                ConstraintSet waived, Until until, ConstraintSet asked) {
   ++moves_;
   const Config &qa = from.q, &qb = to.q;
-  Violations found{*this, waived, until};
+  Violations found{*this, waived, until, asked};
   if (!lattice_.in_arm_window(layer, a, b)) found.add(kArmSlope);
   if (const auto roll = lattice_.roll_step(layer, a, qa, b, qb); roll && !roll->allowed)
     found.add(kRollSlope);
-  const Config delta = lattice_.delta(qa, qb);
-  const Limits& limits = lattice_.limits();
   if (lattice_.has_layers_between()) {
     if (!found.done()) edge_of_layers(layer, a, qa, b, qb, found);
     return found.uncounted ? of(kCount) - 1 : found.set;
   }
-  const Config& bound = lattice_.row_step_bound(layer);
-  if (!lattice_.row_step_allowed(layer, delta)) {
-    add_steps(qa, delta, bound, Config::Zero(), found);
-  } else if (lattice_.is_approximate()) {  // nodes have a bound of their own
-    const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
-    if (a_node && b_node)
-      add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.fit_error(), found);
-  }
+  add_steps_of_layer(layer, a, qa, b, qb, found);
   if (found.done()) return found.set;
+  const Config delta = lattice_.delta(qa, qb);
+  const Limits& limits = lattice_.limits();
   moves_ += 10;
-  const auto beyond = [](const std::array<double, 3>& deviation, double most) {
-    return !std::all_of(deviation.begin(), deviation.end(), [most](double x) { return x <= most; });
-  };
-  if (limits.tool_path_error &&
-      beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta),
-             *limits.tool_path_error))
+  const Chain& chain = lattice_.chain();
+  const ToolPath& path = lattice_.path();
+  if (!keeps_path_error(chain, path, layer, qa, delta, limits.tool_path_error))
     found.add(kPathError);
-  if (!found.done() && limits.tool_angle_error &&
-      beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta),
-             *limits.tool_angle_error))
+  if (!found.done() && !keeps_angle_error(chain, path, layer, qa, delta, limits.tool_angle_error))
     found.add(kAngleError);
   if (!found.done() && !lattice_.keeps_step_error(layer, a, b)) found.add(kStepError);
   if (!found.done() && limits.edges == EdgeMode::kContinuous)
@@ -248,16 +250,30 @@ std::optional<int> Constraints::run_out(int k, const Config& from, const Config&
   return limit(k, there > upper);
 }
 
+void Constraints::add_steps_of_layer(int layer, int a, const Config& qa, int b, const Config& qb,
+                                     Violations& found) const {
+  const Config delta = lattice_.delta(qa, qb);
+  const Config& bound = lattice_.row_step_bound(layer);
+  if (!lattice_.row_step_allowed(layer, delta)) {
+    add_steps(qa, delta, bound, Config::Zero(), found);
+  } else if (lattice_.is_approximate()) {  // nodes have a bound of their own
+    const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
+    if (a_node && b_node)
+      add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.fit_error(), found);
+  }
+}
+
 void Constraints::add_steps(const Config& from, const Config& moved, const Config& bound,
                             const Config& more, Violations& found) const {
-  const Config most = joint_steps(lattice_.chain(), lattice_.limits());
+  const Config& most = joint_steps_;
   for (int k = 0; k < (lattice_.chain().roll ? kDof - 1 : kDof); ++k) {
     if (const auto limit = run_out(k, from, moved)) {
-      found.add(*limit);
+      if (found.add(*limit)) return;
       continue;
     }
-    if (!(std::abs(moved[k]) <= most[k] + more[k])) found.add(kJointStep);
-    if (bound[k] < most[k] && !(std::abs(moved[k]) <= bound[k] + more[k])) found.add(kSpeed);
+    if (!(std::abs(moved[k]) <= most[k] + more[k]) && found.add(kJointStep)) return;
+    if (bound[k] < most[k] && !(std::abs(moved[k]) <= bound[k] + more[k]) && found.add(kSpeed))
+      return;
   }
 }
 
@@ -284,8 +300,7 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       return;
     case Fault::kStep: {
       const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
-      add_steps(from, interpolated.q - from, joint_steps(lattice_.chain(), lattice_.limits()),
-                Config::Zero(), found);
+      add_steps(from, interpolated.q - from, joint_steps_, Config::Zero(), found);
       if (found.set == 0) found.add(kSpeed);
       return;
     }
@@ -401,10 +416,7 @@ void Constraints::measure_step(Cause& cause, int layer, const Config& delta) con
   const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;
   Eigen::Index k = 0;
   if (cause.kind == Cause::Kind::kJointStep)
-    delta.cwiseAbs()
-        .cwiseQuotient(joint_steps(lattice_.chain(), lattice_.limits()))
-        .head(joints)
-        .maxCoeff(&k);
+    delta.cwiseAbs().cwiseQuotient(joint_steps_).head(joints).maxCoeff(&k);
   else
     delta.head(joints).cwiseAbs().cwiseQuotient(bound.head(joints)).maxCoeff(&k);
   cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];

@@ -98,13 +98,22 @@ class Constraints {
   /// When the search for violations may stop. kFirst: after one violation outside `waived`.
   /// kNoRemoval: once there are several outside `waived` for which no single removal accounts.
   enum class Until { kFirst, kNoRemoval };
-  /// Returns a node and the constraints that it violates, until enough is known.
-  [[nodiscard]] Node node(int layer, int slot, ConstraintSet waived, Until until);
+  /// Returns a node and the joint limits that it violates.
+  [[nodiscard]] Node place(int layer, int slot);
+  /// Adds to a node that exists what else it violates, until enough is known.
+  void complete(Node& node, ConstraintSet waived, Until until);
+  /// Returns limits that the move from qa at slot a of `layer` to qb at slot b of the next layer
+  /// violates by the steps of its joints, until no single removal of those `asked` about accounts
+  /// for them. It takes little; edge() finds the same ones and more.
+  [[nodiscard]] ConstraintSet steps(int layer, int a, const Config& qa, int b, const Config& qb,
+                                    ConstraintSet waived, ConstraintSet asked) const;
   /// Returns the constraints that the move from node `from` at slot a of `layer` to node `to` at
-  /// slot b of the next layer violates, until enough is known. Bodies that block a motion besides
+  /// slot b of the next layer violates, until enough is known: with kNoRemoval also once no single
+  /// removal of those `asked` about accounts for what was found. Bodies that block a motion besides
   /// the first pair are looked for only at its quarters.
   [[nodiscard]] ConstraintSet edge(int layer, int a, const Node& from, int b, const Node& to,
-                                   ConstraintSet waived, Until until);
+                                   ConstraintSet waived, Until until,
+                                   ConstraintSet asked = ~ConstraintSet{0});
 
   /// Returns the cause of a violation of a constraint at configuration q, with the value that
   /// violates it.
@@ -136,6 +145,9 @@ class Constraints {
   /// move by its speed; `more` is added to all bounds.
   void add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more,
                  Violations& found) const;
+  /// Adds what a move from a layer to the next violates by its size, where no rows lie between.
+  void add_steps_of_layer(int layer, int a, const Config& qa, int b, const Config& qb,
+                          Violations& found) const;
   /// If the step of joint k is large only because the end of the joint's range lies between, so
   /// that it has to turn back, returns the limit at that end; else none.
   [[nodiscard]] std::optional<int> run_out(int k, const Config& from, const Config& moved) const;
@@ -150,6 +162,7 @@ class Constraints {
   const Lattice& lattice_;
   const World& world_;
   EdgeRule rule_;
+  Config joint_steps_;  // by limits.joint_step
   const Budget& budget_;
   AskedCheck check_;
   World::Query query_;
