@@ -92,7 +92,7 @@ TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
       const SlotPath slots = best_path(*cost_to_go, expansions);
       ASSERT_EQ(slots.size(), static_cast<std::size_t>(lattice->layers())) << name;
       unwrapped = lattice->path_joints(slots);
-      const Lattice::Joints off = lattice->off_nearest(slots);
+      const Lattice::Joints off = lattice->off_limits(slots);
       if (off == Lattice::Joints{}) break;
       lattice = lattice->with_windings(off);
     }

@@ -109,7 +109,7 @@ void compare(const Problem& problem, const TestRobot& robot, std::uint64_t seed,
   const auto found =
       path_first_within(*label_values, for_labels, ranges, {.batch = 4}, 1'000'000, of_labels);
   const SearchOutcome loose = path_first(*circle_values, for_labels, {.batch = 4}, of_circles);
-  met.off += !loose.path.empty() && circles.off_nearest(loose.path) != Lattice::Joints{};
+  met.off += !loose.path.empty() && circles.off_limits(loose.path) != Lattice::Joints{};
   met.labels += of_labels.expansions;
   met.ended += problem.end.has_value();
   met.failures += label_values->verdicts().removed() > 0;
@@ -120,7 +120,7 @@ void compare(const Problem& problem, const TestRobot& robot, std::uint64_t seed,
   }
   ++met.solved;
   ASSERT_NEAR(found->cost, truth.cost, 1e-9) << what;
-  ASSERT_EQ(circles.off_nearest(found->path), Lattice::Joints{}) << what;
+  ASSERT_EQ(circles.off_limits(found->path), Lattice::Joints{}) << what;
   // a search with too few labels says nothing
   const auto few = path_first_within(*swept(circles), for_labels, ranges, {.batch = 4},
                                      circles.layers() - 2, of_labels);

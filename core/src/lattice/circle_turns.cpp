@@ -27,20 +27,17 @@ Extent extent_of(const std::vector<Config>& rows, Eigen::Index joint) {
 }
 
 /// Returns the turn, rad, that takes an extent into lower ... upper, and its first value as near to
-/// the middle of the range as possible; nothing if none does.
+/// the middle of the range as possible, the lower of two as near; nothing if none does.
 std::optional<double> best_turn(const Extent& extent, double lower, double upper) {
   constexpr double kAlike = 1e-9;  // rad: two turns whose first values are as near to the middle
-  const double middle = (lower + upper) / 2;
-  std::optional<double> best;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (double k = std::ceil((lower - extent.least) / kTwoPi); extent.most + k * kTwoPi <= upper;
-       ++k) {
-    const double off = std::abs(extent.first + k * kTwoPi - middle);
-    if (off >= nearest - kAlike) continue;
-    nearest = off;
-    best = k * kTwoPi;
-  }
-  return best;
+  const double least = std::ceil((lower - extent.least) / kTwoPi),
+               most = std::floor((upper - extent.most) / kTwoPi);
+  if (!(least <= most)) return std::nullopt;
+  const double wanted = ((lower + upper) / 2 - extent.first) / kTwoPi,
+               below = std::clamp(std::floor(wanted), least, most),
+               above = std::clamp(std::floor(wanted) + 1, least, most);
+  const auto off = [&](double turns) { return std::abs(turns - wanted) * kTwoPi; };
+  return (off(above) < off(below) - kAlike ? above : below) * kTwoPi;
 }
 
 /// Returns by how much an extent that fits into lower ... upper in no turn leaves it in the best
@@ -64,8 +61,9 @@ CircleTurns circle_turns(const Lattice& lattice, const Lattice::Joints& circles,
                  lower = limit.lower + inside, upper = limit.upper - inside;
     const Extent extent = extent_of(rows, joint);
     const bool closes = lattice.is_closed() && static_cast<int>(rows.size()) == lattice.layers();
-    if ((closes && std::abs(rows.back()[joint] - rows.front()[joint]) > kPi) ||
-        (end != nullptr && std::abs(rows.back()[joint] - (*end)[joint]) > kPi))
+    // No lattice tells the turns of a wide joint apart.
+    if (!limit.wide() && ((closes && std::abs(rows.back()[joint] - rows.front()[joint]) > kPi) ||
+                          (end != nullptr && std::abs(rows.back()[joint] - (*end)[joint]) > kPi)))
       turns.over[joint] = std::numeric_limits<double>::infinity();
     else if (starts_given || end != nullptr)
       turns.over[joint] = std::max({lower - extent.least, extent.most - upper, 0.0});

@@ -337,7 +337,7 @@ class JobPlan {
     for (const JobPart& part : parts) {
       if (!part.run) continue;
       if (part.rows.empty()) {
-        const Lattice::Joints here = runs_[k]->lattice->off_nearest(paths_[k]);
+        const Lattice::Joints here = runs_[k]->lattice->off_limits(paths_[k]);
         for (std::size_t j = 0; j < kDof; ++j) off[j] = off[j] || here[j];
       }
       ++k;

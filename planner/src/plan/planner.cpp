@@ -378,7 +378,7 @@ struct Planner::Impl {
   }
   /// Returns `found`, the answer of the lattice searched last, if its path is the answer of the
   /// task. A path on which a joint that is treated as a circle leaves its limits
-  /// (Lattice::off_nearest()) is not: the next lattice tells the values of such joints apart, and
+  /// (Lattice::off_limits()) is not: the next lattice tells the values of such joints apart, and
   /// its answer is returned. Where that has no path, a warning says what the cheapest path would
   /// have asked of the joint.
   Found tell_turns_apart(Found found, const EdgeRule& rule, const PlanOptions& options,
@@ -389,7 +389,7 @@ struct Planner::Impl {
       if (found.decided && found.outcome.path.empty() && !note.empty())
         result.warnings.push_back(note);
       if (!found.decided || found.outcome.path.empty()) return found;
-      const Lattice::Joints off = lattice.off_nearest(found.outcome.path);
+      const Lattice::Joints off = lattice.off_limits(found.outcome.path);
       if (off == Lattice::Joints{}) return found;
       Searched wound{lattice.with_windings(off), nullptr};
       if (problem.start && !was_eager && !lattice.has_layers_between() && robot->arm_class().srs) {
@@ -442,7 +442,7 @@ struct Planner::Impl {
     counters.iterations = work.iterations;
     count(validity, counters);
     add_counters(counters, result.counters);
-    if (!outcome || lattice.off_nearest(outcome->path) != Lattice::Joints{}) return std::nullopt;
+    if (!outcome || lattice.off_limits(outcome->path) != Lattice::Joints{}) return std::nullopt;
     searched.cost_to_go = std::move(whole);
     found.decided = true;
     found.outcome = *outcome;

@@ -204,7 +204,7 @@ class WorkcellPlan {
   bool tell_turns_apart(const PairOutcome& outcome) {
     bool any = false;
     for (std::size_t k = 0; k < 2; ++k) {
-      const Lattice::Joints off = arms_[k]->lattice->off_nearest(outcome.paths[k]);
+      const Lattice::Joints off = arms_[k]->lattice->off_limits(outcome.paths[k]);
       if (off == Lattice::Joints{}) continue;
       arms_[k]->validity.reset();
       arms_[k]->cost_to_go.reset();

@@ -54,7 +54,7 @@ Found least(std::unique_ptr<Lattice> lattice) {
     if (found.path.empty()) return {};
     std::vector<Config> joints = lattice->path_joints(found.path);
     if (!joints.empty()) return {std::move(joints), found.cost};
-    lattice = lattice->with_windings(lattice->off_nearest(found.path));
+    lattice = lattice->with_windings(lattice->off_limits(found.path));
   }
 }
 

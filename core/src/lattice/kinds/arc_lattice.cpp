@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -603,8 +604,12 @@ ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolP
     : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
       method_(method),
       problem_(problem),
-      layers_{{}, layers.circles, std::move(layers.windings), std::move(layers.next), layers.arcs} {
-}
+      layers_{{},
+              layers.circles,
+              std::move(layers.windings),
+              std::move(layers.next),
+              std::move(layers.on_circles),
+              layers.arcs} {}
 
 int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
   const auto J = chain.jacobian(q);
@@ -651,8 +656,8 @@ int ArcLattice::next_on_arc(int layer, int slot) const {
              : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
 }
 
-ArcLattice::Rows ArcLattice::followed(const std::vector<int>& slots) const {
-  Rows rows;
+std::vector<Config> ArcLattice::followed(const std::vector<int>& slots) const {
+  std::vector<Config> rows;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const Config& q = point(static_cast<int>(i), slots[i]).q;
     rows.push_back(i == 0 ? q : Config(rows.back() + delta(rows.back(), q)));
@@ -666,55 +671,27 @@ ArcLattice::Rows ArcLattice::followed(const std::vector<int>& slots) const {
   return rows;
 }
 
-ArcLattice::Fit ArcLattice::fit(std::size_t j, const Rows& rows) const {
-  const auto at = static_cast<Eigen::Index>(j);
-  double least = rows[0][at], most = least;
-  for (const Config& q : rows) {
-    least = std::min(least, q[at]);
-    most = std::max(most, q[at]);
-  }
-  const double lower = chain().limit[j].lower + limits().joint_margin,
-               upper = chain().limit[j].upper - limits().joint_margin;
-  const auto keeps = [&](double turn) { return least + turn >= lower && most + turn <= upper; };
-  Fit fit;
-  if (is_closed() && static_cast<int>(rows.size()) == layers() && !chain().limit[j].wide() &&
-      std::abs(rows.back()[at] - rows.front()[at]) > kPi)
-    return fit;  // it comes back in another turn
+CircleTurns ArcLattice::turns_along(const std::vector<Config>& rows) const {
   const bool ends = end_ && static_cast<int>(rows.size()) == layers();
-  if (problem_.start || ends) {
-    const bool turned =
-        ends && !chain().limit[j].wide() && std::abs(rows.back()[at] - (*end_)[at]) > kPi;
-    if (keeps(0) && !turned) fit = {0.0, true};
-    return fit;
-  }
-  double turns = std::ceil((lower - rows[0][at]) / kTwoPi),
-         nearest = std::numeric_limits<double>::infinity(), fitting = nearest;
-  each_image(j, rows[0][at], [&](double image) {
-    const double off = off_middle(j, image), turn = kTwoPi * turns++;
-    const bool kept = keeps(turn);
-    if (off < nearest) nearest = off, fit.nearest = kept;
-    if (kept && off < fitting) fitting = off, fit.turn = turn;
-  });
-  return fit;
-}
-
-std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(
-    const std::vector<int>& slots) const {
-  Rows rows = followed(slots);
-  Joints failed{};
-  for (std::size_t j = 0; j < kDof; ++j) {
-    if (!circles()[j]) continue;
-    const auto turn = fit(j, rows).turn;
-    failed[j] = !turn;
-    for (Config& q : rows) q[static_cast<Eigen::Index>(j)] += turn.value_or(0);
-  }
-  if (std::find(failed.begin(), failed.end(), true) != failed.end()) return failed;
-  return rows;
+  return circle_turns(*this, circles(), rows, problem_.start.has_value(), ends ? &*end_ : nullptr);
 }
 
 std::vector<Config> ArcLattice::path_joints(const std::vector<int>& slots) const {
-  auto rows = unwrap(slots);
-  return std::holds_alternative<Rows>(rows) ? std::get<Rows>(std::move(rows)) : Rows{};
+  std::vector<Config> rows = followed(slots);
+  const CircleTurns turns = turns_along(rows);
+  if (!turns.fit()) return {};
+  for (Config& q : rows) q += turns.turn;
+  return rows;
+}
+
+void ArcLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
+                                            std::vector<int>& out) const {
+  if (layers_.on_circles.empty() || ExplicitLattice::shares_body_poses(groups))
+    return ExplicitLattice::slots_with_same_body_poses(layer, slot, groups, out);
+  out.clear();
+  const int node = slot_on_circles(layer, slot);
+  for (int other = 0; other < slots(layer); ++other)
+    if (slot_on_circles(layer, other) == node) out.push_back(other);
 }
 
 LatticeInfo ArcLattice::describe() const {
@@ -723,11 +700,25 @@ LatticeInfo ArcLattice::describe() const {
   return info;
 }
 
-Lattice::Joints ArcLattice::off_nearest(const std::vector<int>& slots) const {
-  const Rows rows = followed(slots);
-  Joints off{};
-  for (std::size_t j = 0; j < kDof; ++j) off[j] = circles()[j] && !fit(j, rows).nearest;
-  return off;
+Lattice::Joints ArcLattice::off_limits(const std::vector<int>& slots) const {
+  return turns_along(followed(slots)).furthest_over();
+}
+
+void ArcLattice::add_images(std::size_t joint, std::size_t first,
+                            std::vector<WoundPoint>& images) const {
+  constexpr std::int64_t kMostTurns = 128;  // more than a joint has whose turns are told apart
+  const auto at = static_cast<Eigen::Index>(joint);
+  const std::size_t last = images.size();
+  for (std::size_t k = first; k < last; ++k) {
+    const WoundPoint point = images[k];
+    each_image(joint, point.q[at], [&](double value) {
+      WoundPoint& image = images.emplace_back(point);
+      image.turns = kMostTurns * point.turns + std::lround((value - point.q[at]) / kTwoPi);
+      image.q[at] = value;
+    });
+  }
+  images.erase(images.begin() + static_cast<std::ptrdiff_t>(first),
+               images.begin() + static_cast<std::ptrdiff_t>(last));
 }
 
 std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
@@ -737,42 +728,42 @@ std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
   wound.windings = layers_.windings;
   wound.windings.push_back(joints);
   for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
+  std::vector<WoundPoint> images;
+  std::vector<std::size_t> first, order, place;  // of slots in `images`; of these in `points`
   for (int i = 0; i < layers(); ++i) {
-    auto& points = wound.points.emplace_back();
-    std::vector<std::size_t> first;  // image of each slot
+    images.clear();
+    first.clear();
     for (int slot = 0; slot < slots(i); ++slot) {
-      std::vector<Config> images{point(i, slot).q};
-      if (given(i)) images[0] = *given(i);
-      for (std::size_t j = 0; j < kDof && !given(i); ++j) {
-        if (!joints[j] || !circles()[j]) continue;
-        const auto at = static_cast<Eigen::Index>(j);
-        std::vector<Config> more;
-        for (const Config& q : images)
-          each_image(j, q[at], [&](double value) {
-            more.push_back(q);
-            more.back()[at] = value;
-          });
-        images.swap(more);
-      }
-      first.push_back(points.size());
-      for (const Config& q : images) {
-        Point image;
-        image.q = q;
-        points.push_back(image);
-      }
+      first.push_back(images.size());
+      images.push_back({0, slot, given(i).value_or(point(i, slot).q)});
+      for (std::size_t j = 0; j < kDof && !given(i); ++j)
+        if (joints[j] && circles()[j]) add_images(j, first.back(), images);
     }
-    first.push_back(points.size());
+    first.push_back(images.size());
+    // Nodes of one turn stay together, as they lie on their arcs.
+    order.resize(images.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return images[a].turns < images[b].turns;
+    });
+    auto& points = wound.points.emplace_back(images.size());
+    auto& on_circles = wound.on_circles.emplace_back(images.size());
+    place.resize(images.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      place[order[k]] = k;
+      points[k].q = images[order[k]].q;
+      on_circles[k] = slot_on_circles(i, images[order[k]].slot);
+    }
     // An arc goes on from an image to that of the next node to which no joint turns by half a turn.
     auto& next = wound.next.emplace_back(points.size(), -1);
     for (int slot = 0; slot < slots(i); ++slot) {
       const int after = next_on_arc(i, slot);
       if (after < 0) continue;
-      for (std::size_t a = first[static_cast<std::size_t>(slot)];
-           a < first[static_cast<std::size_t>(slot) + 1]; ++a)
-        for (std::size_t b = first[static_cast<std::size_t>(after)];
-             b < first[static_cast<std::size_t>(after) + 1]; ++b)
-          if ((points[b].q - points[a].q).cwiseAbs().maxCoeff() < kPi)
-            next[a] = static_cast<int>(b);
+      const auto from = static_cast<std::size_t>(slot), to = static_cast<std::size_t>(after);
+      for (std::size_t a = first[from]; a < first[from + 1]; ++a)
+        for (std::size_t b = first[to]; b < first[to + 1]; ++b)
+          if ((images[b].q - images[a].q).cwiseAbs().maxCoeff() < kPi)
+            next[place[a]] = static_cast<int>(place[b]);
     }
   }
   return std::unique_ptr<Lattice>(

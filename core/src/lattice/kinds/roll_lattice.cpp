@@ -573,7 +573,7 @@ std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots)
   return rows;
 }
 
-Lattice::Joints RollLattice::off_nearest(const std::vector<int>& slots) const {
+Lattice::Joints RollLattice::off_limits(const std::vector<int>& slots) const {
   if (circles_ == Joints{}) return {};
   return turns_along(followed(slots), slots.size()).furthest_over();
 }

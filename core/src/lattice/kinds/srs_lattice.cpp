@@ -317,6 +317,18 @@ std::unique_ptr<Lattice> SrsLattice::with_windings(const Joints& joints) const {
   return wound;
 }
 
+int SrsLattice::slot_on_circles(int, int slot) const {
+  int solution = branch_of(slot);
+  for (int j = 0; j < kDof; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const bool circle = std::any_of(told_apart_.begin(), told_apart_.end(),
+                                    [k](const Joints& joints) { return joints[k]; });
+    if (circle) continue;
+    solution = solution * images_[k].count + winding_images(solution_of(slot) % windings_, j);
+  }
+  return solution * angles_ + angle_of(slot);
+}
+
 CircleTurns SrsLattice::turns_along(const std::vector<Config>& rows) const {
   const bool ends = end_ && static_cast<int>(rows.size()) == layers();
   return circle_turns(*this, circle_joints_, rows, starts_given_, ends ? &*end_ : nullptr);
@@ -331,7 +343,7 @@ std::vector<Config> SrsLattice::path_joints(const std::vector<int>& slots) const
   return rows;
 }
 
-Lattice::Joints SrsLattice::off_nearest(const std::vector<int>& slots) const {
+Lattice::Joints SrsLattice::off_limits(const std::vector<int>& slots) const {
   if (circle_joints_ == Joints{}) return {};
   return turns_along(Lattice::path_joints(slots)).furthest_over();
 }

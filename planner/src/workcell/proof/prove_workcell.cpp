@@ -35,7 +35,7 @@ class ProvedArm : public ArmInCell {
   /// Replaces the lattice by one that tells turns of joints apart where a path needs it. Returns
   /// whether it did.
   bool tell_turns_apart(const SlotPath& found) {
-    const Lattice::Joints off = lattice->off_nearest(found);
+    const Lattice::Joints off = lattice->off_limits(found);
     if (off == Lattice::Joints{}) return false;
     validity_.reset();
     cost_to_go_.reset();

@@ -143,11 +143,10 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// and branch of each row. Includes the rows at the layers between if has_layers_between().
   [[nodiscard]] virtual std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const;
   using Joints = std::array<bool, kDof>;
-  /// Returns joints that the lattice treats as circles and that must be told apart before its best
-  /// path can be the answer: of arcs, those that leave their limits if the first row is in the turn
-  /// nearest to the middle of the range; of other lattices, one that leaves them in every turn. If
-  /// the best path of a lattice has no such joint, it is the answer.
-  [[nodiscard]] virtual Joints off_nearest(const std::vector<int>& slots) const {
+  /// Returns the joint that the lattice treats as a circle and that leaves its limits along a path
+  /// in every turn, of several the one that leaves them furthest. If the best path of a lattice has
+  /// none, it is the answer; else the turns of that joint must be told apart.
+  [[nodiscard]] virtual Joints off_limits(const std::vector<int>& slots) const {
     static_cast<void>(slots);
     return {};
   }
@@ -158,6 +157,12 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// Returns the arguments of the with_windings() calls that led to this lattice, the first one
   /// first.
   [[nodiscard]] virtual std::vector<Joints> joints_with_windings() const { return {}; }
+  /// Returns the slot that a node has in the lattice before any with_windings() call, where it is
+  /// one node with its images in other turns; -1 where that is not known.
+  [[nodiscard]] virtual int slot_on_circles(int layer, int slot) const {
+    static_cast<void>(layer);
+    return joints_with_windings().empty() ? slot : -1;
+  }
 
   // --- description, see LatticeDescription
   [[nodiscard]] LatticeInfo describe() const override;

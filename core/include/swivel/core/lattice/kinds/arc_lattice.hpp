@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
@@ -10,6 +12,8 @@
 #include "swivel/core/lattice/explicit_lattice.hpp"
 
 namespace swivel {
+
+struct CircleTurns;
 
 /// Returns two bits that name a solution in reports: the sign of the determinant of the three axes
 /// on which `method`'s closed form is built, and that of the other three joints. For a method
@@ -30,7 +34,7 @@ namespace swivel {
 /// drifts therefore meets nodes, which no grid of a coordinate ensures. The nodes depend on
 /// geometry, weights and limits of the joints alone; obstacles never change them. A given start or
 /// end takes the place of its layer's nodes. A bounded joint with a range of more than a turn is
-/// treated as a circle, and unwrap() finds its values.
+/// treated as a circle, and path_joints() finds its values.
 class ArcLattice final : public ExplicitLattice {
  public:
   /// Builds the nodes of every layer. `chain` and `path` must outlive the lattice. If `method` has
@@ -53,19 +57,28 @@ class ArcLattice final : public ExplicitLattice {
   /// Returns which joints are treated as circles although they are bounded.
   [[nodiscard]] const std::array<bool, kDof>& circles() const { return layers_.circles; }
 
-  using Rows = std::vector<Config>;
   /// Returns the rows of a path, with each circle turned as a whole so that all rows are inside its
   /// limits and the first one is as near to the middle of its range as possible, the lower of two
-  /// equally near, or so that the path begins at the given start, or ends at the given end. If no
-  /// turn keeps the limits and both for some joints, returns those joints instead.
-  [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
-  /// Returns the rows that unwrap() finds; empty if it finds none.
+  /// equally near, or so that the path begins at the given start, or ends at the given end. Returns
+  /// an empty list if no turn of some joint keeps the limits and both.
   [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
-  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
+  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
   [[nodiscard]] std::vector<Joints> joints_with_windings() const override {
     return layers_.windings;
   }
+  [[nodiscard]] int slot_on_circles(int layer, int slot) const override {
+    return layers_.on_circles.empty()
+               ? slot
+               : layers_
+                     .on_circles[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+  }
+  /// Images of a node in other turns place all bodies alike.
+  [[nodiscard]] bool shares_body_poses(unsigned groups) const override {
+    return !layers_.on_circles.empty() || ExplicitLattice::shares_body_poses(groups);
+  }
+  void slots_with_same_body_poses(int layer, int slot, unsigned groups,
+                                  std::vector<int>& out) const override;
 
  private:
   struct Layers {
@@ -74,6 +87,8 @@ class ArcLattice final : public ExplicitLattice {
     std::vector<std::array<bool, kDof>> windings{};
     // next_on_arc() of a lattice by with_windings(), by layer and slot
     std::vector<std::vector<int>> next{};
+    // slot_on_circles() of a lattice by with_windings(), by layer and slot
+    std::vector<std::vector<int>> on_circles{};
     std::int64_t arcs = 0;
   };
   static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path,
@@ -83,22 +98,23 @@ class ArcLattice final : public ExplicitLattice {
 
   /// Returns the rows of a path, unwrapped without jumps from the first one, in the turn of the
   /// given start if there is one, else in that of the given end if they lead there.
-  [[nodiscard]] Rows followed(const std::vector<int>& slots) const;
+  [[nodiscard]] std::vector<Config> followed(const std::vector<int>& slots) const;
   /// Returns the posture that the problem gives for a layer; nothing if it gives none.
   [[nodiscard]] const std::optional<Config>& given(int layer) const {
     static const std::optional<Config> kNone;
     if (layer == 0 && problem_.start) return problem_.start;
     return layer == layers() - 1 ? end_ : kNone;
   }
-  struct Fit {
-    // The turn, rad, by which all rows stay inside the limits, with the first as near to the middle
-    // as possible.
-    std::optional<double> turn;
-    // Whether all rows stay inside in the turn in which the first is nearest to the middle.
-    bool nearest = false;
+  /// Returns how rows of followed() fit into the limits of the circles.
+  [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
+  /// A node in one turn of each joint that is told apart, and a number that orders these turns.
+  struct WoundPoint {
+    std::int64_t turns;
+    int slot;  // in the lattice whose turns are told apart
+    Config q;
   };
-  /// Returns how the rows of a path fit into the limits of circle j.
-  [[nodiscard]] Fit fit(std::size_t j, const Rows& rows) const;
+  /// Replaces the points from `first` on by their images within the limits of a joint.
+  void add_images(std::size_t joint, std::size_t first, std::vector<WoundPoint>& images) const;
 
   LockMethod method_;
   Problem problem_;  // for with_windings

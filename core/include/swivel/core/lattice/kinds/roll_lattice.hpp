@@ -89,14 +89,14 @@ class RollLattice final : public Lattice {
   }
   /// Returns the rows at all layers of the whole path along a path of the lattice, from layer 0 to
   /// the path's last slot, with each circle in a turn as SrsLattice::path_joints() has it; an empty
-  /// list if off_nearest() has any.
+  /// list if off_limits() has any.
   [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
 
   /// Returns which joints are circles.
   [[nodiscard]] const Joints& circles() const { return circles_; }
   /// Returns the circle that leaves its limits furthest along the rows of a path, as that of an
   /// SrsLattice.
-  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
+  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
   [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return told_apart_; }
 

@@ -157,13 +157,14 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] const Joints& circles() const { return circle_joints_; }
   /// Returns the joints of each row, without jumps, with each circle in a turn that keeps its
   /// limits all along: of these the one in which the first row is nearest to the middle of the
-  /// range, or the one of the given start or end. Returns an empty list if off_nearest() has any.
+  /// range, or the one of the given start or end. Returns an empty list if off_limits() has any.
   [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
   /// Returns the circle that leaves its limits furthest along a path, in its best turn or in that
   /// of the given start or end: one at a time, since other paths may keep the others within.
-  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
+  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
   [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return told_apart_; }
+  [[nodiscard]] int slot_on_circles(int layer, int slot) const override;
 
   [[nodiscard]] LatticeInfo describe() const override;
   [[nodiscard]] int slots(int) const override { return width(); }
