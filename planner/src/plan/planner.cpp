@@ -24,7 +24,6 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
-#include "swivel/graph/search/turned_path.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/robot/planning_arm.hpp"
 #include "validity/collision_validity.hpp"
@@ -91,20 +90,6 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
   for (; !path.empty() && rows.empty(); path.pop_back()) rows = lattice.path_rows(path);
   return rows;
-}
-
-/// Returns the values that bounded joints may have which the lattice treats as circles, wider by
-/// the fit error, as those of nodes are.
-std::vector<CircleRange> circle_ranges(const Lattice& lattice) {
-  std::vector<CircleRange> ranges;
-  const Lattice::Joints circles = bounded_circles(lattice);
-  for (int j = 0; j < kDof; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    const JointLimit& limit = lattice.chain().limit[k];
-    const double inside = lattice.limits().joint_margin - kLimitTolerance - lattice.fit_error()[j];
-    if (circles[k]) ranges.push_back({j, limit.lower + inside, limit.upper - inside});
-  }
-  return ranges;
 }
 
 /// Returns whether what the hooks say of a state may differ from turn to turn of a joint.
@@ -384,6 +369,7 @@ struct Planner::Impl {
   Found tell_turns_apart(Found found, const EdgeRule& rule, const PlanOptions& options,
                          const Budget& budget, PlanResult& result) {
     std::string note;
+    std::vector<std::vector<int>> failed;
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
       if (found.decided && found.outcome.path.empty() && !note.empty())
@@ -391,63 +377,18 @@ struct Planner::Impl {
       if (!found.decided || found.outcome.path.empty()) return found;
       const Lattice::Joints off = lattice.off_limits(found.outcome.path);
       if (off == Lattice::Joints{}) return found;
-      Searched wound{lattice.with_windings(off), nullptr};
-      if (problem.start && !was_eager && !lattice.has_layers_between() && robot->arm_class().srs) {
-        try {
-          // Where the turns run out, as they mostly do then, going forward once shows it.
-          wound.cost_to_go = make_cost_to_go(*wound.lattice, pruning_of(*wound.lattice), budget);
-          if (wound.cost_to_go->deepest_reachable() + 1 == lattice.layers())
-            if (const auto turned = search_turns(layout->last(), rule, options, budget, result))
-              return *turned;
-        } catch (const Stopped&) {
-          return Found{};  // undecided
-        }
-      }
       if (note.empty()) note = turns_note(lattice, found.outcome.path, off, problem);
+      Searched wound{lattice.with_windings(off), nullptr};
+      if (!was_eager) {
+        const CostToGo& before = *layout->last().cost_to_go;
+        add_failed_nodes(before.verdicts(), lattice, failed);
+        wound.cost_to_go = make_cost_to_go(*wound.lattice, pruning_of(*wound.lattice), budget);
+        wound.cost_to_go->bound_by(before);
+      }
       layout->second = std::move(wound);
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-      found = search(*layout->second, false, rule, options, budget, result);
+      found = search(*layout->second, false, rule, options, budget, result, &failed);
     }
-  }
-  /// Searches a lattice for the cheapest path along which the joints that it treats as circles keep
-  /// their limits from the given start on. Returns nothing where there is none, or where it would
-  /// take too long.
-  std::optional<Found> search_turns(Searched& searched, const EdgeRule& rule,
-                                    const PlanOptions& options, const Budget& budget,
-                                    PlanResult& result) {
-    constexpr int kMostLabels = 20'000;  // about as long as a sweep over a few million nodes
-    const Lattice& lattice = *searched.lattice;
-    auto whole = make_cost_to_go(lattice, Pruning::kNone, budget);
-    if (single_use) whole->set_single_use();
-    Executor& threads = threads_of(options);
-    if (shares_work(lattice)) whole->share(shared_with(threads));
-    CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
-                               distance_proofs_of(options), threads, chunks_of(options, lattice),
-                               budget);
-    HookedValidity hooked(lattice, validity, options.hooks, budget);
-    SearchCounters work;
-    Found found;
-    std::optional<SearchOutcome> outcome;
-    try {
-      whole->sweep(lattice.layers() - 1);
-      outcome = path_first_within(*whole, hooked, circle_ranges(lattice), {.batch = 8}, kMostLabels,
-                                  work);
-    } catch (const Stopped&) {
-      return Found{};  // undecided
-    }
-    Counters counters;
-    counters.ik_nodes = whole->ik_nodes();
-    counters.edges = whole->edges();
-    counters.expansions = work.expansions;
-    counters.iterations = work.iterations;
-    count(validity, counters);
-    add_counters(counters, result.counters);
-    if (!outcome || lattice.off_limits(outcome->path) != Lattice::Joints{}) return std::nullopt;
-    searched.cost_to_go = std::move(whole);
-    found.decided = true;
-    found.outcome = *outcome;
-    found.valid_path = outcome->path;
-    return found;
   }
   /// Notes what a search asked.
   static void count(const CollisionValidity& validity, Counters& counters) {
@@ -459,9 +400,10 @@ struct Planner::Impl {
     counters.proved_colliding = collision.proved_colliding;
   }
   /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
-  /// does.
+  /// does. `failed`: what add_failed_nodes() found before turns were told apart.
   Found search(Searched& searched, bool remembered, const EdgeRule& rule,
-               const PlanOptions& options, const Budget& budget, PlanResult& result) {
+               const PlanOptions& options, const Budget& budget, PlanResult& result,
+               const std::vector<std::vector<int>>* failed = nullptr) {
     const Lattice& lattice = *searched.lattice;
     // the memory keeps one clearance of an edge, not one of each row
     remembered = remembered && !lattice.has_layers_between();
@@ -486,6 +428,7 @@ struct Planner::Impl {
     if (shares) threads.start_helpers();
     cost_to_go->share(shares ? shared_with(threads) : ParallelFor());
     const bool swept = cost_to_go->restart(budget);
+    if (failed) remove_failed_nodes(*failed, lattice, cost_to_go->verdicts());
     std::optional<World> changed;
     if (remembered) {
       memory.begin(++plans, met, *world, problem.scene);

@@ -23,8 +23,10 @@ namespace swivel {
 
 /// Returns how much a sweep of the lattice's cost-to-go may leave out.
 [[nodiscard]] inline Pruning pruning_of(const Lattice& lattice) {
-  constexpr int kFewLayers = 64;  // with fewer layers, chords are too long to give good bounds
-  return lattice.layers() < kFewLayers || lattice.is_closed() ? Pruning::kNone : Pruning::kByBound;
+  // With fewer layers, chords are too long to give good bounds. From a given start costs are known.
+  constexpr int kFewLayers = 64;
+  const bool bounds_well = lattice.layers() >= kFewLayers || lattice.is_given(0);
+  return !bounds_well || lattice.is_closed() ? Pruning::kNone : Pruning::kByBound;
 }
 
 /// Adds the work of one search to that of all.

@@ -59,6 +59,36 @@ std::string note_of(const std::string& name, const Sweep& sweep, double low, dou
 
 }  // namespace
 
+void add_failed_nodes(const Verdicts& verdicts, const Lattice& lattice,
+                      std::vector<std::vector<int>>& failed) {
+  failed.resize(static_cast<std::size_t>(lattice.layers()));
+  if (verdicts.removed() == 0) return;
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    std::vector<int>& slots = failed[static_cast<std::size_t>(layer)];
+    for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+      if (verdicts.node(layer, slot) != Verdict::kRemoved) continue;
+      const int on_circles = lattice.slot_on_circles(layer, slot);
+      if (on_circles >= 0) slots.push_back(on_circles);
+    }
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+  }
+}
+
+void remove_failed_nodes(const std::vector<std::vector<int>>& failed, const Lattice& lattice,
+                         Verdicts& verdicts) {
+  std::vector<int> images;
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    const std::vector<int>& slots = failed[static_cast<std::size_t>(layer)];
+    if (slots.empty()) continue;
+    images.clear();
+    for (int slot = 0; slot < lattice.slots(layer); ++slot)
+      if (std::binary_search(slots.begin(), slots.end(), lattice.slot_on_circles(layer, slot)))
+        images.push_back(slot);
+    verdicts.remove_nodes(layer, images);
+  }
+}
+
 std::string turns_note(const Lattice& lattice, const std::vector<int>& slots,
                        const Lattice::Joints& off, const Task& task) {
   for (std::size_t j = 0; j < kDof; ++j) {

@@ -12,6 +12,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/problem.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
 
 namespace swivel {
 
@@ -50,6 +51,14 @@ inline void require_same_turns(const Lattice& lattice, const std::vector<Traject
   auto wound = lattice->with_windings(circles);
   return wound ? std::move(wound) : std::move(lattice);
 }
+
+/// Adds the nodes that were removed from a lattice, by layer, as Lattice::slot_on_circles() numbers
+/// them: they fail in every turn. Adds none where these numbers are not known.
+void add_failed_nodes(const Verdicts& verdicts, const Lattice& lattice,
+                      std::vector<std::vector<int>>& failed);
+/// Removes the images of nodes that failed.
+void remove_failed_nodes(const std::vector<std::vector<int>>& failed, const Lattice& lattice,
+                         Verdicts& verdicts);
 
 /// Returns a line on the first of the joints `off` whose turning along the path `slots` does not
 /// fit its limits: by how much it turns along that path, or, where the start or the end is given,

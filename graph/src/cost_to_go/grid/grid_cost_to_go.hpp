@@ -7,6 +7,7 @@
 
 #include "cost_to_go/grid/chord_lower_bound.hpp"
 #include "cost_to_go/grid/tile_table.hpp"
+#include "cost_to_go/limit_slack.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
@@ -15,12 +16,12 @@ namespace swivel {
 /// The cost-to-go of a grid in vector code, within the arm-slope window, over all pairs of IK
 /// solutions.
 ///
-/// Extent::kBounded leaves out what cannot matter: nodes that ChordLowerBound proves to lie on no
+/// Pruning::kByBound leaves out what cannot matter: nodes that ChordLowerBound proves to lie on no
 /// path of cost `limit` or less. best() is then exact as well, and so is at() on every best path:
 /// as long as no cost that is coarsely best() exceeds the limit, no path that matters is missing;
-/// where one does, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for
-/// goals before the last layer, what deepest_reachable() finds takes its place: exact costs from
-/// layer 0 on, or that nothing is left.
+/// where one does, the limit is raised and the sweep repeated. From a given start, beyond 2.5 times
+/// the bound, and for goals before the last layer, what deepest_reachable() finds takes its place:
+/// exact costs from layer 0 on, or that nothing is left.
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints
 /// are solved again when they are wanted again: that takes less time than a fresh page of memory.
@@ -39,6 +40,7 @@ class GridCostToGo final : public CostToGo {
   }
   [[nodiscard]] double best() const override;
   [[nodiscard]] int deepest_reachable() override;
+  void bound_by(const CostToGo& circles) override;
   [[nodiscard]] Config config(int layer, int slot) override;
   [[nodiscard]] std::optional<Config> node(int layer, int slot) override;
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
@@ -166,19 +168,21 @@ class GridCostToGo final : public CostToGo {
   }
   void forget_reach() {
     reach_.known = false;
-    reach_.slack = Reach::kSlack;
+    reach_.slack = kSlack;
   }
   void propagate_removals();
 
   const SrsLattice* lattice_;
   bool bounded_;
-  std::unique_ptr<ChordLowerBound> chord_bound_;  // made by the first bounded sweep
+  /// Made by the first bounded sweep, or taken from the lattice of circles.
+  std::shared_ptr<const ChordLowerBound> chord_bound_;
+  std::vector<int> on_circles_;  // if taken: of each IK solution, that in its rows
+  double least_ = 0;             // no path costs less
   double limit_ = kUnreachable;
   /// What deepest_reachable() found last: costs from layer 0 on, of every few layers and of the
   /// deepest.
   struct Reach {
     static constexpr int kStride = 4;
-    static constexpr double kSlack = 0.5;
     bool known = false;
     std::int64_t removed = 0;  // what was removed by then
     int deepest = -1;
@@ -195,7 +199,8 @@ class GridCostToGo final : public CostToGo {
   struct {
     int goal = 0;
     double limit = kUnreachable;
-    bool apart = false;
+    bool apart = false, by_reach = false;
+    Reach reach;
     std::array<TileTable::Held, 2> tiles;
   } saved_;
   std::vector<LayerJoints> passing_;                     // [elbow side][layer % 2]: those at hand

@@ -66,11 +66,14 @@ void GridCostToGo::prune_above_limit(int side, Workspace& workspace) const {
   if (limit_ == kUnreachable) return;
   const int n = lattice_->angles();
   const float* bound = cost_before(workspace.half(side).layer);
+  const bool on_circles = !by_reach_ && !on_circles_.empty();
   for (const Tile& tile : workspace.half(side).tiles) {
     if (!tile.live) continue;
     const int slot = tile.solution * n + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
-    if (const float* before = bound ? bound + slot : nullptr)
+    const int row =
+        on_circles ? on_circles_[static_cast<std::size_t>(tile.solution)] : tile.solution;
+    if (const float* before = bound ? bound + row * n + tile.begin() : nullptr)
       each<kTileWidth>(count, [&](int k) {
         values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k];
       });
@@ -138,15 +141,15 @@ bool GridCostToGo::renew_tiles(int side, const Workspace& workspace, const Angle
 GridCostToGo::~GridCostToGo() = default;
 
 void GridCostToGo::save() {
-  saved_ = {goal_, limit_, apart_, {tiles_[0].held(), tiles_[1].held()}};
+  saved_ = {goal_, limit_, apart_, by_reach_, reach_, {tiles_[0].held(), tiles_[1].held()}};
 }
 
 void GridCostToGo::restore() {
-  forget_reach();  // without removals more is reached, for less
-  by_reach_ = false;
   goal_ = saved_.goal;
   limit_ = saved_.limit;
   apart_ = saved_.apart;
+  by_reach_ = saved_.by_reach;
+  reach_ = saved_.reach;
   tiles_[0].restore(saved_.tiles[0]);
   if (apart_) tiles_[1].restore(saved_.tiles[1]);
 }
@@ -157,13 +160,15 @@ void GridCostToGo::compute(int goal_layer) {
   bool hopeless = false;
   for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
   if (goal_layer == lattice_->layers() - 1) {
-    forget_reach();
-    // From one node, forward, it takes little to see that turns which are told apart run out.
-    if (!hopeless && bounded_ && lattice_->has_start() && lattice_->windings() > 1)
+    if (reach_.removed != 0 || verdicts_.removed() != 0) forget_reach();
+    if (!hopeless && bounded_ && lattice_->has_start()) {
+      // From one node, forward, it takes little to see what is left, or that turns run out.
       hopeless = deepest_reachable() < goal_;
-    if (!hopeless && bounded_) {
+      reach_.slack = first_slack(*lattice_);
+      if (!hopeless) limit_by_reach();
+    } else if (!hopeless && bounded_) {
       if (!chord_bound_) {
-        chord_bound_ = std::make_unique<ChordLowerBound>(*lattice_, budget_, work_);
+        chord_bound_ = std::make_shared<const ChordLowerBound>(*lattice_, budget_, work_);
         ik_nodes_ += chord_bound_->ik_nodes();
       }
       hopeless = chord_bound_->best() == kUnreachable || !raise_limit();
@@ -174,6 +179,17 @@ void GridCostToGo::compute(int goal_layer) {
   if (hopeless) return clear_values();
   sweep_once();
   raise_limit_until_exact();
+}
+
+void GridCostToGo::bound_by(const CostToGo& circles) {
+  const auto* grid = dynamic_cast<const GridCostToGo*>(&circles);
+  if (!grid || !grid->chord_bound_) return;
+  if (grid->on_circles_.empty() && !grid->lattice_->joints_with_windings().empty()) return;
+  chord_bound_ = grid->chord_bound_;
+  least_ = std::max(grid->best(), grid->least_);
+  const int n = lattice_->angles();
+  for (int solution = 0; solution < lattice_->solutions(); ++solution)
+    on_circles_.push_back(lattice_->slot_on_circles(0, solution * n) / n);
 }
 
 const float* GridCostToGo::cost_before(int layer) const {
@@ -193,12 +209,12 @@ void GridCostToGo::limit_by_reach() {
   for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);
   if (!by_reach_) return;
   limit_ = lattice_->largest_of_same_coarse_cost((1 + reach_.slack) * reach_.best);
-  reach_.slack *= 2;
+  reach_.slack = next_slack(reach_.slack);
 }
 
 bool GridCostToGo::raise_limit() {
-  if (!by_reach_ && goal_ == lattice_->layers() - 1 && chord_bound_->row(0)) {
-    const double least = chord_bound_->best(),
+  if (!by_reach_ && goal_ == lattice_->layers() - 1 && chord_bound_ && chord_bound_->row(0)) {
+    const double least = std::max(chord_bound_->best(), least_),
                  found = limit_ == kUnreachable ? kUnreachable
                                                 : lattice_->largest_of_same_coarse_cost(best());
     const double passed = limit_ == kUnreachable ? -1 : limit_;

@@ -21,6 +21,11 @@ struct RelaxTask {
   T bound[7];        ///< largest move of each joint; for doubles alone
   T turn[7];         ///< 2 pi for continuous joints, else 0
   T unit;            ///< Lattice::cost_unit
+  static constexpr int kBlock = 16;
+  /// For relax_all() alone, and null where it must do without: for each joint, a middle of the
+  /// partners of each block of kBlock, and how far they lie from it at most, on the circle of a
+  /// continuous joint.
+  const T *block_middle[7] = {}, *block_radius[7] = {};
   RelaxMetric metric;
   bool wraps;  ///< any joint is continuous
 };

@@ -254,24 +254,64 @@ struct Reach {
       radius[j] = task.bound[j] + (high[j] - low[j]) / 2 + kRounding;
     }
   }
-  /// Returns values above 0 in lanes whose partner has a joint out of every node's reach. The last
-  /// joints come first: they move most and mostly decide.
+  /// Returns values above 0 in lanes whose partner has a joint out of every node's reach.
   template <class V>
   V excess(const RelaxTask<double>& task, int partner) const {
-    const auto of = [&](int j) {
+    return excess_of<V>(task, [&](int j) {
       return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner),
                                             task.turn[j])) -
                radius[j]);
-    };
-    const V most = larger(larger(of(6), of(5)), larger(of(4), of(3)));
-    return none_within(most) ? most : larger(larger(most, of(2)), larger(of(1), of(0)));
+    });
+  }
+  /// Returns values above 0 in lanes whose block of partners has a joint out of every node's reach.
+  template <class V>
+  V excess_of_blocks(const RelaxTask<double>& task, int block) const {
+    return excess_of<V>(task, [&](int j) {
+      return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.block_middle[j] + block),
+                                            task.turn[j])) -
+               (radius[j] + load<V>(task.block_radius[j] + block)));
+    });
   }
   /// Returns true if every lane is above 0.
   template <class V>
   static bool none_within(V excess) {
     return !any_less(excess, V{} + 1e-300);
   }
+
+ private:
+  /// Returns the largest of the joints' excesses, or one above 0. The last joints come first: they
+  /// move most and mostly decide.
+  template <class V, class OfJoint>
+  static V excess_of(const RelaxTask<double>&, const OfJoint& of) {
+    const V most = larger(larger(of(6), of(5)), larger(of(4), of(3)));
+    return none_within(most) ? most : larger(larger(most, of(2)), larger(of(1), of(0)));
+  }
 };
+
+/// Appends to `near`, which holds `count` partners, those of first ... end - 1 that are within
+/// reach. Returns how many it then holds.
+template <bool kWraps>
+inline int add_near(const RelaxTask<double>& task, const Reach<kWraps>& reach, int first, int end,
+                    int* near, int count) {
+  using Lanes = typename Widest<double>::Lanes;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(double);
+  int partner = first;
+  for (; partner + kLanes <= end; partner += kLanes) {
+    const Lanes excess = reach.template excess<Lanes>(task, partner);
+    if (reach.none_within(excess)) continue;
+    double lane[kLanes];
+    __builtin_memcpy(lane, &excess, sizeof excess);
+    for (int k = 0; k < kLanes; ++k) {
+      near[count] = partner + k;
+      count += !(lane[k] > 0);
+    }
+  }
+  for (; partner < end; ++partner) {
+    near[count] = partner;
+    count += !(reach.template excess<double>(task, partner) > 0);
+  }
+  return count;
+}
 
 /// Relaxes as many nodes as V has lanes, from `at` on, with each of the partners listed.
 template <class V, RelaxMetric kMetric, bool kWraps>
@@ -289,41 +329,62 @@ inline void relax_with(const RelaxTask<double>& task, int at, const int* partner
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
 
-/// Relaxes runs of nodes near each other with the partners in their reach. A vector may extend into
-/// the next run, whose nodes then meet all of their own partners.
+/// Relaxes the nodes at ... last - 1 with the partners listed. A vector may extend into the next
+/// run, whose nodes then meet all of their own partners.
+template <RelaxMetric kMetric, bool kWraps>
+inline void relax_near(const RelaxTask<double>& task, int at, int last, const int* near, int count,
+                       double sure) {
+  using Lanes = typename Widest<double>::Lanes;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(double);
+  if (task.n >= kLanes)
+    for (int node = at; node < last; node += kLanes)
+      relax_with<Lanes, kMetric, kWraps>(task, node + kLanes <= task.n ? node : task.n - kLanes,
+                                         near, count, sure);
+  else
+    for (int node = at; node < last; ++node)
+      relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
+}
+
+/// Calls visit(first, end) for the blocks of partners that may be within reach.
+template <bool kWraps, class Visit>
+inline void each_block(const RelaxTask<double>& task, const Reach<kWraps>& reach,
+                       const Visit& visit) {
+  using Lanes = typename Widest<double>::Lanes;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(double), kBlock = RelaxTask<double>::kBlock;
+  const auto block_from = [&](int first) {
+    visit(first, first + kBlock < task.offsets ? first + kBlock : task.offsets);
+  };
+  const int blocks = (task.offsets + kBlock - 1) / kBlock;
+  int block = 0;
+  for (; task.block_middle[0] && block + kLanes <= blocks; block += kLanes) {
+    const Lanes excess = reach.template excess_of_blocks<Lanes>(task, block);
+    if (reach.none_within(excess)) continue;
+    double lane[kLanes];
+    __builtin_memcpy(lane, &excess, sizeof excess);
+    for (int k = 0; k < kLanes; ++k)
+      if (!(lane[k] > 0)) block_from((block + k) * kBlock);
+  }
+  for (; block < blocks; ++block)
+    if (!task.block_middle[0] || !(reach.template excess_of_blocks<double>(task, block) > 0))
+      block_from(block * kBlock);
+}
+
+/// Relaxes runs of nodes near each other with the partners in their reach.
 template <RelaxMetric kMetric, bool kWraps>
 void relax_all_run(const RelaxTask<double>& task) {
-  using Lanes = typename Widest<double>::Lanes;
-  constexpr int kLanes = sizeof(Lanes) / sizeof(double), kMost = 8, kChunk = 256;
+  constexpr int kMost = 8, kChunk = 256;
   const double sure = sure_measure<kMetric>(task);
   int near[kChunk];
   for (int at = 0; at < task.n;) {
     const Reach<kWraps> reach(task, at, task.n - at < kMost ? task.n - at : kMost);
-    for (int first = 0; first < task.offsets; first += kChunk) {
-      const int end = task.offsets - first < kChunk ? task.offsets : first + kChunk;
-      int count = 0, partner = first;
-      for (; partner + kLanes <= end; partner += kLanes) {
-        const Lanes excess = reach.template excess<Lanes>(task, partner);
-        if (reach.none_within(excess)) continue;
-        double lane[kLanes];
-        __builtin_memcpy(lane, &excess, sizeof excess);
-        for (int k = 0; k < kLanes; ++k) {
-          near[count] = partner + k;
-          count += !(lane[k] > 0);
-        }
-      }
-      for (; partner < end; ++partner) {
-        near[count] = partner;
-        count += !(reach.template excess<double>(task, partner) > 0);
-      }
-      if (task.n >= kLanes)
-        for (int node = at; node < reach.last; node += kLanes)
-          relax_with<Lanes, kMetric, kWraps>(task, node + kLanes <= task.n ? node : task.n - kLanes,
-                                             near, count, sure);
-      else
-        for (int node = at; node < reach.last; ++node)
-          relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
-    }
+    int count = 0;
+    each_block(task, reach, [&](int first, int end) {
+      count = add_near(task, reach, first, end, near, count);
+      if (count + RelaxTask<double>::kBlock < kChunk) return;
+      relax_near<kMetric, kWraps>(task, at, reach.last, near, count, sure);
+      count = 0;
+    });
+    if (count > 0) relax_near<kMetric, kWraps>(task, at, reach.last, near, count, sure);
     at = reach.last;
   }
 }

@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "cost_to_go/kernels/relax_task.hpp"
+#include "swivel/core/base/angle.hpp"
 
 namespace swivel {
 
-ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget)
-    : LayerValues(lattice, budget), lattice_(&lattice) {
+ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, Pruning pruning, const Budget& budget)
+    : LayerValues(lattice, budget, pruning), lattice_(&lattice) {
   const auto layers = static_cast<std::size_t>(lattice.layers());
   joints_.resize(layers);
   std::vector<Lattice::Node> nodes;
@@ -23,12 +24,44 @@ ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget)
       for (const Lattice::Node& node : nodes)
         joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
     }
+    blocks_.push_back(blocks_of(joints_[static_cast<std::size_t>(layer)]));
     ik_nodes_ += static_cast<std::int64_t>(count);
   }
 }
 
+ExplicitCostToGo::Blocks ExplicitCostToGo::blocks_of(const Joints& joints) const {
+  constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
+  Blocks blocks;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const Values& joint = joints[k];
+    for (std::size_t first = 0; first < joint.size(); first += kBlock) {
+      double low = 0, high = 0;
+      for (std::size_t at = first; at < std::min(joint.size(), first + kBlock); ++at) {
+        double step = joint[at] - joint[first];
+        if (lattice_->continuous()[k]) step = wrap_angle(step);
+        low = std::min(low, step);
+        high = std::max(high, step);
+      }
+      blocks.middle[k].push_back(joint[first] + (low + high) / 2);
+      blocks.radius[k].push_back((high - low) / 2);
+    }
+  }
+  return blocks;
+}
+
+void ExplicitCostToGo::leave_out_unreachable(const Values& others, const Values& radius) {
+  constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
+  radius_ = radius;
+  for (std::size_t block = 0; block < radius.size(); ++block) {
+    const auto first = others.begin() + static_cast<std::ptrdiff_t>(block * kBlock),
+               end = others.begin() +
+                     static_cast<std::ptrdiff_t>(std::min(others.size(), (block + 1) * kBlock));
+    if (*std::min_element(first, end) == kUnreachable) radius_[block] = -kUnreachable;
+  }
+}
+
 void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints& to,
-                                     const Values& others, Values& out) {
+                                     const Blocks* blocks, const Values& others, Values& out) {
   const std::size_t count = from[0].size(), partners = others.size();
   if (partners == 0 || count == 0) return;
   RelaxTask<double> task = relax_task(*lattice_, step);
@@ -37,6 +70,12 @@ void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints&
   for (std::size_t k = 0; k < kDof; ++k) {
     task.from[k] = from[k].data();
     task.to[k] = to[k].data();
+    task.block_middle[k] = blocks ? blocks->middle[k].data() : nullptr;
+    task.block_radius[k] = blocks ? blocks->radius[k].data() : nullptr;
+  }
+  if (blocks) {
+    leave_out_unreachable(others, blocks->radius[kDof - 1]);
+    task.block_radius[kDof - 1] = radius_.data();
   }
   task.value = others.data();
   task.best = out.data();
@@ -47,8 +86,9 @@ void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints&
 void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others,
                              Values& out) {
   const Joints& from = joints_[static_cast<std::size_t>(layer)];
+  const auto other = static_cast<std::size_t>(other_layer);
   out.assign(from[0].size(), kUnreachable);
-  relax_between(step, from, joints_[static_cast<std::size_t>(other_layer)], others, out);
+  relax_between(step, from, joints_[other], &blocks_[other], others, out);
 }
 
 void ExplicitCostToGo::gather(int layer, const std::vector<int>& slots, Joints& out) const {
@@ -63,7 +103,7 @@ void ExplicitCostToGo::relax_some(int layer, const std::vector<int>& slots, Valu
   const auto next = static_cast<std::size_t>(layer) + 1;
   gather(layer, slots, some_);
   out.assign(slots.size(), kUnreachable);
-  relax_between(layer, some_, joints_[next], value_[next], out);
+  relax_between(layer, some_, joints_[next], &blocks_[next], value_[next], out);
   for (std::size_t k = 0; k < slots.size(); ++k)
     if (lost_best_edge(layer, slots[k], out[k])) out[k] = relax_one(layer, slots[k]);
 }
@@ -108,10 +148,10 @@ void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
                                   std::vector<int>& stale) {
   if (ahead.empty()) return;
   slots_.clear();
-  before_.clear();
+  changed_from_.clear();
   for (const Change& change : ahead) {
     slots_.push_back(change.slot);
-    before_.push_back(change.before);
+    changed_from_.push_back(change.before);
   }
   gather(layer + 1, slots_, some_);
   // A value came from `ahead` if it is reached from there: that is, if the values, raised a little,
@@ -119,12 +159,20 @@ void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
   const Values& values = value_[static_cast<std::size_t>(layer)];
   const double* own = verdicts_.costs(layer);
   const double little = 1e-9 * lattice_->cost_unit();  // far above the rounding
-  least_ = values;
-  for (std::size_t a = 0; a < values.size(); ++a) least_[a] += little - (own ? own[a] : 0.0);
+  slots_.clear();
+  least_.clear();
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    if (values[a] == kUnreachable) continue;
+    slots_.push_back(static_cast<int>(a));
+    least_.push_back(values[a] + (little - (own ? own[a] : 0.0)));
+  }
+  const bool all = slots_.size() == values.size();
+  if (!all) gather(layer, slots_, reached_);
   raised_ = least_;
-  relax_between(layer, joints_[static_cast<std::size_t>(layer)], some_, before_, least_);
-  for (std::size_t a = 0; a < values.size(); ++a)
-    if (least_[a] < raised_[a]) stale.push_back(static_cast<int>(a));
+  relax_between(layer, all ? joints_[static_cast<std::size_t>(layer)] : reached_, some_, nullptr,
+                changed_from_, least_);
+  for (std::size_t k = 0; k < slots_.size(); ++k)
+    if (least_[k] < raised_[k]) stale.push_back(slots_[k]);
 }
 
 Config ExplicitCostToGo::config(int layer, int slot) {

@@ -11,7 +11,8 @@ namespace swivel {
 /// node of the next, in vector code. Memory: 64 bytes a node.
 class ExplicitCostToGo final : public LayerValues {
  public:
-  explicit ExplicitCostToGo(const Lattice& lattice, const Budget& budget = {});
+  explicit ExplicitCostToGo(const Lattice& lattice, Pruning pruning = Pruning::kNone,
+                            const Budget& budget = {});
 
   [[nodiscard]] const Lattice& lattice() const override { return *lattice_; }
   [[nodiscard]] Config config(int layer, int slot) override;
@@ -34,16 +35,26 @@ class ExplicitCostToGo final : public LayerValues {
   void relax_some(int layer, const std::vector<int>& slots, Values& out) override;
   /// Replaces `out` by the joints of some nodes of a layer.
   void gather(int layer, const std::vector<int>& slots, Joints& out) const;
+  /// Where the nodes of a layer lie, by blocks: RelaxTask::block_middle and block_radius.
+  struct Blocks {
+    Joints middle, radius;
+  };
+  [[nodiscard]] Blocks blocks_of(const Joints& joints) const;
+  /// Replaces radius_ by the radius of blocks of one joint, out of all reach where no node of the
+  /// block has a value.
+  void leave_out_unreachable(const Values& others, const Values& radius);
   /// Lowers `out`, for nodes with joints `from` of the layer before `step`, to the least of edge
-  /// cost plus value over nodes with joints `to`, whose values are `others`.
-  void relax_between(int step, const Joints& from, const Joints& to, const Values& others,
-                     Values& out);
+  /// cost plus value over nodes with joints `to`, whose values are `others`, and which lie in
+  /// `blocks`, if given.
+  void relax_between(int step, const Joints& from, const Joints& to, const Blocks* blocks,
+                     const Values& others, Values& out);
 
   const Lattice* lattice_;
   std::vector<Joints> joints_;  // [layer][joint][slot]
+  std::vector<Blocks> blocks_;  // [layer]
   // What a repair works with, kept for the next one.
-  Joints some_;
-  Values before_, least_, raised_;
+  Joints some_, reached_;
+  Values changed_from_, least_, raised_, radius_;
   std::vector<int> slots_;
 };
 

@@ -20,7 +20,10 @@ bool gives(const std::vector<Verdicts::HalfEdge>& edges, const std::vector<doubl
 
 }  // namespace
 
-LayerValues::LayerValues(const Lattice& lattice, const Budget& budget) : CostToGo(lattice, budget) {
+LayerValues::LayerValues(const Lattice& lattice, const Budget& budget, Pruning pruning)
+    : CostToGo(lattice, budget),
+      bounded_(pruning == Pruning::kByBound && lattice.is_given(0)),
+      slack_(first_slack(lattice)) {
   for (int layer = 0; layer < lattice.layers(); ++layer)
     value_.emplace_back(static_cast<std::size_t>(lattice.slots(layer)), kUnreachable);
 }
@@ -56,24 +59,67 @@ void LayerValues::solve_layer(int layer, Values& out) {
     for (double& value : out) value += *own++;
 }
 
-void LayerValues::compute(int goal_layer) {
+void LayerValues::solve_within_limit(int layer, Values& out) {
+  if (limit_ == kUnreachable) return solve_layer(layer, out);
+  const Values& before = before_.values[static_cast<std::size_t>(layer)];
+  const double* own = verdicts_.costs(layer);
+  within_.clear();
+  for (int slot = 0; slot < static_cast<int>(before.size()); ++slot)
+    if (before[static_cast<std::size_t>(slot)] <= limit_ && !removed(layer, slot))
+      within_.push_back(slot);
+  out.assign(before.size(), kUnreachable);
+  if (within_.empty()) return;
+  if (layer == goal_)
+    fresh_.assign(within_.size(), 0.0);
+  else
+    relax_some(layer, within_, fresh_);
+  for (std::size_t k = 0; k < within_.size(); ++k) {
+    const auto slot = static_cast<std::size_t>(within_[k]);
+    const double value = fresh_[k] + (own ? own[slot] : 0.0);
+    if (before[slot] + value <= limit_) out[slot] = value;
+  }
+}
+
+bool LayerValues::set_limit() {
+  if (deepest_reachable() < goal_) return false;
+  const Values& ends = before_.values[static_cast<std::size_t>(goal_)];
+  const double* own = verdicts_.costs(goal_);
+  double best = kUnreachable;
+  for (std::size_t slot = 0; slot < ends.size(); ++slot)
+    best = std::min(best, ends[slot] + (own ? own[slot] : 0.0));
+  limit_ = lattice().largest_of_same_coarse_cost((1 + slack_) * best);
+  slack_ = next_slack(slack_);
+  return true;
+}
+
+void LayerValues::sweep_once() {
   const TraceSpan span("sweep");
+  for (int layer = goal_; layer >= 0; --layer) {
+    budget_.poll(Stage::kSweep, goal_ - layer, goal_);
+    solve_within_limit(layer, value_[static_cast<std::size_t>(layer)]);
+    if (layer < goal_) done_with(layer + 1);
+  }
+}
+
+void LayerValues::compute(int goal_layer) {
   verdicts_.pending.clear();
-  for (int layer = lattice().layers() - 1; layer > goal_layer; --layer) {
+  limit_ = kUnreachable;
+  if (goal_layer + 1 == lattice().layers()) {
+    if (before_.removed != 0 || verdicts_.removed() != 0) before_ = {};
+    slack_ = first_slack(lattice());
+  }
+  const bool reached = !bounded_ || set_limit();
+  for (int layer = reached ? goal_layer + 1 : 0; layer < lattice().layers(); ++layer) {
     Values& values = value_[static_cast<std::size_t>(layer)];
     std::fill(values.begin(), values.end(), kUnreachable);
   }
-  for (int layer = goal_layer; layer >= 0; --layer) {
-    budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
-    solve_layer(layer, value_[static_cast<std::size_t>(layer)]);
-    if (layer < goal_layer) done_with(layer + 1);
-  }
+  if (reached) sweep_once();
 }
 
 void LayerValues::renew_layer(int layer, std::vector<Change>& changed) {
   Values& values = value_[static_cast<std::size_t>(layer)];
   const Values before = values;
-  solve_layer(layer, values);
+  solve_within_limit(layer, values);
   for (std::size_t slot = 0; slot < values.size(); ++slot)
     if (values[slot] != before[slot]) changed.push_back({static_cast<int>(slot), before[slot]});
 }
@@ -130,6 +176,15 @@ void LayerValues::compute_removals() {
     }
     ahead.swap(changed);
   }
+  // Beyond the limit values may be too high.
+  while (limit_ != kUnreachable && !(lattice().largest_of_same_coarse_cost(best()) <= limit_)) {
+    if (set_limit()) {
+      sweep_once();
+      continue;
+    }
+    for (Values& values : value_) std::fill(values.begin(), values.end(), kUnreachable);
+    limit_ = kUnreachable;
+  }
 }
 
 double LayerValues::best() const {
@@ -138,9 +193,11 @@ double LayerValues::best() const {
 }
 
 int LayerValues::deepest_reachable() {
+  if (before_.known && before_.removed == verdicts_.removed()) return before_.deepest;
   const TraceSpan span("reach");
+  before_ = {};
   Values before, here;
-  for (int layer = 0;; ++layer) {
+  for (int layer = 0; layer < lattice().layers(); ++layer) {
     budget_.poll();
     if (layer == 0) {
       begin(layer, here);
@@ -155,10 +212,17 @@ int LayerValues::deepest_reachable() {
     }
     leave_out_removed(layer, here);
     if (std::all_of(here.begin(), here.end(), [](double value) { return value == kUnreachable; }))
-      return layer - 1;
-    if (layer + 1 == lattice().layers()) return layer;
+      break;
+    before_.deepest = layer;
     before.swap(here);
+    if (!bounded_) continue;
+    before_.values.push_back(before);
+    if (const double* own = verdicts_.costs(layer))
+      for (double& value : before) value += *own++;
   }
+  before_.known = bounded_;
+  before_.removed = verdicts_.removed();
+  return before_.deepest;
 }
 
 }  // namespace swivel

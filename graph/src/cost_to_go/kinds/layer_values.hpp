@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cost_to_go/limit_slack.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
@@ -12,6 +13,10 @@ namespace swivel {
 /// their nodes and grids of rolls have in common. Derived classes decide which nodes of
 /// neighbouring layers are joined. A removal is repaired backwards, node by node where few change,
 /// for as long as values change.
+///
+/// With Pruning::kByBound and a given start, it first goes forward from there, and leaves out nodes
+/// that lie on no path of cost `limit` or less. Should removals make the best path cost more, the
+/// limit is raised, and the sweep repeated.
 class LayerValues : public CostToGo {
  public:
   [[nodiscard]] double at(int layer, int slot) const override {
@@ -22,7 +27,7 @@ class LayerValues : public CostToGo {
 
  protected:
   using Values = std::vector<double>;  // [slot]
-  LayerValues(const Lattice& lattice, const Budget& budget);
+  LayerValues(const Lattice& lattice, const Budget& budget, Pruning pruning = Pruning::kNone);
 
   /// Replaces `out` by 0 for every node of a layer that exists, and infinity elsewhere.
   virtual void begin(int layer, Values& out) = 0;
@@ -68,18 +73,41 @@ class LayerValues : public CostToGo {
  private:
   void compute(int goal_layer) final;
   void compute_removals() final;
+  /// Computes the values of a layer from those of the next where nodes may lie on a path within the
+  /// limit, over what is not removed.
+  void solve_within_limit(int layer, Values& out);
+  /// Sets the limit to somewhat more than the best path to the goal costs. Returns false where no
+  /// path leads there.
+  bool set_limit();
+  void sweep_once();
   /// Solves a layer as a whole. Appends the nodes whose values change to `changed`.
   void renew_layer(int layer, std::vector<Change>& changed);
   /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
   /// to `changed`.
   void renew_nodes(int layer, std::vector<int>& stale, std::vector<Change>& changed);
-  void save() final { saved_ = {goal_, value_}; }
-  void restore() final { std::tie(goal_, value_) = saved_; }
+  void save() final { saved_ = {goal_, limit_, value_, before_}; }
+  void restore() final {
+    std::tie(goal_, limit_, value_, before_) = saved_;
+    slack_ = first_slack(lattice());
+  }
   void leave_out_removed(int layer, Values& values) const;
 
-  Values fresh_;  // what renew_nodes() computes
+  bool bounded_;
+  double slack_;  // of the limit over the cost of the best path, as a share
+  double limit_ = kUnreachable;
+  /// What deepest_reachable() found last, if bounded_: the cost of each node from layer 0 on
+  /// without its own, as of `removed` removals.
+  struct Before {
+    bool known = false;
+    std::int64_t removed = 0;
+    int deepest = -1;
+    std::vector<Values> values;  // [layer][slot]
+  };
+  Before before_;
+  std::vector<int> within_;  // slots, scratch
+  Values fresh_;             // what renew_nodes() computes
 
-  std::tuple<int, std::vector<Values>> saved_;
+  std::tuple<int, double, std::vector<Values>, Before> saved_;
 };
 
 }  // namespace swivel

@@ -14,7 +14,7 @@ std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Pruning prunin
                                           dynamic_cast<GridCostToGo*>(recycled.get()));
   if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice))
     return std::make_unique<RollCostToGo>(*rolls, budget);
-  return std::make_unique<ExplicitCostToGo>(lattice, budget);
+  return std::make_unique<ExplicitCostToGo>(lattice, pruning, budget);
 }
 
 }  // namespace swivel

@@ -42,6 +42,9 @@ class CostToGo {
   /// Declares that restart() will not be called, so that nothing need be kept for it.
   void set_single_use() { restarts_ = false; }
 
+  /// Takes the lower bounds of a swept cost-to-go whose lattice this one was made from by telling
+  /// turns apart (Lattice::with_windings()).
+  virtual void bound_by(const CostToGo& circles) { static_cast<void>(circles); }
   /// Computes the cost-to-go with every node of `goal_layer` as a goal. Verdicts are kept.
   void sweep(int goal_layer);
   /// Returns the layer whose nodes are the goals.
@@ -114,14 +117,14 @@ class CostToGo {
   bool restarts_ = true;
 };
 
-/// Whether a sweep computes all nodes (kWhole), or may leave out nodes that a lower bound proves to
-/// lie on no best path (kBounded): these then read as unreachable, or as costlier than they are.
+/// Whether a sweep computes all nodes (kNone), or may leave out nodes that a lower bound proves to
+/// lie on no best path (kByBound): these then read as unreachable, or as costlier than they are.
 /// best(), first_slot() and every best path are exact all the same.
 enum class Pruning { kNone, kByBound };
 /// Returns the cost-to-go of a lattice: of an SrsLattice by vector code over its grid, of a
-/// RollLattice layer by layer over rolls and arm angles, of an ExplicitLattice over all pairs of
-/// nodes, always whole. The memory of `recycled`, of any lattice, is used again: pages fresh from
-/// the system take a quarter of a plan that meets obstacles.
+/// RollLattice layer by layer over rolls and arm angles, always whole, of an ExplicitLattice over
+/// all pairs of nodes, bounded from a given start alone. The memory of `recycled`, of any lattice,
+/// is used again: pages fresh from the system take a quarter of a plan that meets obstacles.
 [[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(
     const Lattice& lattice, Pruning pruning = Pruning::kNone, const Budget& budget = {},
     std::unique_ptr<CostToGo> recycled = nullptr);
