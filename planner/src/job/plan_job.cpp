@@ -293,6 +293,7 @@ class JobPlan {
   /// where the job leaves its limits.
   void find() {
     share_circles();
+    std::string turns;  // turns_note_of() the first job that did not fit
     for (;;) {
       JobTransitions transitions(robot_, *transition_world_, transition_limits_,
                                  *runs_.front()->lattice, distance_proofs(), executor_, budget_);
@@ -301,9 +302,13 @@ class JobPlan {
       note(outcome, transitions);
       paths_ = outcome.paths;
       paths_.resize(runs_.size());
-      if (outcome.paths.empty()) return;
+      if (outcome.paths.empty()) {
+        if (!turns.empty()) result_.warnings.push_back(turns);
+        return;
+      }
       std::vector<JobPart> parts = parts_of(outcome, transitions);
       Lattice::Joints off = off_in_every_turn(parts);
+      if (turns.empty()) turns = turns_note_of(parts);
       if (off == Lattice::Joints{}) off = lift(parts, *runs_.front()->lattice, job_);
       if (off == Lattice::Joints{}) {
         result_.status = outcome.decided ? PlanStatus::kSolved : stopped_status();
@@ -343,6 +348,20 @@ class JobPlan {
       ++k;
     }
     return off;
+  }
+  /// Returns what turns_note() says of the first run without rows; an empty line if all have rows.
+  [[nodiscard]] std::string turns_note_of(const std::vector<JobPart>& parts) const {
+    std::size_t k = 0;
+    for (const JobPart& part : parts) {
+      if (!part.run) continue;
+      const auto& run = *runs_[k];
+      const SlotPath& path = paths_[k++];
+      if (!part.rows.empty()) continue;
+      const std::string note =
+          turns_note(*run.lattice, path, run.lattice->off_limits(path), run.problem, "job");
+      if (!note.empty()) return "stroke '" + job_.strokes[run.run.stroke].name + "': " + note;
+    }
+    return {};
   }
   [[nodiscard]] DistanceProofs distance_proofs() const {
     return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;

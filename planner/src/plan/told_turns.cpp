@@ -37,9 +37,9 @@ double degrees(double angle) {
 
 /// Returns what turns_note() says of one joint that may go from `low` to `high`.
 std::string note_of(const std::string& name, const Sweep& sweep, double low, double high,
-                    const Task& task, Eigen::Index joint) {
+                    const Task& task, Eigen::Index joint, const std::string& cheapest) {
   const std::string would = "but for its limits, " + name + " would turn ",
-                    along = " deg along the cheapest path: ";
+                    along = " deg along the cheapest " + cheapest + ": ";
   if (!task.start && !task.end) {
     if (sweep.most - sweep.least <= high - low) return {};
     return would + formatted("by %.0f", degrees(sweep.most - sweep.least)) + along +
@@ -90,14 +90,14 @@ void remove_failed_nodes(const std::vector<std::vector<int>>& failed, const Latt
 }
 
 std::string turns_note(const Lattice& lattice, const std::vector<int>& slots,
-                       const Lattice::Joints& off, const Task& task) {
+                       const Lattice::Joints& off, const Task& task, const std::string& cheapest) {
   for (std::size_t j = 0; j < kDof; ++j) {
     if (!off[j]) continue;
     const auto joint = static_cast<Eigen::Index>(j);
     const JointLimit& limit = lattice.chain().limit[j];
     const double margin = lattice.limits().joint_margin;
     std::string note = note_of(lattice.chain().joint_names[j], sweep_of(lattice, slots, joint),
-                               limit.lower + margin, limit.upper - margin, task, joint);
+                               limit.lower + margin, limit.upper - margin, task, joint, cheapest);
     if (!note.empty()) return note;
   }
   return {};

@@ -62,9 +62,10 @@ void remove_failed_nodes(const std::vector<std::vector<int>>& failed, const Latt
 
 /// Returns a line on the first of the joints `off` whose turning along the path `slots` does not
 /// fit its limits: by how much it turns along that path, or, where the start or the end is given,
-/// from where to where. `lattice` treats these joints as circles. Returns an empty line where each
-/// fits in some turn.
+/// from where to where. `lattice` treats these joints as circles; `cheapest` says what is the
+/// cheapest: a path, a job. Returns an empty line where each fits in some turn.
 [[nodiscard]] std::string turns_note(const Lattice& lattice, const std::vector<int>& slots,
-                                     const Lattice::Joints& off, const Task& task);
+                                     const Lattice::Joints& off, const Task& task,
+                                     const std::string& cheapest = "path");
 
 }  // namespace swivel

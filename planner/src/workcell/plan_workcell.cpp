@@ -2,14 +2,17 @@
 #include "swivel/planner/workcell/plan_workcell.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "measure/measure_rows.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/supported_options.hpp"
+#include "plan/told_turns.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -174,7 +177,11 @@ class WorkcellPlan {
           search_pair({arms_[0]->in_pair(), arms_[1]->in_pair()}, between, options);
       note(outcome, between);
       if (view_) note_for_view(outcome);
-      if (outcome.paths[0].empty()) return;
+      if (outcome.paths[0].empty()) {
+        for (std::size_t k = 0; k < 2; ++k)
+          if (!turns_[k].empty()) result_.arms[k].warnings.push_back(turns_[k]);
+        return;
+      }
       if (tell_turns_apart(outcome)) continue;
       for (std::size_t k = 0; k < 2; ++k) {
         result_.arms[k].trajectory = arms_[k]->lattice->path_rows(outcome.paths[k]);
@@ -206,6 +213,9 @@ class WorkcellPlan {
     for (std::size_t k = 0; k < 2; ++k) {
       const Lattice::Joints off = arms_[k]->lattice->off_limits(outcome.paths[k]);
       if (off == Lattice::Joints{}) continue;
+      if (turns_[k].empty())
+        turns_[k] = turns_note(*arms_[k]->lattice, outcome.paths[k], off, arms_[k]->problem,
+                               "pair of paths");
       arms_[k]->validity.reset();
       arms_[k]->cost_to_go.reset();
       arms_[k]->noted.reset();
@@ -335,6 +345,7 @@ class WorkcellPlan {
   Executor executor_;
   WorkcellView* view_;
   PlannedArms arms_;
+  std::array<std::string, 2> turns_;  // turns_note() of each arm's first path that did not fit
   WorkcellResult result_;
 };
 

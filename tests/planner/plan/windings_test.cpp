@@ -9,6 +9,7 @@
 #include <memory>
 #include <ranges>
 #include <string>
+#include <vector>
 
 #include "inexact_robots.hpp"
 #include "planners.hpp"
@@ -17,6 +18,7 @@
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
+#include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -154,8 +156,8 @@ void expect_certified(const PreparedRobot& robot, const Problem& problem, const 
 }
 
 /// Returns the warning that says how far a joint would turn; an empty one where there is none.
-std::string turns_note_of(const PlanResult& result) {
-  for (const std::string& line : result.warnings)
+std::string turns_note_of(const std::vector<std::string>& warnings) {
+  for (const std::string& line : warnings)
     if (line.find("but for its limits") != std::string::npos) return line;
   return {};
 }
@@ -173,7 +175,7 @@ Problem without_wide_limits(const Problem& problem, const TestRobot& robot, cons
 /// path names the turn of one of them.
 void check_note(const PlanResult& found, const Problem& free, const std::string& what,
                 Counts& counts) {
-  const std::string note = turns_note_of(found);
+  const std::string note = turns_note_of(found.warnings);
   if (note.empty()) return;
   ASSERT_EQ(found.status, PlanStatus::kInfeasible) << what;
   ASSERT_EQ(plan(free).status, PlanStatus::kSolved) << what << ": " << note;
@@ -302,14 +304,26 @@ TEST(Windings, TellHowFarAJointWouldTurn) {
   const auto [least, most] = std::ranges::minmax(free.trajectory | std::views::transform(last));
   const PlanResult found = plan(problem);
   EXPECT_EQ(found.status, PlanStatus::kInfeasible);
-  EXPECT_EQ(turns_note_of(found),
+  EXPECT_EQ(turns_note_of(found.warnings),
             formatted("but for its limits, %s would turn by %.0f deg along the cheapest path: its "
                       "range is 720 deg",
+                      found.joint_names[6].c_str(), (most - least) * 180 / kPi));
+  // in a job the stroke is named
+  Job job;
+  static_cast<Robot&>(job) = problem;
+  job.limits = problem.limits;
+  static_cast<Task&>(job.strokes.emplace_back()) = problem;
+  job.strokes[0].name = "screw";
+  const JobResult strokes = plan_job(job);
+  EXPECT_EQ(strokes.status, PlanStatus::kInfeasible);
+  EXPECT_EQ(turns_note_of(strokes.warnings),
+            formatted("stroke 'screw': but for its limits, %s would turn by %.0f deg along the "
+                      "cheapest job: its range is 720 deg",
                       found.joint_names[6].c_str(), (most - least) * 180 / kPi));
   // from a given start there is less room
   problem.start = free.trajectory.front().q;
   const double begin = (*problem.start)[6], end = most > begin ? most : least;
-  EXPECT_EQ(turns_note_of(plan(problem)),
+  EXPECT_EQ(turns_note_of(plan(problem).warnings),
             formatted("but for its limits, %s would turn from %.0f to %.0f deg along the cheapest "
                       "path: it may from -360 to 360 deg",
                       found.joint_names[6].c_str(), begin * 180 / kPi, end * 180 / kPi));
