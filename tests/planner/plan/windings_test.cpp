@@ -168,6 +168,7 @@ Problem without_wide_limits(const Problem& problem, const TestRobot& robot, cons
   static_cast<Robot&>(free) = problem_for(with_limits(robot, [&](int number, Joint& joint) {
     if (wide.joints[static_cast<std::size_t>(number)]) joint.type = Joint::Type::kContinuous;
   }));
+  free.roll = problem.roll;
   return free;
 }
 
