@@ -345,42 +345,49 @@ inline void relax_near(const RelaxTask<double>& task, int at, int last, const in
       relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
 }
 
-/// Calls visit(first, end) for the blocks of partners that may be within reach.
+constexpr int kMostPartners = 256;  // at once
+
+/// Calls visit(first, end) for runs of partners that may be within reach, at most kMostPartners.
 template <bool kWraps, class Visit>
-inline void each_block(const RelaxTask<double>& task, const Reach<kWraps>& reach,
-                       const Visit& visit) {
+inline void each_run_of_partners(const RelaxTask<double>& task, const Reach<kWraps>& reach,
+                                 const Visit& visit) {
   using Lanes = typename Widest<double>::Lanes;
   constexpr int kLanes = sizeof(Lanes) / sizeof(double), kBlock = RelaxTask<double>::kBlock;
-  const auto block_from = [&](int first) {
-    visit(first, first + kBlock < task.offsets ? first + kBlock : task.offsets);
+  const auto run_from = [&](int first, int length) {
+    visit(first, first + length < task.offsets ? first + length : task.offsets);
   };
+  if (!task.block_middle[0]) {
+    for (int first = 0; first < task.offsets; first += kMostPartners)
+      run_from(first, kMostPartners);
+    return;
+  }
   const int blocks = (task.offsets + kBlock - 1) / kBlock;
   int block = 0;
-  for (; task.block_middle[0] && block + kLanes <= blocks; block += kLanes) {
+  for (; block + kLanes <= blocks; block += kLanes) {
     const Lanes excess = reach.template excess_of_blocks<Lanes>(task, block);
     if (reach.none_within(excess)) continue;
     double lane[kLanes];
     __builtin_memcpy(lane, &excess, sizeof excess);
     for (int k = 0; k < kLanes; ++k)
-      if (!(lane[k] > 0)) block_from((block + k) * kBlock);
+      if (!(lane[k] > 0)) run_from((block + k) * kBlock, kBlock);
   }
   for (; block < blocks; ++block)
-    if (!task.block_middle[0] || !(reach.template excess_of_blocks<double>(task, block) > 0))
-      block_from(block * kBlock);
+    if (!(reach.template excess_of_blocks<double>(task, block) > 0))
+      run_from(block * kBlock, kBlock);
 }
 
 /// Relaxes runs of nodes near each other with the partners in their reach.
 template <RelaxMetric kMetric, bool kWraps>
 void relax_all_run(const RelaxTask<double>& task) {
-  constexpr int kMost = 8, kChunk = 256;
+  constexpr int kMost = 8;
   const double sure = sure_measure<kMetric>(task);
-  int near[kChunk];
+  int near[2 * kMostPartners];
   for (int at = 0; at < task.n;) {
     const Reach<kWraps> reach(task, at, task.n - at < kMost ? task.n - at : kMost);
     int count = 0;
-    each_block(task, reach, [&](int first, int end) {
+    each_run_of_partners(task, reach, [&](int first, int end) {
       count = add_near(task, reach, first, end, near, count);
-      if (count + RelaxTask<double>::kBlock < kChunk) return;
+      if (count < kMostPartners) return;
       relax_near<kMetric, kWraps>(task, at, reach.last, near, count, sure);
       count = 0;
     });

@@ -38,7 +38,7 @@ ExplicitCostToGo::Blocks ExplicitCostToGo::blocks_of(const Joints& joints) const
       double low = 0, high = 0;
       for (std::size_t at = first; at < std::min(joint.size(), first + kBlock); ++at) {
         double step = joint[at] - joint[first];
-        if (lattice_->continuous()[k]) step = wrap_angle(step);
+        if (lattice_->continuous()[k] && std::abs(step) > kPi) step = wrap_angle(step);
         low = std::min(low, step);
         high = std::max(high, step);
       }
@@ -159,20 +159,28 @@ void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
   const Values& values = value_[static_cast<std::size_t>(layer)];
   const double* own = verdicts_.costs(layer);
   const double little = 1e-9 * lattice_->cost_unit();  // far above the rounding
-  slots_.clear();
-  least_.clear();
-  for (std::size_t a = 0; a < values.size(); ++a) {
-    if (values[a] == kUnreachable) continue;
-    slots_.push_back(static_cast<int>(a));
-    least_.push_back(values[a] + (little - (own ? own[a] : 0.0)));
+  // Where few nodes are reached, these alone are looked at.
+  const auto reached = static_cast<std::size_t>(std::count_if(
+      values.begin(), values.end(), [](double value) { return value != kUnreachable; }));
+  const bool all = 2 * reached > values.size();
+  least_ = values;
+  if (!all) {
+    slots_.clear();
+    least_.clear();
+    for (std::size_t a = 0; a < values.size(); ++a) {
+      if (values[a] == kUnreachable) continue;
+      slots_.push_back(static_cast<int>(a));
+      least_.push_back(values[a]);
+    }
+    gather(layer, slots_, reached_);
   }
-  const bool all = slots_.size() == values.size();
-  if (!all) gather(layer, slots_, reached_);
+  const auto slot = [&](std::size_t k) { return all ? k : static_cast<std::size_t>(slots_[k]); };
+  for (std::size_t k = 0; k < least_.size(); ++k) least_[k] += little - (own ? own[slot(k)] : 0.0);
   raised_ = least_;
   relax_between(layer, all ? joints_[static_cast<std::size_t>(layer)] : reached_, some_, nullptr,
                 changed_from_, least_);
-  for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (least_[k] < raised_[k]) stale.push_back(slots_[k]);
+  for (std::size_t k = 0; k < least_.size(); ++k)
+    if (least_[k] < raised_[k]) stale.push_back(static_cast<int>(slot(k)));
 }
 
 Config ExplicitCostToGo::config(int layer, int slot) {
