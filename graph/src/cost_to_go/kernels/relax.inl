@@ -257,7 +257,7 @@ struct Reach {
   /// Returns values above 0 in lanes whose partner has a joint out of every node's reach.
   template <class V>
   V excess(const RelaxTask<double>& task, int partner) const {
-    return excess_of<V>(task, [&](int j) {
+    return excess_of<V>([&](int j) {
       return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner),
                                             task.turn[j])) -
                radius[j]);
@@ -266,7 +266,7 @@ struct Reach {
   /// Returns values above 0 in lanes whose block of partners has a joint out of every node's reach.
   template <class V>
   V excess_of_blocks(const RelaxTask<double>& task, int block) const {
-    return excess_of<V>(task, [&](int j) {
+    return excess_of<V>([&](int j) {
       return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.block_middle[j] + block),
                                             task.turn[j])) -
                (radius[j] + load<V>(task.block_radius[j] + block)));
@@ -282,7 +282,7 @@ struct Reach {
   /// Returns the largest of the joints' excesses, or one above 0. The last joints come first: they
   /// move most and mostly decide.
   template <class V, class OfJoint>
-  static V excess_of(const RelaxTask<double>&, const OfJoint& of) {
+  static V excess_of(const OfJoint& of) {
     const V most = larger(larger(of(6), of(5)), larger(of(4), of(3)));
     return none_within(most) ? most : larger(larger(most, of(2)), larger(of(1), of(0)));
   }
