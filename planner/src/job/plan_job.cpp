@@ -293,7 +293,7 @@ class JobPlan {
   /// where the job leaves its limits.
   void find() {
     share_circles();
-    std::string turns;  // turns_note_of() the first job that did not fit
+    std::string turns;  // turns_note() of the first run that did not fit
     for (;;) {
       JobTransitions transitions(robot_, *transition_world_, transition_limits_,
                                  *runs_.front()->lattice, distance_proofs(), executor_, budget_);
@@ -307,8 +307,7 @@ class JobPlan {
         return;
       }
       std::vector<JobPart> parts = parts_of(outcome, transitions);
-      Lattice::Joints off = off_in_every_turn(parts);
-      if (turns.empty()) turns = turns_note_of(parts);
+      Lattice::Joints off = off_in_every_turn(parts, turns);
       if (off == Lattice::Joints{}) off = lift(parts, *runs_.front()->lattice, job_);
       if (off == Lattice::Joints{}) {
         result_.status = outcome.decided ? PlanStatus::kSolved : stopped_status();
@@ -335,33 +334,23 @@ class JobPlan {
     }
   }
   /// Returns the circles that leave their limits along a run, whatever its turn; such runs have no
-  /// rows.
-  [[nodiscard]] Lattice::Joints off_in_every_turn(const std::vector<JobPart>& parts) const {
+  /// rows. Puts turns_note() of the first into `note`, if that is empty.
+  [[nodiscard]] Lattice::Joints off_in_every_turn(const std::vector<JobPart>& parts,
+                                                  std::string& note) const {
     Lattice::Joints off{};
-    std::size_t k = 0;
-    for (const JobPart& part : parts) {
-      if (!part.run) continue;
-      if (part.rows.empty()) {
-        const Lattice::Joints here = runs_[k]->lattice->off_limits(paths_[k]);
-        for (std::size_t j = 0; j < kDof; ++j) off[j] = off[j] || here[j];
-      }
-      ++k;
-    }
-    return off;
-  }
-  /// Returns what turns_note() says of the first run without rows; an empty line if all have rows.
-  [[nodiscard]] std::string turns_note_of(const std::vector<JobPart>& parts) const {
     std::size_t k = 0;
     for (const JobPart& part : parts) {
       if (!part.run) continue;
       const auto& run = *runs_[k];
       const SlotPath& path = paths_[k++];
       if (!part.rows.empty()) continue;
-      const std::string note =
-          turns_note(*run.lattice, path, run.lattice->off_limits(path), run.problem, "job");
-      if (!note.empty()) return "stroke '" + job_.strokes[run.run.stroke].name + "': " + note;
+      const Lattice::Joints here = run.lattice->off_limits(path);
+      for (std::size_t j = 0; j < kDof; ++j) off[j] = off[j] || here[j];
+      if (!note.empty()) continue;
+      note = turns_note(*run.lattice, path, here, run.problem, "job");
+      if (!note.empty()) note = "stroke '" + job_.strokes[run.run.stroke].name + "': " + note;
     }
-    return {};
+    return off;
   }
   [[nodiscard]] DistanceProofs distance_proofs() const {
     return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
