@@ -64,8 +64,7 @@ void ConstraintRemoval::enter(int layer) {
 }
 
 const Constraints::Node& ConstraintRemoval::at(int layer, int slot) {
-  Known& known = layers_[index(layer % 2)].nodes[index(slot)];
-  static_cast<void>(placed(layer, slot));
+  Known& known = met(layer, slot);
   if (!known.complete) {
     budget_.poll();
     constraints_.complete(known.node, waived_, Constraints::Until::kNoRemoval);
@@ -74,14 +73,14 @@ const Constraints::Node& ConstraintRemoval::at(int layer, int slot) {
   return known.node;
 }
 
-const Constraints::Node& ConstraintRemoval::placed(int layer, int slot) {
+ConstraintRemoval::Known& ConstraintRemoval::met(int layer, int slot) {
   Known& known = layers_[index(layer % 2)].nodes[index(slot)];
   if (!known.placed) {
     known.node = constraints_.place(layer, slot);
     known.placed = true;
     known.complete = !known.node.exists;
   }
-  return known.node;
+  return known;
 }
 
 void ConstraintRemoval::blame(Pass& pass, ConstraintSet violated) const {

@@ -72,10 +72,19 @@ class ConstraintRemoval {
   /// follows only constraints that bar nodes is done with most edges at their steps.
   [[nodiscard]] Pass run_pass(int from, ConstraintSet waived, ConstraintSet followed,
                               bool any_slope);
+  /// A node, as far as it was asked about.
+  struct Known {
+    bool placed = false, complete = false;  // the node has its joints; it has all its violations
+    Constraints::Node node;
+  };
+  /// Returns what is known of a node, its joints and limits at least.
+  [[nodiscard]] Known& met(int layer, int slot);
   /// Returns a node with all that it violates.
   [[nodiscard]] const Constraints::Node& at(int layer, int slot);
   /// Returns a node with its joints and at least the limits that they violate.
-  [[nodiscard]] const Constraints::Node& placed(int layer, int slot);
+  [[nodiscard]] const Constraints::Node& placed(int layer, int slot) {
+    return met(layer, slot).node;
+  }
   void enter(int layer);
   void blame(Pass& pass, ConstraintSet violated) const;
   void see(Pass& pass, int removal, int layer, const Constraints::Node& node);
@@ -113,10 +122,6 @@ class ConstraintRemoval {
   int deepest_, wanted_;  // layers: furthest reached, and what counts as further
   double most_us_ = 0;
   ConstraintSet waived_ = 0, followed_ = kAlways;  // of the pass that runs
-  struct Known {
-    bool placed = false, complete = false;  // the node has its joints; it has all its violations
-    Constraints::Node node;
-  };
   struct Layer {
     std::vector<Known> nodes;
     std::vector<ConstraintSet> reached;
