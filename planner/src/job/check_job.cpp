@@ -12,7 +12,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/timing/time_path.hpp"
-#include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "verify/check_rates.hpp"
 

@@ -154,15 +154,6 @@ class JobTimer {
 
 }  // namespace
 
-Job with_motion_defaults(Job job) {
-  for (Stroke& stroke : job.strokes) {
-    if (!stroke.smooth) stroke.smooth.emplace();
-    keep_clearance_between_layers(stroke.limits);
-  }
-  keep_clearance_between_layers(job.limits);
-  return job;
-}
-
 void require_speeds(const Job& job, const JobTimingOptions& options) {
   for (const Stroke& stroke : job.strokes) static_cast<void>(process_speed(job, stroke, options));
 }

@@ -13,4 +13,25 @@ Problem with_motion_defaults(Problem problem) {
   return problem;
 }
 
+Job with_motion_defaults(Job job) {
+  for (Stroke& stroke : job.strokes) {
+    if (!stroke.smooth) stroke.smooth.emplace();
+    keep_clearance_between_layers(stroke.limits);
+  }
+  keep_clearance_between_layers(job.limits);
+  return job;
+}
+
+Workcell with_motion_defaults(Workcell cell) {
+  if (const auto given = cell.given_arm())
+    throw InputError(cell.source, "arm '" + cell.arms[*given].name +
+                                      "': its motion is given, of which no motion in time is made "
+                                      "yet: allowed are two arms that are planned");
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!cell.arms[k].smooth && cell.leader_of(k) < 0) cell.arms[k].smooth.emplace();
+    keep_clearance_between_layers(cell.arms[k].limits);
+  }
+  return cell;
+}
+
 }  // namespace swivel

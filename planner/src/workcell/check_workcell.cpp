@@ -13,8 +13,6 @@
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
-#include "swivel/planner/workcell/plan_workcell.hpp"
-#include "swivel/planner/workcell/time_workcell.hpp"
 #include "workcell/timed_workcell.hpp"
 
 namespace swivel {

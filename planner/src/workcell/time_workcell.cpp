@@ -336,18 +336,6 @@ class WorkcellTimer {
 
 }  // namespace
 
-Workcell with_motion_defaults(Workcell cell) {
-  if (const auto given = cell.given_arm())
-    throw InputError(cell.source, "arm '" + cell.arms[*given].name +
-                                      "': its motion is given, of which no motion in time is made "
-                                      "yet: allowed are two arms that are planned");
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (!cell.arms[k].smooth && cell.leader_of(k) < 0) cell.arms[k].smooth.emplace();
-    keep_clearance_between_layers(cell.arms[k].limits);
-  }
-  return cell;
-}
-
 WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
                              const std::array<std::vector<TrajectoryRow>, 2>& rows,
                              const TimingOptions& options, const Budget& budget) {

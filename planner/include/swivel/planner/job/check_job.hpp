@@ -36,6 +36,15 @@ struct JobCheckResult {
                                        const std::vector<JobPart>& parts,
                                        const CheckOptions& options = {});
 
+/// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
+/// of parts, with runs judged as check_motion() judges them; the rates of transitions as
+/// check_motion() judges rates, with Job::rapid of the joints' speeds; and that events are at the
+/// first samples at or after the begin and the end of each stroke. Throws as check_job() does.
+[[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& job,
+                                              const std::vector<StrokeRun>& order,
+                                              const JobMotion& motion,
+                                              const CheckOptions& options = {});
+
 /// Adds a failure to `result` for each run among the parts of a job of which `process`, by part and
 /// row, is not what process_of_rows() returns: by its first such row. `process` may be empty for a
 /// part that says nothing of it, and is not looked at for transitions and for strokes that the job

@@ -9,6 +9,7 @@
 #include "swivel/core/problem/job.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 
 namespace swivel {
 
@@ -22,10 +23,6 @@ struct JobTimingOptions {
   std::optional<double> turn_speed;  ///< rad/s, most turning speed of the tool on runs
   double rate = 250;                 ///< samples a second; > 0
 };
-
-/// Returns the job with the defaults that timed motions use for what it leaves unset, as
-/// with_motion_defaults() does for each of its strokes.
-[[nodiscard]] Job with_motion_defaults(Job job);
 
 /// Throws InputError if a stroke has no speed at which time_job() could time it.
 void require_speeds(const Job& job, const JobTimingOptions& options);
@@ -57,14 +54,5 @@ struct JobMotionPlan {
                                             const PlanOptions& options,
                                             const JobTimingOptions& timing,
                                             JobView* view = nullptr);
-
-/// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
-/// of parts, with runs judged as check_motion() judges them; the rates of transitions as
-/// check_motion() judges rates, with Job::rapid of the joints' speeds; and that events are at the
-/// first samples at or after the begin and the end of each stroke. Throws as check_job() does.
-[[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& job,
-                                              const std::vector<StrokeRun>& order,
-                                              const JobMotion& motion,
-                                              const CheckOptions& options = {});
 
 }  // namespace swivel

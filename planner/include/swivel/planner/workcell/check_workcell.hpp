@@ -8,12 +8,12 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/workcell_certificate.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/verify/check.hpp"
+#include "swivel/planner/workcell/prepared_workcell.hpp"
 
 namespace swivel {
-
-class PreparedWorkcell;
 
 /// The result of an independent check of two arms' trajectories.
 struct WorkcellCheckResult {
@@ -35,6 +35,17 @@ struct WorkcellCheckResult {
     const CheckOptions& options = {});
 [[nodiscard]] WorkcellCheckResult check_workcell(
     const Workcell& cell, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const CheckOptions& options = {});
+/// Proves a timed motion of two arms from the workcell alone, or tells what is wrong with it. The
+/// workcell is one with_motion_defaults(). Each arm passes check_motion() by itself; rows are at
+/// the same times; at every row, and on every motion from one to the next in which both arms move
+/// at one time, each straight in joint space, bodies of the two arms keep clear of each other (0.05
+/// mm are forgiven, contact never). Both tools are at their waypoints together: when one is there,
+/// the other is within its limits.tool_path_error (1 mm if that is not set) of its own. The tool of
+/// a follower is within tool_path_error and tool_angle_error (1 mm, 0.02 rad) of its path on the
+/// leader's tool at every row. Throws as check_workcell() does.
+[[nodiscard]] WorkcellCheckResult check_workcell_motion(
+    const PreparedWorkcell& prepared, const std::array<std::vector<TimedRow>, 2>& rows,
     const CheckOptions& options = {});
 /// Throws std::logic_error, with the first failure, if the result has not passed.
 void require_passed(const WorkcellCheckResult& result);

@@ -6,16 +6,12 @@
 
 #include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/core/problem/workcell.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/refine_workcell.hpp"
 
 namespace swivel {
-
-/// Returns the workcell with the defaults that timed motions use for keys it leaves unset
-/// (with_motion_defaults(Problem)): what is planned to be timed should be this. Throws InputError
-/// where the motion of an arm is given, since no motion in time is made beside it.
-[[nodiscard]] Workcell with_motion_defaults(Workcell cell);
 
 /// Times trajectories of both arms, rows at the layers of their paths, by one clock, and proves
 /// what a controller does with them: the joints of both arms move straight from sample to sample at
@@ -75,17 +71,5 @@ struct WorkcellMotionPlan {
                                                       const PlanOptions& options, bool refined,
                                                       const std::optional<TimingOptions>& timing,
                                                       WorkcellView* view = nullptr);
-
-/// Proves a timed motion of two arms from the workcell alone, or tells what is wrong with it. The
-/// workcell is one with_motion_defaults(). Each arm passes check_motion() by itself; rows are at
-/// the same times; at every row, and on every motion from one to the next in which both arms move
-/// at one time, each straight in joint space, bodies of the two arms keep clear of each other (0.05
-/// mm are forgiven, contact never). Both tools are at their waypoints together: when one is there,
-/// the other is within its limits.tool_path_error (1 mm if that is not set) of its own. The tool of
-/// a follower is within tool_path_error and tool_angle_error (1 mm, 0.02 rad) of its path on the
-/// leader's tool at every row. Throws as check_workcell() does.
-[[nodiscard]] WorkcellCheckResult check_workcell_motion(
-    const PreparedWorkcell& prepared, const std::array<std::vector<TimedRow>, 2>& rows,
-    const CheckOptions& options = {});
 
 }  // namespace swivel
