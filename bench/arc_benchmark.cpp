@@ -83,6 +83,7 @@ struct Times {
 
 Times timed(const PreparedRobot& robot, const Problem& problem, PlanResult& result) {
   PlanOptions options;
+  options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
   options.threads = 1;
   Times times;

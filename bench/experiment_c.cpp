@@ -63,6 +63,7 @@ PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind plan
   bench::set_resolution(problem, setting);
   problem.limits.edges = edges;
   PlanOptions options;
+  options.check = false;  // the time of planning is measured
   options.planner = planner;
   options.threads = threads;
   options.evidence = {.tool_path_error = true};

@@ -262,6 +262,7 @@ void add_pairs(const Fixture& c, const std::filesystem::path& problems) {
 /// Adds the collision queries of postures and motions.
 void add_queries(Fixture& c) {
   PlanOptions options;
+  options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
   add("posture/kept",
       [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {

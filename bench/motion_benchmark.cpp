@@ -112,6 +112,7 @@ int run(const std::string& file, std::uint64_t episodes) {
   for (std::uint64_t episode = 0; episode < episodes; ++episode) {
     const Problem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
     PlanOptions options;
+    options.check = false;  // the time of planning is measured
     options.planner = PlannerKind::kLazy;
     Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
     const auto start = std::chrono::steady_clock::now();

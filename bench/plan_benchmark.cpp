@@ -108,6 +108,7 @@ std::string label_of(const Scene& scene, const Case& what, const bench::Setting&
 
 PlanOptions options_for(PlannerKind planner, int threads) {
   PlanOptions options;
+  options.check = false;  // the time of planning is measured
   options.planner = planner;
   options.threads = threads;
   options.timeout_s = plan_limit;

@@ -31,6 +31,7 @@ double at(std::vector<double> sorted, double share) {
 
 void walk(const Problem& problem, const char* setting, const std::string& object, int steps) {
   PlanOptions options;
+  options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
   const PreparedRobot robot(problem);
   Planner planner(problem);

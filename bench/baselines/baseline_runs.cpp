@@ -64,6 +64,7 @@ std::vector<std::pair<double, Config>> rows_of(const baselines::TrackResult& res
 void run_swivel(const char* name, const PreparedRobot& robot, const Problem& problem, double length,
                 const std::filesystem::path& rows) {
   PlanOptions options;
+  options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
   options.evidence = Evidence::all();
   const PlanResult planned = plan(robot, problem, options);

@@ -46,7 +46,7 @@ struct PlanArguments {
   std::string problem, out, json, trace, map_svg, report, certificate;
   std::optional<double> timeout;
   std::optional<double> advise;
-  bool quiet = false, map = false, full_map = false, refine = false, no_check = false;
+  bool quiet = false, map = false, full_map = false, refine = false;
   SearchOptions search;
   MotionOptions motion;
   EpisodeChoice episode;
@@ -161,7 +161,6 @@ PlanRequest request_of(const PlanArguments& arguments, LoadedFile file) {
   read_motion(request);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
-  request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
     request.options.evidence = Evidence::all();
   return request;
@@ -368,7 +367,6 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
         "which ask for more");
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
-  request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
     request.options.evidence = Evidence::all();
   outputs.emplace(std::move(file.inputs));
@@ -411,7 +409,6 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
   require_planner_of("workcells", arguments.search);
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
-  request.options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty() || request.report)
     request.options.evidence = Evidence::all();
   outputs.emplace(std::move(file.inputs));
@@ -555,8 +552,6 @@ void add_plan(CLI::App& app, int& exit_code) {
                       "the plan as one HTML file: playback, maps, plots, summary");
   command->add_flag("--full-map", arguments->full_map,
                     "ask about every node before the map is drawn");
-  command->add_flag("--no-check", arguments->no_check,
-                    "leave out the proof of the answer, which `check` would give as well");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

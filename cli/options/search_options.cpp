@@ -19,6 +19,7 @@ void SearchOptions::add_to(CLI::App& command) {
   command.add_option("--planner", planner, "eager | eager_dp | lazy | parallel")
       ->capture_default_str();
   command.add_option("--threads", threads, "0: all cores")->capture_default_str();
+  command.add_flag("--no-check", no_check, "do not prove answers before they are told");
   LatticeOptions::add_to(command);
 }
 
@@ -41,6 +42,7 @@ PlanOptions SearchOptions::plan_options() const {
     throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " +
                      std::to_string(kMostThreads));
   options.threads = threads;
+  options.check = !no_check;
   options.cancel = &interrupted;
   return options;
 }

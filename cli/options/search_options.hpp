@@ -24,6 +24,7 @@ struct LatticeOptions {
 struct SearchOptions : LatticeOptions {
   std::string planner = "parallel";
   int threads = 0;
+  bool no_check = false;
   void add_to(CLI::App& command);
   /// Returns plan options with the planner and the threads, and with Ctrl-C as the cancel flag.
   /// Throws InputError.

@@ -415,16 +415,16 @@ void serialize(A& archive, CheckResult& x) {
 template <class A>
 void serialize(A& archive, PlacementRow& x) {
   auto& [cell, offset, hold, status, cost, clearance, clearance_margin, joint_margin, slide_margin,
-         tool_speed, failed_s, cause, by, reason] = x;
+         tool_speed, failed_s, cause, by, reason, checked] = x;
   archive(cell, offset, hold, status, cost, clearance, clearance_margin, joint_margin, slide_margin,
-          tool_speed, failed_s, cause, by, reason);
+          tool_speed, failed_s, cause, by, reason, checked);
 }
 template <class A>
 void serialize(A& archive, EpisodeRow& x) {
   auto& [episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s,
-         cause, by, reason, offsets] = x;
+         cause, by, reason, checked, offsets] = x;
   archive(episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s,
-          cause, by, reason, offsets);
+          cause, by, reason, checked, offsets);
 }
 
 namespace python {

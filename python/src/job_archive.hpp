@@ -104,12 +104,12 @@ void serialize(A& archive, LiftOffResult& x) {
 }
 template <class A>
 void serialize(A& archive, JobResult& x) {
-  auto& [status, cost, bound, bound_any, lift_offs, parts, runs, no_transition, planner, threads,
-         counters, transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs,
-         warnings] = x;
-  archive(status, cost, bound, bound_any, lift_offs, parts, runs, no_transition, planner, threads,
-          counters, transitions, time_ms, checked, joint_names, held, dropped_pairs, reduced_pairs,
-          warnings);
+  auto& [status, cost, lattice_cost, bound, bound_any, lift_offs, parts, partial, runs,
+         no_transition, planner, threads, counters, transitions, time_ms, checked, joint_names,
+         held, dropped_pairs, reduced_pairs, warnings] = x;
+  archive(status, cost, lattice_cost, bound, bound_any, lift_offs, parts, partial, runs,
+          no_transition, planner, threads, counters, transitions, time_ms, checked, joint_names,
+          held, dropped_pairs, reduced_pairs, warnings);
 }
 template <class A>
 void serialize(A& archive, ProcessEvent& x) {

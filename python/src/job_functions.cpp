@@ -205,7 +205,7 @@ JobCheck check(const JobOrFile& of, const Checked& rows) {
     if (const auto* file = std::get_if<std::filesystem::path>(&rows))
       given = load_rows(robot, job, *file);
     else if (const auto* plan = std::get_if<JobPlan>(&rows))
-      given = parts_of(*plan);
+      given = parts_of(*plan, plan->result().parts);
     else if (const auto* motion = std::get_if<JobMotion>(&rows))
       given = *motion;
     else
@@ -282,7 +282,7 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
     ProvedParts proved;
     if (const auto* const plan = std::get_if<JobPlan>(&rows)) {
       proved.job = executed_job(given, plan->result());
-      proved.parts = to_core(proved.job, parts_of(*plan));
+      proved.parts = to_core(proved.job, parts_of(*plan, plan->result().parts));
     } else {
       proved = proved_parts(robot, given, rows, budget);
     }
@@ -315,10 +315,10 @@ void bind_plan_job(py::module_& m) {
   m.def(
       "plan_job",
       [](const JobOrFile& job, const py::object& planner, int threads,
-         std::optional<double> timeout, bool evidence, const py::object& progress,
+         std::optional<double> timeout, bool prove, bool evidence, const py::object& progress,
          std::optional<double> speed, std::optional<double> turn_speed,
          std::optional<double> rate) {
-        PlanOptions options = to_plan_options(planner, threads, timeout);
+        PlanOptions options = to_plan_options(planner, threads, timeout, prove);
         if (evidence) options.evidence = Evidence::all();
         options.progress = to_progress(progress);
         std::optional<JobTimingOptions> timing;
@@ -327,14 +327,15 @@ void bind_plan_job(py::module_& m) {
         return plan(job, options, timing);
       },
       py::arg("job").none(false), py::kw_only(), py::arg("planner") = "parallel",
-      py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("evidence") = false,
-      py::arg("progress") = py::none(), py::arg("speed") = py::none(),
+      py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("prove") = true,
+      py::arg("evidence") = false, py::arg("progress") = py::none(), py::arg("speed") = py::none(),
       py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(),
       (std::string("Plans a job: all strokes and the transitions between them. No job is a "
                    "JobPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops "
                    "it.\n\n"
                    "job: a Job, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
-                   "for all cores. timeout: s, for everything. evidence: find all measures. "
+                   "for all cores. timeout: s, for everything. prove: prove the answer before it "
+                   "is returned, as check_job() does. evidence: find all measures. "
                    "progress(stage, done, of): now and then.\n"
                    "speed, turn_speed, rate: with any of these the plan has a motion in time. ") +
        kSpeeds + " Raises InputError, InvalidArgument, and what progress raised.")

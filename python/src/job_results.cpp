@@ -32,8 +32,8 @@ std::string run_words(const std::string& stroke, bool reversed) {
 }
 
 std::optional<double> gap_of(const JobResult& result) {
-  if (result.parts.empty() || (result.bound <= 0 && result.cost > 0)) return {};
-  return result.cost > 0 ? result.cost / result.bound - 1 : 0.0;
+  if (result.parts.empty() || (result.bound <= 0 && result.lattice_cost > 0)) return {};
+  return result.lattice_cost > 0 ? result.lattice_cost / result.bound - 1 : 0.0;
 }
 
 /// Returns the runs between which no transition was found: their names, None for home.
@@ -281,7 +281,7 @@ void bind_plan(py::module_& m) {
       .def(pickling<JobPlan>())
       .def_property_readonly(
           "status", [](const JobPlan& p) { return p.result().status; },
-          "Status. A job that ran out of time may have parts nevertheless.")
+          "Status: where time was up before there was a proved job, parts are none.")
       .def_property_readonly(
           "solved", [](const JobPlan& p) { return p.result().status == PlanStatus::kSolved; })
       .def_property_readonly(
@@ -298,10 +298,16 @@ void bind_plan(py::module_& m) {
           "No job in this order costs less, whatever its transitions.")
       .def_property_readonly(
           "gap", [](const JobPlan& p) { return gap_of(p.result()); },
-          "cost over bound, less 1: 0 where the job is optimal. None where there is no bound.")
-      .def_property_readonly("parts", &parts_of,
-                             "Transitions and runs, JobParts, in the order in which they are "
-                             "executed; maybe none.")
+          "What the search minimised over bound, less 1: 0 where the job is optimal. None where "
+          "there is no bound.")
+      .def_property_readonly(
+          "parts", [](const JobPlan& p) { return parts_of(p, p.result().parts); },
+          "Transitions and runs, JobParts, in the order in which they are executed; none unless "
+          "solved.")
+      .def_property_readonly(
+          "partial", [](const JobPlan& p) { return parts_of(p, p.result().partial); },
+          "Where time was up before a job was proved: the parts of the cheapest one known, "
+          "unproved.")
       .def_property_readonly("runs", &runs_of, "JobRuns, in the order in which they are executed.")
       .def_property_readonly(
           "lift_offs", &lift_offs_of,
@@ -598,9 +604,9 @@ std::shared_ptr<const swivel::Job> without_surroundings(const swivel::Job& job) 
   return rest;
 }
 
-std::vector<JobPart> parts_of(const JobPlan& plan) {
+std::vector<JobPart> parts_of(const JobPlan& plan, const std::vector<swivel::JobPart>& of) {
   std::vector<JobPart> parts;
-  for (const swivel::JobPart& one : plan.result().parts) {
+  for (const swivel::JobPart& one : of) {
     JobPart& part = parts.emplace_back();
     part.rows = std::shared_ptr<const Rows>(plan.plan, &one.rows);
     part.joint_names = plan.result().joint_names;

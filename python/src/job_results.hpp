@@ -71,7 +71,8 @@ struct JobCheck {
 
 /// Returns what JobPlan::job holds of a job.
 [[nodiscard]] std::shared_ptr<const swivel::Job> without_surroundings(const swivel::Job& job);
-[[nodiscard]] std::vector<JobPart> parts_of(const JobPlan& plan);
+[[nodiscard]] std::vector<JobPart> parts_of(const JobPlan& plan,
+                                            const std::vector<swivel::JobPart>& of);
 /// Returns the motion of a plan. Throws ValueError if it has none.
 [[nodiscard]] JobMotion motion_of(const JobPlan& plan);
 

@@ -129,10 +129,10 @@ struct PlanKeywords {
   py::object planner;
   int threads = 0;
   std::optional<double> timeout;
-  bool evidence = false;
+  bool prove = true, evidence = false;
   py::object check, check_motions, cost, progress;
   [[nodiscard]] PlanOptions options() const {
-    PlanOptions options = to_plan_options(planner, threads, timeout);
+    PlanOptions options = to_plan_options(planner, threads, timeout, prove);
     if (evidence) options.evidence = Evidence::all();
     require_function(check, "check");
     require_function(check_motions, "check_motions");
@@ -342,8 +342,10 @@ class SharedPlanner {
 
 }  // namespace
 
-PlanOptions to_plan_options(const py::object& planner, int threads, std::optional<double> timeout) {
+PlanOptions to_plan_options(const py::object& planner, int threads, std::optional<double> timeout,
+                            bool prove) {
   PlanOptions options;
+  options.check = prove;
   options.planner = to_enum<PlannerKind>(planner);
   constexpr int kMostThreads = 1024;
   if (threads < 0 || threads > kMostThreads)
@@ -456,13 +458,14 @@ void bind_planner(py::module_& m) {
       .def(
           "plan",
           [](SharedPlanner& self, py::object planner, int threads, std::optional<double> timeout,
-             bool evidence, py::object check, py::object check_motions, py::object cost,
+             bool prove, bool evidence, py::object check, py::object check_motions, py::object cost,
              py::object progress, bool refine, std::optional<double> speed,
              std::optional<double> turn_speed, std::optional<double> rate,
              std::optional<double> chord) {
             const PlanKeywords keywords{std::move(planner),
                                         threads,
                                         timeout,
+                                        prove,
                                         evidence,
                                         std::move(check),
                                         std::move(check_motions),
@@ -471,7 +474,7 @@ void bind_planner(py::module_& m) {
             return self.plan(keywords, refine, speed, turn_speed, rate, chord);
           },
           py::kw_only(), py::arg("planner") = "parallel", py::arg("threads") = 0,
-          py::arg("timeout") = py::none(), py::arg("evidence") = false,
+          py::arg("timeout") = py::none(), py::arg("prove") = true, py::arg("evidence") = false,
           py::arg("check") = py::none(), py::arg("check_motions") = py::none(),
           py::arg("cost") = py::none(), py::arg("progress") = py::none(), py::arg("refine") = false,
           py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
@@ -480,6 +483,7 @@ void bind_planner(py::module_& m) {
           "Ctrl-C stops it.\n"
           "\n"
           "planner: PlannerKind or its name. threads: 0 for all cores. timeout: s, for everything. "
+          "prove: prove the answer before it is returned, as check() does. "
           "evidence: find all measures, "
           "and\n"
           "all empty layers, which takes more time than many a plan.\n"

@@ -217,6 +217,8 @@ void bind_tables(py::module_& m) {
       .def_readonly("by", &PlacementRow::by,
                     "The scene object in the way, else the joint or the two bodies.")
       .def_readonly("reason", &PlacementRow::reason, "The same in words.")
+      .def_readonly("checked", &PlacementRow::checked,
+                    "Whether the answer was proved; None unless solved.")
       .def("__repr__",
            [](const PlacementRow& r) { return "<Placement " + placement_words(r) + ">"; });
   bind_table<PlacementRow>(
@@ -293,6 +295,8 @@ void bind_tables(py::module_& m) {
       .def_readonly("cause", &EpisodeRow::cause, "What ends them: the cause's kind.")
       .def_readonly("by", &EpisodeRow::by, "The object or joint that ends them.")
       .def_readonly("reason", &EpisodeRow::reason, "What ends them, in words.")
+      .def_readonly("checked", &EpisodeRow::checked,
+                    "Whether the answer was proved; None unless solved.")
       .def_readonly("offsets", &EpisodeRow::offsets, "Of the coordinates that vary, m and rad.")
       .def("__repr__", [](const EpisodeRow& r) {
         return formatted("<Episode %llu: ", static_cast<unsigned long long>(r.episode)) +
@@ -441,11 +445,11 @@ std::shared_ptr<const PreparedRobot> prepare(const Planned& planned, const std::
 class Placer {
  public:
   Placer(Planned planned, Movable thing, std::vector<HeldRange> joints, const py::object& planner,
-         int threads, std::optional<double> timeout)
+         int threads, std::optional<double> timeout, bool prove)
       : planned_(std::move(planned)),
         thing_(std::move(thing)),
         joints_(std::move(joints)),
-        options_(to_plan_options(planner, threads, timeout)) {
+        options_(to_plan_options(planner, threads, timeout, prove)) {
     if (const auto* const job = std::get_if<swivel::Job>(&planned_))
       static_cast<void>(placed_job(*job, thing_, {}));
     else if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
@@ -511,7 +515,7 @@ class Placer {
 class Campaigner {
  public:
   Campaigner(Planned planned, std::uint64_t episodes, std::uint64_t seed, const py::object& planner,
-             int threads)
+             int threads, bool prove)
       : planned_(std::move(planned)) {
     constexpr std::uint64_t kMost = 10'000'000;
     if (episodes < 1 || episodes > kMost)
@@ -519,7 +523,7 @@ class Campaigner {
                             std::to_string(kMost));
     options_.episodes = episodes;
     options_.seed = seed;
-    options_.plan = to_plan_options(planner, threads, {});
+    options_.plan = to_plan_options(planner, threads, {}, prove);
   }
   Episodes plan(const Shard& shard, const py::object& each) {
     const std::vector<std::string> coordinates = varied_coordinates(std::visit(
@@ -558,17 +562,17 @@ auto placer_of() {
   return py::init([](const Given& given, const std::optional<std::string>& object, bool path,
                      bool base, bool only_held, const std::optional<std::string>& arm,
                      std::vector<HeldRange> joints, const py::object& planner, int threads,
-                     std::optional<double> timeout) {
+                     std::optional<double> timeout, bool prove) {
     return std::make_unique<Placer>(to_planned(given),
                                     to_movable(object, path, base, only_held, arm),
-                                    std::move(joints), planner, threads, timeout);
+                                    std::move(joints), planner, threads, timeout, prove);
   });
 }
 template <class Given>
 auto campaigner_of() {
   return py::init([](const Given& given, std::uint64_t episodes, std::uint64_t seed,
-                     const py::object& planner, int threads) {
-    return std::make_unique<Campaigner>(to_planned(given), episodes, seed, planner, threads);
+                     const py::object& planner, int threads, bool prove) {
+    return std::make_unique<Campaigner>(to_planned(given), episodes, seed, planner, threads, prove);
   });
 }
 

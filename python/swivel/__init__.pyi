@@ -899,6 +899,7 @@ class Planner:
         planner: _PlannerKind = "parallel",
         threads: int = 0,
         timeout: float | None = None,
+        prove: bool = True,
         evidence: bool = False,
         check: _Check | None = None,
         check_motions: _MotionCheck | None = None,
@@ -1181,6 +1182,8 @@ class JobPlan:
     @property
     def parts(self) -> list[JobPart]: ...
     @property
+    def partial(self) -> list[JobPart]: ...
+    @property
     def runs(self) -> list[JobRun]: ...
     @property
     def lift_offs(self) -> list[LiftOff]: ...
@@ -1240,6 +1243,7 @@ def plan_job(
     planner: _PlannerKind = "parallel",
     threads: int = 0,
     timeout: float | None = None,
+    prove: bool = True,
     evidence: bool = False,
     progress: _Progress | None = None,
     speed: float | None = None,
@@ -1404,6 +1408,7 @@ def plan_workcell(
     planner: _PlannerKind = "parallel",
     threads: int = 0,
     timeout: float | None = None,
+    prove: bool = True,
     evidence: bool = False,
     progress: _Progress | None = None,
     speed: float | None = None,
@@ -1469,6 +1474,8 @@ class Placement:
     def by(self) -> str: ...
     @property
     def reason(self) -> str: ...
+    @property
+    def checked(self) -> bool | None: ...
 
 class Placements:
     @property
@@ -1534,6 +1541,8 @@ class Episode:
     @property
     def reason(self) -> str: ...
     @property
+    def checked(self) -> bool | None: ...
+    @property
     def offsets(self) -> list[float]: ...
 
 class Episodes:
@@ -1585,6 +1594,7 @@ def place(
     planner: _PlannerKind = "parallel",
     threads: int = 0,
     timeout: float | None = None,
+    prove: bool = True,
     progress: Callable[[Placements, int, int], Any] | None = None,
     client: Any = None,
 ) -> Placements: ...
@@ -1595,6 +1605,7 @@ def campaign(
     seed: int = 1,
     planner: _PlannerKind = "parallel",
     threads: int = 0,
+    prove: bool = True,
     progress: Callable[[Episodes, int, int], Any] | None = None,
     client: Any = None,
 ) -> Episodes: ...
@@ -1607,6 +1618,7 @@ def plan(
     planner: _PlannerKind = "parallel",
     threads: int = 0,
     timeout: float | None = None,
+    prove: bool = True,
     evidence: bool = False,
     check: _Check | None = None,
     check_motions: _MotionCheck | None = None,

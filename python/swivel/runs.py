@@ -34,6 +34,7 @@ def place(
     planner="parallel",
     threads=0,
     timeout=None,
+    prove=True,
     progress=None,
     client=None,
 ):
@@ -53,6 +54,7 @@ def place(
     beside the best: a third of the cells at most. best: one or several of 'cost', 'clearance',
     'margin', 'slide' and 'speed', by which refine_grid finds the best. planner: a PlannerKind or
     its name. threads: 0 for all cores. timeout: s, after which the rows known so far are returned.
+    prove: prove each answer before its row is told.
     progress(placements, done, of): called with new rows, the number of rows so far, and the number
     of all rows, which with refine_grid may still grow. client: a dask.distributed.Client; each
     thread of its workers plans one placement at a time, and `threads` has no effect. Other workers
@@ -86,6 +88,7 @@ def place(
         planner,
         threads if here else 1,
         timeout if here else None,
+        prove,
     )
     make()  # says what is wrong before anything is sent
 
@@ -121,7 +124,15 @@ def place(
 
 
 def campaign(
-    problem, *, episodes=100, seed=1, planner="parallel", threads=0, progress=None, client=None
+    problem,
+    *,
+    episodes=100,
+    seed=1,
+    planner="parallel",
+    threads=0,
+    prove=True,
+    progress=None,
+    client=None,
 ):
     """Plans many episodes: the problem, job or workcell with its `vary` at random poses.
 
@@ -129,9 +140,9 @@ def campaign(
 
     problem: a Problem, a Job, a Workcell, or the name of a file of one. episodes: how many. seed:
     of the random poses; Problem.episode(seed, k), as of jobs and workcells, is the k-th episode.
-    planner: a PlannerKind or its name. threads: 0 for all cores. progress(episodes, done, of):
-    called with new rows, the number of rows so far, and the number of all rows. client: a
-    dask.distributed.Client, as for place().
+    planner: a PlannerKind or its name. threads: 0 for all cores. prove: prove each answer before
+    its row is told. progress(episodes, done, of): called with new rows, the number of rows so far,
+    and the number of all rows. client: a dask.distributed.Client, as for place().
 
     Returns Episodes in the order of their numbers; all columns but plan_ms are the same at any
     number of threads and workers. Raises InvalidArgument, InputError and TypeError; Ctrl-C raises
@@ -139,7 +150,13 @@ def campaign(
     """
     here = client is None
     make = functools.partial(
-        _swivel._Campaigner, _loaded(problem), episodes, seed, planner, threads if here else 1
+        _swivel._Campaigner,
+        _loaded(problem),
+        episodes,
+        seed,
+        planner,
+        threads if here else 1,
+        prove,
     )
     make()
     parts = []

@@ -1051,7 +1051,7 @@ class Campaign(WithFolder):
     QUICK = ("--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
     HEADER = (
         "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,"
-        "tool_path_error_mm_max,failed_s,cause,by,reason"
+        "tool_path_error_mm_max,failed_s,cause,by,reason,checked"
     )
     OFFSETS = [f"door.{name}" for name in ("x", "y", "z", "roll", "pitch", "yaw")]
     EPISODES = 12

@@ -163,6 +163,7 @@ TEST(Placements, Csv) {
   solved.offset = {0.1, -0.2, 0, 0, 0, 1e-3};
   solved.status = PlanStatus::kSolved;
   solved.cost = 2.5;
+  solved.checked = true;
   solved.clearance = 0.01;
   solved.clearance_margin = 0.005;
   solved.tool_speed = 1;
@@ -172,16 +173,17 @@ TEST(Placements, Csv) {
   blocked.reason = "two\nlines";
   EXPECT_EQ(to_csv({solved, blocked}),
             "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,"
-            "slide_margin,tool_speed,failed_s,cause,by,reason\n"
-            "3,0.1,-0.2,0,0,0,0.001,solved,2.5,0.01,0.005,,,1,,,,\n"
-            "0,0,0,0,0,0,0,infeasible,,,,,,,0.25,pair,\"a, \"\"b\"\"\",two lines\n");
+            "slide_margin,tool_speed,failed_s,cause,by,reason,checked\n"
+            "3,0.1,-0.2,0,0,0,0.001,solved,2.5,0.01,0.005,,,1,,,,,true\n"
+            "0,0,0,0,0,0,0,infeasible,,,,,,,0.25,pair,\"a, \"\"b\"\"\",two lines,\n");
   PlacementRow held = solved;
   held.hold = {{"torso", 0.3}, {"a, rail", -1}};
   held.slide_margin = 0.125;
-  EXPECT_EQ(to_csv({held}),
-            "cell,x,y,z,roll,pitch,yaw,\"hold.a, rail\",hold.torso,status,cost,clearance,"
-            "clearance_margin,joint_margin,slide_margin,tool_speed,failed_s,cause,by,reason\n"
-            "3,0.1,-0.2,0,0,0,0.001,-1,0.3,solved,2.5,0.01,0.005,,0.125,1,,,,\n");
+  EXPECT_EQ(
+      to_csv({held}),
+      "cell,x,y,z,roll,pitch,yaw,\"hold.a, rail\",hold.torso,status,cost,clearance,"
+      "clearance_margin,joint_margin,slide_margin,tool_speed,failed_s,cause,by,reason,checked\n"
+      "3,0.1,-0.2,0,0,0,0.001,-1,0.3,solved,2.5,0.01,0.005,,0.125,1,,,,,true\n");
 }
 
 }  // namespace

@@ -24,11 +24,10 @@ std::string alone_text(const WorkcellResult& result) {
   const std::size_t planned = given ? 1 - *given : 0;
   // What the search found: refined paths may cost less than the arms' cheapest nodes alone.
   const auto found = [&](std::size_t arm) { return result.arms[arm].lattice.cost; };
-  const bool refined = result.arms[0].cost != found(0) || result.arms[1].cost != found(1);
   const double least = given ? result.least_costs[planned]
                              : result.least_costs[0] + result.least_costs[1],
                cost = given ? found(planned) : found(0) + found(1);
-  const std::string colon = refined ? ": before refining " : ": ";
+  const std::string colon = result.refined ? ": before refining " : ": ";
   const std::string who =
       given ? "'" + result.names[planned] + "' alone, which " : "both arms alone, which ";
   if (result.decided_by == WorkcellSearch::kArmsAlone)
@@ -65,9 +64,6 @@ std::string solved_text(const WorkcellResult& result) {
                      given_words(result).c_str(), result.arms[0].trajectory.size(),
                      result.arms[1 - *given].cost);
   text += alone_text(result);
-  if (result.status != PlanStatus::kSolved && result.bound > 0)
-    text += formatted("; stopped, at most %.2g %% from the best",
-                      100 * (result.cost / result.bound - 1));
   if (const auto& nearest = result.between_arms)
     text += formatted("; nearest to each other %.3g mm: ", 1e3 * nearest->clearance) +
             nearest->bodies[0] + " and " + nearest->bodies[1];
@@ -92,7 +88,9 @@ std::string answer_text(const WorkcellResult& result) {
   if (solved)
     text = solved_text(result);
   else if (result.status != PlanStatus::kInfeasible)
-    return std::string("stopped before there was a plan: ") + to_string(result.status) + "\n";
+    return std::string(result.arms[0].partial.empty() ? "stopped before there was a plan: "
+                                                      : "stopped before a plan was proved: ") +
+           to_string(result.status) + "\n";
   else if (has_path_alone(result, 0) && has_path_alone(result, 1))
     return conflict_text(result);
   else

@@ -17,6 +17,8 @@ const char* to_string(Stage stage) {
       return "searching";
     case Stage::kReach:
       return "no path; seeking the furthest layer";
+    case Stage::kProving:
+      return "proving the answer";
     case Stage::kMeasuring:
       return "measuring the trajectory";
     case Stage::kDiagnosis:

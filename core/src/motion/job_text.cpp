@@ -54,11 +54,12 @@ std::string less_than(double cost, double bound) {
 std::string bounds_text(const JobResult& result, const Job& job) {
   const bool other_orders = job.order == StrokeOrder::kBest && job.strokes.size() > 1;
   const std::string none = std::string("none costs less") + (other_orders ? " in this order" : "");
-  if (result.cost <= result.bound_any) return none + ", whatever the transitions";
-  const std::string any = "whatever the transitions, " + less_than(result.cost, result.bound_any);
-  if (result.cost <= result.bound) return none + " with the transitions found; " + any;
+  if (result.lattice_cost <= result.bound_any) return none + ", whatever the transitions";
+  const std::string any =
+      "whatever the transitions, " + less_than(result.lattice_cost, result.bound_any);
+  if (result.lattice_cost <= result.bound) return none + " with the transitions found; " + any;
   return "with the transitions found" + std::string(other_orders ? " in this order" : "") + ", " +
-         less_than(result.cost, result.bound) + "; " + any;
+         less_than(result.lattice_cost, result.bound) + "; " + any;
 }
 
 /// Returns a line for each run: what it costs in the job and by itself, and what it comes near to.
@@ -142,16 +143,13 @@ std::string lift_offs_text(const JobResult& result, const Job& job) {
   return text;
 }
 
-/// Returns the answer where there is a motion, which is the cheapest known if time was up.
+/// Returns the answer where there is a motion.
 std::string motion_text(const JobResult& result, const Job& job) {
   const std::size_t strokes = job.strokes.size() - result.lift_offs.size();
-  std::string text =
-      result.status == PlanStatus::kSolved
-          ? std::string("solved: ")
-          : std::string("stopped: ") + to_string(result.status) + ", the cheapest job known: ";
-  text += formatted("%zu stroke%s, cost %.6g: ", strokes, strokes == 1 ? "" : "s", result.cost) +
-          bounds_text(result, job) +
-          (result.lift_offs.empty() ? "" : ", with the lift-offs at these places");
+  std::string text = formatted("solved: %zu stroke%s, cost %.6g: ", strokes,
+                               strokes == 1 ? "" : "s", result.cost) +
+                     bounds_text(result, job) +
+                     (result.lift_offs.empty() ? "" : ", with the lift-offs at these places");
   if (!result.held.empty()) text += " | held: " + words(result.held);
   text += '\n';
   if (job.order == StrokeOrder::kBest) {
@@ -199,7 +197,11 @@ std::string infeasible_text(const JobResult& result, const Job& job) {
 std::string job_text(const JobResult& result, const Job& job) {
   if (!result.parts.empty()) return motion_text(result, job);
   if (result.status == PlanStatus::kInfeasible) return infeasible_text(result, job);
-  return std::string("stopped: ") + to_string(result.status) + '\n';
+  return std::string("stopped: ") + to_string(result.status) +
+         (result.partial.empty()
+              ? ""
+              : formatted(", with a job of cost %.6g that is not proved", result.cost)) +
+         '\n';
 }
 
 std::string job_motion_text(const JobTimingResult& timing, const std::vector<JobPart>& parts,

@@ -96,6 +96,7 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const Pro
     plan_ms = plan->second;
   if (status == PlanStatus::kSolved) {
     cost = result.cost;
+    checked = result.checked;
     tool_path_error_mm_mean = result.tool_path_error_mm.mean;
     tool_path_error_mm_max = result.tool_path_error_mm.max;
   } else if (status == PlanStatus::kInfeasible) {
@@ -117,6 +118,7 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Job&
       plan_ms += time->second;
   if (status == PlanStatus::kSolved) {
     cost = result.cost;
+    checked = result.checked;
     double sum = 0, steps = 0, most = 0;
     std::size_t run = 0;
     for (const JobPart& part : result.parts) {
@@ -145,6 +147,7 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const WorkcellResult& result, const
   }
   if (status == PlanStatus::kSolved) {
     cost = result.cost;
+    checked = result.checked;
     const PlanResult &first = result.arms[0], &second = result.arms[1];  // of as many steps
     tool_path_error_mm_mean = (first.tool_path_error_mm.mean + second.tool_path_error_mm.mean) / 2;
     tool_path_error_mm_max = std::max(first.tool_path_error_mm.max, second.tool_path_error_mm.max);

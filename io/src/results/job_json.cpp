@@ -26,6 +26,7 @@ class JobWriter {
     json["cost"] = if_solved(result_.cost);
     json["bound"] = if_solved(result_.bound);
     json["bound_any"] = if_solved(result_.bound_any);
+    json["lattice_cost"] = if_solved(result_.lattice_cost);
     json["gap"] = gap();
     json["checked"] = solved_ ? Json(result_.checked) : Json(nullptr);
     json["planner"] = result_.planner;
@@ -42,7 +43,8 @@ class JobWriter {
                                    {"rounds", result_.transitions.rounds}};
     json["time_ms"] = time_json(result_.time_ms);
     json["motion"] = motion();
-    json["parts"] = parts();
+    json["parts"] = parts(result_.parts);
+    json["partial"] = parts(result_.partial);
     json["robot_pairs"] = robot_pairs_json(result_.dropped_pairs, result_.reduced_pairs);
     json["held"] = held_json(result_.held);
     json["warnings"] = result_.warnings;
@@ -54,8 +56,8 @@ class JobWriter {
   [[nodiscard]] Json if_solved(double value) const { return solved_ ? Json(value) : Json(nullptr); }
 
   [[nodiscard]] Json gap() const {
-    if (!solved_ || (result_.bound <= 0 && result_.cost > 0)) return nullptr;
-    return result_.cost > 0 ? result_.cost / result_.bound - 1 : 0.0;
+    if (!solved_ || (result_.bound <= 0 && result_.lattice_cost > 0)) return nullptr;
+    return result_.lattice_cost > 0 ? result_.lattice_cost / result_.bound - 1 : 0.0;
   }
 
   [[nodiscard]] const std::string& name(const StrokeRun& run) const {
@@ -102,7 +104,7 @@ class JobWriter {
                    {"cost", part ? Json(part->cost) : Json(nullptr)},
                    {"summary", summary_json(one.measures,
                                             part ? rows_of(*part) : std::vector<TrajectoryRow>())},
-                   {"lattice", lattice_json(one.lattice, has_path)}};
+                   {"lattice", lattice_json(one.lattice, part != nullptr)}};
       add_measures(json, one.measures, part != nullptr);
       json["diagnosis"] = one.diagnosis ? diagnosis_json(*one.diagnosis) : Json(nullptr);
       list.push_back(std::move(json));
@@ -198,9 +200,9 @@ class JobWriter {
     return json;
   }
 
-  [[nodiscard]] Json parts() const {
+  [[nodiscard]] Json parts(const std::vector<JobPart>& parts) const {
     Json list = Json::array();
-    for (const JobPart& part : result_.parts) {
+    for (const JobPart& part : parts) {
       const std::vector<bool> process = process_of_rows(part, job_);
       Json rows = Json::array();
       for (const TrajectoryRow& row : rows_of(part)) {

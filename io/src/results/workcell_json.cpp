@@ -29,6 +29,8 @@ Json arm_json(const WorkcellResult& result, std::size_t arm) {
   json["counters"] = counters_json(plan.counters);
   json["diagnosis"] = no_path ? diagnosis_json(plan.diagnosis) : Json(nullptr);
   json["trajectory"] = solved ? trajectory_json(plan.trajectory) : Json(nullptr);
+  json["partial"] = trajectory_json(plan.partial);
+  json["robot_pairs"] = robot_pairs_json(plan.dropped_pairs, plan.reduced_pairs);
   json["held"] = held_json(plan.held);
   json["warnings"] = plan.warnings;
   json["joint_names"] = plan.joint_names;

@@ -582,7 +582,11 @@ std::vector<Schema::Key> job_answer_keys() {
           "that Swivel finds"),
       key("bound_any", or_null(number()),
           "no job in this order and with these lift-offs costs less, whatever its transitions"),
-      key("gap", or_null(number()), "`cost` over `bound`, less 1: 0 where the job is optimal"),
+      key("lattice_cost", or_null(number()),
+          "as `cost`, but of the nodes of the lattices, which the search minimised; rows of arms "
+          "that are not exactly S-R-S may miss them by a little"),
+      key("gap", or_null(number()),
+          "`lattice_cost` over `bound`, less 1: 0 where the job is optimal"),
       key("checked", or_null(boolean()), "whether the motion passed what `check` asks"),
       key("planner", text(), "which of the planners"),
       key("threads", integer(), "that worked"),
@@ -655,7 +659,10 @@ Schema job_result() {
       key("time_ms", time_ms(), "where time went, as of [results](#times)", "ms"),
       key("motion", or_null(motion_of_job()),
           "`null` unless it is timed; [below](#motion-in-the-result-of-a-job)"),
-      key("parts", parts_of_job(), "the rows: strokes and transitions, [below](#part-of-a-job)")};
+      key("parts", parts_of_job(), "the rows: strokes and transitions, [below](#part-of-a-job)"),
+      key("partial", parts_of_job(),
+          "where time was up before a job was proved: the parts of the cheapest one known, "
+          "unproved; else empty")};
   std::vector<Schema::Key> last = part_keys();
   std::erase_if(last, [](const Schema::Key& one) {
     return one.name != "robot_pairs" && one.name != "held" && one.name != "warnings" &&
@@ -744,13 +751,17 @@ Schema arms_of_workcell() {
       key("lattice", lattice(), "its size, as of [results](#lattice)")};
   std::vector<Schema::Key> last = part_keys();
   std::erase_if(last, [](const Schema::Key& one) {
-    return one.name != "held" && one.name != "warnings" && one.name != "joint_names";
+    return one.name != "robot_pairs" && one.name != "held" && one.name != "warnings" &&
+           one.name != "joint_names";
   });
   const std::vector<Schema::Key> middle{
       key("counters", counters(), "work done for it, as of [results](#counters)"),
       key("diagnosis", or_null(diagnosis()),
           "of an arm that has no path by itself, as of [results](#diagnosis); else `null`"),
-      key("trajectory", or_null(rows()), "its rows; row k of both arms are simultaneous")};
+      key("trajectory", or_null(rows()), "its rows; row k of both arms are simultaneous"),
+      key("partial", rows(),
+          "where there is no path: valid rows from the first on; where time was up before a plan "
+          "was proved: the unproved rows; maybe none")};
   std::vector<Schema::Key> measures = measure_keys();
   for (Schema::Key& one : measures) one.group = "result";
   for (Schema::Key& one : last) one.group = "result";

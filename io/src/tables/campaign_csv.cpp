@@ -30,8 +30,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kHeader =
     "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_"
-    "mm_max,failed_s,cause,by,reason";
-constexpr std::size_t kColumns = 12;  // and one for each of the coordinates that vary
+    "mm_max,failed_s,cause,by,reason,checked";
+constexpr std::size_t kColumns = 13;  // and one for each of the coordinates that vary
 
 std::string milliseconds(double value) {
   std::array<char, 64> digits{};
@@ -126,12 +126,12 @@ std::optional<std::vector<std::string>> coordinates_of(std::string_view line) {
 }
 
 std::string csv_line(const EpisodeRow& row) {
-  std::string line = std::to_string(row.episode) + ',' + to_string(row.status) + ',' +
-                     csv_number(row.cost) + ',' + milliseconds(row.plan_ms) + ',' +
-                     std::to_string(row.nodes_checked) + ',' + std::to_string(row.fcl_calls) + ',' +
-                     csv_number(row.tool_path_error_mm_mean) + ',' +
-                     csv_number(row.tool_path_error_mm_max) + ',' + csv_number(row.failed_s) + ',' +
-                     row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason);
+  std::string line =
+      std::to_string(row.episode) + ',' + to_string(row.status) + ',' + csv_number(row.cost) + ',' +
+      milliseconds(row.plan_ms) + ',' + std::to_string(row.nodes_checked) + ',' +
+      std::to_string(row.fcl_calls) + ',' + csv_number(row.tool_path_error_mm_mean) + ',' +
+      csv_number(row.tool_path_error_mm_max) + ',' + csv_number(row.failed_s) + ',' + row.cause +
+      ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason) + ',' + csv_bool(row.checked);
   for (const double offset : row.offsets) line += ',' + csv_number(offset);
   return line + '\n';
 }
@@ -149,6 +149,7 @@ std::optional<EpisodeRow> episode_row(std::string_view line, std::size_t coordin
   row.cause = fields[9];
   row.by = fields[10];
   row.reason = fields[11];
+  read = read_field(fields[12], row.checked) && read;
   row.offsets.resize(coordinates);
   for (std::size_t k = 0; k < coordinates; ++k)
     read = read && read_field(fields[kColumns + k], row.offsets[k]);

@@ -12,8 +12,8 @@ namespace {
 constexpr const char *kBefore = "cell,x,y,z,roll,pitch,yaw",
                      *kAfter =
                          ",status,cost,clearance,clearance_margin,joint_margin,slide_margin,"
-                         "tool_speed,failed_s,cause,by,reason";
-constexpr std::size_t kColumnsBefore = 7, kColumnsAfter = 11;
+                         "tool_speed,failed_s,cause,by,reason,checked";
+constexpr std::size_t kColumnsBefore = 7, kColumnsAfter = 12;
 constexpr std::string_view kHold = "hold.";  // before the name of a joint
 
 }  // namespace
@@ -46,7 +46,7 @@ std::string csv_line(const PlacementRow& row) {
                             row.slide_margin, row.tool_speed, row.failed_s})
     text += ',' + csv_number(value);
   return text + ',' + row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason) +
-         '\n';
+         ',' + csv_bool(row.checked) + '\n';
 }
 
 std::optional<PlacementRow> placement_row(std::string_view line,
@@ -67,6 +67,7 @@ std::optional<PlacementRow> placement_row(std::string_view line,
   row.cause = *field++;
   row.by = *field++;
   row.reason = *field++;
+  read = read_field(*field++, row.checked) && read;
   return read ? std::optional(row) : std::nullopt;
 }
 

@@ -39,8 +39,13 @@ namespace swivel::io {
 [[nodiscard]] std::optional<PlacementRow> placement_row(std::string_view line,
                                                         const std::vector<std::string>& joints);
 
-/// Reads a field of a row: a finite number, a number that may be missing, or the status of a row.
-/// Returns false if the field is not that.
+/// Returns a field that says whether something is so; empty where that is not known.
+[[nodiscard]] inline std::string csv_bool(const std::optional<bool>& is) {
+  return !is ? "" : *is ? "true" : "false";
+}
+
+/// Reads a field of a row: a finite number, a number that may be missing, true or false or neither,
+/// or the status of a row. Returns false if the field is not that.
 template <class Number>
 bool read_field(const std::string& field, Number& number) {
   const auto read = to_number<Number>(field);
@@ -49,6 +54,10 @@ bool read_field(const std::string& field, Number& number) {
 }
 inline bool read_field(const std::string& field, std::optional<double>& number) {
   return field.empty() || read_field(field, number.emplace());
+}
+inline bool read_field(const std::string& field, std::optional<bool>& is) {
+  if (!field.empty()) is = field == "true";
+  return field.empty() || *is || field == "false";
 }
 inline bool read_field(const std::string& field, PlanStatus& status) {
   for (const PlanStatus known : {PlanStatus::kSolved, PlanStatus::kInfeasible, PlanStatus::kError})

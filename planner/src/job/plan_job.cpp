@@ -15,6 +15,7 @@
 #include "job/plan_lift_offs.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
+#include "plan/answer.hpp"
 #include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
@@ -197,8 +198,8 @@ class JobPlan {
     if (one_branch) hooks_.check = std::make_shared<KeepsBranch>(robot.srs());
   }
 
-  /// Searches for a job that costs less than `most_cost`. The result has no parts where there is
-  /// none; finish() completes it.
+  /// Searches for a job that costs less than `most_cost` and proves it. The result has no parts
+  /// where there is none, or where time ended its proof; finish() completes it.
   const JobResult& search(double most_cost) {
     const TraceSpan span("plan job");
     most_cost_ = most_cost;
@@ -212,27 +213,25 @@ class JobPlan {
       result_.time_ms["lattice"] = watch.lap();
       find();
       result_.time_ms["find"] = watch.lap();
+      if (!result_.parts.empty())
+        prove_answer(options_, budget_, result_, [&] {
+          require_passed(
+              check_job(robot_, job_, result_.parts, {.margins = false, .budget = budget_}));
+        });
     } catch (const Stopped&) {
-      stopped_ = result_.parts.empty();
-      if (stopped_) result_.status = stopped_status();
+      stopped_ = true;
+      result_.status = stopped_status(budget_);
     }
     return result_;
   }
-  /// Proves and measures the job that was found, or finds out why there is none.
+  /// Measures the job that was found, or finds out why there is none, as far as time allows.
   JobResult finish() {
     if (stopped_) return std::move(result_);
     try {
       Stopwatch watch;
-      if (options_.check && !result_.parts.empty()) {
-        require_passed(
-            check_job(robot_, job_, result_.parts, {.margins = false, .budget = budget_}));
-        result_.checked = true;
-        result_.time_ms["check"] = watch.lap();
-      }
       explain();
       result_.time_ms["report"] = watch.lap();
     } catch (const Stopped&) {
-      if (result_.parts.empty()) result_.status = stopped_status();
     }
     return std::move(result_);
   }
@@ -254,38 +253,32 @@ class JobPlan {
   }
 
  private:
-  [[nodiscard]] PlanStatus stopped_status() const {
-    return budget_.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
-  }
   [[nodiscard]] ParallelFor work() {
     return {executor_.threads(),
             [this](int parts, const auto& body) { executor_.for_each(parts, body); }};
   }
 
   void lay_out() {
+    require_joints_that_move(robot_, job_);
     require_home_within_limits();
     runs_ = shared_->in_order(order_, executor_);
     Problem between = runs_.front()->problem;
     between.limits = transition_limits_;
     transition_world_ = &shared_->world_of(transition_limits_, between);
-    collect_warnings();
+    describe();
   }
-  void collect_warnings() {
-    const auto add = [&](const std::vector<std::string>& lines) {
-      for (const std::string& line : lines)
-        if (std::find(result_.warnings.begin(), result_.warnings.end(), line) ==
-            result_.warnings.end())
-          result_.warnings.push_back(line);
-    };
-    add(limit_warnings(chain_));
-    add(held_warnings(result_.held));
-    add(file_warnings(*job_.model, chain_));
-    add(scale_warnings(chain_, job_));
+  /// Notes the warnings and the special pairs of all runs and of the transitions.
+  void describe() {
+    SpecialPairs pairs;
+    add_lines(robot_warnings(robot_, job_), result_.warnings);
     for (const auto& run : runs_) {
-      add(limit_scale_warnings(chain_, run->problem));
-      add(scale_warnings(chain_, run->path, job_.scene));
+      add_lines(path_warnings(robot_, run->problem, run->path, *run->world), result_.warnings);
+      pairs.add(*run->world);
     }
-    add(transition_world_->warnings());
+    add_lines(transition_world_->warnings(), result_.warnings);
+    pairs.add(*transition_world_);
+    result_.dropped_pairs = std::move(pairs.dropped);
+    result_.reduced_pairs = std::move(pairs.reduced);
   }
 
   /// Searches until the joints of the cheapest job keep their limits without jumps of whole turns:
@@ -310,12 +303,28 @@ class JobPlan {
       Lattice::Joints off = off_in_every_turn(parts, turns);
       if (off == Lattice::Joints{}) off = lift(parts, *runs_.front()->lattice, job_);
       if (off == Lattice::Joints{}) {
-        result_.status = outcome.decided ? PlanStatus::kSolved : stopped_status();
-        result_.parts = std::move(parts);
+        take(outcome, std::move(parts));
         return;
       }
       for (auto& run : runs_) run = shared_->with_lattice(*run, run->lattice->with_windings(off));
     }
+  }
+  /// Makes parts the answer, with what their rows cost. Parts that a search which was stopped found
+  /// are none; throws Stopped then.
+  void take(const JobOutcome& outcome, std::vector<JobPart> parts) {
+    std::size_t k = 0;
+    for (JobPart& part : parts) {
+      if (!part.run) continue;
+      result_.runs[k].lattice.cost = part.cost;
+      part.cost = cost_of_rows(*runs_[k]->lattice, paths_[k], part.rows, part.cost);
+      result_.cost += part.cost - result_.runs[k].lattice.cost;
+      ++k;
+    }
+    result_.status = PlanStatus::kSolved;
+    result_.parts = std::move(parts);
+    if (outcome.decided) return;
+    withdraw(result_);
+    throw Stopped();
   }
   /// Lets a joint be a circle in all runs or in none, since transitions lead from one to the next:
   /// a joint's largest move on a step, by which it can be a circle or not, may differ from stroke
@@ -411,19 +420,17 @@ class JobPlan {
     add_collision(transitions.counters());
     result_.bound = outcome.bound;
     result_.bound_any = outcome.bound_any;
-    result_.cost = outcome.paths.empty() ? 0 : outcome.cost;
+    result_.cost = result_.lattice_cost = outcome.paths.empty() ? 0 : outcome.cost;
     result_.runs.clear();
     for (std::size_t k = 0; k < runs_.size(); ++k) {
       RunResult run;
       run.run = runs_[k]->run;
-      run.lattice = runs_[k]->lattice->describe();
-      run.lattice.method = robot_.arm_class().method();
-      run.lattice.complete = robot_.arm_class().complete();
+      run.lattice = info_of(*runs_[k]->lattice, robot_.arm_class());
       if (k < outcome.least_costs.size()) {
         run.least_cost = outcome.least_costs[k];
         run.status = run.least_cost == kUnreachable ? PlanStatus::kInfeasible : PlanStatus::kSolved;
       } else {
-        run.status = stopped_status();
+        run.status = stopped_status(budget_);
       }
       result_.runs.push_back(std::move(run));
     }
@@ -544,7 +551,7 @@ class JobPlan {
   Hooks hooks_;
   Executor executor_;
   double most_cost_ = kUnreachable;
-  bool stopped_ = false;  // before there was a job or a verdict
+  bool stopped_ = false;  // before there was a proved job or a verdict
   const World* transition_world_ = nullptr;
   std::vector<std::shared_ptr<PlannedRun>> runs_;
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
@@ -610,10 +617,10 @@ class OrderSearch {
     const JobResult& found = plan->search(best_cost_);
     const std::optional<StrokeRun> impossible = impossible_run(found);
     add(found);
-    if (!best_ || (!found.parts.empty() && found.cost < best_cost_)) {
+    if (!best_ || (!found.parts.empty() && found.lattice_cost < best_cost_)) {
       best_ = plan;
       best_order_ = order;
-      if (!found.parts.empty()) best_cost_ = found.cost;
+      if (!found.parts.empty()) best_cost_ = found.lattice_cost;
     }
     planned_.push_back(order);
     return impossible;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "job/lift_search.hpp"
+#include "plan/answer.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -44,19 +45,22 @@ class LiftPlan {
     const bool cut = std::any_of(job_.strokes.begin(), job_.strokes.end(),
                                  [](const Stroke& stroke) { return stroke.piece.has_value(); });
     if (!job_.lift || cut || first.status != PlanStatus::kInfeasible) return first;
+    bool stopped = false;
     try {
       Stopwatch watch;
       if (!find_cuts(first)) return first;
       for (CutStroke& stroke : strokes_) choose(stroke);
       first.time_ms["lift"] = watch.lap();
     } catch (const Stopped&) {
-      if (!best_) {
-        first.status = budget_.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
-        first.runs.clear();
-        return first;
-      }
+      stopped = true;
     }
-    return best_ && !best_->parts.empty() ? finish(std::move(first)) : first;
+    if (best_ && !best_->parts.empty()) return finish(std::move(first));
+    if (stopped || (best_ && best_->status != PlanStatus::kInfeasible)) {
+      // Whether lift-offs suffice is not known.
+      first.status = stopped_status(budget_);
+      first.runs.clear();
+    }
+    return first;
   }
 
  private:
@@ -104,7 +108,8 @@ class LiftPlan {
     JobResult found = plan_(*job, view_ == nullptr ? nullptr : &view);
     add_counters(found.counters, counters_);
     const bool better =
-        !best_ || (!found.parts.empty() && (best_->parts.empty() || found.cost < best_->cost));
+        !best_ || (!found.parts.empty() &&
+                   (best_->parts.empty() || found.lattice_cost < best_->lattice_cost));
     if (better) {
       best_ = found;
       best_lift_offs_ = places;
@@ -130,8 +135,9 @@ class LiftPlan {
       if (found.parts.empty()) {
         ++failures;
       } else {
-        if (!rest) rest = alone ? 0 : found.cost - stroke.places.cost - detours(found, stroke);
-        if (found.cost < least) least = found.cost, kept = stroke.places;
+        const double cost = found.lattice_cost;
+        if (!rest) rest = alone ? 0 : cost - stroke.places.cost - detours(found, stroke);
+        if (cost < least) least = cost, kept = stroke.places;
       }
       if (faults.empty() || found.status == PlanStatus::kTimeout ||
           found.status == PlanStatus::kCancelled)
@@ -199,6 +205,7 @@ class LiftPlan {
     JobResult found = std::move(*best_);
     const double cost = static_cast<double>(best_lift_offs_.size()) * job_.lift->cost;
     found.cost += cost;
+    found.lattice_cost += cost;
     found.bound += cost;
     found.bound_any += cost;
     found.counters = first.counters;

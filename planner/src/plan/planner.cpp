@@ -10,6 +10,7 @@
 
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
+#include "plan/answer.hpp"
 #include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
@@ -98,44 +99,6 @@ bool may_tell_turns_apart(const Hooks& hooks) {
   return hooks.cost || (hooks.check && !keeps_branch);
 }
 
-LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {
-  LatticeInfo info = lattice.describe();
-  info.method = arm.method();
-  info.complete = arm.complete();
-  return info;
-}
-
-/// Returns the cost of the rows of a path whose nodes and edges cost `cost` in the lattice.
-double cost_of_rows(const Lattice& lattice, const SlotPath& path,
-                    const std::vector<TrajectoryRow>& rows, double cost) {
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const int layer = static_cast<int>(i);
-    cost -= lattice.edge_cost(
-        lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i])));
-  }
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
-  if (!lattice.has_node_costs()) return cost;
-  for (std::size_t i = 0; i < path.size(); ++i)
-    cost -= lattice.node_cost(static_cast<int>(i), path[i]);
-  const std::vector<double> shares = lattice.path_of_rows().shares();
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    cost += lattice.rounded_cost(lattice.cost().roll * shares[i] *
-                                 std::abs(wrap_angle(roll_of(lattice.chain(), rows[i]))));
-  return cost;
-}
-
-void list_special_pairs(const World& world, PlanResult& result) {
-  for (const RobotPair& p : world.robot_pairs())
-    if (p.dropped || p.reduced)
-      (p.dropped ? result.dropped_pairs : result.reduced_pairs)
-          .push_back({world.names(p.pair), p.median, p.required.node, p.required.motion});
-}
-
-PlanStatus stopped_status(const Budget& budget) {
-  return budget.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
-}
-
 bool same_pose(const Pose& a, const Pose& b) {
   return a.matrix() == b.matrix();
 }
@@ -208,8 +171,8 @@ struct Planner::Impl {
     [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
   std::unique_ptr<Layout> layout;
-  // warnings; kept, as a robot does not change
-  std::optional<std::vector<std::string>> scale_of_robot;
+  // robot_warnings(); kept, as a robot does not change
+  std::optional<std::vector<std::string>> of_robot;
   std::unique_ptr<CostToGo> recycled;  // of a lattice before this one, for its memory
   ClearanceMemory memory;              // depends on the lattice, the robot and the limits
   // What failed on the lattice before this one, with the same bodies.
@@ -249,6 +212,7 @@ struct Planner::Impl {
   }
   void attached_changed() {
     if (robot) last_robot = std::exchange(robot, nullptr);
+    of_robot.reset();
     world.reset();
     all_changed();
   }
@@ -323,8 +287,7 @@ struct Planner::Impl {
   void lay_out(bool told_apart, const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
-    if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain); !rest.empty())
-      throw InputError(rest);
+    require_joints_that_move(*robot, problem);
     if (layout && layout->turns_told_apart != told_apart) path_changed();
     if (!layout) layout = std::make_unique<Layout>(*robot, problem, told_apart, budget);
     layout->second.reset();
@@ -333,16 +296,14 @@ struct Planner::Impl {
     world_is_old = false;
     result.time_ms["world"] = watch.lap();
     result.held = robot->arm().held;
-    result.warnings = limit_warnings(robot->arm().chain);
-    if (!scale_of_robot) scale_of_robot = scale_warnings(robot->arm().chain, problem);
-    for (const auto& lines :
-         {held_warnings(result.held), file_warnings(*problem.model, robot->arm().chain),
-          *scale_of_robot, limit_scale_warnings(robot->arm().chain, problem),
-          scale_warnings(robot->arm().chain, layout->path, problem.scene)})
-      result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
-    result.warnings.insert(result.warnings.end(), world->warnings().begin(),
-                           world->warnings().end());
-    list_special_pairs(*world, result);
+    if (!of_robot) of_robot = robot_warnings(*robot, problem);
+    result.warnings = *of_robot;
+    for (std::string& line : path_warnings(*robot, problem, layout->path, *world))
+      result.warnings.push_back(std::move(line));
+    SpecialPairs pairs;
+    pairs.add(*world);
+    result.dropped_pairs = std::move(pairs.dropped);
+    result.reduced_pairs = std::move(pairs.reduced);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());
   }
   /// Searches the lattices of the task one after the other until one answers.
@@ -490,28 +451,16 @@ struct Planner::Impl {
       result.trajectory = lattice.path_rows(path);
       require_same_turns(lattice, result.trajectory, problem.source);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
-      if (lattice.is_approximate() || lattice.has_layers_between())
-        result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
+      result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();
-    if (options.check && result.status == PlanStatus::kSolved) {
-      check(budget, result);
-      result.time_ms["check"] = watch.lap();
-    }
+    if (result.status == PlanStatus::kSolved)
+      prove_answer(options, budget, result,
+                   [&] { check_answer(*world, *robot, problem, result.trajectory, budget); });
+    watch.lap();
     explain(rule, found, options, budget, result);
     result.time_ms["report"] = watch.lap();
-  }
-  /// Proves the trajectory. If that does not end in time, the trajectory is moved to `partial`,
-  /// since an unproved path is no answer; throws Stopped then.
-  void check(const Budget& budget, PlanResult& result) {
-    try {
-      check_answer(*world, *robot, problem, result.trajectory, budget);
-      result.checked = true;
-    } catch (const Stopped&) {
-      result.partial.swap(result.trajectory);
-      throw;
-    }
   }
   /// Computes the evidence and the diagnosis that the options ask for, as far as the budget allows.
   void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options,

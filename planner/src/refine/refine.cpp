@@ -448,6 +448,7 @@ std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobo
                                                               const Budget& budget) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
+  options.check = false;                               // a start of the refinement, not an answer
   options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
     budget.poll();
     // there is no path: why does not matter

@@ -239,6 +239,7 @@ struct PlacementPlanner::ProblemPlacements : Impl {
     row.status = result.status;
     if (result.status == PlanStatus::kSolved) {
       row.cost = result.cost;
+      row.checked = result.checked;
       if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
       if (result.nearest_slide_limit) row.slide_margin = result.nearest_slide_limit->margin;
       if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
@@ -310,6 +311,7 @@ struct PlacementPlanner::JobPlacements : Impl {
     row.status = result.status;
     if (result.status == PlanStatus::kSolved) {
       row.cost = result.cost;
+      row.checked = result.checked;
       for (const RunResult& run : result.runs) take_least(run.measures, row);
       return true;
     }
@@ -346,6 +348,7 @@ struct PlacementPlanner::WorkcellPlacements : Impl {
       return true;
     }
     row.cost = result.cost;
+    row.checked = result.checked;
     for (const PlanResult& arm : result.arms) take_least(arm, row);
     if (result.between_arms) take_least(*result.between_arms, row);
     return true;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "measure/measure_rows.hpp"
+#include "plan/answer.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/supported_options.hpp"
@@ -40,8 +41,7 @@ namespace {
 struct PlannedArm : ArmInCell {
   PlannedArm(const PreparedWorkcell& prepared, std::size_t arm, const Budget& budget)
       : ArmInCell(prepared, arm, budget) {
-    if (const std::string rest = joints_at_rest(*problem.model, robot.arm().chain); !rest.empty())
-      throw InputError(rest);
+    require_joints_that_move(robot, problem);
   }
   std::unique_ptr<CostToGo> cost_to_go;
   Executor alone{1};
@@ -95,29 +95,26 @@ class WorkcellPlan {
       result_.time_ms["lattice"] = watch.lap();
       search();
       result_.time_ms["search"] = watch.lap();
-      if (options_.check && !result_.arms[0].trajectory.empty()) {
-        require_passed(check_workcell(prepared_,
-                                      {result_.arms[0].trajectory, result_.arms[1].trajectory},
-                                      {.margins = false, .budget = budget_}));
-        result_.checked = true;
-        result_.time_ms["check"] = watch.lap();
-      }
+      if (!result_.arms[0].trajectory.empty())
+        prove_answer(options_, budget_, result_, [&] {
+          require_passed(check_workcell(prepared_,
+                                        {result_.arms[0].trajectory, result_.arms[1].trajectory},
+                                        {.margins = false, .budget = budget_}));
+        });
+      watch.lap();
       if (explained) {
         explain();
         result_.time_ms["report"] = watch.lap();
       }
       if (view_) give_view();
     } catch (const Stopped&) {
-      if (result_.arms[0].trajectory.empty()) result_.status = stopped_status();
+      if (result_.arms[0].trajectory.empty()) result_.status = stopped_status(budget_);
     }
     for (PlanResult& arm : result_.arms) arm.status = result_.status;
     return std::move(result_);
   }
 
  private:
-  [[nodiscard]] PlanStatus stopped_status() const {
-    return budget_.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
-  }
   [[nodiscard]] DistanceProofs distance_proofs() const {
     return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
   }
@@ -153,12 +150,13 @@ class WorkcellPlan {
     result.threads = result_.threads;
     result.joint_names = chain.joint_names;
     result.held = arm.robot.arm().held;
-    for (const auto& lines :
-         {limit_warnings(chain), held_warnings(result.held),
-          file_warnings(*arm.problem.model, chain), scale_warnings(chain, arm.problem),
-          limit_scale_warnings(chain, arm.problem),
-          scale_warnings(chain, arm.path, arm.problem.scene), arm.world.warnings()})
-      result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
+    result.warnings = robot_warnings(arm.robot, arm.problem);
+    for (std::string& line : path_warnings(arm.robot, arm.problem, arm.path, arm.world))
+      result.warnings.push_back(std::move(line));
+    SpecialPairs pairs;
+    pairs.add(arm.world);
+    result.dropped_pairs = std::move(pairs.dropped);
+    result.reduced_pairs = std::move(pairs.reduced);
   }
 
   /// Searches until the joints of both answers keep their limits without jumps of whole turns.
@@ -184,11 +182,18 @@ class WorkcellPlan {
       }
       if (tell_turns_apart(outcome)) continue;
       for (std::size_t k = 0; k < 2; ++k) {
-        result_.arms[k].trajectory = arms_[k]->lattice->path_rows(outcome.paths[k]);
-        result_.arms[k].cost = result_.arms[k].lattice.cost = outcome.costs[k];
+        const Lattice& lattice = *arms_[k]->lattice;
+        PlanResult& arm = result_.arms[k];
+        arm.trajectory = lattice.path_rows(outcome.paths[k]);
+        require_same_turns(lattice, arm.trajectory, arms_[k]->problem.source);
+        arm.lattice.cost = outcome.costs[k];
+        arm.cost = cost_of_rows(lattice, outcome.paths[k], arm.trajectory, outcome.costs[k]);
+        result_.cost += arm.cost - arm.lattice.cost;
       }
-      result_.status = outcome.decided() ? PlanStatus::kSolved : stopped_status();
-      return;
+      result_.status = PlanStatus::kSolved;
+      if (outcome.decided()) return;
+      withdraw(result_);
+      throw Stopped();
     }
   }
   [[nodiscard]] bool asks_moves() const {
@@ -253,9 +258,7 @@ class WorkcellPlan {
       sum.proved_free += collision.proved_free;
       sum.proved_colliding += collision.proved_colliding;
     }
-    result.lattice = arm.lattice->describe();
-    result.lattice.method = arm.robot.arm_class().method();
-    result.lattice.complete = arm.robot.arm_class().complete();
+    result.lattice = info_of(*arm.lattice, arm.robot.arm_class());
   }
   /// Notes where and by which bodies the arms bar each other on their cheapest paths, which meet in
   /// a region.

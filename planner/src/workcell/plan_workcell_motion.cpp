@@ -102,7 +102,9 @@ class AfterPlan {
       result.arms[k].trajectory = arm.rows;
       result.arms[k].cost = arm.cost;
     }
-    if (is_refined()) result.cost = plan_.refinement->cost;
+    if (!is_refined()) return;
+    result.refined = true;
+    result.cost = plan_.refinement->cost;
   }
 
   const PreparedWorkcell& prepared_;

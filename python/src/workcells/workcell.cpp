@@ -504,23 +504,23 @@ void bind_workcell(py::module_& m) {
   m.def(
       "plan_workcell",
       [](const WorkcellOrFile& workcell, const py::object& planner, int threads,
-         std::optional<double> timeout, bool evidence, const py::object& progress,
+         std::optional<double> timeout, bool prove, bool evidence, const py::object& progress,
          std::optional<double> speed, std::optional<double> turn_speed, std::optional<double> rate,
          bool refine) {
-        PlanOptions options = to_plan_options(planner, threads, timeout);
-        options.check = true;
+        PlanOptions options = to_plan_options(planner, threads, timeout, prove);
         if (evidence) options.evidence = Evidence::all();
         options.progress = to_progress(progress);
         return plan(workcell, options, timing_of(speed, turn_speed, rate), refine);
       },
       py::arg("workcell").none(false), py::kw_only(), py::arg("planner") = "parallel",
-      py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("evidence") = false,
-      py::arg("progress") = py::none(), py::arg("speed") = py::none(),
+      py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("prove") = true,
+      py::arg("evidence") = false, py::arg("progress") = py::none(), py::arg("speed") = py::none(),
       py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(), py::arg("refine") = false,
       "Plans two arms that work at one time: the cheapest two paths without conflict. No plan is a "
       "WorkcellPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops it.\n\n"
       "workcell: a Workcell, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
-      "for all cores. timeout: s, for everything. evidence: find all measures. progress(stage, "
+      "for all cores. timeout: s, for everything. prove: prove the answer before it is returned, "
+      "as check_workcell() does. evidence: find all measures. progress(stage, "
       "done, of): now and then. speed: m/s of the faster tool (a follower's on its leader's); "
       "makes "
       "a motion of both arms by one clock, with turn_speed (rad/s) and rate (samples a second, "

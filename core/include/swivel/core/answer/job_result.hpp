@@ -76,9 +76,12 @@ struct LiftOffResult : LiftOff {
 /// The result of planning a job.
 struct JobResult {
   PlanStatus status = PlanStatus::kInfeasible;
-  /// Cost of all parts: of the nodes of runs in their lattices, and of the joint moves of
-  /// transitions in the same metric; and of lift-offs.
+  /// Cost of all parts: of the rows of runs, and of the joint moves of transitions in the same
+  /// metric; and of lift-offs.
   double cost = 0;
+  /// Cost that the search minimised, to which the bounds compare: as `cost`, but of the nodes of
+  /// runs in their lattices, which their rows may miss by a little.
+  double lattice_cost = 0;
   /// No job in this order costs less, if its transitions are those that the planner finds.
   double bound = 0;
   /// No job in this order costs less, whatever its transitions. Both bounds are of jobs with the
@@ -87,9 +90,12 @@ struct JobResult {
   /// Where the tool lifts off within strokes: with_lift_offs() makes of these the job of which
   /// `parts` and `runs` are.
   std::vector<LiftOffResult> lift_offs;
-  /// Transitions and runs in the order in which they are executed: of the answer, or of
-  /// the cheapest job known where time was up; empty if there is none.
+  /// Transitions and runs of the answer in the order in which they are executed; empty unless
+  /// solved.
   std::vector<JobPart> parts;
+  /// Where time was up before an answer was proved: the parts of the cheapest job known, unproved,
+  /// with its cost in `cost`; maybe none.
+  std::vector<JobPart> partial;
   std::vector<RunResult> runs;                ///< in the order in which they are executed
   std::optional<NoTransition> no_transition;  ///< where there is no job for want of a transition
   std::string planner;

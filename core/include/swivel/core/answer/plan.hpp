@@ -176,6 +176,7 @@ struct SpecialPair {
   double median = 0;  ///< median clearance over sampled postures, m
   /// What the pair must keep on layers and between them, m.
   double clearance = 0, edge_clearance = 0;
+  bool operator==(const SpecialPair&) const = default;
 };
 
 /// How near the rows come to a joint's limit.
@@ -230,7 +231,7 @@ struct PlanResult : Measures {
   /// PlanOptions::check was given, and the trajectory and the motion made of it were verified.
   bool checked = false;
   /// Where there is no path: valid rows from the first layer on, as far as they are known; maybe
-  /// none.
+  /// none. Where time was up before a trajectory was proved: that trajectory.
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;
   std::vector<HeldJoint> held;  ///< joints between base and tip that are not planned

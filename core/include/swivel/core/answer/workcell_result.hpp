@@ -44,7 +44,7 @@ struct WorkcellResult {
   std::optional<std::size_t> given_arm;
   /// The plans of both arms: solved with trajectories whose rows are simultaneous, row by row.
   /// Where there is no plan, an arm that has no path by itself says why in its diagnosis. Where
-  /// time was up, the trajectories are those of the cheapest pair known, if any.
+  /// time was up before a pair was proved, `partial` of both has the cheapest pair known, if any.
   std::array<PlanResult, 2> arms;
   WorkcellSearch decided_by = WorkcellSearch::kNone;
   /// Where each arm has a path by itself and both together have none: the first conflict that was
@@ -57,6 +57,7 @@ struct WorkcellResult {
   int threads = 1;
   std::map<std::string, double> time_ms;  ///< by stage
   bool checked = false;                   ///< the trajectories were verified by check_workcell()
+  bool refined = false;                   ///< the trajectories are refined ones
   std::vector<std::string> warnings;
 };
 

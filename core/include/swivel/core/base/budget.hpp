@@ -22,6 +22,7 @@ enum class Stage {
   kSweep,      ///< computes the cost-to-go without obstacles
   kSearch,     ///< searches; counts the layers of the candidate path proved so far
   kReach,      ///< no path exists: seeks the deepest layer that one reaches
+  kProving,    ///< proves the answer that was found
   kMeasuring,  ///< measures the rows of the trajectory
   kDiagnosis,  ///< no path exists: finds out why
   /// Draws a map of the lattice.

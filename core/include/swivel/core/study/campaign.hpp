@@ -61,6 +61,7 @@ struct EpisodeRow {
   std::string by;     ///< what that cause is about, see subject_of()
   /// The cause in words, or the message of an internal error; empty when solved.
   std::string reason;
+  std::optional<bool> checked;  ///< whether the answer was proved; none unless solved
   std::vector<double> offsets;  ///< of the varied_coordinates(), m and rad
 
   EpisodeRow() = default;

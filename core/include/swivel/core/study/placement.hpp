@@ -145,7 +145,8 @@ struct PlacementRow {
   std::string cause;  ///< to_string(Cause::Kind) of what ends paths there; empty when solved
   /// What that cause is about, see subject_of(); empty where the cause says it all.
   std::string by;
-  std::string reason;  ///< the cause in words, or the message of an internal error
+  std::string reason;                ///< the cause in words, or the message of an internal error
+  std::optional<bool> checked = {};  ///< whether the answer was proved; none unless solved
 };
 
 /// Returns what a cause is about: the scene object, else the two bodies, else the joint, else the

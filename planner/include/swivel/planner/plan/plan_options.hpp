@@ -31,10 +31,12 @@ struct PlanOptions {
   std::optional<double> timeout_s;
   std::stop_token stop;                       ///< lets another thread stop the plan
   const std::atomic<bool>* cancel = nullptr;  ///< for signal handlers: stops the plan once true
-  /// Whether every trajectory (and motion) is proved as check_trajectory() does, within the
-  /// time-out, before it is returned. One that fails is a bug and throws std::logic_error; one that
-  /// is not proved in time is not returned as an answer.
-  bool check = false;
+  /// Whether every answer (trajectory, job, two arms, and the motion made of it) is proved as
+  /// check_trajectory(), check_job() and check_workcell() do, within the time-out, before it is
+  /// returned. One that fails is a bug and throws std::logic_error; one that is not proved in time
+  /// is not returned as an answer: its status is that of a plan which was stopped, and its rows are
+  /// in `partial`. An answer says whether it was proved (PlanResult::checked).
+  bool check = true;
   /// Whether FCL, behind bounding volumes, decides every clearance that the search asks about, as
   /// it always does for the eager planners: without closed forms, without Swivel's own triangle
   /// trees, and with nothing kept from one posture to the next. Depths of contact
