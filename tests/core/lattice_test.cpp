@@ -565,10 +565,11 @@ TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   EXPECT_GE(compared, at_least(51));
 }
 
-/// Straight from its definition: the tool at a quarter, a half and three quarters of the move.
+/// Straight from the definition: the tool at a quarter, a half and three quarters of the move, and
+/// the segment of its step.
 TEST(Lattice, DeviationsFromThePathAreThoseOfTheTool) {
   Random random(seed("Lattice.Deviations"));
-  int compared = 0;
+  int compared = 0, beyond = 0;  // `beyond`: the tool is beyond an end of its step
   double largest = 0;
   for (const TestRobot& robot : all_robots())
     for (int trial = 0; trial < trials(50); ++trial) {
@@ -586,11 +587,21 @@ TEST(Lattice, DeviationsFromThePathAreThoseOfTheTool) {
         for (std::size_t k = 0; k < 3; ++k) {
           const double t = 0.25 * static_cast<double>(k + 1);
           const Pose tool = chain.tool(q0 + t * delta);
-          const Vector3d direction = (end - start).normalized(), d = tool.translation() - start;
-          const double fraction = std::clamp(d.dot(direction) / (end - start).norm(), 0.0, 1.0);
-          EXPECT_NEAR(position[k], d.cross(direction).norm(), 1e-12) << robot.name;
+          const Vector3d p = tool.translation(), way = end - start;
+          const auto off = [&](double share) { return (p - start - share * way).norm(); };
+          const double foot = std::clamp((p - start).dot(way) / way.squaredNorm(), 0.0, 1.0);
+          EXPECT_NEAR(position[k], off(foot), 1e-12) << robot.name;
+          beyond += off(foot) > (p - start).cross(way.normalized()).norm() + 1e-9;
+          // The share nearest to t whose place is as near to the tool as any, to 10 um.
+          double share = t;
+          if (off(t) > off(foot) + 1e-5) {
+            double far = t, near = foot;
+            for (int halving = 0; halving < 60; ++halving)
+              (off((far + near) / 2) > off(foot) + 1e-5 ? far : near) = (far + near) / 2;
+            share = near;
+          }
           EXPECT_NEAR(angle[k],
-                      Quaterniond(path.at(layer, fraction).linear())
+                      Quaterniond(path.at(layer, share).linear())
                           .angularDistance(Quaterniond(tool.linear())),
                       1e-7)
               << robot.name;
@@ -599,7 +610,8 @@ TEST(Lattice, DeviationsFromThePathAreThoseOfTheTool) {
         }
       }
     }
-  std::printf("%d deviations, up to %.3f m\n", compared, largest);
+  std::printf("%d deviations, up to %.3f m, %d beyond the step\n", compared, largest, beyond);
+  EXPECT_GE(beyond, at_least(100));
   EXPECT_GE(compared, at_least(1001));
 }
 

@@ -8,6 +8,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/equations/pose_error_bound.hpp"
+#include "swivel/core/lattice/places_near.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -35,7 +36,7 @@ bool within(const Config& delta, const Config& bound) {
   return true;
 }
 
-/// The straight line of the tool's origin from a layer to the next; a point if the two coincide.
+/// The straight segment of the tool's origin from a layer to the next; a point if the two coincide.
 class Step {
  public:
   Step(const ToolPath& path, int layer) : start_(path.layer(layer).tool.translation()) {
@@ -43,15 +44,17 @@ class Step {
     length_ = along.norm();
     if (length_ >= kShortest) direction_ = along / length_;
   }
-  /// Returns the distance of a point from the line, m.
+  /// Returns the distance of a point from the segment, m.
   [[nodiscard]] double aside(const Vector3d& p) const {
     const Vector3d d = p - start_;
-    return (d - d.dot(direction_) * direction_).norm();
+    return (d - std::clamp(d.dot(direction_), 0.0, length_) * direction_).norm();
   }
-  /// Returns where on the step the foot of a point lies, 0 to 1; nothing if the step has no length.
-  [[nodiscard]] std::optional<double> fraction(const Vector3d& p) const {
-    if (length_ < kShortest) return std::nullopt;
-    return std::clamp((p - start_).dot(direction_) / length_, 0.0, 1.0);
+  /// Returns the share of the step, 0 to 1, at which the path is compared with a tool that is at a
+  /// point at the share t of its move: t, or the share nearest to t whose place is as near to the
+  /// point as any (places_near()).
+  [[nodiscard]] double share(const Vector3d& p, double t) const {
+    const Shares near = places_near(start_, length_ * direction_, p, aside(p));
+    return std::clamp(t, near.low, near.high);
   }
 
  private:
@@ -125,7 +128,8 @@ std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPat
     if (chain.roll)
       bounds[static_cast<std::size_t>(i)][kDof - 1] = roll_step_bound(path, i, limits, resolution);
     double dt = 0;
-    if (limits.tool_speed) dt = std::max(dt, layer.step_length / *limits.tool_speed);
+    if (limits.tool_speed && !turns_on_the_spot(layer))
+      dt = std::max(dt, layer.step_length / *limits.tool_speed);
     if (limits.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits.tool_turn_speed);
     if (dt <= 0) continue;  // the given speed says nothing of the duration of this step
     for (int k = 0; k < kDof; ++k) {
@@ -291,7 +295,7 @@ class QuartersOfMove {
 double angle_deviation_at(const Chain& chain, const ToolPath& path, int layer, const Step& step,
                           const Config& q0, const Config& delta, double t) {
   const Pose tool = chain.tool(q0 + t * delta);
-  const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
+  const Pose asked = path.at(layer, step.share(tool.translation(), t));
   // For a tool that may turn about its z axis, only the angle between the z axes counts.
   return chain.tool_may_turn()
              ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),

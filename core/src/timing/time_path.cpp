@@ -746,9 +746,9 @@ class Samples {
       const Pose tool = arm.motion->chain().tool((out.rows[k - 1].row.q + out.rows[k].row.q) / 2);
       const Pose there = tool_at(arm, middle);
       Vector3d off = tool.translation() - there.translation();
-      // The part along the path only shifts the time.
+      // The part along the path only shifts the time, between the samples at both ends.
       const Vector3d way = tool_[m][k].translation() - tool_[m][k - 1].translation();
-      if (way.norm() > 1e-12) off -= off.dot(way) / way.squaredNorm() * way;
+      if (way.norm() > 1e-12) off -= std::clamp(off.dot(way) / way.squaredNorm(), -0.5, 0.5) * way;
       strayed[k] = off.norm();
       out.between_position = std::max(out.between_position, strayed[k]);
       out.between_angle = std::max(out.between_angle, angle_between(tool, there));

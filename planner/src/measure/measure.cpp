@@ -12,6 +12,7 @@
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/lattice/places_near.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -97,8 +98,9 @@ std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& p
   double speed = std::numeric_limits<double>::infinity();
   std::size_t row = 0, joint = 0;
   for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
-    const double length = path.layer(static_cast<int>(i)).step_length;
-    if (length <= 0) continue;  // a turn in place bounds no speed
+    const PathLayer& step = path.layer(static_cast<int>(i));
+    const double length = step.step_length;
+    if (length <= 0 || turns_on_the_spot(step)) continue;  // bounds no speed
     for (std::size_t k = 0; k < joints; ++k) {
       const double velocity = chain.limit[k].velocity;
       if (velocity <= 0) return std::nullopt;

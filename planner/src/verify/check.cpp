@@ -15,6 +15,7 @@
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/places_near.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -65,7 +66,8 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain,
   std::vector<Config> allowed{Config::Zero()};
   for (int i = 0; i + 1 < path.size(); ++i) {
     double dt = 0;
-    if (limits.tool_speed) dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
+    if (limits.tool_speed && !turns_on_the_spot(path.layer(i)))
+      dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
     if (limits.tool_turn_speed)
       dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
     Config bound = joint_steps(chain, limits);

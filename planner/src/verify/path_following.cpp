@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swivel/core/lattice/places_near.hpp"
+
 namespace swivel {
 
 namespace {
@@ -133,7 +135,7 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
   const double parts2 = std::max(chord.position / std::max(0.01 * tolerance.position, kForgiven),
                                  chord.angle / std::max(0.01 * tolerance.angle, kForgiven));
   const auto parts = static_cast<int>(
-      std::clamp(std::ceil(std::sqrt(parts2)), static_cast<double>(fewest), kMost));
+      std::clamp(fewest * std::ceil(std::sqrt(parts2) / fewest), 1.0 * fewest, kMost));
   ToolMotion motion;
   motion.error = {chord.position / parts / parts, chord.angle / parts / parts};
   motion.poses.push_back(ends[0]);
@@ -190,34 +192,56 @@ std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double
 
 PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin,
                                double end) {
-  const std::size_t count = motion.poses.size();
-  std::vector<PoseDistance> least(count);
+  const auto travel_at = [&](double place) {
+    const int layer = std::min(static_cast<int>(std::floor(place)), path.size() - 2);
+    const double from = path.layer(layer).travel;
+    return from + (place - layer) * (path.layer(layer + 1).travel - from);
+  };
+  /// A straight piece of the path, and the travel at its ends, m.
+  struct Stretch {
+    Pose start;
+    Vector3d along, turn;
+    double from, to;
+    [[nodiscard]] double distance(const Vector3d& p) const {
+      const Vector3d d = p - start.translation();
+      const double length2 = along.squaredNorm();
+      const double u = length2 > 1e-18 ? std::clamp(d.dot(along) / length2, 0.0, 1.0) : 0;
+      return (d - u * along).norm();
+    }
+  };
+  std::vector<Stretch> stretches;
   for (Pieces piece(path, begin); piece.next() && (piece.from() < end || piece.from() == begin);) {
     const double last = std::min(1.0, (end - piece.from()) / (piece.to() - piece.from()));
-    const Vector3d start = piece.start().translation(), along = piece.end().translation() - start;
-    const Vector3d turn = rotation_between(piece.start(), piece.end());
-    for (std::size_t m = 0; m < count; ++m) {
-      const Pose& tool = motion.poses[m];
-      const Vector3d offset = tool.translation() - start,
-                     rotation = rotation_between(piece.start(), tool);
-      // If the path only turns, the nearest point is the one of the nearest orientation.
-      const double length2 = along.squaredNorm(), angle2 = turn.squaredNorm();
-      double u = 0;
-      if (length2 > 1e-18)
-        u = offset.dot(along) / length2;
-      else if (angle2 > 0)
-        u = rotation.dot(turn) / angle2;
-      u = std::clamp(u, 0.0, last);
-      const PoseDistance here{(offset - u * along).norm(), (rotation - u * turn).norm()};
-      if (here.position < least[m].position - 1e-12 ||
-          (here.position < least[m].position + 1e-12 && here.angle < least[m].angle))
-        least[m] = here;
-    }
+    stretches.push_back({piece.start(),
+                         last * (piece.end().translation() - piece.start().translation()),
+                         last * rotation_between(piece.start(), piece.end()),
+                         travel_at(piece.from()), travel_at(std::min(end, piece.to()))});
   }
   PoseDistance worst{0, 0};
-  for (const PoseDistance& pose : least) {
-    worst.position = std::max(worst.position, pose.position);
-    worst.angle = std::max(worst.angle, pose.angle);
+  const double first = travel_at(begin), way = travel_at(end) - first;
+  for (std::size_t m = 0; m < motion.poses.size(); ++m) {
+    const Pose& tool = motion.poses[m];
+    double least = std::numeric_limits<double>::infinity();
+    for (const Stretch& stretch : stretches)
+      least = std::min(least, stretch.distance(tool.translation()));
+    // Of the places as near as any, the one nearest in travel to what the motion has made by then.
+    const double travel =
+        first + way * static_cast<double>(m) / static_cast<double>(motion.poses.size() - 1);
+    double gap = std::numeric_limits<double>::infinity(), angle = 0;
+    for (const Stretch& stretch : stretches) {
+      if (stretch.distance(tool.translation()) > least + kAsNear) continue;
+      const Shares near =
+          places_near(stretch.start.translation(), stretch.along, tool.translation(), least);
+      const double length = stretch.to - stretch.from,
+                   u = std::clamp(length > 0 ? (travel - stretch.from) / length : 0, near.low,
+                                  near.high),
+                   off = std::abs(stretch.from + u * length - travel);
+      if (off >= gap) continue;
+      gap = off;
+      angle = (rotation_between(stretch.start, tool) - u * stretch.turn).norm();
+    }
+    worst.position = std::max(worst.position, least);
+    worst.angle = std::max(worst.angle, angle);
   }
   return worst;
 }

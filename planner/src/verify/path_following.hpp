@@ -24,8 +24,8 @@ struct ToolMotion {
 };
 /// Returns the tool's motion during a joint-linear move, cut so finely that the error stays below 1
 /// % of the tolerance, or 1e-6 m and rad, with at most 2,048 parts. `ends` are the tool's poses at
-/// both ends; `fewest` is the least number of parts. At both ends `rolls`, rad, turn the tool about
-/// its own z axis; they are interpolated in between and already contained in `ends`.
+/// both ends; there are `fewest` parts, or a multiple of it. At both ends `rolls`, rad, turn the
+/// tool about its own z axis; they are interpolated in between and already contained in `ends`.
 [[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
                                      const std::array<Pose, 2>& ends, const PoseDistance& tolerance,
                                      int fewest = 4, const std::array<double, 2>& rolls = {});
@@ -44,7 +44,9 @@ struct ToolMotion {
                                         const PoseDistance& between, const PoseDistance& waypoints);
 
 /// Returns the largest distance of the motion's poses from the path between two places, and the
-/// largest angle at the nearest points.
+/// largest angle to the path. Among the places of the path that are as near to a pose as any
+/// (core's places_near.hpp), the angle is taken at the one nearest in travel to what the motion
+/// would have made by then at an even speed, as on steps of the lattice.
 [[nodiscard]] PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path,
                                              double begin, double end);
 

@@ -346,15 +346,16 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
                                      const Resolution& resolution);
 
 /// Returns the distance of the tool from its straight step at t = 1/4, 1/2 and 3/4 of a
-/// joint-linear move from q0 by `delta` (rad), m. The step leads from `layer` of the path to the
-/// next.
+/// joint-linear move from q0 by `delta` (rad), m. The step is the segment that leads from `layer`
+/// of the path to the next: a tool that moves out beyond one of its ends is off the path.
 [[nodiscard]] std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path,
                                                    int layer, const Config& q0,
                                                    const Config& delta);
 /// Returns the angle between the tool and the path at t = 1/4, 1/2 and 3/4 of a joint-linear move
-/// from q0 by `delta`, rad. The path is taken at the foot of the tool's origin on the straight
-/// step, or at t if the step has no length. For a tool that may turn about its z axis only the
-/// angle between the z axes counts.
+/// from q0 by `delta`, rad. Among the places of the straight step that are as near to the tool's
+/// origin as any (places_near()), the path is taken at the one whose share of the step is nearest
+/// to t: at t itself where the step has next to no length. For a tool that may turn about its z
+/// axis only the angle between the z axes counts.
 [[nodiscard]] std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path,
                                                     int layer, const Config& q0,
                                                     const Config& delta);
