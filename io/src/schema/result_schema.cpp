@@ -53,8 +53,10 @@ Schema cause() {
               "them"),
           key("check", or_null(text()), "its name"),
           key("by", or_null(number()),
-              "how much is missed at the node or motion that misses least; `null` where it was not "
-              "measured",
+              "how much is missed at the node or motion that misses least, or, by a joint that "
+              "leaves its range on the way, where it would be furthest outside before it came "
+              "back; "
+              "`null` where it was not measured",
               "`unit`"),
           key("value", or_null(number()),
               "what was found there; of two bodies less than zero: how deep they are in each other",

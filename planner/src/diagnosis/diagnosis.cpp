@@ -250,30 +250,43 @@ class Inspector {
     return of_kind(singular ? Cause::Kind::kSingular : Cause::Kind::kReach);
   }
 
-  /// Returns the joint limit that the shortest continuation of q into the next layer exceeds the
-  /// most; none if it exceeds none or does not converge.
+  /// Follows the path from joints `q` of a layer as if joints had no limits, by the shortest moves
+  /// and with the roll at rest. Returns the joint limit that the move to the next layer exceeds the
+  /// most, with the furthest that its joint gets beyond it before it comes back or the path ends;
+  /// none if the move exceeds no limit, is larger than a step may be, or does not converge.
   std::optional<Cause> limit_ahead(int layer, Config q) {
     const Chain& chain = lattice_.chain();
-    const Pose& pose = lattice_.path().layer(layer + 1).tool;
-    constexpr int kMostSteps = 20;
-    double residual = 1;
-    for (int step = 0; step < kMostSteps && residual > 1e-9; ++step) {
-      const Pose reached = chain.tool(q);
-      const Eigen::AngleAxisd turn(pose.linear() * reached.linear().transpose());
-      Eigen::Matrix<double, 6, 1> error;
-      error << pose.translation() - reached.translation(), turn.angle() * turn.axis();
-      residual = error.norm();
-      const auto jacobian = chain.jacobian(q);
-      // minimum norm
-      q += jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error);
-    }
+    const ToolPath& path = lattice_.path_of_rows();
+    const Config steps = joint_steps(chain, lattice_.limits());
+    const int first = lattice_.layer_of_rows(layer), next = lattice_.layer_of_rows(layer + 1);
+    const double roll = chain.free_roll ? roll_between(path.layer(first).tool, chain.tool(q)) : 0.0;
     std::optional<Cause> worst;
-    for (int k = 0; residual <= 1e-9 && k < kDof; ++k) {
-      if (lattice_.continuous()[static_cast<std::size_t>(k)]) continue;
-      const Cause cause = constraints_.measured(constraints_.limit_beyond(k, q), layer + 1, q);
-      const double beyond = cause.side == Cause::Side::kUpper ? *cause.value - *cause.limit
-                                                              : *cause.limit - *cause.value;
-      if (beyond > 0 && (!worst || beyond > *worst->by())) worst = cause;
+    int constraint = -1;
+    for (int i = first + 1; i < path.size() && (worst || i <= next); ++i) {
+      budget_.poll();
+      constraints_.count_nodes(10);
+      Config to = q;
+      if (!put_tool_at(rolled(path.layer(i).tool, roll), path.layer(i).window, to) ||
+          !((to - q).cwiseAbs().array() <= steps.array()).all())
+        break;
+      if (i == next && !lattice_.has_layers_between() &&
+          !lattice_.row_step_allowed(layer, lattice_.delta(q, to)))
+        break;
+      q = to;
+      if (worst) {
+        const Cause here = constraints_.measured(constraint, i, q);
+        if (!is_beyond(here)) break;
+        if (*here.by() > *worst->by()) worst->value = here.value;
+        continue;
+      }
+      for (int k = 0; k < kDof; ++k) {
+        if (lattice_.continuous()[static_cast<std::size_t>(k)]) continue;
+        const int limit = constraints_.limit_beyond(k, q);
+        const Cause cause = constraints_.measured(limit, i, q);
+        if (is_beyond(cause) && (!worst || *cause.by() > *worst->by()))
+          worst = cause, constraint = limit;
+      }
+      if (worst) worst->unwinds = has_a_turn(constraint / 2);
     }
     return worst;
   }
@@ -338,6 +351,40 @@ class Inspector {
   }
 
  private:
+  /// Returns true if the range of joint k holds every angle of a turn, so that a joint at one of
+  /// its ends may go on from the other.
+  [[nodiscard]] bool has_a_turn(int k) const {
+    constexpr double kSliver = 1e-3;  // rad
+    const JointLimit& limit = lattice_.chain().limit[static_cast<std::size_t>(k)];
+    return !limit.slides &&
+           limit.upper - limit.lower - 2 * lattice_.limits().joint_margin >= kTwoPi - kSliver;
+  }
+  /// Returns true if the joint of a limit is beyond it.
+  static bool is_beyond(const Cause& limit) {
+    return (limit.side == Cause::Side::kUpper ? *limit.value - *limit.limit
+                                              : *limit.limit - *limit.value) > kLimitTolerance;
+  }
+  /// Moves joints q by Newton steps of minimum norm until the tool is at a pose. The roll of an arm
+  /// of six joints rests, but for what its window demands. Returns false if that does not converge.
+  [[nodiscard]] bool put_tool_at(const Pose& pose, const Roll& window, Config& q) const {
+    const Chain& chain = lattice_.chain();
+    if (chain.roll) q[kDof - 1] = std::clamp(q[kDof - 1], window.lower, window.upper);
+    constexpr int kMostSteps = 20;
+    constexpr double kThere = 1e-9;  // m and rad
+    for (int step = 0; step <= kMostSteps; ++step) {
+      const Pose reached = chain.tool(q);
+      const Eigen::AngleAxisd turn(pose.linear() * reached.linear().transpose());
+      Eigen::Matrix<double, 6, 1> error;
+      error << pose.translation() - reached.translation(), turn.angle() * turn.axis();
+      if (error.norm() <= kThere) return true;
+      Eigen::Matrix<double, 6, kDof> jacobian = chain.jacobian(q);
+      if (chain.roll) jacobian.col(kDof - 1).setZero();
+      q += jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error);
+      if (!q.allFinite()) return false;
+    }
+    return false;
+  }
+
   /// Lists the nodes of a layer that have an exact configuration, with its joints.
   void rows_of(int layer, std::vector<Lattice::Node>& out) {
     lattice_.layer_nodes(layer, out);
@@ -435,6 +482,7 @@ class Diagnoser {
     }
     if (!empty_ && !answered_)
       diagnosis_.cause = edges_.empty() ? of_kind(Cause::Kind::kArmSlope) : edges_.most_frequent();
+    find_joint_out_of_range();
     diagnosis_.layers_known = next_ + 1;
     diagnosis_.complete = !layers || list_layers();
   }
@@ -490,12 +538,31 @@ class Diagnoser {
     } else if (empty_) {
       diagnosis_.cause = *empty_;
     }
-    // No node is listed that continues the path.
-    if (!diagnosis_.without_it && deepest_ >= 0 && !lattice_.is_given(next_) &&
-        lattice_.neighbour_along_path(deepest_, path_.back(), 1) < 0)
-      if (const auto limit =
-              inspector_.limit_ahead(deepest_, *lattice_.exact_config(deepest_, path_.back())))
-        diagnosis_.cause = *limit, answered_ = true;
+  }
+
+  /// Names the joint that runs out of its range where the path ends, if one does, in place of a
+  /// limit on steps: such a limit only keeps the arm from jumping to other turns or to another
+  /// solution. That joint also is the cause where no node is listed that continues the path.
+  void find_joint_out_of_range() {
+    if (diagnosis_.without_it && !bounds_steps(diagnosis_.cause.kind)) return;
+    if (deepest_ < 0 || lattice_.is_given(next_)) return;
+    if (!bounds_steps(diagnosis_.cause.kind) &&
+        lattice_.neighbour_along_path(deepest_, path_.back(), 1) >= 0)
+      return;
+    const auto limit =
+        inspector_.limit_ahead(deepest_, *lattice_.exact_config(deepest_, path_.back()));
+    if (!limit) return;
+    diagnosis_.cause = *limit;
+    diagnosis_.without_it.reset();
+    diagnosis_.without_it_s.reset();
+    diagnosis_.together.clear();
+  }
+
+  /// Returns true for the limits on how far joints and tool go astray in one step.
+  static bool bounds_steps(Cause::Kind kind) {
+    return kind == Cause::Kind::kJointStep || kind == Cause::Kind::kSpeed ||
+           kind == Cause::Kind::kPathError || kind == Cause::Kind::kAngleError ||
+           kind == Cause::Kind::kStepError;
   }
 
   /// Lists what removes nodes and edges behind the furthest layer, and the layers without a valid
