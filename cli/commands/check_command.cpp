@@ -151,6 +151,11 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
     throw InputError(arguments.certificate, "stroke: '" + certificate.stroke +
                                                 "' is none of the job: allowed are the names of "
                                                 "its strokes");
+  if (job.strokes[*stroke].reversible)
+    throw InputError(arguments.certificate,
+                     "stroke: '" + certificate.stroke +
+                         "' is reversible, and a certificate is of one direction: allowed are "
+                         "strokes that are not reversible");
   const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
   return run_on_certificate(
       problem, certificate,

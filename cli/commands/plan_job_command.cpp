@@ -78,10 +78,17 @@ void find_certificate(const Job& job, const JobView& view, const Budget& budget,
                                   : "each stroke has a path by itself: there is no certificate");
     return;
   }
+  const Stroke& stroke = job.strokes[run->run.stroke];
+  if (stroke.reversible) {
+    result.warnings.push_back("stroke '" + stroke.name +
+                              "' is reversible, and a certificate is of one direction: there is "
+                              "none; allowed are strokes that are not reversible");
+    return;
+  }
   try {
     const auto index = static_cast<std::size_t>(run - result.runs.begin());
     answer.proof = prove_infeasible(view.runs.at(index), budget);
-    answer.proof->stroke = job.strokes[run->run.stroke].name;
+    answer.proof->stroke = stroke.name;
     answer.proof->reversed = run->run.reversed;
     answer.certificate = io::to_json(*answer.proof);
   } catch (const Stopped&) {

@@ -175,6 +175,17 @@ class Jobs(WithFolder):
             done = run("check", *arguments, "--certificate", proof)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(needle, done.stderr)
+        # of a stroke that may run either way, a proof of one direction is none
+        proof.write_text(proof.read_text().replace('"middle"', '"right"'))
+        job["strokes"][1]["reversible"] = True
+        done = run("check", self.file(job), "--certificate", proof)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("'right' is reversible, and a certificate is of one direction", done.stderr)
+        done, _, result = self.plan(job, "--certificate", proof)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("\n  stroke 'right', which has no path backwards either: ", done.stdout)
+        self.assertRegex(" ".join(result["warnings"]), "'right' is reversible, and a certificate")
+        self.assertFalse(proof.exists())
         done = run("plan", file, "--certificate", proof, "--speed", 0.1)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--certificate: is of the job as its file has it", done.stderr)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Jobs of several runs against a plain program over all nodes of all runs and all transitions.
+// Jobs of several strokes, some with two runs of which the job takes one, against a plain program
+// over all nodes of all runs and all transitions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,8 +90,9 @@ class FakeTransitions : public Transitions {
   double barred_, without_way_, nodes_barred_;
 };
 
-/// A random job: its lattices with what chance says of them.
+/// A random job: the lattices of its runs with what chance says of them.
 struct RandomJob {
+  std::vector<std::vector<std::size_t>> strokes;  // their runs: indices of lattices
   std::vector<std::unique_ptr<ToolPath>> paths;
   std::vector<std::unique_ptr<Lattice>> lattices;
   std::vector<std::unique_ptr<ChanceValidity>> validities;
@@ -117,12 +119,16 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
                      bool closed, Random& random) {
   RandomJob job;
   const std::uint64_t base = static_cast<std::uint64_t>(random.uniform(0, 1e15));
-  const int runs = 1 + random.below(grids ? 3 : 5);
+  const int strokes = 1 + random.below(grids ? 3 : 5);
+  job.strokes.resize(static_cast<std::size_t>(strokes));
+  std::size_t runs = 0;
+  for (auto& stroke : job.strokes)
+    for (int k = random.coin(0.3) ? 2 : 1; k > 0; --k) stroke.push_back(runs++);
   const double nodes_fail = random.coin(0.3) ? 0 : random.uniform(0, 0.4),
                edges_fail = random.coin(0.3) ? 0 : random.uniform(0, 0.4),
                cost = !closed && random.coin(0.3) ? random.uniform(0, 0.5) : 0;
   const Config q0 = random_config(arm.chain, random);
-  for (int k = 0; k < runs; ++k) {
+  for (std::size_t k = 0; k < runs; ++k) {
     Problem problem = problem_for(robot);
     Config q = q0;
     for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.5, 0.5);
@@ -145,9 +151,8 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
       job.lattices.push_back(std::make_unique<SrsLattice>(arm.chain, srs, path, problem));
     else
       job.lattices.push_back(random_list(arm.chain, path, problem, q0, random));
-    job.validities.push_back(std::make_unique<ChanceValidity>(
-        *job.lattices.back(), base + static_cast<std::uint64_t>(10 * k), nodes_fail, edges_fail,
-        cost));
+    job.validities.push_back(std::make_unique<ChanceValidity>(*job.lattices.back(), base + 10 * k,
+                                                              nodes_fail, edges_fail, cost));
   }
   const double barred = random.coin(0.3) ? 0 : random.uniform(0, 0.9);
   const double without_way = random.coin(0.2) ? barred : barred * 0.2,
@@ -204,57 +209,62 @@ std::vector<double> plain_loops(const Lattice& lattice, const ChanceValidity& va
 /// cost what `transition(k, from, to)` says. Sets `alone` to the least costs of the runs alone.
 template <class Cost>
 double plain_cost(const RandomJob& job, const Cost& transition, std::vector<double>& alone) {
-  const int runs = static_cast<int>(job.lattices.size());
+  const int strokes = static_cast<int>(job.strokes.size());
   alone.assign(job.lattices.size(), kUnreachable);
   std::vector<Lattice::Node> begins;  // of the run after
   std::vector<double> rest;
   if (job.home) begins = {{0, *job.home}}, rest = {0};
   std::vector<Lattice::Node> nodes, next;
-  for (int k = runs - 1; k >= 0; --k) {
-    const Lattice& lattice = *job.lattices[static_cast<std::size_t>(k)];
-    const ChanceValidity& validity = *job.validities[static_cast<std::size_t>(k)];
+  for (int k = strokes - 1; k >= 0; --k) {
     const auto onward = [&](const Config& q) {
-      double least = k + 1 == runs && !job.home ? 0 : kUnreachable;
+      double least = k + 1 == strokes && !job.home ? 0 : kUnreachable;
       for (std::size_t f = 0; f < begins.size(); ++f)
         least = std::min(least, transition(k + 1, q, begins[f].q) + rest[f]);
       return least;
     };
-    std::vector<double> values, own, after, after_own;
-    for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
-      lattice.layer_nodes(layer, nodes);
-      values.assign(nodes.size(), kUnreachable);
-      own = values;
-      for (std::size_t a = 0; a < nodes.size(); ++a) {
-        if (!validity.node(layer, nodes[a].slot)) continue;
-        const double cost = validity.cost(layer, nodes[a].slot);
-        if (layer + 1 == lattice.layers()) {
-          own[a] = cost;
-          values[a] = cost + onward(nodes[a].q);
-          continue;
-        }
-        for (std::size_t b = 0; b < next.size(); ++b) {
-          const Config delta = lattice.delta(nodes[a].q, next[b].q);
-          if (!lattice.in_window(layer, nodes[a].slot, next[b].slot) ||
-              !lattice.step_allowed(layer, delta) ||
-              (validity.asks_edges() && !validity.edge(layer, nodes[a].slot, next[b].slot)))
+    std::vector<Lattice::Node> begins_here;
+    std::vector<double> rest_here;
+    for (const std::size_t run : job.strokes[static_cast<std::size_t>(k)]) {
+      const Lattice& lattice = *job.lattices[run];
+      const ChanceValidity& validity = *job.validities[run];
+      std::vector<double> values, own, after, after_own;
+      for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
+        lattice.layer_nodes(layer, nodes);
+        values.assign(nodes.size(), kUnreachable);
+        own = values;
+        for (std::size_t a = 0; a < nodes.size(); ++a) {
+          if (!validity.node(layer, nodes[a].slot)) continue;
+          const double cost = validity.cost(layer, nodes[a].slot);
+          if (layer + 1 == lattice.layers()) {
+            own[a] = cost;
+            values[a] = cost + onward(nodes[a].q);
             continue;
-          const double edge = lattice.edge_cost(delta);
-          values[a] = std::min(values[a], cost + (edge + after[b]));
-          own[a] = std::min(own[a], cost + (edge + after_own[b]));
+          }
+          for (std::size_t b = 0; b < next.size(); ++b) {
+            const Config delta = lattice.delta(nodes[a].q, next[b].q);
+            if (!lattice.in_window(layer, nodes[a].slot, next[b].slot) ||
+                !lattice.step_allowed(layer, delta) ||
+                (validity.asks_edges() && !validity.edge(layer, nodes[a].slot, next[b].slot)))
+              continue;
+            const double edge = lattice.edge_cost(delta);
+            values[a] = std::min(values[a], cost + (edge + after[b]));
+            own[a] = std::min(own[a], cost + (edge + after_own[b]));
+          }
         }
+        after.swap(values);
+        after_own.swap(own);
+        next.swap(nodes);
       }
-      after.swap(values);
-      after_own.swap(own);
-      next.swap(nodes);
+      if (lattice.is_closed()) {
+        after_own = plain_loops(lattice, validity);
+        for (std::size_t f = 0; f < next.size(); ++f) after[f] = after_own[f] + onward(next[f].q);
+      }
+      for (const double value : after_own) alone[run] = std::min(alone[run], value);
+      begins_here.insert(begins_here.end(), next.begin(), next.end());
+      rest_here.insert(rest_here.end(), after.begin(), after.end());
     }
-    if (lattice.is_closed()) {
-      after_own = plain_loops(lattice, validity);
-      for (std::size_t f = 0; f < next.size(); ++f) after[f] = after_own[f] + onward(next[f].q);
-    }
-    for (const double value : after_own)
-      alone[static_cast<std::size_t>(k)] = std::min(alone[static_cast<std::size_t>(k)], value);
-    begins = next;
-    rest = after;
+    begins = begins_here;
+    rest = rest_here;
   }
   double best = kUnreachable;
   for (std::size_t f = 0; f < begins.size(); ++f)
@@ -264,15 +274,16 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
 
 JobOutcome search(const RandomJob& job, const ParallelFor& work = {}) {
   std::vector<std::unique_ptr<CostToGo>> values;
-  std::vector<SearchedRun> runs;
-  for (std::size_t k = 0; k < job.lattices.size(); ++k) {
-    values.push_back(make_cost_to_go(*job.lattices[k]));
-    runs.push_back({values.back().get(), job.validities[k].get()});
-  }
+  std::vector<SearchedStroke> strokes(job.strokes.size());
+  for (std::size_t k = 0; k < job.strokes.size(); ++k)
+    for (const std::size_t run : job.strokes[k]) {
+      values.push_back(make_cost_to_go(*job.lattices[run]));
+      strokes[k].runs.push_back({values.back().get(), job.validities[run].get()});
+    }
   JobSearchOptions options;
   options.most_searches = options.most_failed_searches = 100'000;
   options.work = work;
-  return search_job(runs, *job.transitions, job.home, options);
+  return search_job(strokes, *job.transitions, job.home, options);
 }
 
 ParallelFor threads(int count) {
@@ -289,16 +300,17 @@ ParallelFor threads(int count) {
 /// Counts what the jobs met.
 struct Met {
   int jobs = 0, solved = 0, without_run = 0, without_way = 0, barred = 0, dearer = 0, rounds = 0;
-  int closed = 0, elsewhere = 0;
+  int closed = 0, elsewhere = 0, second = 0, one_without_path = 0;
 };
 
 /// Expects a job's paths to be valid, joined, and to cost what it says.
 void expect_valid(const RandomJob& job, const JobOutcome& found, const std::string& what) {
   double cost = 0;
   std::optional<Config> before = job.home;
-  for (std::size_t k = 0; k < job.lattices.size(); ++k) {
-    const Lattice& lattice = *job.lattices[k];
-    const ChanceValidity& validity = *job.validities[k];
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
+    const std::size_t taken = job.strokes[k][found.runs[k]];
+    const Lattice& lattice = *job.lattices[taken];
+    const ChanceValidity& validity = *job.validities[taken];
     const SlotPath& path = found.paths[k];
     ASSERT_EQ(static_cast<int>(path.size()), lattice.layers()) << what;
     if (lattice.is_closed()) {
@@ -323,7 +335,7 @@ void expect_valid(const RandomJob& job, const JobOutcome& found, const std::stri
     before = *lattice.node(lattice.layers() - 1, path.back());
   }
   if (job.home)
-    cost += job.transitions->cost(static_cast<int>(job.lattices.size()), *before, *job.home);
+    cost += job.transitions->cost(static_cast<int>(job.strokes.size()), *before, *job.home);
   ASSERT_EQ(cost, found.cost) << what;
 }
 
@@ -342,13 +354,20 @@ void expect_plain_program(const RandomJob& job, const std::string& what, Met& me
   const JobOutcome found = search(job);
   ++met.jobs;
   ASSERT_TRUE(found.decided) << what;
-  ASSERT_EQ(found.least_costs, alone) << what;
+  std::vector<double> least_costs;
+  std::optional<std::size_t> lacking;
+  for (std::size_t k = 0; k < found.least_costs.size(); ++k) {
+    const std::vector<double>& costs = found.least_costs[k];
+    least_costs.insert(least_costs.end(), costs.begin(), costs.end());
+    const auto without = std::count(costs.begin(), costs.end(), kUnreachable);
+    if (without == static_cast<std::ptrdiff_t>(costs.size()) && !lacking) lacking = k;
+    met.one_without_path += costs.size() == 2 && without == 1;
+  }
+  ASSERT_EQ(least_costs, alone) << what;
   ASSERT_EQ(found.cost, best) << what;
   met.rounds += static_cast<int>(found.rounds);
-  const auto lacking = std::find(alone.begin(), alone.end(), kUnreachable);
-  ASSERT_EQ(found.run_without_path.has_value(), lacking != alone.end()) << what;
-  if (lacking != alone.end()) {
-    ASSERT_EQ(*found.run_without_path, static_cast<std::size_t>(lacking - alone.begin())) << what;
+  ASSERT_EQ(found.stroke_without_path, lacking) << what;
+  if (lacking) {
     ++met.without_run;
     return;
   }
@@ -363,16 +382,19 @@ void expect_plain_program(const RandomJob& job, const std::string& what, Met& me
   if (best == kUnreachable) return;
   ++met.solved;
   met.dearer += best > straight;
-  for (std::size_t k = 0; k < job.lattices.size(); ++k) {
-    if (!job.lattices[k]->is_closed()) continue;
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
+    met.second += found.runs[k] == 1;
+    const std::size_t taken = job.strokes[k][found.runs[k]];
+    if (!job.lattices[taken]->is_closed()) continue;
     ++met.closed;
-    met.elsewhere += found.run_costs[k] > alone[k];
+    met.elsewhere += found.run_costs[k] > alone[taken];
   }
   ASSERT_EQ(found.bound, best) << what;
   ASSERT_LE(found.bound_any, straight) << what;
   expect_valid(job, found, what);
   if (::testing::Test::HasFatalFailure()) return;
   const JobOutcome again = search(job, threads(3));
+  ASSERT_EQ(again.runs, found.runs) << what;
   ASSERT_EQ(again.paths, found.paths) << what;
   ASSERT_EQ(again.pairs, found.pairs) << what;
   ASSERT_EQ(again.rounds, found.rounds) << what;
@@ -395,12 +417,16 @@ void expect_plain_programs(bool grids, bool closed, int usual) {
     }
   }
   std::printf(
-      "%d jobs, %d solved (%d dearer than straight transitions), %d with a run without "
-      "path, %d without a way (%d since all ends or begins of a run are barred), %d rounds; %d "
-      "closed runs in solved jobs, %d of them dearer than the best by itself\n",
+      "%d jobs, %d solved (%d dearer than straight transitions), %d with a stroke without "
+      "path, %d without a way (%d since all ends or begins of a stroke are barred), %d rounds; %d "
+      "closed runs in solved jobs, %d of them dearer than the best by itself; %d second runs "
+      "taken, "
+      "%d strokes of two runs of which one has no path\n",
       met.jobs, met.solved, met.dearer, met.without_run, met.without_way, met.barred, met.rounds,
-      met.closed, met.elsewhere);
+      met.closed, met.elsewhere, met.second, met.one_without_path);
   EXPECT_EQ(met.closed > 0, closed);
+  EXPECT_GE(met.second, at_least(10));
+  EXPECT_GE(met.one_without_path, closed ? 0 : at_least(3));
   if (closed) {
     EXPECT_GE(met.solved, at_least(grids ? 40 : 80));
     EXPECT_GE(met.closed, at_least(grids ? 40 : 80));

@@ -41,7 +41,7 @@ struct Met {
 std::vector<EndNode> random_nodes(const Chain& chain, int count, bool grid, Random& random) {
   std::vector<EndNode> nodes;
   for (int slot = 0; slot < count; ++slot) {
-    EndNode& node = nodes.emplace_back(EndNode{slot, random_config(chain, random)});
+    EndNode& node = nodes.emplace_back(EndNode{0, slot, random_config(chain, random)});
     if (grid)
       for (int j = 0; j < kDof; ++j) node.q[j] = 0.5 * (random.below(9) - 4);
   }

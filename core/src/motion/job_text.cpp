@@ -170,7 +170,9 @@ std::string run_text(const JobResult& result, const RunResult& run, const Job& j
   alone.lattice = run.lattice;
   alone.diagnosis = *run.diagnosis;
   alone.held = result.held;
-  return "  stroke " + quoted_name(job, run.run) + ": " + answer_text(alone);
+  const bool either = job.strokes[run.run.stroke].reversible;
+  return "  stroke " + quoted_name(job, run.run) +
+         (either ? ", which has no path backwards either: " : ": ") + answer_text(alone);
 }
 
 std::string infeasible_text(const JobResult& result, const Job& job) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search of a job joins the lattices of its runs to one graph: every end node of a run may be
-// followed by every begin node of the next, at the cost of a transition. Its cost-to-go is that of
-// the runs, each with the cheapest way on as the exit costs of its last layer, computed from the
-// last run to the first. As with single paths, what turns out to be invalid is removed and what
-// turns out to cost more is raised, so that the value of the best job left is always a lower bound.
-// A closed run ends in the node in which it begins: its value at a node is what a loop from there
-// costs at least (LoopCosts) and the exit cost of that node, and is made exact once the cheapest
-// job left begins it there.
+// The search of a job joins the lattices of its strokes' runs to one graph: every end node of every
+// run of a stroke may be followed by every begin node of every run of the next stroke, at the cost
+// of a transition, so that a path through the graph takes one run of each stroke. Its cost-to-go is
+// that of the runs, each with the cheapest way on as the exit costs of its last layer, computed
+// from the last stroke to the first. As with single paths, what turns out to be invalid is removed
+// and what turns out to cost more is raised, so that the value of the best job left is always a
+// lower bound. A closed run ends in the node in which it begins: its value at a node is what a loop
+// from there costs at least (LoopCosts) and the exit cost of that node, and is made exact once the
+// cheapest job left begins it there.
 #include "swivel/graph/search/job_search.hpp"
 
 #include <algorithm>
@@ -38,12 +39,26 @@ struct Run {
   PathValidator validator;
   PathCache earlier;
   SearchCounters counters;
-  std::vector<TransitionCosts::Onward> onward;  // from each end node of the transition behind it
+  bool has_path = true;  // by itself
   bool swept_with_exits = false;
   std::optional<LoopCosts> loops;  // of a closed run, once its transitions are laid out
   std::vector<double> exits;       // of a closed run, by slot; empty where all are 0
   SlotPath path;                   // of the candidate job
   bool valid = false;              // the last answer about `path`
+};
+
+/// A stroke: the runs of which a job takes one.
+struct StrokeRuns {
+  std::vector<Run> runs;
+  std::size_t taken = 0;                        // by the candidate job
+  std::vector<TransitionCosts::Onward> onward;  // from each end node of the transition behind it
+  [[nodiscard]] Run& run() { return runs[taken]; }
+};
+
+/// A node at which a stroke may begin: the number of its run, and the slot in that run's layer 0.
+struct BeginSlot {
+  std::size_t run = 0;
+  int slot = -1;  // -1: there is none
 };
 
 /// Returns the least cost from a node of a run's first layer to the end of the job.
@@ -53,7 +68,7 @@ double rest_from(const Run& run, int slot) {
   return run.loops->at(slot) + exit;
 }
 
-/// Returns the slot at which a job begins that comes from nowhere; -1 where there is none.
+/// Returns the slot at which a run begins that nothing precedes; -1 where there is none.
 int first_slot(const Run& run) {
   if (!run.loops) return run.cost_to_go->first_slot();
   const Lattice& lattice = run.cost_to_go->lattice();
@@ -63,6 +78,20 @@ int first_slot(const Run& run) {
   return best_start(
       lattice, slots, least, [&](int slot) { return rest_from(run, slot); },
       [&](int slot) { return run.cost_to_go->config(0, slot); });
+}
+
+/// Returns where a stroke begins that nothing precedes: in the cheapest run, the first of equals.
+BeginSlot first_begin(const StrokeRuns& stroke) {
+  BeginSlot best;
+  double least = kUnreachable;
+  for (std::size_t k = 0; k < stroke.runs.size(); ++k) {
+    if (!stroke.runs[k].has_path) continue;
+    const int slot = first_slot(stroke.runs[k]);
+    if (slot < 0 || !(rest_from(stroke.runs[k], slot) < least)) continue;
+    best = {k, slot};
+    least = rest_from(stroke.runs[k], slot);
+  }
+  return best;
 }
 
 /// Finds the best path of a run by itself.
@@ -81,38 +110,51 @@ struct Pair {
   std::size_t end = 0, begin = 0;
 };
 
-/// A job: a path through each run, and the pair of nodes of each transition.
+/// A job: the run taken of each stroke, a path through it, and the pair of nodes of each
+/// transition.
 struct Candidate {
+  std::vector<std::size_t> runs;
   std::vector<SlotPath> paths;
   std::vector<Pair> pairs;
 };
 
-/// Returns the nodes of a layer that are not removed, with the joints of their rows.
-std::vector<EndNode> nodes_of(CostToGo& cost_to_go, int layer) {
-  const Lattice& lattice = cost_to_go.lattice();
+/// Returns the nodes at which a stroke may end or begin that are not removed, by run and slot, with
+/// the joints of their rows.
+std::vector<EndNode> nodes_of(StrokeRuns& stroke, Side side) {
   std::vector<EndNode> nodes;
-  for (int slot = 0; slot < lattice.slots(layer); ++slot) {
-    if (cost_to_go.verdicts().node(layer, slot) == Verdict::kRemoved) continue;
-    const auto q = cost_to_go.node(layer, slot);
-    if (const auto row = q ? lattice.exact_config(layer, slot, *q) : std::nullopt)
-      nodes.push_back({slot, *row});
+  for (std::size_t k = 0; k < stroke.runs.size(); ++k) {
+    if (!stroke.runs[k].has_path) continue;
+    CostToGo& cost_to_go = *stroke.runs[k].cost_to_go;
+    const Lattice& lattice = cost_to_go.lattice();
+    const int layer = side == Side::kEnd ? lattice.layers() - 1 : 0;
+    for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+      if (cost_to_go.verdicts().node(layer, slot) == Verdict::kRemoved) continue;
+      const auto q = cost_to_go.node(layer, slot);
+      if (const auto row = q ? lattice.exact_config(layer, slot, *q) : std::nullopt)
+        nodes.push_back({k, slot, *row});
+    }
   }
   return nodes;
 }
 
-std::size_t index_of(const std::vector<EndNode>& nodes, int slot) {
-  const auto found = std::lower_bound(nodes.begin(), nodes.end(), slot,
-                                      [](const EndNode& n, int s) { return n.slot < s; });
+std::size_t index_of(const std::vector<EndNode>& nodes, std::size_t run, int slot) {
+  const auto found = std::lower_bound(
+      nodes.begin(), nodes.end(), std::pair(run, slot),
+      [](const EndNode& n, const auto& at) { return std::pair(n.run, n.slot) < at; });
   return static_cast<std::size_t>(found - nodes.begin());
 }
 
 class JobSearch {
  public:
-  JobSearch(std::span<const SearchedRun> runs, Transitions& transitions,
+  JobSearch(std::span<const SearchedStroke> strokes, Transitions& transitions,
             const std::optional<Config>& home, const JobSearchOptions& options, JobOutcome& outcome)
       : transitions_(transitions), home_(home), options_(options), outcome_(outcome) {
-    runs_.reserve(runs.size());
-    for (const SearchedRun& run : runs) runs_.emplace_back(run, options.paths);
+    strokes_.resize(strokes.size());
+    for (std::size_t k = 0; k < strokes.size(); ++k) {
+      strokes_[k].runs.reserve(strokes[k].runs.size());
+      for (const SearchedRun& run : strokes[k].runs)
+        runs_.push_back(&strokes_[k].runs.emplace_back(run, options.paths));
+    }
   }
 
   void run() {
@@ -125,50 +167,61 @@ class JobSearch {
   }
 
  private:
-  [[nodiscard]] int last() const { return static_cast<int>(runs_.size()); }
-  [[nodiscard]] Run& at(int k) { return runs_[static_cast<std::size_t>(k)]; }
-  /// Returns the costs of transition k: to run k from the run before it or from home; 0 and last()
-  /// exist only with a home.
+  [[nodiscard]] int last() const { return static_cast<int>(strokes_.size()); }
+  [[nodiscard]] StrokeRuns& at(int k) { return strokes_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const Budget& budget() const { return runs_.front()->cost_to_go->budget(); }
+  /// Calls `body` with each run of each stroke, shared among threads.
+  template <class Body>
+  void for_each_run(const Body& body) {
+    options_.work.for_each(static_cast<int>(runs_.size()),
+                           [&](int k, int) { body(*runs_[static_cast<std::size_t>(k)]); });
+  }
+  /// Returns the costs of transition k: to stroke k from the stroke before it or from home; 0 and
+  /// last() exist only with a home.
   [[nodiscard]] TransitionCosts& costs(int k) { return *costs_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] bool exists(int transition) const {
     return home_ || (transition > 0 && transition < last());
   }
 
-  /// Finds the best valid path of each run by itself. Returns false if one has none.
+  /// Finds the best valid path of each run by itself. Returns false if a stroke has none.
   bool find_runs_alone() {
     const TraceSpan span("runs alone");
     std::vector<SearchOutcome> found(runs_.size());
-    options_.work.for_each(last(), [&](int k, int) {
-      found[static_cast<std::size_t>(k)] = best_alone(at(k), options_.paths);
+    options_.work.for_each(static_cast<int>(runs_.size()), [&](int k, int) {
+      const auto i = static_cast<std::size_t>(k);
+      found[i] = best_alone(*runs_[i], options_.paths);
     });
-    outcome_.least_costs.assign(runs_.size(), kUnreachable);
-    for (std::size_t k = 0; k < runs_.size(); ++k) {
-      if (!found[k].path.empty())
-        outcome_.least_costs[k] = found[k].cost;
-      else if (!outcome_.run_without_path)
-        outcome_.run_without_path = k;
+    std::size_t next = 0;
+    double sum = 0;  // of the least costs of the strokes
+    for (std::size_t k = 0; k < strokes_.size(); ++k) {
+      std::vector<double>& costs = outcome_.least_costs.emplace_back();
+      for (Run& run : strokes_[k].runs) {
+        const SearchOutcome& alone = found[next++];
+        run.has_path = !alone.path.empty();
+        costs.push_back(run.has_path ? alone.cost : kUnreachable);
+      }
+      const double least = *std::min_element(costs.begin(), costs.end());
+      if (least == kUnreachable && !outcome_.stroke_without_path) outcome_.stroke_without_path = k;
+      sum += least;
     }
-    outcome_.decided = outcome_.run_without_path.has_value();
-    if (!outcome_.decided)
-      for (const double cost : outcome_.least_costs) outcome_.bound_any = outcome_.bound += cost;
-    return !outcome_.run_without_path;
+    outcome_.decided = outcome_.stroke_without_path.has_value();
+    if (!outcome_.decided) outcome_.bound_any = outcome_.bound = sum;
+    return !outcome_.stroke_without_path;
   }
 
   void begin_transitions() {
     const TraceSpan span("distances");
-    options_.work.for_each(last(), [&](int k, int) {
-      if (at(k).cost_to_go->lattice().is_closed()) at(k).loops.emplace(*at(k).cost_to_go);
+    for_each_run([](Run& run) {
+      if (run.has_path && run.cost_to_go->lattice().is_closed()) run.loops.emplace(*run.cost_to_go);
     });
     const std::vector<EndNode> home =
-        home_ ? std::vector<EndNode>{{0, *home_}} : std::vector<EndNode>();
-    costs_.resize(runs_.size() + 1);
+        home_ ? std::vector<EndNode>{{0, 0, *home_}} : std::vector<EndNode>();
+    costs_.resize(strokes_.size() + 1);
     for (int k = 0; k <= last(); ++k) {
       if (!exists(k)) continue;
       costs_[static_cast<std::size_t>(k)].emplace(
-          transitions_,
-          k == 0 ? home
-                 : nodes_of(*at(k - 1).cost_to_go, at(k - 1).cost_to_go->lattice().layers() - 1),
-          k == last() ? home : nodes_of(*at(k).cost_to_go, 0));
+          transitions_, k == 0 ? home : nodes_of(at(k - 1), Side::kEnd),
+          k == last() ? home : nodes_of(at(k), Side::kBegin));
     }
   }
 
@@ -196,43 +249,52 @@ class JobSearch {
       forbid_barred_ends();
     }
   }
-  /// Chooses the paths and pairs of the greedy job. Returns false if a run cannot be reached or
-  /// left.
+  /// Chooses the runs, paths and pairs of the greedy job. Returns false if a stroke cannot be
+  /// reached or left.
   bool lay_greedy_job() {
     std::size_t end = 0;
     for (int k = 0; k < last(); ++k) {
-      Run& run = at(k);
+      StrokeRuns& stroke = at(k);
       TransitionCosts::Onward onward;
-      int slot = 0;
+      BeginSlot begin;
       do {
-        slot = exists(k) ? -1 : first_slot(run);
         if (exists(k)) {
           take_rest(k);
           onward = costs(k).onward(end);
           if (onward.cost == kUnreachable) return false;
-          slot = costs(k).nodes(Side::kBegin)[onward.begin].slot;
+          begin = begin_of(k, onward);
+        } else {
+          begin = first_begin(stroke);
         }
-        if (slot < 0) return false;
-      } while (!find_path(run, slot) || !validate(run));
+        if (begin.slot < 0) return false;
+      } while (!find_path(stroke.runs[begin.run], begin.slot) || !validate(stroke.runs[begin.run]));
+      const Run& run = stroke.runs[begin.run];
       if (exists(k)) greedy_.pairs.push_back({k, end, onward.begin});
+      greedy_.runs.push_back(begin.run);
       greedy_.paths.push_back(run.path);
       greedy_costs_.push_back(run.cost_to_go->at(0, run.path.front()));
-      if (exists(k + 1)) end = index_of(costs(k + 1).nodes(Side::kEnd), run.path.back());
+      if (exists(k + 1)) end = index_of(costs(k + 1).nodes(Side::kEnd), begin.run, run.path.back());
     }
     if (exists(last())) greedy_.pairs.push_back({last(), end, 0});
     return true;
+  }
+  /// Returns where stroke k begins by a way on from the stroke before it, or from home.
+  [[nodiscard]] BeginSlot begin_of(int k, const TransitionCosts::Onward& onward) {
+    const EndNode& node = costs(k).nodes(Side::kBegin)[onward.begin];
+    return {node.run, node.slot};
   }
   /// Makes paths of runs end where transitions can begin.
   void forbid_barred_ends() {
     for (int k = 0; k < last(); ++k) {
       if (!exists(k + 1)) continue;
-      Run& run = at(k);
       const TransitionCosts& next = costs(k + 1);
-      std::vector<double> exits(last_slots(run));
-      for (std::size_t end = 0; end < next.nodes(Side::kEnd).size(); ++end)
+      std::vector<std::vector<double>> exits = exits_of(at(k), 0);
+      for (std::size_t end = 0; end < next.nodes(Side::kEnd).size(); ++end) {
+        const EndNode& node = next.nodes(Side::kEnd)[end];
         if (next.is_barred(Side::kEnd, end))
-          exits[static_cast<std::size_t>(next.nodes(Side::kEnd)[end].slot)] = kUnreachable;
-      raise_exit_costs(run, exits);
+          exits[node.run][static_cast<std::size_t>(node.slot)] = kUnreachable;
+      }
+      raise_exit_costs(at(k), exits);
     }
   }
   void take_greedy_job() {
@@ -367,11 +429,11 @@ class JobSearch {
   /// Tries the cheapest job that is left. Returns false once the cheapest job is known.
   bool improve() {
     ++outcome_.rounds;
-    at(0).cost_to_go->budget().poll();
+    budget().poll();
     update_values();
     Candidate job;
-    const int slot = begin_cheapest_job(job);
-    if (slot < 0) {
+    const BeginSlot begin = begin_cheapest_job(job);
+    if (begin.slot < 0) {
       if (outcome_.cost == kUnreachable) note_without_way(static_cast<int>(first_barred()));
       outcome_.bound = outcome_.cost;
       return false;
@@ -379,12 +441,13 @@ class JobSearch {
     outcome_.bound = std::min(value_, outcome_.cost);
     if (!raised_) outcome_.bound_any = outcome_.bound;
     if (outcome_.cost <= value_ || value_ >= options_.most_cost) return false;
-    if (!lay_paths(slot, job)) return true;
+    if (!lay_paths(begin, job)) return true;
     if (!validate_runs() || raise_noted()) return true;
     return !take_if_transitions_hold(job);
   }
 
-  /// Computes what the rest of the job costs from all begin nodes, from the last run to the first.
+  /// Computes what the rest of the job costs from all begin nodes, from the last stroke to the
+  /// first.
   void update_values() {
     const TraceSpan span("job values");
     for (int k = last() - 1; k >= 0; --k) {
@@ -393,31 +456,47 @@ class JobSearch {
     }
   }
   void raise_exits(int k) {
-    Run& run = at(k);
+    StrokeRuns& stroke = at(k);
     TransitionCosts& next = costs(k + 1);
     const std::size_t count = next.nodes(Side::kEnd).size();
-    run.onward.resize(count);
-    std::vector<double> exits(last_slots(run), kUnreachable);
+    stroke.onward.resize(count);
+    std::vector<std::vector<double>> exits = exits_of(stroke, kUnreachable);
     constexpr std::size_t kEach = 64;  // ends that one thread takes at a time
     options_.work.for_each(static_cast<int>((count + kEach - 1) / kEach), [&](int part, int) {
-      run.cost_to_go->budget().poll();
+      budget().poll();
       const std::size_t first = kEach * static_cast<std::size_t>(part);
       for (std::size_t end = first; end < std::min(count, first + kEach); ++end) {
-        TransitionCosts::Onward& onward = run.onward[end];
+        TransitionCosts::Onward& onward = stroke.onward[end];
         // costs only rise, so the way on stays the cheapest as long as it costs what it did
         if (onward.cost == kUnreachable ||
             next.at(end, onward.begin) + next.rest(onward.begin) != onward.cost)
           onward = next.onward(end);
-        exits[static_cast<std::size_t>(next.nodes(Side::kEnd)[end].slot)] = onward.cost;
+        const EndNode& node = next.nodes(Side::kEnd)[end];
+        exits[node.run][static_cast<std::size_t>(node.slot)] = onward.cost;
       }
     });
-    raise_exit_costs(run, exits);
+    raise_exit_costs(stroke, exits);
   }
-  /// Sets what must be paid for going on from each slot of a run's last layer, and makes its values
-  /// exact.
-  static void raise_exit_costs(Run& run, const std::vector<double>& exits) {
+  /// Returns the same exit cost for all slots of the last layer of each run of a stroke.
+  static std::vector<std::vector<double>> exits_of(const StrokeRuns& stroke, double cost) {
+    std::vector<std::vector<double>> exits;
+    for (const Run& run : stroke.runs) {
+      const Lattice& lattice = run.cost_to_go->lattice();
+      exits.emplace_back(static_cast<std::size_t>(lattice.slots(lattice.layers() - 1)), cost);
+    }
+    return exits;
+  }
+  /// Sets what must be paid for going on from each slot of the last layer of each run of a stroke,
+  /// and makes the runs' values exact.
+  void raise_exit_costs(StrokeRuns& stroke, std::vector<std::vector<double>>& exits) {
+    options_.work.for_each(static_cast<int>(stroke.runs.size()), [&](int k, int) {
+      const auto i = static_cast<std::size_t>(k);
+      if (stroke.runs[i].has_path) raise_exit_costs(stroke.runs[i], exits[i]);
+    });
+  }
+  static void raise_exit_costs(Run& run, std::vector<double>& exits) {
     if (run.loops) {
-      run.exits = exits;
+      run.exits = std::move(exits);
       return;
     }
     Verdicts& verdicts = run.cost_to_go->verdicts();
@@ -427,52 +506,52 @@ class JobSearch {
     else if (!verdicts.pending.empty())
       run.cost_to_go->repair();
   }
-  static std::size_t last_slots(const Run& run) {
-    const Lattice& lattice = run.cost_to_go->lattice();
-    return static_cast<std::size_t>(lattice.slots(lattice.layers() - 1));
-  }
   void take_rest(int k) {
     std::vector<double> rest;
     for (const EndNode& begin : costs(k).nodes(Side::kBegin))
-      rest.push_back(rest_from(at(k), begin.slot));
+      rest.push_back(rest_from(at(k).runs[begin.run], begin.slot));
     costs(k).set_rest(std::move(rest));
   }
 
-  /// Begins the cheapest job by what is known, and sets value_ to its cost. Returns the slot at
-  /// which its first run begins; -1 if no job is left.
-  int begin_cheapest_job(Candidate& job) {
+  /// Begins the cheapest job by what is known, and sets value_ to its cost. Returns where its first
+  /// stroke begins; nowhere if no job is left.
+  BeginSlot begin_cheapest_job(Candidate& job) {
     value_ = kUnreachable;
     if (home_) {
       const auto onward = costs(0).onward(0);
-      if (onward.cost == kUnreachable) return -1;
+      if (onward.cost == kUnreachable) return {};
       value_ = onward.cost;
       job.pairs.push_back({0, 0, onward.begin});
-      return costs(0).nodes(Side::kBegin)[onward.begin].slot;
+      return begin_of(0, onward);
     }
-    const int slot = first_slot(at(0));
-    if (slot >= 0) value_ = rest_from(at(0), slot);
-    return slot;
+    const BeginSlot begin = first_begin(at(0));
+    if (begin.slot >= 0) value_ = rest_from(at(0).runs[begin.run], begin.slot);
+    return begin;
   }
-  /// Lays out the cheapest job from the slot at which its first run begins. Returns false if a run
-  /// costs more than was known.
-  bool lay_paths(int slot, Candidate& job) {
+  /// Lays out the cheapest job from where its first stroke begins. Returns false if a run costs
+  /// more than was known.
+  bool lay_paths(BeginSlot begin, Candidate& job) {
     for (int k = 0; k < last(); ++k) {
-      Run& run = at(k);
-      if (!find_path(run, slot)) return false;
+      StrokeRuns& stroke = at(k);
+      stroke.taken = begin.run;
+      Run& run = stroke.run();
+      if (!find_path(run, begin.slot)) return false;
       if (!run.loops) run.earlier.add(run.path, *run.cost_to_go);
+      job.runs.push_back(begin.run);
       job.paths.push_back(run.path);
       if (!exists(k + 1)) continue;
-      const std::size_t end = index_of(costs(k + 1).nodes(Side::kEnd), run.path.back());
-      job.pairs.push_back({k + 1, end, run.onward[end].begin});
-      if (k + 1 < last()) slot = costs(k + 1).nodes(Side::kBegin)[run.onward[end].begin].slot;
+      const std::size_t end = index_of(costs(k + 1).nodes(Side::kEnd), begin.run, run.path.back());
+      job.pairs.push_back({k + 1, end, stroke.onward[end].begin});
+      if (k + 1 < last()) begin = begin_of(k + 1, stroke.onward[end]);
     }
     return true;
   }
 
   bool validate_runs() {
     const TraceSpan span("validate runs");
-    options_.work.for_each(last(), [&](int k, int) { validate(at(k)); });
-    return std::all_of(runs_.begin(), runs_.end(), [](const Run& run) { return run.valid; });
+    options_.work.for_each(last(), [&](int k, int) { validate(at(k).run()); });
+    return std::all_of(strokes_.begin(), strokes_.end(),
+                       [](StrokeRuns& stroke) { return stroke.run().valid; });
   }
 
   /// Asks about the transitions of a job whose runs are valid. Takes the job if a way was found for
@@ -484,10 +563,10 @@ class JobSearch {
       if (costs(pair.transition).asked(pair.end, pair.begin) != Asked::kThoroughly)
         open.push_back(pair);
     std::vector<double> run_costs;
-    for (std::size_t k = 0; k < runs_.size(); ++k) {
+    for (std::size_t k = 0; k < strokes_.size(); ++k) {
       const SlotPath& path = job.paths[k];
-      run_costs.push_back(runs_[k].cost_to_go->at(0, path.front()) -
-                          runs_[k].cost_to_go->verdicts().exit_cost(path.back()));
+      const CostToGo& run = *strokes_[k].runs[job.runs[k]].cost_to_go;
+      run_costs.push_back(run.at(0, path.front()) - run.verdicts().exit_cost(path.back()));
     }
     if (!open.empty() && is_spent()) return true;
     std::vector<TransitionAnswer> answers = ask(open, false);
@@ -595,6 +674,7 @@ class JobSearch {
     }
     if (!(cost < outcome_.cost)) return;
     outcome_.cost = cost;
+    outcome_.runs = job.runs;
     outcome_.paths = job.paths;
     outcome_.run_costs = run_costs;
     outcome_.transition_costs = transition_costs;
@@ -606,15 +686,17 @@ class JobSearch {
       if (exists(k) && !leads_on(k)) return static_cast<std::size_t>(k);
     return 0;
   }
-  /// Returns true if a transition leads to the end of the job from a node at which the run before
-  /// it may end.
+  /// Returns true if a transition leads to the end of the job from a node at which the stroke
+  /// before it may end.
   [[nodiscard]] bool leads_on(int transition) {
-    const Run& run = at(transition - 1);
+    const StrokeRuns& stroke = at(transition - 1);
     const std::vector<EndNode>& ends = costs(transition).nodes(Side::kEnd);
-    for (std::size_t k = 0; k < ends.size(); ++k)
-      if (run.onward[k].cost < kUnreachable &&
-          (!run.loops || run.loops->at(ends[k].slot) < kUnreachable))
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const std::optional<LoopCosts>& loops = stroke.runs[ends[k].run].loops;
+      if (stroke.onward[k].cost < kUnreachable &&
+          (!loops || loops->at(ends[k].slot) < kUnreachable))
         return true;
+    }
     return false;
   }
 
@@ -623,7 +705,8 @@ class JobSearch {
   const std::optional<Config>& home_;
   const JobSearchOptions& options_;
   JobOutcome& outcome_;
-  std::vector<Run> runs_;
+  std::vector<StrokeRuns> strokes_;
+  std::vector<Run*> runs_;                             // of all strokes
   std::vector<std::optional<TransitionCosts>> costs_;  // by transition
   std::map<int, std::array<Config, 2>> without_way_;   // by transition: the first pair
   std::map<std::size_t, int> reach_;                   // of ask_around(), by transition
@@ -644,11 +727,11 @@ class JobSearch {
 
 }  // namespace
 
-JobOutcome search_job(std::span<const SearchedRun> runs, Transitions& transitions,
+JobOutcome search_job(std::span<const SearchedStroke> strokes, Transitions& transitions,
                       const std::optional<Config>& home, const JobSearchOptions& options) {
   JobOutcome outcome;
   try {
-    JobSearch(runs, transitions, home, options, outcome).run();
+    JobSearch(strokes, transitions, home, options, outcome).run();
   } catch (const Stopped&) {
   }
   return outcome;

@@ -11,20 +11,22 @@
 
 namespace swivel {
 
-/// A node at which a run may end or begin: its slot in the last or first layer, and the joints of
-/// its row (Lattice::exact_config()), rad.
+/// A node at which a stroke may end or begin: the number of its run among those of the stroke, its
+/// slot in that run's last or first layer, and the joints of its row (Lattice::exact_config()),
+/// rad.
 struct EndNode {
+  std::size_t run = 0;
   int slot = 0;
   Config q = Config::Zero();
 };
 
-/// A side of a transition: the end nodes of the run before it, or the begin nodes of the run after
-/// it.
+/// A side of a transition: the end nodes of the stroke before it, or the begin nodes of the stroke
+/// after it.
 enum class Side : std::uint8_t { kEnd, kBegin };
 
-/// What is known of the costs of one transition of a job, from each end node of a run to each begin
-/// node of the next: the joint distance, until a way was found that costs more. Costs only rise.
-/// Nodes are named by their indices among the nodes of their side.
+/// What is known of the costs of one transition of a job, from each end node of a stroke to each
+/// begin node of the next: the joint distance, until a way was found that costs more. Costs only
+/// rise. Nodes are named by their indices among the nodes of their side.
 class TransitionCosts {
  public:
   TransitionCosts(const Transitions& transitions, std::vector<EndNode> ends,

@@ -580,10 +580,11 @@ std::vector<Schema::Key> job_answer_keys() {
           "there is "
           "none"),
       key("bound", or_null(number()),
-          "no job in this order and with these lift-offs costs less, if its transitions are those "
-          "that Swivel finds"),
+          "no job in this order and with these lift-offs costs less, in whatever directions of "
+          "`reversible` strokes, if its transitions are those that Swivel finds"),
       key("bound_any", or_null(number()),
-          "no job in this order and with these lift-offs costs less, whatever its transitions"),
+          "no job in this order and with these lift-offs costs less, whatever its directions and "
+          "transitions"),
       key("lattice_cost", or_null(number()),
           "as `cost`, but of the nodes of the lattices, which the search minimised; rows of arms "
           "that are not exactly S-R-S may miss them by a little"),

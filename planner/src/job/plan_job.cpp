@@ -181,10 +181,11 @@ class JobRuns {
 
 class JobPlan {
  public:
-  /// Prepares the plan of a job in an order. With `one_branch`, no run of an S-R-S arm changes its
+  /// Prepares the plan of a job in an order of its strokes, reversible ones in the cheaper
+  /// direction. With `one_branch`, no run of an S-R-S arm changes its
   /// branch.
   JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-          const Budget& budget, std::shared_ptr<JobRuns> shared, std::vector<StrokeRun> order,
+          const Budget& budget, std::shared_ptr<JobRuns> shared, std::vector<std::size_t> order,
           bool one_branch)
       : robot_(robot),
         shared_(std::move(shared)),
@@ -236,6 +237,8 @@ class JobPlan {
     return std::move(result_);
   }
 
+  /// Returns the runs that were found to have no path by themselves.
+  [[nodiscard]] const std::vector<StrokeRun>& runs_without_path() const { return without_path_; }
   /// Returns what plan() found out about the runs, valid while this and the robot live; empty if it
   /// was stopped before there was a job or a verdict.
   [[nodiscard]] std::vector<PlanView> views() const {
@@ -261,7 +264,15 @@ class JobPlan {
   void lay_out() {
     require_joints_that_move(robot_, job_);
     require_home_within_limits();
-    runs_ = shared_->in_order(order_, executor_);
+    std::vector<StrokeRun> all;
+    for (const std::size_t stroke : order_)
+      for (const bool reversed : {false, true})
+        if (!reversed || job_.strokes[stroke].reversible) all.push_back({stroke, reversed});
+    for (auto& run : shared_->in_order(all, executor_)) {
+      if (!run->run.reversed) directions_.emplace_back();
+      directions_.back().push_back(std::move(run));
+    }
+    for (const auto& directions : directions_) runs_.push_back(directions.front());
     Problem between = runs_.front()->problem;
     between.limits = transition_limits_;
     transition_world_ = &shared_->world_of(transition_limits_, between);
@@ -292,6 +303,7 @@ class JobPlan {
                                  *runs_.front()->lattice, distance_proofs(), executor_, budget_);
       if (home_is_barred(transitions)) return;
       const JobOutcome outcome = search(transitions);
+      take_directions(outcome);
       note(outcome, transitions);
       paths_ = outcome.paths;
       paths_.resize(runs_.size());
@@ -306,7 +318,30 @@ class JobPlan {
         take(outcome, std::move(parts));
         return;
       }
-      for (auto& run : runs_) run = shared_->with_lattice(*run, run->lattice->with_windings(off));
+      for_each_direction([&](std::shared_ptr<PlannedRun>& run) {
+        run = shared_->with_lattice(*run, run->lattice->with_windings(off));
+      });
+      for (std::size_t k = 0; k < runs_.size(); ++k) runs_[k] = directions_[k].front();
+    }
+  }
+  template <class Body>
+  void for_each_direction(const Body& body) {
+    for (auto& directions : directions_)
+      for (auto& run : directions) body(run);
+  }
+  /// Makes runs_ those of the job that was found. Where there is none, each stroke runs as it is
+  /// listed, or backwards if it has a path only so.
+  void take_directions(const JobOutcome& outcome) {
+    without_path_.clear();
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      std::size_t taken = 0;
+      if (k < outcome.least_costs.size()) {
+        const std::vector<double>& costs = outcome.least_costs[k];
+        for (std::size_t run = 0; run < costs.size(); ++run)
+          if (costs[run] == kUnreachable) without_path_.push_back(directions_[k][run]->run);
+        if (costs.front() == kUnreachable && costs.back() != kUnreachable) taken = 1;
+      }
+      runs_[k] = directions_[k][outcome.runs.empty() ? taken : outcome.runs[k]];
     }
   }
   /// Makes parts the answer, with what their rows cost. Parts that a search which was stopped found
@@ -331,16 +366,17 @@ class JobPlan {
   /// to stroke.
   void share_circles() {
     Lattice::Joints shared = bounded_circles(*runs_.front()->lattice);
-    for (const auto& run : runs_) {
+    for_each_direction([&](const std::shared_ptr<PlannedRun>& run) {
       const Lattice::Joints own = bounded_circles(*run->lattice);
       for (std::size_t j = 0; j < kDof; ++j) shared[j] = shared[j] && own[j];
-    }
-    for (auto& run : runs_) {
+    });
+    for_each_direction([&](std::shared_ptr<PlannedRun>& run) {
       Lattice::Joints more = bounded_circles(*run->lattice);
       for (std::size_t j = 0; j < kDof; ++j) more[j] = more[j] && !shared[j];
       if (more != Lattice::Joints{})
         run = shared_->with_lattice(*run, run->lattice->with_windings(more));
-    }
+    });
+    for (std::size_t k = 0; k < runs_.size(); ++k) runs_[k] = directions_[k].front();
   }
   /// Returns the circles that leave their limits along a run, whatever its turn; such runs have no
   /// rows. Puts turns_note() of the first into `note`, if that is empty.
@@ -388,8 +424,8 @@ class JobPlan {
   }
 
   JobOutcome search(JobTransitions& transitions) {
-    std::vector<SearchedRun> searched;
-    for (const auto& run : runs_) {
+    std::vector<SearchedStroke> searched(directions_.size());
+    for_each_direction([&](const std::shared_ptr<PlannedRun>& run) {
       if (run->cost_to_go) {
         run->cost_to_go->verdicts().forget_exit_costs();
       } else {
@@ -402,8 +438,10 @@ class JobPlan {
       run->validity.emplace(*run->lattice, *run->world, run->rule, run->problem.limits.edges,
                             distance_proofs(), run->alone, 1, budget_);
       run->hooked.emplace(*run->lattice, *run->validity, hooks_, budget_);
-      searched.push_back({run->cost_to_go.get(), &*run->hooked});
-    }
+    });
+    for (std::size_t k = 0; k < directions_.size(); ++k)
+      for (const auto& run : directions_[k])
+        searched[k].runs.push_back({run->cost_to_go.get(), &*run->hooked});
     JobSearchOptions options;
     options.paths.batch = 8;
     options.work = work();
@@ -416,7 +454,7 @@ class JobPlan {
     result_.transitions.pairs += outcome.pairs;
     result_.transitions.searches += outcome.searches;
     result_.transitions.rounds += outcome.rounds;
-    for (const auto& run : runs_) add_counters(*run);
+    for_each_direction([&](const std::shared_ptr<PlannedRun>& run) { add_counters(*run); });
     add_collision(transitions.counters());
     result_.bound = outcome.bound;
     result_.bound_any = outcome.bound_any;
@@ -427,7 +465,7 @@ class JobPlan {
       run.run = runs_[k]->run;
       run.lattice = info_of(*runs_[k]->lattice, robot_.arm_class());
       if (k < outcome.least_costs.size()) {
-        run.least_cost = outcome.least_costs[k];
+        run.least_cost = outcome.least_costs[k][run.run.reversed ? 1 : 0];
         run.status = run.least_cost == kUnreachable ? PlanStatus::kInfeasible : PlanStatus::kSolved;
       } else {
         run.status = stopped_status(budget_);
@@ -542,7 +580,7 @@ class JobPlan {
 
   const PreparedRobot& robot_;
   std::shared_ptr<JobRuns> shared_;
-  std::vector<StrokeRun> order_;
+  std::vector<std::size_t> order_;  // of strokes
   const Chain& chain_;
   const Job& job_;
   Limits transition_limits_;
@@ -553,7 +591,9 @@ class JobPlan {
   double most_cost_ = kUnreachable;
   bool stopped_ = false;  // before there was a proved job or a verdict
   const World* transition_world_ = nullptr;
-  std::vector<std::shared_ptr<PlannedRun>> runs_;
+  std::vector<std::vector<std::shared_ptr<PlannedRun>>> directions_;  // by place in the order
+  std::vector<std::shared_ptr<PlannedRun>> runs_;                     // the directions taken
+  std::vector<StrokeRun> without_path_;
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
   JobResult result_;
 };
@@ -562,6 +602,12 @@ std::vector<StrokeRun> given_order(const Job& job) {
   std::vector<StrokeRun> order;
   for (std::size_t k = 0; k < job.strokes.size(); ++k) order.push_back({k, false});
   return order;
+}
+
+std::vector<std::size_t> strokes_of(const std::vector<StrokeRun>& order) {
+  std::vector<std::size_t> strokes;
+  for (const StrokeRun& run : order) strokes.push_back(run.stroke);
+  return strokes;
 }
 
 /// Plans a job in its given order, or in the cheapest that is found: the cheapest one by estimate,
@@ -585,9 +631,9 @@ class OrderSearch {
       try {
         Stopwatch watch;
         estimate();
-        std::vector<StrokeRun> order = cheapest_order(costs_, budget_);
+        const std::vector<StrokeRun> order = cheapest_order(costs_, budget_);
         order_ms = watch.lap();
-        plan_feasible(std::move(order));
+        take(order);
         improve();
       } catch (const Stopped&) {  // the given order is left
       }
@@ -608,42 +654,23 @@ class OrderSearch {
                            [&](int parts, const auto& body) { executor.for_each(parts, body); }};
     costs_ = estimate_order_costs(robot_, job_, work, budget_);
   }
-  /// Plans in an order and keeps the job if it is the cheapest so far. Returns the run that no job
-  /// can have in this direction, if any: it has no path by itself, or no transition can begin at
-  /// its end or end at its begin.
-  std::optional<StrokeRun> take(const std::vector<StrokeRun>& order) {
-    const auto plan =
-        std::make_shared<JobPlan>(robot_, job_, options_, budget_, runs_, order, one_branch_);
+  /// Plans in an order of strokes and keeps the job if it is the cheapest so far. Estimates then
+  /// know which runs have no path by themselves.
+  void take(const std::vector<StrokeRun>& order) {
+    const auto plan = std::make_shared<JobPlan>(robot_, job_, options_, budget_, runs_,
+                                                strokes_of(order), one_branch_);
     const JobResult& found = plan->search(best_cost_);
-    const std::optional<StrokeRun> impossible = impossible_run(found);
     add(found);
     if (!best_ || (!found.parts.empty() && found.lattice_cost < best_cost_)) {
       best_ = plan;
       best_order_ = order;
-      if (!found.parts.empty()) best_cost_ = found.lattice_cost;
+      if (!found.parts.empty()) {
+        best_cost_ = found.lattice_cost;
+        for (std::size_t k = 0; k < order.size(); ++k) best_order_[k] = found.runs[k].run;
+      }
     }
     planned_.push_back(order);
-    return impossible;
-  }
-  static std::optional<StrokeRun> impossible_run(const JobResult& found) {
-    for (const RunResult& run : found.runs)
-      if (run.status == PlanStatus::kInfeasible) return run.run;
-    const auto& none = found.no_transition;
-    if (none && none->where == NoTransition::Where::kEndBefore) return found.runs[none->to - 1].run;
-    if (none && none->where == NoTransition::Where::kBegin) return found.runs[none->to].run;
-    return std::nullopt;
-  }
-  /// Plans in an order; where a run that may be turned is impossible, in the cheapest one without
-  /// it, and so on.
-  void plan_feasible(std::vector<StrokeRun> order) {
-    for (;;) {
-      const std::optional<StrokeRun> barred = take(order);
-      if (!barred || !job_.strokes[barred->stroke].reversible) return;
-      forbid(*barred);
-      const std::vector<StrokeRun> next = cheapest_order(costs_, budget_);
-      if (!std::isfinite(cost_of_order(costs_, next)) || next == order) return;
-      order = next;
-    }
+    for (const StrokeRun& run : plan->runs_without_path()) forbid(run);
   }
   /// Plans the given order and orders that differ by one move from the best one, as many as are
   /// likely to find a cheaper job: estimates, which know no obstacles, are off by some per cent.
@@ -654,8 +681,7 @@ class OrderSearch {
     for (int k = 0; k < kMostOrders; ++k) {
       const auto next = cheapest_neighbour(costs_, best_order_, planned_, budget_);
       if (!next) return;
-      if (const auto barred = take(*next); barred && job_.strokes[barred->stroke].reversible)
-        forbid(*barred);
+      take(*next);
     }
   }
   /// Adds what one search did to what all did.
@@ -666,7 +692,8 @@ class OrderSearch {
     transitions_.rounds += found.transitions.rounds;
   }
   [[nodiscard]] bool was_planned(const std::vector<StrokeRun>& order) const {
-    return std::find(planned_.begin(), planned_.end(), order) != planned_.end();
+    return std::any_of(planned_.begin(), planned_.end(),
+                       [&](const auto& other) { return strokes_of(other) == strokes_of(order); });
   }
   void forbid(const StrokeRun& run) {
     constexpr double kNever = std::numeric_limits<double>::infinity();

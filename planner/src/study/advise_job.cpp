@@ -129,16 +129,15 @@ class JobTrials {
     add(std::move(advice), changed);
   }
 
-  /// Tries a stroke from its last waypoint to its first, where that was not free to choose. By
+  /// Tries a stroke from its last waypoint to its first, unless it is reversible. By
   /// itself it has a path either way unless the lines of approach and retract differ.
   void reverse(std::size_t stroke) {
     const Stroke& of = job_.strokes[stroke];
-    const bool free = job_.order == StrokeOrder::kBest && of.reversible;
     const bool alone = result_.runs.size() == 1 ||
                        std::any_of(result_.runs.begin(), result_.runs.end(), [&](const auto& run) {
                          return run.run.stroke == stroke && run.status == PlanStatus::kInfeasible;
                        });
-    if (free || of.end || (alone && of.approach == of.retract)) return;
+    if (of.reversible || of.end || (alone && of.approach == of.retract)) return;
     Job changed = job_;
     Stroke& turned = changed.strokes[stroke];
     std::reverse(turned.waypoints.begin(), turned.waypoints.end());

@@ -103,6 +103,10 @@ InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
   if (run == runs.end())
     throw py::value_error(
         "no stroke is known to have no path by itself: allowed is a plan with such a stroke");
+  if (job.strokes[run->run.stroke].reversible)
+    throw py::value_error("stroke '" + job.strokes[run->run.stroke].name +
+                          "' is reversible, and a certificate is of one direction: allowed are "
+                          "strokes that are not reversible");
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
     PlanOptions options;

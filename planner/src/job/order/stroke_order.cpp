@@ -172,14 +172,17 @@ std::optional<std::vector<StrokeRun>> cheapest_neighbour(
     const OrderCosts& costs, const std::vector<StrokeRun>& order,
     const std::vector<std::vector<StrokeRun>>& others, const Budget& budget) {
   if (order.size() > kMostLocal) return std::nullopt;
-  std::vector<Runs> left_out;
-  for (const std::vector<StrokeRun>& other : others) left_out.push_back(as_runs(other));
+  const auto is_left_out = [&](const Runs& tried) {
+    return std::any_of(others.begin(), others.end(), [&](const std::vector<StrokeRun>& other) {
+      return std::equal(tried.begin(), tried.end(), other.begin(), other.end(),
+                        [](std::size_t run, const StrokeRun& of) { return run / 2 == of.stroke; });
+    });
+  };
   Runs best;
   double least = kNone;
   any_neighbour(as_runs(order), [&](const Runs& tried) {
     const double cost = cost_of(costs, tried);
-    if (!(cost < least) || std::find(left_out.begin(), left_out.end(), tried) != left_out.end())
-      return false;
+    if (!(cost < least) || is_left_out(tried)) return false;
     budget.poll();
     best = tried;
     least = cost;

@@ -27,9 +27,10 @@ struct OrderCosts {
 /// of up to three strokes and turn stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget);
 
-/// Returns the cheapest order but those of `others` that differs from `order` by one move: a
-/// stretch of strokes turned round, each stroke of it too or not, or up to three strokes moved
-/// elsewhere, either way round. Returns none where no such order can be run, or where there are
+/// Returns the cheapest order that differs from `order` by one move: a stretch of strokes turned
+/// round, each stroke of it too or not, or up to three strokes moved elsewhere, either way round.
+/// Orders in which the strokes follow each other as in one of `others`, whatever their directions,
+/// are left out. Returns none where no such order can be run, or where there are
 /// more strokes than local searches take.
 [[nodiscard]] std::optional<std::vector<StrokeRun>> cheapest_neighbour(
     const OrderCosts& costs, const std::vector<StrokeRun>& order,

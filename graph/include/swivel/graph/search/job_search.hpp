@@ -13,9 +13,9 @@
 
 namespace swivel {
 
-/// A question how to get from the last configuration of a run to the first one of the next.
+/// A question how to get from the last configuration of a stroke to the first one of the next.
 struct TransitionQuestion {
-  /// 0: from home to the first run; k: from run k - 1 to run k; number of runs: home.
+  /// 0: from home to the first stroke; k: from stroke k - 1 to stroke k; number of strokes: home.
   int transition = 0;
   Config from, to;  ///< joints of the two nodes' rows, rad
   /// True: a way around obstacles is searched for, if no straight one and none known is free.
@@ -49,10 +49,16 @@ class Transitions {
                     std::span<TransitionAnswer> answers) = 0;
 };
 
-/// A run of a job as its search sees it.
+/// A run of a stroke as the search of a job sees it.
 struct SearchedRun {
   CostToGo* cost_to_go = nullptr;  ///< made with Pruning::kNone
   Validity* validity = nullptr;    ///< asked by one thread at a time
+};
+
+/// A stroke as the search of a job sees it: the runs of which the job takes one, such as forwards
+/// and backwards; at least one.
+struct SearchedStroke {
+  std::vector<SearchedRun> runs;
 };
 
 /// How search_job() searches.
@@ -72,36 +78,38 @@ struct JobSearchOptions {
 /// A job that was found, or what is known of it.
 struct JobOutcome {
   bool decided = false;  ///< false: stopped by the budget
-  /// Index of a run that has no path by itself; none if all have one.
-  std::optional<std::size_t> run_without_path;
+  /// Index of the first stroke of which no run has a path by itself; none if all have one.
+  std::optional<std::size_t> stroke_without_path;
   /// Index of the transition for which no way was found from any end to any begin.
   std::optional<std::size_t> transition_without_way;
   /// A pair of configurations of that transition between which no way was found.
   std::optional<std::array<Config, 2>> pair_without_way;
-  /// Where that is so since the transition cannot leave the run before it, or reach the run behind
-  /// it, at any of the nodes at which that run may end or begin: one of them.
+  /// Where that is so since the transition cannot leave the stroke before it, or reach the stroke
+  /// behind it, at any of the nodes at which a run of it may end or begin: one of them.
   std::optional<Config> barred_end, barred_begin;
-  std::vector<SlotPath> paths;  ///< of each run; empty if no job was found
-  double cost = kUnreachable;   ///< of the job found
+  std::vector<std::size_t> runs;  ///< taken of each stroke; empty if no job was found
+  std::vector<SlotPath> paths;    ///< of these runs
+  double cost = kUnreachable;     ///< of the job found
   /// No job whose transitions are those that Transitions finds costs less.
   double bound = 0;
   /// No job costs less whatever its transitions: 0 until all runs are known to be valid.
   double bound_any = 0;
-  std::vector<double> least_costs;                  ///< of each run by itself; kUnreachable: none
+  /// Of each run of each stroke by itself; kUnreachable: it has no path.
+  std::vector<std::vector<double>> least_costs;
   std::vector<double> run_costs, transition_costs;  ///< of the job found
   std::int64_t rounds = 0, pairs = 0, searches = 0;
 };
 
-/// Finds the cheapest job: a path through each run in the given order, joined by transitions, from
-/// `home` and back to it where it is given. Works as path_first() does, on the runs' lattices
-/// joined to one: a backward program over the runs gives each end node the least cost of the rest
-/// of the job (Verdicts::raise_exit_costs()), the cheapest job is taken, its nodes and edges are
-/// validated, then its transitions, what fails is removed or raised, and so on. Values only ever
-/// rise, so the value of the best job that is left is a lower bound throughout. A greedy job, which
-/// runs each stroke at the least cost after the one before, is found first; the result never costs
-/// more. Does not throw Stopped: `outcome` then has the cheapest job known.
-[[nodiscard]] JobOutcome search_job(std::span<const SearchedRun> runs, Transitions& transitions,
-                                    const std::optional<Config>& home,
+/// Finds the cheapest job: a path through one run of each stroke, the strokes in their order,
+/// joined by transitions, from `home` and back to it where it is given. Works as path_first() does,
+/// on the runs' lattices joined to one: a backward program over the strokes gives each end node the
+/// least cost of the rest of the job (Verdicts::raise_exit_costs()), the cheapest job is taken, its
+/// nodes and edges are validated, then its transitions, what fails is removed or raised, and so on.
+/// Values only ever rise, so the value of the best job that is left is a lower bound throughout. A
+/// greedy job, which runs each stroke at the least cost after the one before, is found first; the
+/// result never costs more. Does not throw Stopped: `outcome` then has the cheapest job known.
+[[nodiscard]] JobOutcome search_job(std::span<const SearchedStroke> strokes,
+                                    Transitions& transitions, const std::optional<Config>& home,
                                     const JobSearchOptions& options);
 
 }  // namespace swivel

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reversible strokes of a job in a given order: the job takes the cheapest of all their directions,
+// and no job that passes its check costs less than what the answer says of any.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "seed.hpp"
+#include "swivel/core/study/campaign.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/io/problems/job.hpp"
+#include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+Job load(const std::string& name) {
+  return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+}
+
+/// Draws a job of a few strokes of another, in any order, at another placement.
+Job random_job(const Job& of, Random& random) {
+  Job job = of;
+  const auto episode = static_cast<std::uint64_t>(random.below(1000));
+  if (!job.vary.empty())
+    job.scene = episode_problem(problem_of_run(job, {0, false}), 1, episode).scene;
+  for (std::size_t k = job.strokes.size(); k > 1; --k)
+    std::swap(job.strokes[k - 1],
+              job.strokes[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+  const auto count = static_cast<std::size_t>(1 + random.below(3));
+  while (job.strokes.size() > count) job.strokes.pop_back();
+  job.order = StrokeOrder::kGiven;
+  if (random.coin(0.3)) job.home.reset();
+  for (Stroke& stroke : job.strokes) {
+    stroke.reversible = random.coin(0.8);
+    stroke.approach = random.coin() ? Vector3d(0, 0, -0.02) : Vector3d::Zero();
+    stroke.retract = random.coin() ? Vector3d(0, 0, -0.03) : Vector3d::Zero();
+    stroke.resolution.ds = 0.03;
+    stroke.resolution.dphi = 0.2;
+    stroke.limits.tool_path_error = 0.02;
+    if (random.coin()) std::reverse(stroke.waypoints.begin(), stroke.waypoints.end());
+  }
+  return job;
+}
+
+/// Returns the job with strokes written in the directions that the bits of `turned` say, none of
+/// them reversible; nothing where a stroke that is not reversible would be turned.
+std::optional<Job> written(const Job& of, unsigned turned) {
+  Job job = of;
+  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
+    Stroke& stroke = job.strokes[k];
+    if ((turned >> k & 1) != 0) {
+      if (!stroke.reversible) return std::nullopt;
+      std::reverse(stroke.waypoints.begin(), stroke.waypoints.end());
+    }
+    stroke.reversible = false;
+  }
+  return job;
+}
+
+bool is_straight(const JobResult& job) {
+  return std::all_of(job.parts.begin(), job.parts.end(),
+                     [](const JobPart& part) { return part.run || part.rows.size() == 2; });
+}
+
+/// Returns a job whose runs are those of other jobs, with straight moves between them.
+std::vector<JobPart> joined(const Job& job, const std::vector<const JobPart*>& runs) {
+  std::vector<JobPart> parts;
+  std::optional<Config> at = job.home;
+  const auto go_to = [&](const Config& q) {
+    if (!at) return;
+    JobPart& move = parts.emplace_back();
+    for (const Config& end : {*at, q}) {
+      TrajectoryRow row;
+      row.q = end;
+      move.rows.push_back(row);
+    }
+  };
+  for (const JobPart* const run : runs) {
+    go_to(run->rows.front().q);
+    parts.push_back(*run);
+    at = run->rows.back().q;
+  }
+  if (job.home) go_to(*job.home);
+  return parts;
+}
+
+struct Met {
+  int jobs = 0, equal = 0, turned = 0, none = 0, checked = 0;
+};
+
+/// Holds a job against all directions of its strokes, each written by hand.
+void expect_cheapest(const PreparedRobot& robot, const Job& job, const std::string& what,
+                     Random& random, Met& met) {
+  const JobResult found = plan_job(robot, job);
+  std::vector<std::vector<JobPart>> runs(job.strokes.size());  // by stroke, of all directions
+  double least = kNone;
+  bool straight = is_straight(found);
+  for (unsigned turned = 0; turned < 1U << job.strokes.size(); ++turned) {
+    const std::optional<Job> by_hand = written(job, turned);
+    if (!by_hand) continue;
+    JobResult other = plan_job(robot, *by_hand);
+    if (other.parts.empty()) continue;
+    straight = straight && is_straight(other);
+    least = std::min(least, other.cost);
+    for (JobPart& part : other.parts) {
+      if (!part.run) continue;
+      part.run->reversed = (turned >> part.run->stroke & 1) != 0;
+      runs[part.run->stroke].push_back(part);
+    }
+    const JobCheckResult check = check_job(robot, job, other.parts);
+    ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
+    ASSERT_GE(check.cost, found.bound_any - 1e-9) << what;
+    ++met.checked;
+  }
+  ++met.jobs;
+  ASSERT_EQ(found.parts.empty(), least == kNone) << what;
+  if (found.parts.empty()) {
+    ++met.none;
+    return;
+  }
+  const JobCheckResult own = check_job(robot, job, found.parts);
+  ASSERT_TRUE(own.passed) << what << ": " << own.failures.front();
+  for (const JobPart& part : found.parts) met.turned += part.run && part.run->reversed;
+  if (straight) {  // else costs depend on the ways around that were found
+    ASSERT_NEAR(found.cost, least, 1e-9) << what;
+    ASSERT_NEAR(found.bound_any, least, 1e-9) << what;
+    ++met.equal;
+  }
+  for (int k = 0; k < 4; ++k) {
+    std::vector<const JobPart*> taken;
+    for (const auto& of : runs)
+      taken.push_back(&of[static_cast<std::size_t>(random.below(static_cast<int>(of.size())))]);
+    const JobCheckResult check = check_job(robot, job, joined(job, taken));
+    if (!check.passed) continue;
+    ASSERT_GE(check.cost, found.bound_any - 1e-9) << what;
+    ++met.checked;
+  }
+}
+
+TEST(Directions, AreTheCheapestOfAllInTheGivenOrder) {
+  Random random(seed("Directions"));
+  Met met;
+  for (const char* const name : {"door_job.yaml", "iiwa14_bench_job.yaml",
+                                 "ur5e_deburr_plate_job.yaml", "kr6_weld_pipe_job.yaml"}) {
+    const Job of = load(name);
+    const PreparedRobot robot(problem_of_run(of, {0, false}));
+    for (int trial = 0; trial < trials(50); ++trial) {
+      const std::string what = std::string(name) + " trial " + std::to_string(trial);
+      expect_cheapest(robot, random_job(of, random), what, random, met);
+      if (HasFatalFailure()) return;
+    }
+  }
+  std::printf(
+      "%d jobs, %d with straight transitions alone, %d without a job, %d strokes turned; "
+      "%d other jobs passed and cost no less than the bound\n",
+      met.jobs, met.equal, met.none, met.turned, met.checked);
+  EXPECT_GE(met.equal, at_least(60));
+  EXPECT_GE(met.turned, at_least(60));
+  EXPECT_GE(met.checked, at_least(500));
+}
+
+/// A stroke that only its last waypoint lets the arm begin has a path backwards alone.
+TEST(Directions, TheOneWithAPathIsTakenWhereTheOtherHasNone) {
+  Job job = load("door_job.yaml");
+  job.strokes.resize(1);
+  job.home.reset();
+  Stroke& stroke = job.strokes.front();
+  stroke.reversible = true;
+  stroke.approach = Vector3d(0, 0, -3);  // out of reach, before whichever waypoint comes first
+  EXPECT_EQ(plan_job(job).status, PlanStatus::kInfeasible);
+  EXPECT_EQ(plan_job(job).runs.front().run, (StrokeRun{0, false}));
+}
+
+}  // namespace
+}  // namespace swivel
