@@ -6,6 +6,7 @@
 #include <set>
 
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/problem/validate.hpp"
 
 namespace swivel {
@@ -177,6 +178,49 @@ ProcessWaypoints process_waypoints(const Stroke& stroke) {
   return {first, first + stroke.waypoints.size() - 1};
 }
 
+namespace {
+
+/// Returns true if two waypoints are one pose.
+bool same_pose(const Waypoint& a, const Waypoint& b) {
+  constexpr double kOnePose = 1e-9;  // m and rad
+  return (a.position - b.position).norm() <= kOnePose &&
+         a.orientation.angularDistance(b.orientation) <= kOnePose;
+}
+
+/// Returns true if ToolPath might merge `middle`, to which the tool comes from `before` without
+/// turning, into a straight segment to `after`.
+bool on_one_line(const Waypoint& before, const Waypoint& middle, const Waypoint& after) {
+  constexpr double kNear = 2e-6;  // m and rad; more than ToolPath merges
+  const Vector3d way = after.position - before.position;
+  const double first = (middle.position - before.position).norm(),
+               second = (after.position - middle.position).norm();
+  return (before.position + first / (first + second) * way - middle.position).norm() <= kNear &&
+         middle.orientation.angularDistance(after.orientation) <= kNear;
+}
+
+/// Returns the steps into which the path of a run is cut (Task::steps) where its approach or its
+/// retract goes straight on into its stroke: with them the stroke's first and last waypoint are
+/// layers, so that the process begins and ends there. Elsewhere, and where neighbouring waypoints
+/// are one pose, returns none.
+std::vector<int> steps_along_lines(const Stroke& stroke, const Problem& problem) {
+  const std::vector<Waypoint>& waypoints = problem.waypoints;
+  const ProcessWaypoints process = process_waypoints(stroke);
+  const auto is_lost = [&](std::size_t line, std::size_t end, std::size_t inner) {
+    return on_one_line(waypoints[line], waypoints[end], waypoints[inner]);
+  };
+  const std::size_t first = process.first, last = process.last;
+  const bool lost =
+      first < last && ((first > 0 && is_lost(first - 1, first, first + 1)) ||
+                       (last + 1 < waypoints.size() && is_lost(last + 1, last, last - 1)));
+  if (!lost || !(problem.resolution.ds > 0 && problem.resolution.dalpha > 0) ||
+      std::adjacent_find(waypoints.begin(), waypoints.end(), same_pose) != waypoints.end())
+    return {};
+  return steps_between(waypoints, problem.resolution, problem.source,
+                       problem.roll && problem.roll->circle());
+}
+
+}  // namespace
+
 Problem problem_of_run(const Job& job, const StrokeRun& run) {
   const Stroke& stroke = job.strokes[run.stroke];
   Problem problem;
@@ -187,6 +231,7 @@ Problem problem_of_run(const Job& job, const StrokeRun& run) {
   problem.vary = job.vary;
   problem.source = job.source.empty() ? "stroke '" + stroke.name + "'"
                                       : job.source + ": stroke '" + stroke.name + "'";
+  problem.steps = steps_along_lines(stroke, problem);
   return problem;
 }
 

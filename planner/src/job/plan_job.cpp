@@ -59,6 +59,7 @@ std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const Problem& probl
   Problem before = problem;
   before.end.reset();
   before.smooth.reset();
+  before.steps.clear();
   before.waypoints = stroke.piece->before;
   before.waypoints.push_back(stroke.waypoints.front());
   if (stroke.piece->before.empty()) before.waypoints = stroke.waypoints;

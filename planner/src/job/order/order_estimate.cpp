@@ -91,6 +91,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     Problem problem = problem_of_run(job, {run / 2, reversed});
     if (of_ends) {
       std::reverse(problem.waypoints.begin(), problem.waypoints.end());
+      std::reverse(problem.steps.begin(), problem.steps.end());
       std::swap(problem.start, problem.end);
     }
     double least = kNever;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the process of a stroke begins and ends, and how fast the tool may be there: strokes that
+// go straight on from their approach, and motions that are faster than the job asks.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/io/problems/job.hpp"
+#include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+
+namespace swivel {
+namespace {
+
+Job load(const char* name) {
+  return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+}
+
+/// Returns a job of one stroke, a hole of 33 mm above a casting: the tool goes along its own axis,
+/// as it does on the approach.
+Job drilling(bool reversible) {
+  Job job = load("iiwa14_bench_job.yaml");
+  job.strokes.resize(1);
+  Stroke& stroke = job.strokes.front();
+  stroke.reversible = reversible;
+  stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
+  stroke.resolution.ds = 0.02;
+  stroke.waypoints = {stroke.waypoints.front(), stroke.waypoints.front()};
+  stroke.waypoints[0].position.z() += 0.053;
+  stroke.waypoints[1].position.z() += 0.02;
+  return job;
+}
+
+TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) {
+  const Job job = drilling(false);
+  const PreparedRobot robot(problem_of_run(job, {0, false}));
+  const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
+  ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
+  for (const JobPart& part : plan.result.parts) {
+    if (!part.run) continue;
+    const std::vector<bool> process = process_of_rows(part, job);
+    const auto on = std::find(process.begin(), process.end(), true);
+    ASSERT_NE(on, process.end());
+    const auto first = static_cast<std::size_t>(on - process.begin());
+    EXPECT_NEAR(part.rows[first].s, 0.02, 1e-9);
+    const auto last = static_cast<std::size_t>(process.rend() -
+                                               std::find(process.rbegin(), process.rend(), true)) -
+                      1;
+    EXPECT_NEAR(part.rows[last].s, 0.053, 1e-9);
+  }
+  ASSERT_TRUE(plan.timing && plan.timing->motion);
+  const std::vector<ProcessEvent>& events = plan.timing->motion->events;
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_NEAR(events[0].s, 0.02, 1e-3);
+  EXPECT_NEAR(events[1].s, 0.053, 1e-3);
+  const JobCheckResult check = check_job_motion(robot, job, {{0, false}}, *plan.timing->motion);
+  EXPECT_TRUE(check.passed) << check.failures.front();
+}
+
+/// Both directions of both ends, and strokes that bend or whose waypoints are one line.
+TEST(ProcessRange, EndsOfStrokesAreLayers) {
+  Job job = drilling(true);
+  Stroke& stroke = job.strokes.front();
+  const auto layers = [&](bool reversed) {
+    const Problem problem = problem_of_run(job, {0, reversed});
+    const ToolPath path(problem.waypoints, problem.resolution, "", {}, {}, false, problem.steps);
+    std::vector<int> waypoints;
+    for (int i = 0; i < path.size(); ++i)
+      if (path.layer(i).waypoint >= 0) waypoints.push_back(path.layer(i).waypoint);
+    return waypoints;
+  };
+  EXPECT_EQ(layers(false), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(layers(true), (std::vector<int>{0, 1, 2, 3}));  // the retract goes on
+  stroke.waypoints.insert(stroke.waypoints.begin() + 1, stroke.waypoints.front());
+  stroke.waypoints[1].position.z() -= 0.01;
+  EXPECT_EQ(layers(false), (std::vector<int>{0, 1, 2, 3, 4}));
+  stroke.approach.setZero();
+  EXPECT_EQ(layers(false), (std::vector<int>{0, 2, 3}));  // on the line from end to end
+  stroke.approach = Vector3d(0, 0.02, 0);
+  EXPECT_EQ(layers(false), (std::vector<int>{0, 1, 3, 4}));
+}
+
+}  // namespace
+}  // namespace swivel
