@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -34,6 +35,7 @@ namespace {
 
 struct CheckArguments {
   std::string problem, trajectory, certificate;
+  std::optional<double> speed;  // m/s
   LatticeOptions lattice;
   EpisodeChoice episode;
 };
@@ -144,7 +146,8 @@ void require_one_file(const CheckArguments& arguments) {
 int run_on_job(const CheckArguments& arguments, const Job& file) {
   require_one_file(arguments);
   const Job job = chosen_job(file, arguments.lattice, arguments.episode);
-  if (arguments.certificate.empty()) return check_job_file(job, arguments.trajectory);
+  if (arguments.certificate.empty())
+    return check_job_file(job, arguments.trajectory, arguments.speed);
   const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
   const auto stroke = find_stroke(job, certificate.stroke);
   if (!stroke)
@@ -171,7 +174,16 @@ int run_on_workcell(const CheckArguments& arguments, const Workcell& file) {
 
 int run(const CheckArguments& arguments) {
   const std::variant<Problem, Job, Workcell> file = io::load_problem_file(arguments.problem);
+  if (arguments.speed && !(std::isfinite(*arguments.speed) && *arguments.speed > 0))
+    throw InputError(
+        formatted("--speed: %g: allowed are finite numbers above 0", *arguments.speed));
+  if (arguments.speed && !arguments.certificate.empty())
+    throw InputError("--speed: is of motions: allowed without --certificate");
   if (const Job* job = std::get_if<Job>(&file)) return run_on_job(arguments, *job);
+  if (arguments.speed)  // not of a job
+    throw InputError(
+        "--speed: is of a motion of a job, in place of the speeds in its file: "
+        "allowed are jobs; elsewhere `limits.tool_speed` bounds the speed");
   if (const Workcell* cell = std::get_if<Workcell>(&file)) return run_on_workcell(arguments, *cell);
   Problem problem = arguments.episode.apply(std::get<Problem>(file));
   arguments.lattice.apply(problem);
@@ -215,6 +227,8 @@ int run(const CheckArguments& arguments) {
     if (!all) say("of the rows that could be measured: ");
     print_margins(problem, chain, result);
   }
+  const bool asks_speed = problem.limits.tool_speed || problem.limits.tool_turn_speed;
+  if (read.timed.empty() && asks_speed) say("%s", kSpeedsNotChecked);
   if (look_like_degrees(chain, rows))
     say("  joints would be within their limits as degrees: allowed are radians\n");
   print_failures(result.failures, result.failure_count);
@@ -233,6 +247,9 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option(
       "--certificate", arguments->certificate,
       "instead of a trajectory: what `plan --certificate` wrote, that there is no path");
+  command->add_option("--speed", arguments->speed,
+                      "of motions of jobs: speed of the tool along strokes, m/s, instead of those "
+                      "of the file, as `plan --speed`");
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -2,6 +2,7 @@
 #include "commands/check_job_command.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "output/check_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
@@ -80,7 +82,7 @@ void print_verdict(const JobCheckResult& result, const std::vector<HeldJoint>& h
 
 }  // namespace
 
-int check_job_file(const Job& given, const std::string& trajectory) {
+int check_job_file(const Job& given, const std::string& trajectory, std::optional<double> speed) {
   const PreparedRobot robot(problem_of_run(given, {0, false}));
   const std::vector<HeldJoint>& held = robot.arm().held;
   warn_of_held(held);
@@ -90,6 +92,8 @@ int check_job_file(const Job& given, const std::string& trajectory) {
   const auto& file = executed.rows;
   JobCheckResult result;
   if (const auto* read = std::get_if<io::JobTrajectory>(&file)) {
+    if (speed)
+      throw InputError(trajectory, "has no times: allowed with --speed are motions of jobs");
     const std::vector<JobPart> parts =
         in_the_name_of(trajectory, [&] { return parts_of(robot, job, *read); });
     result = check_job(robot, job, parts);
@@ -100,10 +104,11 @@ int check_job_file(const Job& given, const std::string& trajectory) {
       rows += part.rows.size();
     }
     print_verdict(result, held, strokes, rows, 0);
+    say("%s", kSpeedsNotChecked);
   } else {
     const auto& timed = std::get<io::JobMotionFile>(file);
     const auto order = runs_of_motion(robot, job, timed.strokes, timed.motion);
-    result = check_job_motion(robot, job, order, timed.motion);
+    result = check_job_motion(robot, job, order, timed.motion, {.speed = speed});
     print_verdict(result, held, timed.strokes.size(), timed.motion.rows.size(),
                   timed.motion.duration);
   }

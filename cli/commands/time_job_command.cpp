@@ -70,7 +70,7 @@ Timed timed(const PreparedRobot& robot, const JobTimeRequest& request, const Job
   // Motions keep more clearance between rows than trajectories do: transitions may lack it.
   const JobCheckResult check =
       check_job_motion(robot, job, runs_among(made.parts), *made.timing.motion,
-                       {.margins = false, .budget = budget});
+                       {.margins = false, .budget = budget, .speed = request.timing.speed});
   if (!check.passed) made.fault = check.failures.front();
   return made;
 }

@@ -323,6 +323,11 @@ int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
     if (arm.motion) print_rates(*arm.motion, prepared->robot(k).arm().chain.joint_names);
     print_failures(arm.failures, arm.failure_count);
   }
+  const auto asks_speed = [](const WorkcellArm& arm) {
+    return arm.limits.tool_speed || arm.limits.tool_turn_speed;
+  };
+  if (!timed && std::any_of(cell.arms.begin(), cell.arms.end(), asks_speed))
+    say("%s", kSpeedsNotChecked);
   print_failures(result.failures, result.failure_count);
   return result.passed ? kOk : kNo;
 }

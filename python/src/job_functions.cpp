@@ -195,12 +195,15 @@ JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Job& job,
 }
 
 using Checked = std::variant<JobPlan, JobMotion, Parts, std::filesystem::path>;
-JobCheck check(const JobOrFile& of, const Checked& rows) {
+JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> speed) {
   const swivel::Job job = to_core(of);
+  if (speed && !(std::isfinite(*speed) && *speed > 0))
+    throw py::value_error("speed: not a positive number: allowed are values above 0, or None");
   return interruptible([&](const std::stop_token& stop) -> JobCheck {
     const PreparedRobot robot = prepared(job, stop);
     CheckOptions options;
     options.budget = Budget({}, nullptr, stop);
+    options.speed = speed;
     std::variant<Parts, JobMotion> given;
     if (const auto* file = std::get_if<std::filesystem::path>(&rows))
       given = load_rows(robot, job, *file);
@@ -298,7 +301,7 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
     if (!result->motion) return motion;
     // Motions keep more clearance between rows than trajectories do: transitions may lack it.
     CheckOptions options;
-    options.margins = false, options.budget = budget;
+    options.margins = false, options.budget = budget, options.speed = timing.speed;
     const JobCheckResult check = check_timed(robot, job, motion, options);
     if (check.passed) return motion;
     motion.fault = check.failures.front();
@@ -346,12 +349,14 @@ void bind_plan_job(py::module_& m) {
 
 void bind_job_functions(py::module_& m) {
   bind_plan_job(m);
-  m.def("check_job", &check, py::arg("job").none(false), py::arg("rows").none(false),
+  m.def("check_job", &check, py::arg("job").none(false), py::arg("rows").none(false), py::kw_only(),
+        py::arg("speed") = py::none(),
         "Proves the rows of a job from the job alone, or says what is wrong with them: JobCheck.\n"
         "\n"
         "job: a Job, or the name of its file. rows: a JobPlan (its parts), a JobMotion, a list of "
-        "JobParts, or the name of a CSV file of a trajectory or a motion. Raises InputError and "
-        "InvalidArgument.");
+        "JobParts, or the name of a CSV file of a trajectory or a motion. speed: m/s along all "
+        "strokes, instead of the speeds and feeds of the job, where a motion was made with it. "
+        "Raises InputError and InvalidArgument.");
   m.def(
       "time_job",
       [](const JobOrFile& job, const Timeable& rows, std::optional<double> speed,

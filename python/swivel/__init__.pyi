@@ -1250,7 +1250,12 @@ def plan_job(
     turn_speed: float | None = None,
     rate: float | None = None,
 ) -> JobPlan: ...
-def check_job(job: Job | _File, rows: JobPlan | JobMotion | Sequence[JobPart] | _File) -> JobCheck: ...
+def check_job(
+    job: Job | _File,
+    rows: JobPlan | JobMotion | Sequence[JobPart] | _File,
+    *,
+    speed: float | None = None,
+) -> JobCheck: ...
 def time_job(
     job: Job | _File,
     rows: JobPlan | Sequence[JobPart] | _File,

@@ -488,6 +488,30 @@ class Timed(WithFolder):
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertTrue(done.stderr.startswith("swivel: " + needle), done.stderr)
 
+    def test_check_holds_the_speeds_of_the_file(self):
+        motion, job = self.timed("m.csv", "--speed", 0.1)[1], self.folder / "job.yaml"
+        done = run("check", job, motion)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertRegex(
+            done.stdout, r"stroke 'left': rows \d+-\d+: the tool moves at 0\.\d+ m/s at s = [\d.]+ "
+            r"m: allowed is 0\.05, the speed asked for there"
+        )
+        self.assertEqual(run("check", job, motion, "--speed", 0.1).returncode, 0)
+        rows = self.timed("t.csv")[1]
+        done = run("check", job, rows)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("speeds of the tool were not checked: rows have no times\n", done.stdout)
+        path = DATA / "problems" / "experiment_a.yaml"
+        for arguments, needle in (
+            ((job, motion, "--speed", 0), "--speed: 0: allowed are finite numbers above 0"),
+            ((job, rows, "--speed", 0.1), "has no times: allowed with --speed are motions of jobs"),
+            ((path, rows, "--speed", 0.1), "--speed: is of a motion of a job"),
+            ((job, "--certificate", rows, "--speed", 0.1), "--speed: is of motions"),
+        ):
+            done = run("check", *arguments)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(needle, done.stderr)
+
     def test_time_of_a_trajectory(self):
         done, out = self.timed("t.csv")
         job, motion = self.folder / "job.yaml", self.folder / "m.csv"

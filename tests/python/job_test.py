@@ -271,7 +271,12 @@ class JobMotions(unittest.TestCase):
             for on, off in zip(motion.events[::2], motion.events[1::2])
         )
         self.assertEqual(motion.process.sum(), count)
-        self.assertTrue(swivel.check_job(self.job, motion))
+        self.assertTrue(swivel.check_job(self.job, motion, speed=0.1))
+        faster = swivel.check_job(self.job, motion)  # than the job's process_speed, 0.05
+        self.assertFalse(faster)
+        self.assertRegex(faster.failures[0], r"^stroke 'row_0': rows \d+-\d+: the tool moves at 0.")
+        with self.assertRaisesRegex(ValueError, "speed: not a positive number"):
+            swivel.check_job(self.job, motion, speed=0)
         self.assertTrue(swivel.check_job(self.job, plan))  # whose rows follow rounded corners
         np.testing.assert_array_equal(motion.joints[0], np.array(HOME))
         with tempfile.TemporaryDirectory() as folder:
@@ -285,7 +290,7 @@ class JobMotions(unittest.TestCase):
                 [(e.t, e.stroke, e.on) for e in read.events],
                 [(e.t, e.stroke, e.on) for e in motion.events],
             )
-            self.assertTrue(swivel.check_job(self.job, Path(folder) / "m.csv"))
+            self.assertTrue(swivel.check_job(self.job, Path(folder) / "m.csv", speed=0.1))
             with self.assertRaisesRegex(swivel.InputError, "m.csv: has times"):
                 swivel.time_job(self.job, Path(folder) / "m.csv", speed=0.1)
             with self.assertRaisesRegex(swivel.InputError, "unknown format"):
@@ -294,7 +299,7 @@ class JobMotions(unittest.TestCase):
         turned = small(strokes=self.job.strokes[::-1])
         self.assertIn("given order", swivel.check_job(turned, motion).failures[0])
         turned.order = "best"
-        self.assertTrue(swivel.check_job(turned, motion))
+        self.assertTrue(swivel.check_job(turned, motion, speed=0.1))
 
     def test_time_job(self):
         plan = swivel.plan_job(self.job)
@@ -452,7 +457,7 @@ class JobAnswers(unittest.TestCase):
         again = pickle.loads(pickle.dumps(plan))
         self.assertEqual(again.to_csv(), plan.to_csv())
         self.assertEqual(again.to_json(), plan.to_json())
-        self.assertTrue(swivel.check_job(pickle.loads(pickle.dumps(job)), again.motion))
+        self.assertTrue(swivel.check_job(pickle.loads(pickle.dumps(job)), again.motion, speed=0.1))
         print(compare.count, "values compared")
         self.assertGreater(compare.count, 500)
         # An answer holds neither robot nor scene.

@@ -108,10 +108,38 @@ class JobCheck {
     CheckResult result = timed_ ? check_motion(robot_, problem, (*timed_)[k], options_)
                                 : check_trajectory(robot_, problem, parts_[k].rows, options_);
     for (const std::string& line : result.failures) fail(name(k) + ": " + line);
+    if (timed_) examine_speeds(k, problem);
     result_.failure_count +=
         result.failure_count - static_cast<std::int64_t>(result.failures.size());
     result_.cost += result.cost;
     result_.runs.push_back(std::move(result));
+  }
+
+  /// Examines how fast the tool is on a timed run.
+  void examine_speeds(std::size_t k, const Problem& problem) {
+    constexpr double kFaster = 1.001;    // of what is asked, as of limits.tool_speed
+    constexpr double kSamePlace = 1e-6;  // m
+    const StrokeRun& run = *parts_[k].run;
+    const std::optional<RunSpeeds> asked = speeds_of_run(job_, run, problem, options_.speed);
+    if (!asked) return;
+    const std::vector<TimedRow>& rows = (*timed_)[k];
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const TimedRow &from = rows[i - 1], &to = rows[i];
+      double allowed = -1;  // the fastest speed asked for between the two places
+      for (std::size_t n = 0; n <= asked->from.size(); ++n) {
+        const bool first = n == 0, last = n == asked->from.size();
+        if (!first && asked->from[n - 1].s > to.row.s + kSamePlace) continue;
+        if (!last && asked->from[n].s < from.row.s - kSamePlace) continue;
+        allowed = std::max(allowed, first ? asked->first : asked->from[n - 1].speed);
+      }
+      const double way =
+          (chain_.tool(to.row.q).translation() - chain_.tool(from.row.q).translation()).norm();
+      // what check_motion() refuses has failed already
+      if (!(to.t > from.t) || allowed < 0 || !(way > kFaster * allowed * (to.t - from.t))) continue;
+      fail(name(k) + formatted(": rows %zu-%zu: the tool moves at %.6g m/s at s = %.6g m: allowed "
+                               "is %.6g, the speed asked for there",
+                               i - 1, i, way / (to.t - from.t), from.row.s, allowed));
+    }
   }
 
   void examine_transition(std::size_t k) {

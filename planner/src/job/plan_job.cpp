@@ -793,7 +793,7 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
       std::vector<StrokeRun> order;
       for (const RunResult& run : plan.result.runs) order.push_back(run.run);
       require_passed(check_job_motion(robot, executed, order, *plan.timing->motion,
-                                      {.margins = false, .budget = budget}));
+                                      {.margins = false, .budget = budget, .speed = timing.speed}));
       plan.result.time_ms["check motion"] = watch.lap();
     }
   } catch (const Stopped&) {

@@ -30,4 +30,28 @@ std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
   return {event(process.first, true), event(process.last, false)};
 }
 
+std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run, const Problem& problem,
+                                       std::optional<double> speed) {
+  const Stroke& stroke = job.strokes[run.stroke];
+  std::optional<double> usual;  // where the waypoints have no feed
+  for (const std::optional<double>& said :
+       {speed, stroke.process_speed, job.process_speed, stroke.limits.tool_speed})
+    if (said && !usual) usual = said;
+  // If nothing but feeds states a speed, the lines of approach and retract have the first of them.
+  if (!usual && !stroke.feed.empty()) usual = stroke.feed.front();
+  if (!usual) return std::nullopt;
+  const std::vector<double> s = waypoint_distances(problem);
+  const ProcessWaypoints process = process_waypoints(stroke);
+  RunSpeeds speeds;
+  speeds.first = stroke.approach_speed.value_or(job.approach_speed.value_or(*usual));
+  const std::size_t count = stroke.waypoints.size();
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    const bool fed = !speed && !stroke.feed.empty();
+    const std::size_t from = run.reversed ? count - 2 - k : k;
+    speeds.from.push_back({s[process.first + k], fed ? stroke.feed[from] : *usual});
+  }
+  if (process.last + 1 < s.size()) speeds.from.push_back({s[process.last], speeds.first});
+  return speeds;
+}
+
 }  // namespace swivel

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "swivel/core/motion/job_motion.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/job.hpp"
 
 namespace swivel {
@@ -18,5 +20,17 @@ namespace swivel {
 [[nodiscard]] std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
                                                         const Problem& problem,
                                                         std::span<const TimedRow> rows);
+
+/// Returns the speeds that are asked for along a run of a stroke: the stroke's between its first
+/// and its last waypoint, and those of approach and retract before and after; none where nothing
+/// says one. `speed`, m/s, is that along the stroke, if given, instead of those of the job.
+/// `problem` is problem_of_run(job, run).
+struct RunSpeeds {
+  double first = 0;               ///< m/s, before the first of `from`
+  std::vector<SpeedFrom> from{};  ///< as TimingOptions::speeds
+};
+[[nodiscard]] std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run,
+                                                     const Problem& problem,
+                                                     std::optional<double> speed);
 
 }  // namespace swivel

@@ -20,15 +20,11 @@ namespace swivel {
 
 namespace {
 
-/// Returns the speed asked for along a stroke where the waypoints have no feed, m/s. If nothing
-/// but feeds states one, returns the first of them, which the lines of approach and retract then
-/// have. Throws InputError if the stroke has no speed at all.
-double process_speed(const Job& job, const Stroke& stroke, const JobTimingOptions& options) {
-  for (const std::optional<double>& speed :
-       {options.speed, stroke.process_speed, job.process_speed, stroke.limits.tool_speed})
-    if (speed) return *speed;
-  if (!stroke.feed.empty()) return stroke.feed.front();
-  throw InputError(job.source, "stroke '" + stroke.name +
+/// Returns speeds_of_run(). Throws InputError if the stroke has no speed at all.
+RunSpeeds required_speeds(const Job& job, const StrokeRun& run, const Problem& problem,
+                          const JobTimingOptions& options) {
+  if (auto speeds = speeds_of_run(job, run, problem, options.speed)) return *std::move(speeds);
+  throw InputError(job.source, "stroke '" + job.strokes[run.stroke].name +
                                    "' has no speed: allowed are process_speed, a column feed of "
                                    "its path, limits.tool_speed, or one speed for all (--speed)");
 }
@@ -114,25 +110,13 @@ class JobTimer {
     return std::nullopt;
   }
 
-  /// Returns the speeds of a run: the stroke's between its first and its last waypoint, and those
-  /// of approach and retract before and after.
   [[nodiscard]] TimingOptions timing_of(const StrokeRun& run, const Problem& problem) const {
-    const Stroke& stroke = job_.strokes[run.stroke];
-    const std::vector<double> s = waypoint_distances(problem);
-    const ProcessWaypoints process = process_waypoints(stroke);
+    RunSpeeds speeds = required_speeds(job_, run, problem, options_);
     TimingOptions timing;
     timing.rate = options_.rate;
     timing.turn_speed = options_.turn_speed;
-    const double usual = process_speed(job_, stroke, options_);
-    timing.speed = stroke.approach_speed.value_or(job_.approach_speed.value_or(usual));
-    const std::size_t count = stroke.waypoints.size();
-    for (std::size_t k = 0; k + 1 < count; ++k) {
-      double speed = usual;
-      if (!options_.speed && !stroke.feed.empty())
-        speed = stroke.feed[run.reversed ? count - 2 - k : k];
-      timing.speeds.push_back({s[process.first + k], speed});
-    }
-    if (process.last + 1 < s.size()) timing.speeds.push_back({s[process.last], timing.speed});
+    timing.speed = speeds.first;
+    timing.speeds = std::move(speeds.from);
     return timing;
   }
   /// Adds the events of a run whose rows begin at motion_.rows[first].
@@ -155,7 +139,8 @@ class JobTimer {
 }  // namespace
 
 void require_speeds(const Job& job, const JobTimingOptions& options) {
-  for (const Stroke& stroke : job.strokes) static_cast<void>(process_speed(job, stroke, options));
+  for (std::size_t k = 0; k < job.strokes.size(); ++k)
+    static_cast<void>(required_speeds(job, {k, false}, problem_of_run(job, {k, false}), options));
 }
 
 JobTimingResult time_job(const PreparedRobot& robot, const Job& job,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,67 @@ TEST(ProcessRange, EndsOfStrokesAreLayers) {
   EXPECT_EQ(layers(false), (std::vector<int>{0, 2, 3}));  // on the line from end to end
   stroke.approach = Vector3d(0, 0.02, 0);
   EXPECT_EQ(layers(false), (std::vector<int>{0, 1, 3, 4}));
+}
+
+/// Executes a motion faster.
+void speed_up(JobMotion& motion, double factor) {
+  for (TimedRow& row : motion.rows) {
+    row.t /= factor;
+    row.v *= factor;
+    row.a *= factor * factor;
+  }
+  for (ProcessEvent& event : motion.events) event.t /= factor;
+  motion.rate *= factor;
+  motion.duration /= factor;
+}
+
+/// A job of one slow stroke.
+struct SlowJob {
+  SlowJob() : job(load("iiwa14_bench_job.yaml")), robot(problem_of_run(job, {0, false})) {
+    job.strokes.resize(1);
+    job.strokes.front().reversible = false;
+    job.rapid = 0.1;
+    job.process_speed = 0.02;
+    job.approach_speed = 0.03;
+  }
+  [[nodiscard]] JobCheckResult check(const JobMotion& motion,
+                                     std::optional<double> speed = {}) const {
+    return check_job_motion(robot, job, {{0, false}}, motion, {.margins = false, .speed = speed});
+  }
+  Job job;
+  PreparedRobot robot;
+};
+
+TEST(ToolSpeed, FasterThanTheJobAsksIsRefused) {
+  SlowJob slow;
+  const JobMotionPlan plan = plan_job_motion(slow.robot, slow.job, {}, {});
+  ASSERT_TRUE(plan.timing && plan.timing->motion);
+  JobMotion motion = *plan.timing->motion;
+  const JobCheckResult as_asked = slow.check(motion);
+  EXPECT_TRUE(as_asked.passed) << as_asked.failures.front();
+  speed_up(motion, 1.05);
+  const JobCheckResult faster = slow.check(motion);
+  ASSERT_FALSE(faster.passed);
+  const auto names_speed = [](const std::string& line) {
+    return line.find("stroke 'bead_0': rows ") == 0 &&
+           line.find("the tool moves at 0.0") != std::string::npos &&
+           line.find("the speed asked for there") != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(faster.failures.begin(), faster.failures.end(), names_speed))
+      << faster.failures.front();
+}
+
+TEST(ToolSpeed, IsThatOfThePlaceOrTheOneGivenForAll) {
+  SlowJob slow;
+  const JobMotionPlan fast = plan_job_motion(slow.robot, slow.job, {}, {.speed = 0.04});
+  ASSERT_TRUE(fast.timing && fast.timing->motion);
+  EXPECT_FALSE(slow.check(*fast.timing->motion).passed);
+  EXPECT_TRUE(slow.check(*fast.timing->motion, 0.04).passed);
+  // A feed stands in place of the job's speed, along the stroke alone.
+  slow.job.strokes.front().feed = {0.05, 0.05};
+  EXPECT_TRUE(slow.check(*fast.timing->motion).passed);
+  slow.job.approach_speed = 0.01;
+  EXPECT_FALSE(slow.check(*fast.timing->motion).passed);
 }
 
 }  // namespace

@@ -38,8 +38,10 @@ struct JobCheckResult {
 
 /// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
 /// of parts, with runs judged as check_motion() judges them; the rates of transitions as
-/// check_motion() judges rates, with Job::rapid of the joints' speeds; and that events are at the
-/// first samples at or after the begin and the end of each stroke. Throws as check_job() does.
+/// check_motion() judges rates, with Job::rapid of the joints' speeds; that from sample to sample
+/// the tool is no faster (0.1 %) than the fastest of the speeds that are asked for there, as
+/// time_job() takes them from the job; and that events are at the first samples at or after the
+/// begin and the end of each stroke. Throws as check_job() does.
 [[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& job,
                                               const std::vector<StrokeRun>& order,
                                               const JobMotion& motion,

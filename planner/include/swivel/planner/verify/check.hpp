@@ -69,6 +69,9 @@ struct CheckOptions {
   /// min_clearance, min_margin and deepest_contact stay unset.
   bool margins = true;
   Budget budget = {};  ///< Stopped is thrown once it is spent
+  /// Of check_job_motion(): speed of the tool along all strokes, m/s, instead of those of the job,
+  /// as JobTimingOptions::speed.
+  std::optional<double> speed = {};
 };
 
 /// Proves a trajectory from the problem alone, or tells what is wrong with it. The problem's
