@@ -53,11 +53,14 @@ CheckResult summary_of(const JobCheckResult& result) {
   return all;
 }
 
-/// Prints the verdict and what was proved of `rows` rows, whose last is at `duration`, s.
-void print_verdict(const JobCheckResult& result, const std::vector<HeldJoint>& held,
-                   std::size_t strokes, std::size_t rows, double duration) {
-  say("%s: %zu stroke%s, %zu rows", result.passed ? "passed" : "failed", strokes,
-      strokes == 1 ? "" : "s", rows);
+/// Prints the verdict and what was proved of `rows` rows, whose last is at `duration`, s. `job` has
+/// a stroke for each of the `runs` of a stroke with lift-offs.
+void print_verdict(const JobCheckResult& result, const Job& job, const std::vector<HeldJoint>& held,
+                   std::size_t runs, std::size_t rows, double duration) {
+  const std::size_t strokes = runs - std::min(runs, lift_off_count(job));
+  say("%s: %zu stroke%s", result.passed ? "passed" : "failed", strokes, strokes == 1 ? "" : "s");
+  if (runs > strokes) say(" in %zu runs", runs);
+  say(", %zu rows", rows);
   if (!result.passed)
     say(", %lld failure%s", static_cast<long long>(result.failure_count),
         result.failure_count == 1 ? "" : "s");
@@ -98,18 +101,18 @@ int check_job_file(const Job& given, const std::string& trajectory, std::optiona
         in_the_name_of(trajectory, [&] { return parts_of(robot, job, *read); });
     result = check_job(robot, job, parts);
     check_process(job, parts, process_of(*read), result);
-    std::size_t strokes = 0, rows = 0;
+    std::size_t runs = 0, rows = 0;
     for (const JobPart& part : parts) {
-      strokes += part.run.has_value();
+      runs += part.run.has_value();
       rows += part.rows.size();
     }
-    print_verdict(result, held, strokes, rows, 0);
+    print_verdict(result, job, held, runs, rows, 0);
     say("%s", kSpeedsNotChecked);
   } else {
     const auto& timed = std::get<io::JobMotionFile>(file);
     const auto order = runs_of_motion(robot, job, timed.strokes, timed.motion);
     result = check_job_motion(robot, job, order, timed.motion, {.speed = speed});
-    print_verdict(result, held, timed.strokes.size(), timed.motion.rows.size(),
+    print_verdict(result, job, held, timed.strokes.size(), timed.motion.rows.size(),
                   timed.motion.duration);
   }
   return result.passed ? kOk : kNo;

@@ -63,13 +63,19 @@ std::vector<JobRun> runs_of(const JobPlan& plan) {
 /// Returns the places at which a plan's tool lifts off. Its job has the runs between them.
 std::vector<LiftOffPlace> lift_offs_of(const JobPlan& plan) {
   std::vector<std::string> names;  // of the strokes of the job that was given
+  std::vector<double> approaches;  // m; s of rows counts them as well
   for (const swivel::Stroke& stroke : plan.job->strokes) {
     const std::string& name = stroke.piece ? stroke.piece->stroke : stroke.name;
-    if (names.empty() || names.back() != name) names.push_back(name);
+    if (!names.empty() && names.back() == name) continue;
+    names.push_back(name);
+    approaches.push_back(stroke.approach.norm());
   }
   std::vector<LiftOffPlace> places;
-  for (const LiftOffResult& lift : plan.result().lift_offs)
-    places.push_back({names.at(lift.stroke), lift});
+  for (LiftOffResult lift : plan.result().lift_offs) {
+    for (double* const s : {&lift.end, &lift.resumed, &lift.reached})
+      *s += approaches.at(lift.stroke);
+    places.push_back({names.at(lift.stroke), std::move(lift)});
+  }
   return places;
 }
 
@@ -256,13 +262,13 @@ void bind_lift_off(py::module_& m) {
       .def_readonly("stroke", &LiftOffPlace::stroke, "The name of the whole stroke.")
       .def_property_readonly(
           "end", [](const LiftOffPlace& x) { return x.result.end; },
-          "m along the stroke, where the run ends.")
+          "m along the stroke and its approach, as s of rows: where the run ends.")
       .def_property_readonly(
           "resumed", [](const LiftOffPlace& x) { return x.result.resumed; },
-          "m along the stroke, where the next run begins.")
+          "m along the stroke and its approach: where the next run begins.")
       .def_property_readonly(
           "reached", [](const LiftOffPlace& x) { return x.result.reached; },
-          "m along the stroke, how far the longest run from the same begin leads.")
+          "m along the stroke and its approach: how far the longest run from the same begin leads.")
       .def_property_readonly(
           "cause", [](const LiftOffPlace& x) -> const Cause& { return x.result.cause; },
           "What ends every run there; CauseKind.NONE where no single cause is known.")
@@ -581,7 +587,7 @@ void bind_check(py::module_& m) {
           "A Check of each run, in their order.")
       .def("__repr__", [](const JobCheck& c) {
         if (c.result.passed)
-          return formatted("<JobCheck passed: %zu strokes, cost %.6g>", c.result.runs.size(),
+          return formatted("<JobCheck passed: %zu runs, cost %.6g>", c.result.runs.size(),
                            c.result.cost);
         return formatted("<JobCheck failed, %lld failures: ",
                          static_cast<long long>(c.result.failure_count)) +

@@ -429,7 +429,7 @@ class JobAnswers(unittest.TestCase):
             (plan.runs[0], "stroke 'row_0': solved, at least"),
             (plan.motion, "2 strokes, .* Hz"),
             (plan.motion.events[0], "on at t = .*'row_0'"),
-            (swivel.check_job(job, plan), "passed: 2 strokes"),
+            (swivel.check_job(job, plan), "passed: 2 runs"),
         ):
             self.assertRegex(repr(thing), words)
             self.assertNotIn("\n", repr(thing))
@@ -659,6 +659,11 @@ class JobLiftOffs(unittest.TestCase):
         (lift,) = plan.lift_offs
         self.assertLessEqual(lift.resumed, lift.end - 0.01 + 1e-9)
         self.assertLessEqual(lift.end, lift.reached + 1e-9)
+        first, second = (part for part in plan.parts if part.stroke)  # s of rows is the same
+        at = [[s for s, on in zip(run.begin + run.trajectory.s, run.process) if on]
+              for run in (first, second)]
+        self.assertAlmostEqual(at[0][-1], lift.end, 9)
+        self.assertAlmostEqual(at[1][0], lift.resumed, 9)
         self.assertTrue(swivel.check_job(job, plan), plan)
         self.assertTrue(swivel.check_job(job, plan.parts))
         motion = swivel.time_job(job, plan.parts, speed=0.05)

@@ -121,20 +121,22 @@ std::string lift_offs_text(const JobResult& result, const Job& job) {
     while (end < result.lift_offs.size() && result.lift_offs[end].stroke == stroke) ++end;
     while (!job.strokes[run].piece) ++run;
     const std::string& name = job.strokes[run].piece->stroke;
+    const double approach = job.strokes[run].approach.norm();  // s of rows counts it as well
     text += "  stroke '" + name + "': " + std::to_string(end - k) + " lift-off" +
             (end - k == 1 ? "" : "s") + ", at s";
     for (std::size_t i = k; i < end; ++i)
       text += (i == k        ? " "
                : i + 1 < end ? ", "
                              : " and ") +
-              formatted("%.3f", result.lift_offs[i].end);
+              formatted("%.3f", approach + result.lift_offs[i].end);
     text += " m\n";
     for (std::size_t i = k; i < end; ++i) {
       const LiftOffResult& lift = result.lift_offs[i];
       if (lift.cause.kind == Cause::Kind::kNone) continue;
       const std::string by = figures(lift.cause);
       text += formatted("    no run from s %.3f gets beyond s %.3f m: ",
-                        i == k ? 0.0 : result.lift_offs[i - 1].resumed, lift.reached) +
+                        approach + (i == k ? 0.0 : result.lift_offs[i - 1].resumed),
+                        approach + lift.reached) +
               words(lift.cause) + (by.empty() ? "" : " (" + by + ")") + '\n';
     }
     run += end - k + 1;

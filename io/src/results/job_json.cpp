@@ -137,10 +137,12 @@ class JobWriter {
         while (piece && job_.strokes[part].piece && job_.strokes[part].piece->stroke == whole)
           ++part;
       }
+      // s of rows counts the approach as well
+      const double approach = job_.strokes[part].approach.norm();
       list.push_back({{"stroke", job_.strokes[part].piece->stroke},
-                      {"s", lift.end},
-                      {"resumed_s", lift.resumed},
-                      {"reached_s", lift.reached},
+                      {"s", approach + lift.end},
+                      {"resumed_s", approach + lift.resumed},
+                      {"reached_s", approach + lift.reached},
                       {"cause", cause_json(lift.cause)}});
     }
     return list;

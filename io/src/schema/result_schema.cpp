@@ -639,12 +639,16 @@ Schema job_result() {
           "configurations lie between their ends, 0 where the joints move straight"),
       key("lift_offs",
           list(section(
-              "", {key("stroke", text(), "name of the stroke"),
-                   key("s", number(), "where a run ends, along the whole stroke", "m"),
-                   key("resumed_s", number(), "where the next run begins", "m"),
-                   key("reached_s", number(), "how far a run from the begin of this one gets", "m"),
-                   key("cause", cause(), "what ends it there; `null`: no single cause is known")})),
-          "places at which the tool [lifts off](#lift-offs) within strokes"),
+              "lift_off",
+              {key("stroke", text(), "name of the whole stroke"),
+               key("s", number(), "place on it at which a run ends, its approach included", "m"),
+               key("resumed_s", number(), "place at which the next run begins", "m"),
+               key("reached_s", number(),
+                   "place that the longest run from the begin of this one reaches", "m"),
+               key("cause", cause(),
+                   "what ends every run there; `null`: no single cause is known")})),
+          "places at which the tool [lifts off](#lift-offs) within strokes, "
+          "[below](#lift-off-of-a-stroke)"),
       key("no_transition", or_null(missing),
           "where every stroke has a path and there is no way between two: `from`, `to`, the two "
           "`bodies` that come nearer to each other than transitions may or `null`, and `where` "
