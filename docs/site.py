@@ -8,17 +8,24 @@ site.py OUT      writes OUT/site; the Python package must be importable (PYTHONP
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# What documents link: kept where it lies, so that the links hold.
+# The documents, and what they show without a link. All files stay where they lie, so that links
+# hold.
 COPIED = [
     "*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/measurements/*.md",
     "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"
 ]
-
+MADE = {"python.md", "cpp/index.html"}  # by python_reference() and Doxygen
+CODE = re.compile(r"^(```|~~~).*?^\1$|(?<!`)(`+)(?!`).+?(?<!`)\2(?!`)", re.DOTALL | re.MULTILINE)
+# The target of [words](target), of [words]: target, and of src="target" and href="target".
+LINK = re.compile(
+    r"""\]\(<?([^()\s>]+)|^\[[^\]]+\]:\s+(\S+)|\b(?:src|href)="([^"]+)\"""", re.MULTILINE
+)
 
 # Typesets formulas; copied beside the pages, since nothing is fetched from elsewhere.
 KATEX = pathlib.Path("/usr/share/javascript/katex")
@@ -42,13 +49,43 @@ def missing():
     return names
 
 
+def links(document):
+    """The files that a document links, as paths from ROOT."""
+    text = CODE.sub("", (ROOT / document).read_text())
+    for match in LINK.finditer(text):
+        target = next(group for group in match.groups() if group).partition("#")[0]
+        if target and not re.match(r"[a-z]+:", target):
+            yield os.path.normpath(os.path.join(os.path.dirname(document), target))
+
+
+def documents():
+    """What is copied: the files of COPIED and all that they link, as paths from ROOT; and the links
+    that lead nowhere, a line for each."""
+    found = {
+        file.relative_to(ROOT).as_posix()
+        for pattern in COPIED
+        for file in ROOT.glob(pattern)
+        if file.is_file()
+    }
+    left, broken = sorted(found), []
+    while left:
+        document = left.pop()
+        for target in links(document) if document.endswith(".md") else []:
+            if target in found or target in MADE:
+                continue
+            if (ROOT / target).is_file() and not target.startswith(".."):
+                found.add(target)
+                left.append(target)
+            else:
+                broken.append(f"{document}: {target} is not a file of the clone")
+    return found, sorted(broken)
+
+
 def copy_documents(pages):
-    for pattern in COPIED:
-        for file in ROOT.glob(pattern):
-            if file.is_file():
-                target = pages / file.relative_to(ROOT)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(file, target)
+    for file in documents()[0]:
+        target = pages / file
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / file, target)
     for name in ("site.css", "formulas.js"):
         shutil.copyfile(ROOT / "docs" / name, pages / name)
     for file in [
@@ -107,4 +144,5 @@ def main():
     return 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())
