@@ -10,9 +10,9 @@ namespace swivel {
 
 namespace {
 
-/// Says which rate is assumed where no file states one: rad/s^power, and that of a slide.
+/// Says which rate is assumed where no file states one, of joints that turn and of a slide.
 std::string assumed_rate(const Chain& chain, double rate, int power) {
-  std::string text = formatted("%.4g rad/s^%d", rate, power);
+  std::string text = formatted("%.4g rad/s^%d is assumed", rate, power);
   if (const int slide = chain.slide(); slide >= 0)
     text += formatted(", of '%s' %.4g m/s^%d",
                       chain.joint_names[static_cast<std::size_t>(slide)].c_str(),
