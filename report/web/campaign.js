@@ -18,16 +18,16 @@ document.title = `${data.problem}, ${rows.length} episodes – Swivel`;
 $('title').textContent =
   `${data.problem}, ${data.episodes} episodes of seed ${data.seed}` +
   `${data.shard[1] > 1 ? `, shard ${data.shard[0]} of ${data.shard[1]}` : ''}`;
-const sorted = rows.map((row) => row.plan_ms).sort((a, b) => a - b),
-  at = (share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+// As the terminal has them.
+const { median, p95 } = data.plan_ms;
 $('verdict').textContent = !rows.length
   ? 'No episode was answered.'
   : `${solved.length} of ${rows.length} episodes solved ` +
     `(${number((100 * solved.length) / rows.length, 3)} %), ${failed.length} without a path at ` +
     'this resolution' +
     (rows.length < data.asked ? `; ${data.asked - rows.length} not answered` : '') +
-    `. Planner ${data.planner}: ${number(at(0.5), 3)} ms in the median, ${number(at(0.95), 3)} ` +
-    'ms or less for 95 %.';
+    `. Planner ${data.planner}: ${median.toFixed(1)} ms in the median, 5 % above ` +
+    `${p95.toFixed(1)} ms.`;
 
 const episodes = new EpisodeTable($('episodes'), rows, choose);
 /** Shows one episode; called for a row of the table and for a dot of a chart. */

@@ -2,8 +2,11 @@
 // What the pages share: their data, numbers, light and dark, tables.
 export const { data } = window.swivelPage; // starter.js
 export const $ = (id) => document.getElementById(id);
+/** A number with so many digits that count; whole numbers have all of theirs. */
 export const number = (v, digits = 4) =>
-  v === null || v === undefined ? '–' : Number(v.toPrecision(digits)).toString();
+  v === null || v === undefined
+    ? '–'
+    : (Number.isInteger(v) ? v : Number(v.toPrecision(digits))).toString();
 export const isDark = () => document.documentElement.dataset.theme === 'dark';
 export const style = (name) =>
   getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -51,6 +54,12 @@ export function tell(text, event) {
   tip.style.left = `${Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 8)}px`;
   const lowest = innerHeight - tip.offsetHeight - 8;
   tip.style.top = `${Math.max(4, Math.min(event.clientY + 14, lowest))}px`;
+}
+
+/** Puts the slider to a value, which `words` tell those who do not see it. */
+export function slideTo(value, words) {
+  $('slider').value = value;
+  $('slider').setAttribute('aria-valuetext', words);
 }
 
 /** Shows a drawing in its place, which is named as a whole. role: of the place. */

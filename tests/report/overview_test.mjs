@@ -23,7 +23,7 @@ function firstRows(csv, to, count) {
 }
 
 function campaign(csv, html, ...options) {
-  execFileSync(swivel, [
+  const said = execFileSync(swivel, [
     'campaign',
     problem,
     '--planner',
@@ -48,7 +48,7 @@ function campaign(csv, html, ...options) {
     .filter((line) => !line.startsWith('# '))
     .slice(1)
     .map((line) => line.split(','));
-  return { html, csv, rows, bytes: statSync(html).size };
+  return { html, csv, rows, said: String(said), bytes: statSync(html).size };
 }
 /** The page's data without the time of planning. */
 const told = (html) => JSON.stringify(dataOf(html), (key, v) => (key === 'plan_ms' ? 0 : v));
@@ -60,7 +60,8 @@ const column = (page, k) =>
   );
 
 await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
-  const { html, csv, rows, bytes } = campaign(join(folder, 'all.csv'), join(folder, 'all.html'));
+  const [all, overview] = ['csv', 'html'].map((end) => join(folder, `all.${end}`)),
+    { html, csv, rows, bytes, said } = campaign(all, overview);
   const failed = rows.filter(([, status]) => status === 'infeasible');
   assert.ok(failed.length >= 3 && rows.length === kEpisodes);
   const { page, close } = await open(html, {
@@ -72,6 +73,13 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     new RegExp(
       `^${rows.length - failed.length} of ${rows.length} episodes solved .*${failed.length} ` +
         'without a path',
+    ),
+  );
+  // The terminal says the same, to the digit.
+  const [, median, p95] = said.match(/plan ([\d.]+) ms in the median \(.*5 % above ([\d.]+)\)/);
+  assert.ok(
+    (await page.textContent('#verdict')).endsWith(
+      `${median} ms in the median, 5 % above ${p95} ms.`,
     ),
   );
   await assertFits(page, 1280);

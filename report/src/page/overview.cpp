@@ -53,6 +53,7 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                         {"by", ended_by(row.status, row.cause, row.by, row.reason)},
                         {"reason", row.reason},
                         {"offsets", row.offsets}});
+  const Spread spread = summarize(rows, facts.shard.size(facts.episodes)).plan_ms;
   Json data = {{"problem", facts.problem},
                {"episodes", facts.episodes},
                {"seed", facts.seed},
@@ -61,6 +62,7 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                {"planner", facts.planner},
                {"plan_command", facts.plan_command},
                {"coordinates", facts.coordinates},
+               {"plan_ms", {{"median", spread.median}, {"p95", spread.p95}}},
                {"rows", std::move(episodes)}};
   return fill(overview_template(), std::move(data),
               {{"@@ANSWER@@", escaped_lines(facts.problem + "\n\n" + answer_of(rows))}});
