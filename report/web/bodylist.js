@@ -4,14 +4,17 @@ import { tell } from './page.js';
 import { kBodies, kLines } from './palette.js';
 
 /** What stands on the ground of the robot is told apart from what moves. */
-export const kindOf = (body) => (body.stands ? 'fixed' : body.kind);
+export const kindOf = (body) =>
+  body.stands ? 'fixed' : body.kind === 'robot' && body.isSecond ? 'robot 2' : body.kind;
 /** The entry of the legend that a body belongs to: an object of the scene has its own. */
 export const entryOf = (body) =>
   body.kind === 'scene'
     ? `scene ${body.name}`
-    : `${kindOf(body)}${body.arm && !body.stands ? ` ${body.arm}` : ''}`;
+    : body.stands
+      ? 'fixed'
+      : `${body.kind}${body.arm ? ` ${body.arm}` : ''}`;
 
-const kNames = { robot: 'arm', tool: 'tool', fixed: 'base of the robot' },
+const kNames = { robot: 'arm', 'robot 2': 'arm', tool: 'tool', fixed: 'base of the robot' },
   kLooks = ['shown', 'faded', 'hidden'],
   kMarks = { shown: '●', faded: '◐', hidden: '○' },
   kClick = 4; // pixels that a click may move
@@ -28,7 +31,7 @@ export class BodyList {
     Object.assign(this, { host, view, setters: new Map() });
     const entries = new Map();
     for (const { body } of view.parts) entries.set(entryOf(body), body);
-    const order = ['robot', 'tool', 'fixed'];
+    const order = ['robot', 'robot 2', 'tool', 'fixed'];
     const rank = (body) => (order.indexOf(kindOf(body)) + order.length + 1) % (order.length + 1);
     this.buttons = [...entries]
       .sort(([, a], [, b]) => rank(a) - rank(b))

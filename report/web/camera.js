@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From where the work is seen, and how near the camera may stand.
 import { Vector3 } from 'three';
-import { displacements, standing, toolPose, vector } from './kinematics.js';
+import { displacements, standing, toolPose, toolPoses, toolsOf, vector } from './kinematics.js';
 import { cornersOf, Occluder, Sight } from './sight.js';
 
 // Where the camera may stand: turns about the vertical, degrees from nearly ahead of -y, and angles
@@ -13,9 +13,11 @@ const kAllRound = {
   },
   kAbove = { turns: [-45, -30, -15, 0, 15, 30, 45, 60], heights: [0.62, 1.0] };
 const kMarks = 48, // places of the path that are looked for
-  kPath = 112, // worth of seeing all of them
-  kNearest = 32, // of seeing where the arm is nearest to something
-  kArm = 8, // of seeing all its bodies
+  kPath = 112, // worth of seeing all of them, square to the path
+  kEndOn = 0.4, // share of that worth where the path leads straight to the camera or away
+  kTool = 16, // of seeing the tool's point
+  kNearest = 16, // of seeing where the arm is nearest to something
+  kArm = 24, // of seeing all its bodies
   kLong = 28, // of seeing the path in its whole extent
   kRoom = 1.06; // of the picture about what it must show
 
@@ -33,7 +35,8 @@ function openingJoints({ rows, cut }) {
 /**
  * What a picture is to show: { points: corners of the bodies that move, at both ends of the path
  * and where the page opens, and the path itself; marks: [{ points, of which one should be seen,
- * worth, own: number of the body that the points are within, if they are }]; path; bodies: as of
+ * worth, own: number of the body that the points are within, if they are, along: direction of the
+ * path there, if they are of it }]; path; bodies: as of
  * Sight; turns, heights: where the camera may stand }, in the frame of what stands on the ground.
  * parts: of View.
  */
@@ -80,9 +83,13 @@ export function subject(data, parts) {
   const row = rows.find(({ q, nearest }) => nearest && q.every((v, j) => v === open[j])),
     line = row?.nearest ?? data.cut?.line?.points;
   const marks = [
-    ...Array.from({ length: path.length ? kMarks : 0 }, (_, k) => ({
-      points: [path[Math.round((k / (kMarks - 1)) * (path.length - 1))]],
-      worth: kPath / kMarks,
+    ...Array.from({ length: path.length ? kMarks : 0 }, (_, k) => {
+      const at = Math.round((k / (kMarks - 1)) * (path.length - 1));
+      return { points: [path[at]], worth: kPath / kMarks, along: wayAt(path, at) };
+    }),
+    ...(open ? toolPoints(chain, open, frame) : []).map((point) => ({
+      points: [point],
+      worth: kTool / toolsOf(chain).length,
     })),
     ...moving.map((k) => ({
       points: [bodies[k].occluder.box.getCenter(new Vector3()).applyMatrix4(bodies[k].pose)],
@@ -96,6 +103,24 @@ export function subject(data, parts) {
     for (const end of ends) marks.push({ points: [end], worth: kNearest / 4 });
   }
   return { points, marks, bodies, path, ...(data.floor ? kAbove : kAllRound) };
+}
+
+/** The direction of a path at one of its points; null where it goes nowhere. */
+function wayAt(path, k) {
+  const way = path[Math.min(path.length - 1, k + 1)].clone().sub(path[Math.max(0, k - 1)]);
+  return way.lengthSq() > 0 ? way.normalize() : null;
+}
+/** Where the tools of a chain are at joints q; frame: of what stands on the ground. */
+function toolPoints(chain, q, frame) {
+  return toolPoses(chain, displacements(chain, q)).map((pose) =>
+    new Vector3().setFromMatrixPosition(frame.clone().multiply(pose)),
+  );
+}
+/** What a mark is worth that is seen along a direction. */
+function worthFrom({ worth, along }, direction) {
+  if (!along) return worth;
+  const square = Math.sqrt(Math.max(0, 1 - along.dot(direction) ** 2));
+  return worth * (kEndOn + (1 - kEndOn) * square);
 }
 
 /**
@@ -120,9 +145,9 @@ function spread(points, direction) {
 }
 
 /**
- * The direction to the camera from which most of the path, of the arm and of the place that is
- * nearest to something is seen past all bodies, the arm's own among them, where the page opens.
- * camera: with the field of view and the aspect of the picture.
+ * The direction to the camera from which most of the path, of the tool, of the arm and of the place
+ * that is nearest to something is seen past all bodies, the arm's own among them, where the page
+ * opens. camera: with the field of view and the aspect of the picture.
  */
 export function bestDirection({ points, marks, bodies, path, turns, heights }, camera) {
   const eye = camera.clone(),
@@ -138,20 +163,20 @@ export function bestDirection({ points, marks, bodies, path, turns, heights }, c
       );
       candidates.push({ up, from, direction, wide: spread(path, direction) });
     }
-  const widest = Math.max(1e-6, ...candidates.map(({ wide }) => wide)),
-    all = marks.reduce((sum, { worth }) => sum + worth, 0);
+  const widest = Math.max(1e-6, ...candidates.map(({ wide }) => wide));
   let best = null;
   for (const { up, from, direction, wide } of candidates) {
     fit(eye, points, direction);
     // As if all were seen, less what is hidden: no candidate is followed below the best one.
     let score =
-      all +
+      marks.reduce((sum, mark) => sum + worthFrom(mark, direction), 0) +
       (kLong * wide) / widest +
       (up === 0.62 ? 1 : up === 0.12 ? -1 : 0) -
       0.0023 * Math.abs(from);
-    for (const { points: places, worth, own } of marks) {
+    for (const mark of marks) {
       if (best && score <= best.score) break;
-      if (places.every((place) => sight.hides(eye.position, place, own))) score -= worth;
+      if (mark.points.every((place) => sight.hides(eye.position, place, mark.own)))
+        score -= worthFrom(mark, direction);
     }
     if (!best || score > best.score) best = { score, direction };
   }

@@ -25,6 +25,7 @@ export const SOLVED = kKnown.found,
 /** Bodies in three dimensions, before they are lit. */
 export const kBodies = {
   robot: '#f2a92e',
+  'robot 2': '#5a189a', // the second of two arms
   tool: '#5a6470',
   scene: '#8db0d8',
   fixed: '#c1c7d2', // what stands still of the robot

@@ -3,7 +3,7 @@
 import { bytes } from './bytes.js';
 import { toolPose } from './kinematics.js';
 import { Nearness, placesOf } from './nearness.js';
-import { $, data } from './page.js';
+import { $, data, slideTo } from './page.js';
 import { startView } from './scene.js';
 
 const kSeconds = 8; // that a path takes
@@ -111,9 +111,9 @@ export class Placed {
     this.view?.pose(q, past?.pair ?? null, past?.line ?? null, true, (name) =>
       this.nearness.lines(name, this.cursor),
     );
-    $('slider').value = this.cursor;
-    $('where').textContent =
-      `s ${(a.s + f * (b.s - a.s)).toFixed(3)} of ${rows[last].s.toFixed(3)} m`;
+    const where = `s ${(a.s + f * (b.s - a.s)).toFixed(3)} of ${rows[last].s.toFixed(3)} m`;
+    slideTo(this.cursor, where);
+    $('where').textContent = where;
   }
   play() {
     if (this.cursor >= this.shown.rows.length - 1) this.go(0);

@@ -24,8 +24,10 @@ import { surface } from './surface.js';
 const kFine = 24, // corners of a circle
   kCoarse = 10;
 const kTrail = 7; // poses
+const kArrow = { ofPath: 0.07, ofArm: 1 / 25, least: 0.006 }; // length of an arrow; least: m
 const kDash = 0.012; // m, of a move between strokes, with the gap behind it
 const kAside = [0, 18, -18, 36, -36]; // pixels down, from where a name belongs
+const kFree = { places: 16, path: 3, tool: 12 }; // of a path; pixels about a place, and a tool
 const toolPoint = (chain, q) => new THREE.Vector3().setFromMatrixPosition(toolPose(chain, q));
 function rodBetween(from, to) {
   const rod = new THREE.CylinderGeometry(0.003, 0.003, from.distanceTo(to), 5),
@@ -62,6 +64,7 @@ class View {
           surface(colour, { twoSided: kind.includes('scene'), ...settings }),
         ]),
       );
+    this.reach = this.extentOfArm();
     this.materials = materials({});
     this.faded = materials({ opacity: 0.1, rim: 0.25 });
     this.looks = new Map(); // of bodies that are not just shown: 'faded' or 'hidden', by legend
@@ -79,13 +82,27 @@ class View {
   }
   /** What is drawn of a body of the page's data. */
   part(one, data) {
-    const body = { ...one, stands: stands(one, data.ground) },
+    const body = {
+        ...one,
+        stands: stands(one, data.ground),
+        isSecond: one.arm !== undefined && one.arm === data.arms?.[1]?.name,
+      },
       fine = geometry(body, data.meshes, kFine),
       { shape: coarse, off } =
         body.mesh === undefined
           ? { shape: geometry(body, data.meshes, kCoarse), off: 0 }
           : thinned(fine);
     return { body, fine, coarse, off, rest: matrix(body.pose) };
+  }
+  /** How large the bodies that move are together, as they stand at rest, m. */
+  extentOfArm() {
+    const box = new THREE.Box3();
+    for (const { body, fine, rest } of this.parts) {
+      if (body.kind === 'scene' || body.stands) continue;
+      fine.computeBoundingBox();
+      box.union(fine.boundingBox.clone().applyMatrix4(rest));
+    }
+    return box.isEmpty() ? 1 : box.getSize(new THREE.Vector3()).length();
   }
   meshOf(part) {
     const mesh = new THREE.Mesh(part.fine);
@@ -296,13 +313,15 @@ class View {
   /** A path in a group that colourPath() colours; arrows tell its direction. */
   addLine(points, group) {
     const rings = Math.min(2 * points.length, 200),
-      isPoint = points.every((point) => point.distanceTo(points[0]) < 1e-6);
+      isPoint = points.every((point) => point.distanceTo(points[0]) < 1e-6),
+      extent = new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3()).length(),
+      arrow = Math.max(kArrow.least, Math.min(kArrow.ofPath * extent, kArrow.ofArm * this.reach));
     const tube =
       points.length > 1 && !isPoint
         ? new THREE.TubeGeometry(
             new THREE.CatmullRomCurve3(points, false, 'centripetal'),
             rings,
-            0.004,
+            Math.max(0.0015, arrow / 8),
             5,
           )
         : new THREE.BufferGeometry();
@@ -316,14 +335,14 @@ class View {
       (sum, point, k) => sum + (k ? point.distanceTo(points[k - 1]) : 0),
       0,
     );
-    const cone = new THREE.ConeGeometry(0.011, 0.03, 10).rotateX(Math.PI / 2),
-      arrow = surface(0x1b222b, { opacity: 0.75, depthTest: false });
-    for (let k = 1, passed = 0, next = length / 8; k < points.length && length > 0.05; ++k) {
+    const cone = new THREE.ConeGeometry(arrow / 2.7, arrow, 10).rotateX(Math.PI / 2),
+      dark = surface(0x1b222b, { opacity: 0.75, depthTest: false });
+    for (let k = 1, passed = 0, next = length / 8; k < points.length && length > 4 * arrow; ++k) {
       const way = points[k].clone().sub(points[k - 1]);
       passed += way.length();
       if (passed < next) continue;
       next += length / 4;
-      const mesh = Object.assign(new THREE.Mesh(cone, arrow), { renderOrder: 2 });
+      const mesh = Object.assign(new THREE.Mesh(cone, dark), { renderOrder: 2 });
       mesh.position.copy(points[k]);
       mesh.lookAt(points[k].clone().add(way));
       group.add(mesh);
@@ -616,21 +635,42 @@ class View {
     this.dirty = true;
     return result;
   }
+  /** Boxes of the picture, of places along the paths and of the tools, that names leave free. */
+  workBoxes() {
+    const { width, height } = this.size,
+      path = this.data.tool_path ?? [],
+      each = Math.max(1, Math.ceil(path.length / kFree.places));
+    const box = (point, half) => {
+      const at = point.applyMatrix4(this.world.matrix).project(this.camera),
+        [x, y] = [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
+      return [x - half, y - half, x + half, y + half];
+    };
+    return [
+      ...path.filter((_, k) => k % each === 0).map((point) => box(vector(point), kFree.path)),
+      ...this.tools.map(({ matrix: pose }) =>
+        box(new THREE.Vector3().setFromMatrixPosition(pose), kFree.tool),
+      ),
+    ];
+  }
   /**
    * The line's length stands where it belongs; numbers of strokes and names, too, or a little above
-   * or below, where they cover nothing else. A name for which there is no room is left out.
+   * or below, where they cover nothing else. Names stand neither on the path nor
+   * on the tool. A name for which there is no room is left out.
    */
   placeLabels() {
-    const taken = [];
-    const isFree = ([left, top, right, bottom]) =>
-      taken.every(([l, t, r, b]) => right <= l || r <= left || bottom <= t || b <= top);
+    const taken = [],
+      work = this.workBoxes();
+    const apart = (boxes, [left, top, right, bottom]) =>
+        boxes.every(([l, t, r, b]) => right <= l || r <= left || bottom <= t || b <= top),
+      isFree = (box) => apart(taken, box),
+      isClear = (box) => apart(work, box);
     if (this.nearest.visible)
       taken.push(this.place(this.gap, this.nearest.children[0].position, 12, -26));
     for (const { label, at } of this.names) {
       let box = null;
       for (const down of kAside) {
         box = this.place(label, at, 0, down);
-        if (isFree(box)) break;
+        if (isFree(box) && (label.className !== 'name' || isClear(box))) break;
         box = null;
       }
       if (!box && label.className === 'number') box = this.place(label, at, 0, 0);
