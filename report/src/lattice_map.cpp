@@ -10,9 +10,11 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 
@@ -32,20 +34,36 @@ int cells_of(const LatticeInfo::Grid& grid) {
   return grid.branches * grid.windings * grid.phi;
 }
 
+/// Returns the joint whose position is the coordinate of the map of an arm without a grid: one that
+/// slides, that of a table which carries the base and the part, or the one that the closed form
+/// locks; -1 where there is none of these.
+int free_joint(const PreparedRobot& robot, const RobotModel& model) {
+  if (const int slide = robot.arm().chain.slide(); slide >= 0) return slide;
+  const LockMethod& lock = robot.arm_class().lock;
+  const bool table = robot.arm().links[static_cast<std::size_t>(model.root_link)].group == 1;
+  return table && lock.by_joint[0] ? 0 : lock.best;
+}
+
 /// The redundancy coordinate and the branch of every node, by layer and in the order of slots.
 struct Values {
-  std::vector<double> value;  ///< rad, in [-pi, pi]
+  std::vector<double> value;  ///< rad, in [-pi, pi], or m
   std::vector<int> branch;
   std::vector<std::size_t> first;  ///< index of each layer's first node in `value`, `branch`
 };
 
-Values values_of(const Lattice& lattice, const Budget& budget) {
+/// Returns the value of the map's coordinate at a node, rad in [-pi, pi], or m.
+double value_of(const LatticeMap& map, const Lattice& lattice, int layer, int slot) {
+  if (map.joint < 0) return wrap_angle(lattice.phi(layer, slot));
+  return map.value_at(0, lattice.node(layer, slot).value());
+}
+
+Values values_of(const LatticeMap& map, const Lattice& lattice, const Budget& budget) {
   Values values;
   for (int layer = 0; layer < lattice.layers(); ++layer) {
     budget.poll(Stage::kDrawing, layer, lattice.layers());
     values.first.push_back(values.value.size());
     for (int slot = 0; slot < lattice.slots(layer); ++slot) {
-      values.value.push_back(wrap_angle(lattice.phi(layer, slot)));
+      values.value.push_back(value_of(map, lattice, layer, slot));
       values.branch.push_back(lattice.branch(layer, slot));
     }
   }
@@ -53,10 +71,20 @@ Values values_of(const Lattice& lattice, const Budget& budget) {
 }
 
 /// Sets range and number of the map's cells so that they cover the full turn except the widest gap
-/// between `values` (rad), or all of it if that gap is less than an eighth of the turn.
+/// between `values` (rad), or all of it if that gap is less than an eighth of the turn; of a joint
+/// that slides (m) so that they cover all values.
 void fit_cells(LatticeMap& map, std::vector<double> values) {
-  constexpr double kNarrow = 0.01;  // rad: a range narrower than this is one cell
+  constexpr double kNarrow = 0.01;  // rad or m: a range narrower than this is one cell
   std::sort(values.begin(), values.end());
+  if (map.slides) {
+    const double low = values.empty() ? 0 : values.front(),
+                 span = values.empty() ? 0 : values.back() - low;
+    map.closed = false;
+    map.angles = span > kNarrow ? kCells : 1;
+    map.step = span > kNarrow ? span / (kCells - 1) : kNarrow;
+    map.low = low + (span > kNarrow ? 0 : span / 2);
+    return;
+  }
   double gap = values.empty() ? 0 : values.front() + kTwoPi - values.back();
   std::size_t after = 0;
   for (std::size_t k = 1; k < values.size(); ++k)
@@ -91,7 +119,8 @@ std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, i
     offer(slot, std::clamp(static_cast<int>(std::lround(from)), 0, map.angles - 1));
     const int next = lattice.next_on_arc(layer, slot);
     if (next < 0) continue;
-    const double way = wrap_angle(value[next] - value[slot]) / map.step;
+    const double apart = value[next] - value[slot],
+                 way = (map.slides ? apart : wrap_angle(apart)) / map.step;
     for (auto k = static_cast<int>(std::ceil(std::min(from, from + way)));
          k <= std::max(from, from + way); ++k) {
       const int angle = map.closed ? (k + map.angles) % map.angles : k;
@@ -109,6 +138,7 @@ int LatticeMap::solutions() const {
 }
 
 double LatticeMap::place(double value) const {
+  if (slides) return (value - low) / step;
   const double turn = kTwoPi / step, before = closed ? 0.5 : (turn - (angles - 1)) / 2,
                k = (value - low) / step;
   return k - turn * std::floor((k + before) / turn);
@@ -116,22 +146,27 @@ double LatticeMap::place(double value) const {
 
 double LatticeMap::value(double k) const {
   const double value = low + k * step;
-  return value > kPi ? value - kTwoPi : value;
+  return value > kPi && !slides ? value - kTwoPi : value;
 }
 
-const char* LatticeMap::coordinate_name() const {
+double LatticeMap::value_at(double phi, const Config& q) const {
+  if (joint < 0) return phi;
+  return slides ? q[joint] : wrap_angle(q[joint]);
+}
+
+std::string LatticeMap::coordinate_name() const {
   if (coordinate == Coordinate::kRoll) return "roll";
-  if (coordinate == Coordinate::kCarriageAngle) return "carriage angle";
+  if (joint >= 0) return joint_names[static_cast<std::size_t>(joint)];
   return grid() ? "arm angle" : "generalised arm angle";
 }
 
-const char* LatticeMap::letter(int panel) const {
+std::string LatticeMap::letter(int panel) const {
+  if (joint >= 0) return coordinate_name();
   return coordinate == Coordinate::kRoll || shows_rolls(panel) ? "ρ" : "φ";
 }
 
 const char* LatticeMap::emptiness() const {
-  if (!grid())
-    return "no solution: out of reach, beyond a joint limit, or beside a given start or end";
+  if (!grid()) return "no node: out of reach, beyond a joint limit, or beside a given start or end";
   return turns
              ? "no node: out of reach, beside a given start or end, or turned further than allowed"
              : "no node: out of reach, or beside a given start or end";
@@ -203,7 +238,7 @@ std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int
 
 int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot) {
   if (map.grid()) return lattice.grid_place(layer, slot).cell;
-  const int angle = static_cast<int>(std::lround(map.place(lattice.phi(layer, slot))));
+  const int angle = static_cast<int>(std::lround(map.place(value_of(map, lattice, layer, slot))));
   return lattice.branch(layer, slot) * map.angles + std::clamp(angle, 0, map.angles - 1);
 }
 
@@ -269,10 +304,13 @@ class MapMaker {
   }
   void lay_out_arcs() {
     using Coordinate = LatticeMap::Coordinate;
-    map_.coordinate = lattice_.chain().roll           ? Coordinate::kRoll
-                      : lattice_.chain().slide() >= 0 ? Coordinate::kCarriageAngle
-                                                      : Coordinate::kGeneralisedArmAngle;
-    values_ = values_of(lattice_, budget_);
+    const Chain& chain = lattice_.chain();
+    map_.joint = chain.roll ? -1 : free_joint(view_.robot, *view_.problem.model);
+    map_.slides = map_.joint >= 0 && map_.joint == chain.slide();
+    map_.coordinate = chain.roll        ? Coordinate::kRoll
+                      : map_.joint >= 0 ? Coordinate::kJoint
+                                        : Coordinate::kGeneralisedArmAngle;
+    values_ = values_of(map_, lattice_, budget_);
     fit_cells(map_, values_.value);
   }
 

@@ -15,10 +15,9 @@ using namespace detail;
 namespace {
 
 /// Returns the marks of the coordinate: where they are, in cells from the lower edge of a panel,
-/// and what they say, in degrees.
+/// and what they say, in the coordinate's unit.
 std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
-  constexpr double kDegree = kPi / 180;
-  const auto name = [](double value) { return formatted("%.4g", value / kDegree + 0.0); };
+  const auto name = [&](double value) { return formatted("%.4g", value * map.scale() + 0.0); };
   std::vector<std::pair<double, std::string>> marks;
   if (map.closed) {
     for (int k = 0; k <= 4; ++k) marks.emplace_back(k * map.angles / 4.0, name(k * kPi / 2 - kPi));
@@ -26,12 +25,13 @@ std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
   }
   const double high = map.low + (map.angles - 1) * map.step;
   if (map.angles == 1) return {{0.5, name(map.value(0))}};
+  const double span = (high - map.low) * map.scale();
   double each = 45;
-  for (const double candidate : {20, 10, 5, 2, 1})
-    if ((high - map.low) / kDegree / each < 3) each = candidate;
-  for (double k = std::ceil(map.low / kDegree / each); k * each * kDegree <= high; ++k) {
-    const double at = k * each * kDegree;
-    marks.emplace_back((at - map.low) / map.step + 0.5, name(wrap_angle(at)));
+  for (const double candidate : {20., 10., 5., 2., 1., 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005})
+    if (span / each < 3) each = candidate;
+  for (double k = std::ceil(map.low * map.scale() / each); k * each <= high * map.scale(); ++k) {
+    const double at = k * each / map.scale();
+    marks.emplace_back((at - map.low) / map.step + 0.5, name(map.slides ? at : wrap_angle(at)));
   }
   return marks;
 }
@@ -228,7 +228,7 @@ class MapDrawing {
     drawing_.text(kLeft, top_ - 7, "start", map_.solution_name(solution));
     for (const auto& [angle, name] : marks(map_))
       drawing_.text(kLeft - 6, y_of(angle) + 4, "end", name);
-    drawing_.text(kLeft - 6, top_ - 7, "end", map_.letter(solution) + std::string(", deg"));
+    drawing_.text(kLeft - 6, top_ - 7, "end", map_.letter(solution) + ", " + map_.unit());
     for (const auto& [layer, name] : marks_along(map_.s))
       drawing_.text(x_of(layer), top_ + kPanelHeight + 15, "middle", name);
     drawing_.text(kLeft + kPanelWidth, top_ + kPanelHeight + 29, "end", "s, m");
@@ -240,9 +240,9 @@ class MapDrawing {
       explain(colour_of_node(map_, group.node), group.words(),
               group.node.state == NodeState::kJointLimit);
     if (!map_.grid())
-      remark(map_.letter(solutions_.empty() ? 0 : solutions_.front()) + std::string(": ") +
-             map_.coordinate_name() +
-             ", deg. Between two nodes of an arc of solutions the nearer one is shown" +
+      remark(map_.letter(solutions_.empty() ? 0 : solutions_.front()) + ": " +
+             (map_.joint < 0 ? map_.coordinate_name() : "position of the joint") + ", " +
+             map_.unit() + ". Between two nodes of an arc of solutions the nearer one is shown" +
              (merges_nodes() ? ", of several a blocked one first, then a free one." : "."));
     else if (merges_nodes())
       remark("A cell stands for up to " + std::to_string(cells_.layers_each) + " x " +

@@ -64,7 +64,8 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
     text += map.solution_name(solution) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
       const double value = map.value(row * cells.angles_each);
-      text += row % 4 == 0 ? formatted("%6.1f  ", value * 180 / kPi) : std::string(kMargin, ' ');
+      text += row % 4 == 0 ? formatted(map.slides ? "%6.3f  " : "%6.1f  ", value * map.scale())
+                           : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
         const LatticeMap::Node node = cells.node(solution, column, row);
         seen.see(node);
@@ -78,8 +79,9 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   for (const auto& [node, meaning] : seen.entries())
     text += symbols.node(node) + " " + printable(meaning) + "\n";
   const std::string name = map.coordinate_name();
-  const std::string rows =
-      "Rows are " + name + "s" + (map.turns ? ", in the last panel rolls, deg. " : ", deg. ");
+  const std::string rows = "Rows are " + (map.joint < 0 ? name + "s" : "positions of " + name) +
+                           (map.turns ? ", in the last panel rolls" : "") + ", " + map.unit() +
+                           ". ";
   if (!map.grid())
     text += rows + "Between two nodes of an arc of solutions the nearer one is shown" +
             (cells.layers_each * cells.angles_each > 1

@@ -6,13 +6,15 @@ import { JobList, strokeName } from './joblist.js';
 import { jobSummary, strokeTable, verdict } from './jobtables.js';
 import { Cells, mapNote, mapTitle } from './map.js';
 import { Nearness, nearWords, nearWordsAt, placesOf } from './nearness.js';
-import { $, data, number, tell, themes, whenResized } from './page.js';
+import { $, data, number, slideTo, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
 import { Plots } from './plots.js';
 import {
   cellBeside,
   cellWords,
+  endName,
+  endPose,
   indexAt,
   offPath,
   placeWords,
@@ -120,7 +122,7 @@ function made(k) {
     one.mapBox,
     one.cells,
     one.rows,
-    [],
+    one.beside,
     !solved && one.cut && one.rows.length ? { layer: one.rows.at(-1).layer } : null,
     hover,
     pick,
@@ -145,6 +147,7 @@ function open(k) {
   }
   $('stroke').value = k;
   $('blocked').hidden = !one.cut;
+  $('blocked').textContent = endName(one.cut);
   lines.forEach((line, at) => line.classList.toggle('marked', at === k));
   window.swivel.stroke = k;
   if (!one.maps) return;
@@ -152,7 +155,7 @@ function open(k) {
   document.querySelector('#plots-section h2').firstChild.textContent =
     `Along ${strokeName(one, k)}`;
   $('map-note').textContent = mapNote(one.cells, one.run.lattice, {
-    beside: false,
+    beside: one.beside.length > 0,
     ended: !solved && one.rows.length > 0,
   });
   one.maps.paint();
@@ -163,7 +166,7 @@ function hover(cell, event) {
   hovered = cell?.q ? offPath(cell, rowOf(strokes[stroke].rows, cell.layer)) : null;
   if (hovered) player.pause();
   present();
-  tell(cell ? cellWords(cell, chain, strokes[stroke].map.letter) : null, event);
+  tell(cell ? cellWords(cell, chain, strokes[stroke].map) : null, event);
 }
 function pick(cell) {
   const { rows } = strokes[stroke];
@@ -177,9 +180,11 @@ function keep(at) {
   present();
 }
 function showCut() {
-  const { rows, cut } = strokes[stroke];
+  const { rows, cut, steps } = strokes[stroke];
   if (rows.length) to(parts[partOf(stroke)].to);
-  keep(cut);
+  kept = endPose(cut, rows, steps);
+  if (!kept.off) Object.assign(kept, { part: partOf(stroke), stroke });
+  present();
 }
 /** Turns the arm about its tool where it stands. */
 function turn(by) {
@@ -195,20 +200,20 @@ function turn(by) {
 }
 function shown() {
   if (hovered ?? kept) return hovered ?? kept;
-  if (parts.length) return list.poseAt(list.placeOf(cursor));
+  if (parts.length) return list.poseAt(cursor);
   if (!home) return null;
   const note = home.pair ? `at home ${home.pair.join(' – ')} come too near` : 'home';
   return { q: home.q, pair: home.pair, hit: home.pair !== null, line: null, row: null, note };
 }
 /** Where a pose is: of which part, at which s. */
 function whereWords(pose) {
-  if (pose.off) return placeWords(pose, strokes[stroke].map.letter, 4);
+  if (pose.off) return placeWords(pose, strokes[stroke].map, 4);
   if (pose.part === undefined) return '';
   const { title } = parts[pose.part];
   return pose.row === null
     ? title
     : `${title}   process ${list.processOn(cursor) ? 'on' : 'off'}\n` +
-        placeWords(pose, strokes[pose.stroke].map.letter, 4);
+        placeWords(pose, strokes[pose.stroke].map, 4);
 }
 /** The arm, its numbers, and the cursors of map and plots: all of one pose. */
 function present() {
@@ -254,7 +259,7 @@ function go(x) {
   present();
   if (late) return;
   const part = list.partAt(list.placeOf(cursor));
-  $('slider').value = cursor;
+  slideTo(cursor, parts[part].title + (list.timed ? `, ${cursor.toFixed(2)} s` : ''));
   strip.mark(part);
   $('where').textContent = list.timed
     ? `${cursor.toFixed(2)} / ${number(list.end)} s`
@@ -272,16 +277,13 @@ function step(now) {
 }
 
 function colourPaths() {
-  const { ends, of } = shading(
-      $('path-colour').value,
-      chain,
-      strokes.flatMap(({ rows }) => rows),
-    ),
+  const paths = strokes.map(({ rows, map }) => ({ rows, map, chain })),
+    { ends, of } = shading($('path-colour').value, paths),
     [low, , high] = $('ramp').children;
   [low.textContent, high.textContent] = ends;
   strokes.forEach(({ tool_path, rows }, k) =>
     view?.colourPath(
-      tool_path.map((_, row) => (rows[row] ? of(rows[row]) : NaN)),
+      tool_path.map((_, row) => (rows[row] ? of(paths[k], rows[row], row) : NaN)),
       k,
     ),
   );

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A job's parts in their order, its rows one after the other, and places on its slider.
-import { indexAt, poseAt, stepBetween, stepsOf, valueAt } from './poses.js';
+import { indexAt, jointsOf, poseAt, stepBetween, stepsOf, valueAt } from './poses.js';
 
 const kSame = 1e-6, // of a place in rows
   kApart = 1; // degrees on the slider between strokes that no transition joins
@@ -14,7 +14,7 @@ export class JobList {
    * data: of the page. Each part gets { stroke, rows, first, last (places of its ends in all rows),
    * from, to (on the slider: s in time, or degrees that the fastest joint moves), title }.
    */
-  constructor({ strokes, parts, motion, result }) {
+  constructor({ strokes, parts, motion, result, chain }) {
     this.strokes = strokes.map((stroke) => ({ ...stroke, steps: stepsOf(stroke.rows) }));
     this.rows = [];
     // The parts of a job have their ends in common; strokes without a job are shown one by one.
@@ -29,6 +29,7 @@ export class JobList {
       return { ...part, rows, first, last: first + rows.length - 1, title: this.title(parts, p) };
     });
     this.timed = motion !== null;
+    this.joints = motion && jointsOf(motion, chain);
     this.places = motion?.layers ?? this.rows.map((_, k) => k);
     this.marks = motion?.t ?? this.travel();
     this.end = this.marks.at(-1) ?? 0;
@@ -92,8 +93,16 @@ export class JobList {
       ? inside.indexOf(true)
       : this.parts.findLastIndex(({ first }) => first <= place);
   }
-  /** The pose at a place; part: the number of its part; row: in a stroke, null in transitions. */
-  poseAt(place) {
+  /**
+   * The pose at a place on the slider; part: the number of its part; row: in a stroke, null in
+   * transitions.
+   */
+  poseAt(x) {
+    const pose = this.poseOfRows(this.placeOf(x));
+    return this.timed ? { ...pose, q: this.joints(x) } : pose;
+  }
+  /** As poseAt(), at a place in all rows. */
+  poseOfRows(place) {
     const part = this.partAt(place),
       { stroke, rows, first } = this.parts[part],
       at = Math.min(rows.length - 1, Math.max(0, place - first));

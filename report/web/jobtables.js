@@ -4,17 +4,38 @@ import { strokeName } from './joblist.js';
 import { $, number, table } from './page.js';
 import { separator, warn, words } from './summary.js';
 
-/** The answer in one line, and warnings. go: shows a stroke, its number, at s, m. */
+const kMostCauses = 3; // of strokes without a path that the first line names
+
+/**
+ * The answer in one line, with what stops strokes that have no path, and warnings. go: shows a
+ * stroke, its number, at s, m.
+ */
 export function verdict({ answer, result, strokes }, go) {
   const host = $('verdict'),
+    [first] = answer.split('\n'),
     found = result.cost !== null;
   host.classList.add(found ? 'solved' : 'failed');
   host.append(
     Object.assign(document.createElement('span'), {
       className: 'part',
-      textContent: answer.split('\n')[0],
+      textContent: first[0].toUpperCase() + first.slice(1),
     }),
   );
+  const without = strokes
+    .map(({ run, cut }, k) => ({ k, diagnosis: run?.diagnosis, cut }))
+    .filter(({ diagnosis }) => diagnosis);
+  for (const { k, diagnosis, cut } of without.slice(0, kMostCauses)) {
+    const button = document.createElement('button'),
+      at = diagnosis.at_s ?? cut?.s;
+    button.textContent =
+      `${strokeName(strokes[k], k)}: ${diagnosis.reason}` +
+      (at === null || at === undefined ? '' : ` at s ${at.toFixed(3)}`);
+    button.title = 'Go there';
+    button.addEventListener('click', () => go(k, at ?? 0));
+    host.append(separator(), button);
+  }
+  if (without.length > kMostCauses)
+    host.append(separator(), `${without.length - kMostCauses} strokes more`);
   const near = strokes
     .map(({ run }, k) => ({ k, clearance: run?.summary?.clearance }))
     .filter(({ clearance }) => found && clearance)

@@ -3,14 +3,17 @@
 import { savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
 import { Nearness, placesOf } from './nearness.js';
-import { $, data, number, tell, themes, whenResized } from './page.js';
+import { $, data, number, slideTo, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { keys, Player, viewKeys, viewOptions } from './player.js';
 import { Plots } from './plots.js';
 import {
   cellBeside,
   cellWords,
+  endName,
+  endPose,
   indexAt,
+  jointsOf,
   offPath,
   placeWords,
   poseAt,
@@ -47,8 +50,8 @@ let view = null,
   told = 0,
   begun = false,
   noting = 0;
-/** For those who test the page: joints and line shown now, pictures drawn. */
-window.swivel = { joints: null, frames: 0, line: null };
+/** For those who test the page: joints, line and time shown now, pictures drawn. */
+window.swivel = { joints: null, frames: 0, line: null, time: null };
 
 const player = new Player(() => {
   if (rows.length && cursor >= last) go((time = 0));
@@ -93,6 +96,7 @@ const timed =
     },
     't, s',
   );
+const joints = motion && jointsOf(motion, chain);
 const momentOf = (index) => valueAt(motion.t, index),
   layerAt = (t) => valueAt(motion.layers, indexAt(motion.t, t));
 
@@ -114,7 +118,7 @@ function hover(cell, event) {
   if (hovered) pause();
   present();
   if (!cell) return tell(null);
-  tell(cellWords(cell, chain, data.map.letter), event);
+  tell(cellWords(cell, chain, data.map), event);
 }
 function pick(cell) {
   pause();
@@ -140,7 +144,10 @@ function turn(by) {
   turned = next.turned;
 }
 function shown() {
-  return hovered ?? kept ?? (rows.length ? poseAt(rows, steps, cursor) : null);
+  if (hovered ?? kept) return hovered ?? kept;
+  if (!rows.length) return null;
+  const pose = poseAt(rows, steps, cursor);
+  return timed ? { ...pose, q: joints(time) } : pose;
 }
 /** The arm, its numbers, and the cursors of map and plots: all of one pose. */
 function present() {
@@ -152,12 +159,12 @@ function present() {
   if (player.playing && performance.now() - told < 60) return;
   told = performance.now();
   const digits = pose.off ? 1 : 2;
-  tellPose($('readout'), chain, placeWords(pose, data.map.letter, 4), pose, digits);
+  tellPose($('readout'), chain, placeWords(pose, data.map, 4), pose, digits);
   plots.draw(pose.row, pose);
 }
 function draw({ q, pair, line, hit, off, row }) {
   view?.pose(q, pair, line, hit, (name) => nearness.lines(name, off ? null : row));
-  Object.assign(window.swivel, { joints: q, line });
+  Object.assign(window.swivel, { joints: q, line, time });
 }
 /** To row k, not always whole. */
 function go(k) {
@@ -170,7 +177,8 @@ function go(k) {
   const late = player.playing && performance.now() - told < 60;
   present();
   if (late) return;
-  $('slider').value = cursor;
+  const { s } = poseAt(rows, steps, cursor);
+  slideTo(cursor, `s ${s.toFixed(3)} m${timed ? `, ${time.toFixed(2)} s` : ''}`);
   $('where').textContent =
     `${Math.round(cursor)} / ${last}` +
     `${timed ? `, ${time.toFixed(2)} / ${number(motion.t.at(-1))} s` : ''}`;
@@ -219,10 +227,11 @@ keys({
 });
 
 function colourPath() {
-  const { ends, of } = shading($('path-colour').value, chain, rows),
+  const path = { rows, chain, map: data.map },
+    { ends, of } = shading($('path-colour').value, [path]),
     [low, , high] = $('ramp').children;
   [low.textContent, high.textContent] = ends;
-  view?.colourPath(data.tool_path.map((_, k) => (rows[k] ? of(rows[k]) : NaN)));
+  view?.colourPath(data.tool_path.map((_, k) => (rows[k] ? of(path, rows[k], k) : NaN)));
 }
 function paint() {
   view?.paint();
@@ -248,8 +257,10 @@ whenResized(paint);
 function showCut() {
   pause();
   go(last);
-  keep(cut);
+  kept = endPose(cut, rows, steps);
+  present();
 }
+$('blocked').textContent = endName(cut);
 $('blocked').hidden = !cut;
 $('blocked').addEventListener('click', showCut);
 /** The address names the place once the cursor rests, so that it opens there again. */

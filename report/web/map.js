@@ -11,6 +11,9 @@ const kState = 7,
   kCertified = 64,
   kPosed = 128,
   kUnknown = 65535;
+/** The unit of a map's coordinate, and what a value is multiplied with to have it. */
+export const unitOf = ({ slides }) =>
+  slides ? { unit: 'm', scale: 1 } : { unit: 'deg', scale: 180 / Math.PI };
 /** An angle less its whole turns. */
 export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 
@@ -47,10 +50,11 @@ export class Cells {
     return this.states.reduce((n, state) => n + wanted(state & kState), 0);
   }
   /**
-   * Where a value of the coordinate, rad, is in a panel, in cells from below: k at the middle of
-   * cell k.
+   * Where a value of the coordinate, rad or m, is in a panel, in cells from below: k at the middle
+   * of cell k.
    */
   place(value) {
+    if (this.slides) return (value - this.low) / this.step;
     const turn = (2 * Math.PI) / this.step,
       before = this.closed ? 0.5 : (turn - (this.angles - 1)) / 2,
       k = (value - this.low) / this.step;
@@ -67,9 +71,10 @@ export class Cells {
       posed = pose >= 0;
     const layer = column * this.layers_each + (posed ? this.poseLayers[pose] : 0),
       clearance = posed ? this.clearances[pose] : kUnknown;
-    const value = wrapped(this.low + this.step * row * this.angles_each),
+    const whole = (angle) => (this.slides ? angle : wrapped(angle)),
+      value = whole(this.low + this.step * row * this.angles_each),
       { rolls, name, sheet } = this.panels[panel];
-    const phi = posed ? wrapped(this.posePhis[pose]) : rolls ? undefined : value,
+    const phi = posed ? whole(this.posePhis[pose]) : rolls ? undefined : value,
       roll = posed && this.poseRolls.length ? this.poseRolls[pose] : rolls ? value : undefined;
     return {
       layer,
@@ -176,7 +181,9 @@ export function mapNote(cells, lattice, { beside, ended }) {
   const unseen = cells.count((state) => state === UNSEEN),
     known = cells.count((state) => state === FREE || state === BLOCKED);
   const several = cells.layers_each * cells.angles_each > 1;
-  const upwards = turns(cells) ? 'arm angle φ or roll ρ' : `${cells.coordinate} ${cells.letter}`;
+  const { coordinate, letter } = cells,
+    own = coordinate === letter ? `position of ${letter}` : `${coordinate} ${letter}`,
+    upwards = turns(cells) ? 'arm angle φ or roll ρ' : own;
   return (
     `s to the right, ${upwards} upwards. ` +
     (cells.arcs
@@ -195,7 +202,8 @@ export function mapNote(cells, lattice, { beside, ended }) {
       ? ' Branches are drawn at the rolls with which the path was found, rolls at its arm angles.'
       : '') +
     (beside
-      ? ' The thin dashed line is the path that was found on the lattice, before it was refined.'
+      ? ' The thin dashed line is the path that was found on the lattice, before it was refined ' +
+        'or timed.'
       : '') +
     (ended ? ' The dashed line is where every path has ended.' : '')
   );

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two arms at one time: the poses of both at a row, what is between them, and what the view shows.
 import { number } from './page.js';
-import { indexAt, offPath, poseAt, rowOf, stepsOf, valueAt } from './poses.js';
+import { indexAt, jointsOf, offPath, poseAt, rowOf, stepsOf, valueAt } from './poses.js';
 
 /** The arms of a workcell with their rows, of which those of one number are simultaneous. */
 export class Pair {
@@ -11,6 +11,7 @@ export class Pair {
     this.arms = arms.map((arm) => ({ ...arm, steps: stepsOf(arm.rows) }));
     this.last = Math.max(...arms.map(({ rows }) => rows.length - 1));
     this.timed = arms.every(({ motion }) => motion);
+    this.jointsAt = this.timed && this.arms.map(({ motion, chain }) => jointsOf(motion, chain));
     this.end = this.timed ? arms[0].motion.t.at(-1) : null;
   }
   /** The place of an arm in its rows at a time of the motion. */
@@ -34,7 +35,10 @@ export class Pair {
   posesAt(k, t = null) {
     return this.arms.map(({ rows, steps, cut, chain }, arm) => {
       const at = t === null ? k : this.placeAt(arm, t);
-      if (rows.length) return poseAt(rows, steps, Math.min(at, rows.length - 1));
+      if (rows.length) {
+        const pose = poseAt(rows, steps, Math.min(at, rows.length - 1));
+        return t === null ? pose : { ...pose, q: this.jointsAt[arm](t) };
+      }
       if (cut) return offPath(cut, null);
       const q = chain.joints.map(() => 0),
         note = 'no pose: drawn with all joints at 0';

@@ -6,12 +6,11 @@ import { ticks } from 'd3';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
 import { element, hatching, hatchedBy } from './hatching.js';
-import { LIMIT, wrapped } from './map.js';
+import { LIMIT, unitOf, wrapped } from './map.js';
 import { isDark, show, style } from './page.js';
 import { kDark, kLight, kLines, lineBetween } from './palette.js';
 
-const kDegrees = 180 / Math.PI,
-  kMostDetails = 4; // named in the legend of one colour
+const kMostDetails = 4; // named in the legend of one colour
 
 /** An entry of the legend in words. */
 const words = ({ meaning, details }) =>
@@ -21,7 +20,7 @@ const words = ({ meaning, details }) =>
       (details.length > kMostDetails ? `, ${details.length - kMostDetails} more` : '');
 
 /**
- * [place in cells, degrees] of an axis of the coordinate: quarters of a turn, or round values
+ * [place in cells, value] of an axis of the coordinate: quarters of a turn, or round values
  * between its ends.
  */
 function marks(cells) {
@@ -31,12 +30,14 @@ function marks(cells) {
       ((degrees + 180) / 360) * cells.angles - (degrees === 180 ? 0.5 : 0),
       name(degrees),
     ]);
-  const low = cells.low * kDegrees,
-    high = low + (cells.angles - 1) * cells.step * kDegrees;
-  if (cells.angles === 1) return [[0, name(Number((wrapped(cells.low) * kDegrees).toFixed(1)))]];
-  return ticks(low, high, 4).map((degrees) => [
-    (degrees - low) / (cells.step * kDegrees),
-    name(Number((wrapped(degrees / kDegrees) * kDegrees).toFixed(6))),
+  const { scale } = unitOf(cells),
+    whole = (value) => (cells.slides ? value : wrapped(value)) * scale,
+    low = cells.low * scale,
+    high = low + (cells.angles - 1) * cells.step * scale;
+  if (cells.angles === 1) return [[0, name(Number(whole(cells.low).toFixed(3)))]];
+  return ticks(low, high, 4).map((value) => [
+    (value - low) / (cells.step * scale),
+    name(Number(whole(value / scale).toFixed(6))),
   ]);
 }
 
@@ -138,7 +139,7 @@ export class Panels {
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
     const { cells, rows, beside, cut, marks } = this,
-      letter = panel.rolls ? 'ρ' : cells.letter;
+      axis = panel.rolls ? 'ρ, deg' : `${cells.letter}, ${unitOf(cells).unit}`;
     const lineOf = (path) =>
       path.flatMap((row, k) => {
         const point = { x: row.layer, y: this.height(panel, row) },
@@ -176,7 +177,7 @@ export class Panels {
       },
       y: {
         domain: [-0.5, cells.angles - 0.5],
-        label: vector ? `${letter}, deg: ${panel.name}` : large ? `${letter}, deg` : null,
+        label: vector ? `${axis}: ${panel.name}` : large ? axis : null,
         labelArrow: 'none',
         labelAnchor: 'top',
         ticks: marks.map(([place]) => place),

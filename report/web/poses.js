@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Poses along a path, between its rows, and in words.
+import { samples } from './bytes.js';
 import { manipulability } from './kinematics.js';
 import { wrapped } from './map.js';
 import { number } from './page.js';
@@ -79,15 +80,34 @@ export function poseAt(rows, steps, k) {
   };
 }
 
-/** s and what is chosen there, in words. letter: of the map's coordinate. */
-export function placeWords({ s, phi, roll }, letter, digits) {
-  const angles = [
-    [letter === 'ρ' ? 'roll' : 'φ', phi],
-    ['roll', roll],
-  ].filter(([, angle]) => angle !== undefined && angle !== null);
+/** The joints of a motion at a time: returns a function of t, s. motion: of the page's data. */
+export function jointsOf({ joints: { unit, dt, values } }, chain) {
+  const width = chain.joints.length,
+    steps = samples(values, width),
+    last = steps.length / width - 1;
+  return (t) => {
+    const at = Math.min(last, Math.max(0, t / dt)),
+      k = Math.min(Math.floor(at), Math.max(0, last - 1)),
+      next = Math.min(last, k + 1);
+    return chain.joints.map((_, j) => {
+      const [a, b] = [steps[k * width + j], steps[next * width + j]];
+      return unit * (a + (at - k) * (b - a));
+    });
+  };
+}
+
+/** s and what is chosen there, in words. map: Cells, or of the page's data. */
+export function placeWords({ s, phi, roll }, { letter, slides }, digits) {
+  const chosen = [
+    [letter === 'ρ' ? 'roll' : letter, phi, slides],
+    ['roll', roll, false],
+  ].filter(([, value]) => value !== undefined && value !== null);
   return [
     `s ${s.toFixed(digits)} m`,
-    ...angles.map(([name, angle]) => `${name} ${(angle * kDegrees).toFixed(1)}°`),
+    ...chosen.map(([name, value, isLength]) => {
+      const { scale, unit } = shownOf({ slides: isLength });
+      return `${name} ${(value * scale).toFixed(1)}${unit}`;
+    }),
   ].join('   ');
 }
 /** How a joint's position is told: { scale: from rad or m, unit }; one that slides in mm. */
@@ -100,8 +120,8 @@ export const jointWords = (chain, q, digits) =>
     return `${joint.name}  ${(q[k] * scale).toFixed(digits)}${unit}`;
   });
 /** A cell of the map in words, a line each. */
-export function cellWords(cell, chain, letter) {
-  const lines = [placeWords(cell, letter, 4), cell.branch, cell.what];
+export function cellWords(cell, chain, map) {
+  const lines = [placeWords(cell, map, 4), cell.branch, cell.what];
   if (cell.q)
     lines.push(
       ...jointWords(chain, cell.q, 1),
@@ -119,6 +139,16 @@ export const offPath = (at, row) => ({
   line: at.line ?? null,
   note: at.what,
 });
+/**
+ * The pose where every path has ended: the one past it that bars the way, or the last row of the
+ * path, with what keeps it there. cut: of the page's data; steps: stepsOf(rows).
+ */
+export const endPose = (cut, rows, steps) =>
+  cut.is_row
+    ? { ...poseAt(rows, steps, rows.length - 1), note: cut.what }
+    : offPath(cut, rowOf(rows, cut.layer));
+/** What the button that leads there is called. */
+export const endName = (cut) => (cut?.is_row ? 'Where it ends' : 'Blocked pose');
 /**
  * The row at a layer of the lattice, which may have layers of the path between its own; null beyond
  * the last.
@@ -149,8 +179,6 @@ export function cellBeside(cells, row, turned, by) {
   return null;
 }
 
-const kFarMm = 100, // clearances from here on look alike
-  kFarDegrees = 45; // and distances from a joint limit
 /**
  * The least distance of a joint that turns from one of its limits, degrees; Infinity where there
  * are none.
@@ -163,26 +191,38 @@ export const marginOf = (chain, q) =>
     ),
   );
 /**
- * How a path is coloured by one of the kinds of the view's list. rows: of all paths. { ends: what
- * the ends of the ramp mean; of: the share of a row, NaN where nothing is known }.
+ * How paths are coloured, from the least to the largest of their values: by one of the kinds of the
+ * view's list, or by values of the caller's. paths: [{ rows, chain, map }]; own: called with a row
+ * and its number. { ends: what the ends of the ramp mean; of: called with a path, one of its rows
+ * and its number, returns the share, NaN where nothing is known }.
  */
-export function shading(kind, chain, rows) {
-  if (kind === 'phi')
+export function shading(kind, paths, own = null) {
+  const map = paths.find((path) => path.map)?.map ?? {},
+    shown = shownOf(map);
+  const { value, unit } = {
+    phi: { value: (_, { phi }) => phi * shown.scale, unit: shown.unit },
+    margin: { value: ({ chain }, { q }) => marginOf(chain, q), unit: '°' },
+    manipulability: { value: ({ chain }, { q }) => manipulability(chain, q), unit: ' m³' },
+    clearance: { value: (_, { clearance_mm }) => clearance_mm ?? NaN, unit: ' mm' },
+    between: { value: (_, row, k) => own?.(row, k) ?? NaN, unit: ' mm' },
+  }[kind];
+  if (kind === 'phi' && map.closed)
     return {
       ends: ['−180°', '180°'],
-      of: ({ phi }) => (wrapped(phi) + Math.PI) / (2 * Math.PI),
+      of: (_, { phi }) => (wrapped(phi) + Math.PI) / (2 * Math.PI),
     };
-  if (kind === 'margin')
-    return { ends: ['0', `${kFarDegrees}°`], of: ({ q }) => marginOf(chain, q) / kFarDegrees };
-  if (kind === 'manipulability') {
-    const most = Math.max(1e-12, ...rows.map(({ q }) => manipulability(chain, q)));
-    return {
-      ends: ['0', `${number(most, 2)} m³`],
-      of: ({ q }) => manipulability(chain, q) / most,
-    };
-  }
+  const known = paths
+    .flatMap((path) => path.rows.map((row, k) => value(path, row, k)))
+    .filter(Number.isFinite);
+  if (!known.length) return { ends: ['–', '–'], of: () => NaN };
+  const low = known.reduce((a, b) => Math.min(a, b)),
+    high = known.reduce((a, b) => Math.max(a, b)),
+    told = (v) => `${number(v, 3)}${unit}`.replace('-', '−');
+  // What a reader could not tell apart has one colour.
+  if (told(low) === told(high))
+    return { ends: ['', told(high)], of: (...at) => 0 * value(...at) + 1 };
   return {
-    ends: ['0', `${kFarMm} mm`],
-    of: ({ clearance_mm }) => (clearance_mm === undefined ? NaN : clearance_mm / kFarMm),
+    ends: [told(low), told(high)],
+    of: (...at) => (value(...at) - low) / (high - low),
   };
 }

@@ -3,7 +3,7 @@
 import { sheet, savers } from './figure.js';
 import { Cells, mapNote, mapTitle } from './map.js';
 import { Nearness } from './nearness.js';
-import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
+import { $, data, isDark, number, slideTo, tell, themes, whenResized } from './page.js';
 import { Pair } from './pair.js';
 import { kDark, kLight, kLines } from './palette.js';
 import { Panels, showLegend } from './panels.js';
@@ -12,6 +12,8 @@ import { Plots } from './plots.js';
 import {
   cellBeside,
   cellWords,
+  endName,
+  endPose,
   indexAt,
   offPath,
   placeWords,
@@ -164,7 +166,7 @@ function hover(arm, cell, event) {
   if (hovered) player.pause();
   present();
   tell(
-    cell ? `${arms[arm].name}\n${cellWords(cell, arms[arm].chain, arms[arm].map.letter)}` : null,
+    cell ? `${arms[arm].name}\n${cellWords(cell, arms[arm].chain, arms[arm].map)}` : null,
     event,
   );
 }
@@ -191,8 +193,11 @@ function turn(by) {
   turned = next.turned;
 }
 function showCut(arm) {
-  if (arms[arm].rows.length) to(arms[arm].rows.length - 1);
-  keep(arm, arms[arm].cut);
+  const { cut, rows, steps } = arms[arm];
+  if (rows.length) to(rows.length - 1);
+  active = window.swivel.active = arm;
+  kept = endPose(cut, rows, steps);
+  present();
 }
 /** The poses of both arms, and what is between them where both are on their paths. */
 function shown() {
@@ -223,7 +228,7 @@ function present() {
   told = performance.now();
   poses.forEach((pose, k) => {
     const { name, chain, map } = arms[k],
-      place = pose.s === undefined ? '' : `\n${placeWords(pose, map.letter, 4)}`;
+      place = pose.s === undefined ? '' : `\n${placeWords(pose, map, 4)}`;
     const title = `${k === active ? '▸ ' : ''}${name}${place}`;
     tellPose(readouts[k], chain, title, pose, pose.off ? 1 : 2);
     plots[k]?.draw(pose.row, pose);
@@ -260,7 +265,10 @@ function go(k) {
   const late = player.playing && performance.now() - told < 60;
   present();
   if (late) return;
-  $('slider').value = cursor;
+  slideTo(
+    cursor,
+    `row ${Math.round(cursor)} of ${pair.last}${pair.timed ? `, ${time.toFixed(2)} s` : ''}`,
+  );
   $('where').textContent =
     `${Math.round(cursor)} / ${pair.last}` +
     (pair.timed ? `, ${time.toFixed(2)} / ${number(pair.end)} s` : '');
@@ -278,22 +286,19 @@ function step(now) {
 }
 
 function colourPaths() {
-  const kind = $('path-colour').value,
-    known = arms.map(({ rows }, k) => ({ rows, k }));
-  for (const { rows, k } of known) {
-    const { ends, of } =
-      kind === 'between'
-        ? { ends: ['0', '100 mm'], of: (_, row) => (pair.between[row]?.mm ?? NaN) / 100 }
-        : shading(kind, arms[k].chain, kind === 'manipulability' ? everyRow : rows);
-    const [low, , high] = $('ramp').children;
-    [low.textContent, high.textContent] = ends;
+  const { ends, of } = shading(
+      $('path-colour').value,
+      arms,
+      (_, row) => pair.between[row]?.mm ?? NaN,
+    ),
+    [low, , high] = $('ramp').children;
+  [low.textContent, high.textContent] = ends;
+  for (const [k, arm] of arms.entries())
     view?.colourPath(
-      arms[k].tool_path.map((_, row) => (rows[row] ? of(rows[row], row) : NaN)),
+      arm.tool_path.map((_, row) => (arm.rows[row] ? of(arm, arm.rows[row], row) : NaN)),
       k,
     );
-  }
 }
-const everyRow = arms.flatMap(({ rows }) => rows);
 
 function paint() {
   view?.paint();
@@ -388,7 +393,8 @@ function mapNotes() {
       ? ` The thin dashed line is the path that ${alone.join(' and ')} would take alone.`
       : '') +
     (before.length
-      ? ` The thin dashed line is the path of ${before.join(' and ')} before it was refined.`
+      ? ` The thin dashed line is the path of ${before.join(' and ')} before it was refined ` +
+        'or timed.'
       : '') +
     (solved || barredArm >= 0 || !conflict
       ? ''
@@ -416,7 +422,7 @@ function showBarred() {
   else showCut(barredArm);
 }
 $('blocked').hidden = !conflict && barredArm < 0;
-if (conflict) $('blocked').textContent = 'Where they meet';
+$('blocked').textContent = conflict ? 'Where they meet' : endName(arms[barredArm]?.cut);
 $('blocked').addEventListener('click', showBarred);
 
 /** The address names the row once the cursor rests, so that the page opens there again. */

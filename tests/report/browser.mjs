@@ -218,6 +218,22 @@ export async function assertFits(page, width) {
   assert.ok(wide <= width, `${wide} pixels wide on a screen of ${width}`);
 }
 
+/**
+ * What is pressed is 24 pixels high or more (WCAG 2.2, 2.5.8), but the words of a line, and the
+ * slider says where it stands.
+ */
+export async function assertReachable(page) {
+  const low = await page.evaluate(() =>
+    [...document.querySelectorAll('button, select')]
+      .filter((one) => one.checkVisibility() && !one.closest('#verdict'))
+      .filter((one) => one.getBoundingClientRect().height < 24)
+      .map((one) => one.id || one.textContent || one.className),
+  );
+  assert.deepEqual(low, []);
+  if (await page.isVisible('#slider'))
+    assert.ok(((await page.getAttribute('#slider', 'aria-valuetext')) ?? '').length > 3);
+}
+
 /** No name in the view stands over another one, over a stroke's number or a line's length. */
 export async function assertLabelsApart(page) {
   const over = await page.evaluate(() => {

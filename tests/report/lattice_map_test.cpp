@@ -175,11 +175,16 @@ struct CellsOfArcs {
   std::set<std::pair<int, int>> unsure;  ///< as near to one neighbour as to the other
 };
 
+/// Returns the value of a map's coordinate at a node, rad or m.
+double value_of(const Lattice& lattice, const LatticeMap& map, int layer, int slot) {
+  return map.value_at(lattice.phi(layer, slot), *lattice.node(layer, slot));
+}
+
 /// Finds the cells of a layer from its nodes and from the ways between neighbours on their arcs.
 void find_cells_of_arcs(const Lattice& lattice, const LatticeMap& map, int layer,
                         CellsOfArcs& cells) {
   for (int slot = 0; slot < lattice.slots(layer); ++slot) {
-    const double at = map.place(lattice.phi(layer, slot));
+    const double value = value_of(lattice, map, layer, slot), at = map.place(value);
     ASSERT_TRUE(map.closed ? at < map.angles - 0.5 + 1e-9 : at <= map.angles - 1 + 1e-6);
     ASSERT_GE(at, map.closed ? -0.5 : -1e-6);
     const std::pair cell(lattice.branch(layer, slot),
@@ -188,10 +193,12 @@ void find_cells_of_arcs(const Lattice& lattice, const LatticeMap& map, int layer
     cells.with_node.insert(cell);
     const int next = lattice.next_on_arc(layer, slot);
     if (next < 0) continue;
-    const double from = lattice.phi(layer, slot),
-                 way = std::remainder(lattice.phi(layer, next) - from, kTwoPi);
+    const auto from_value = [&](double to) {
+      return map.slides ? to - value : std::remainder(to - value, kTwoPi);
+    };
+    const double way = from_value(value_of(lattice, map, layer, next));
     for (int k = 0; k < map.angles; ++k) {
-      const double along = std::remainder(map.low + k * map.step - from, kTwoPi);
+      const double along = from_value(map.low + k * map.step);
       if (along * way < 0 || std::abs(along) > std::abs(way)) continue;
       const int nearer = std::abs(2 * along) < std::abs(way) ? slot : next;
       cells.of_cell[{lattice.branch(layer, nearer), k}].push_back(nearer);
@@ -276,9 +283,14 @@ void check_layer_of_arcs(ArcMap& arcs, int layer) {
 void check_words_of_arcs(const LatticeMap& map) {
   const std::string text = to_text(map, 80, false), svg = to_svg(map),
                     words = map.coordinate_name();
-  EXPECT_NE(text.find("Rows are " + words + "s, deg."), std::string::npos);
+  const bool of_joint = map.coordinate == LatticeMap::Coordinate::kJoint;
+  EXPECT_NE(text.find("Rows are " + (of_joint ? "positions of " + words : words + "s") + ", " +
+                      (map.slides ? "m." : "deg.")),
+            std::string::npos);
   EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
-  EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
+  EXPECT_NE(svg.find(map.letter(0) + ": " + (of_joint ? "position of the joint" : words)),
+            std::string::npos);
+  EXPECT_NE(svg.find(">" + map.letter(0) + ", " + map.unit() + "<"), std::string::npos);
   const auto solutions = map.inhabited_solutions();
   const bool some_are_empty = std::any_of(solutions.begin(), solutions.end(), [&](int solution) {
     for (int layer = 0; layer < map.layers; ++layer)
@@ -286,7 +298,7 @@ void check_words_of_arcs(const LatticeMap& map) {
         if (map.at(layer, solution, cell).state == NodeState::kNoIk) return true;
     return false;
   });
-  EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos,
+  EXPECT_EQ(svg.find("no node: out of reach, beyond a joint limit") != std::string::npos,
             some_are_empty);
 }
 
@@ -294,19 +306,22 @@ void check_words_of_arcs(const LatticeMap& map) {
 /// neighbour's; every other cell is empty. Checked against the arcs alone: each pair of neighbours
 /// in each layer.
 TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
-  using Coordinate = LatticeMap::Coordinate;
-  for (const auto& [name, coordinate] :
-       {std::pair{"panda_weld_seam", Coordinate::kGeneralisedArmAngle},
-        {"gen3_glue_bead", Coordinate::kGeneralisedArmAngle},
-        {"ur5e_deburr_edge", Coordinate::kRoll},
-        {"kr6_weld_pipe", Coordinate::kRoll}}) {
+  // The coordinate is what is free: of a turntable the table, of a rail the carriage, of other arms
+  // the joint that the closed form locks, or the roll.
+  for (const auto& [name, coordinate] : {std::pair{"panda_weld_seam", "panda_joint5"},
+                                         {"gen3_glue_bead", "joint_3"},
+                                         {"kr6_turntable_pipe", "table_joint"},
+                                         {"ur10e_rail_seam", "rail"},
+                                         {"ur5e_deburr_edge", "roll"},
+                                         {"kr6_weld_pipe", "roll"}}) {
     Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.05;
     Planner arm(problem);
     (void)arm.plan({});
     const PlanView view = arm.view();
     const LatticeMap map = make_map(view, true);
-    EXPECT_EQ(map.coordinate, coordinate);
+    EXPECT_EQ(map.coordinate_name(), coordinate);
+    EXPECT_EQ(map.slides, std::string(name) == "ur10e_rail_seam");
     EXPECT_EQ(map.slots.size(), map.nodes.size());
     const double high = map.low + (map.angles - 1) * map.step;
     ArcMap arcs{name, view, map, problem.limits.clearance, World::Query(view.world), {}};

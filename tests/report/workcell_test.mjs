@@ -9,6 +9,7 @@ import {
   assertFits,
   assertLabelsApart,
   assertPrints,
+  assertReachable,
   clickBodies,
   dataOf,
   elements,
@@ -153,8 +154,17 @@ async function checkMotion(page, { data, result }) {
   await slide(page, 0.5);
   assertNear((await shown(page)).joints, between(a, b), 1e-9, 'between two rows');
 }
-/** Slider, plots, table and play of a motion in time. */
-async function checkTimes(page, { data, result }) {
+/** The rows of a table with a header: numbers by the names of their columns. */
+function rowsOf(csv) {
+  const [head, ...lines] = readFileSync(csv, 'utf8').trim().split('\n'),
+    names = head.split(',');
+  return lines.map((line) =>
+    Object.fromEntries(line.split(',').map((value, k) => [names[k], Number(value)])),
+  );
+}
+
+/** Slider, plots, table and play of a motion in time, whose rows are those of the file. */
+async function checkTimes(page, { data, result, csv }) {
   const { t } = data.arms[0].motion,
     { rows } = data.arms[0],
     n = t.length,
@@ -162,6 +172,7 @@ async function checkTimes(page, { data, result }) {
     seconds = async () => Number((await where()).match(/([0-9.]+) \/ [0-9.]+ s/)[1]);
   assert.ok(Math.abs(t[n - 1] - result.motion.duration) < 0.01);
   assert.ok(await page.isVisible('#motion-section'));
+  await assertReachable(page);
   const heads = await page.$$eval('#motion > h3', (all) => all.map((one) => one.textContent));
   assert.deepEqual(heads, kNames);
   assert.equal(await page.locator('#motion .chart').count(), 8);
@@ -178,12 +189,8 @@ async function checkTimes(page, { data, result }) {
     const index = Math.round(share * (n - 1));
     await page.evaluate((to) => window.swivel.toTime(to), t[index]);
     assert.ok(Math.abs((await seconds()) - t[index]) < 0.006);
-    const joints = data.arms.flatMap(({ motion, rows: own }) => {
-      const at = motion.layers[index],
-        from = own[Math.floor(at)].q,
-        next = own[Math.min(Math.floor(at) + 1, own.length - 1)].q;
-      return from.map((q, k) => q + (at - Math.floor(at)) * (next[k] - q));
-    });
+    const row = rowsOf(csv).find(({ t: time }) => Math.abs(time - t[index]) < 1e-6),
+      joints = data.arms.flatMap(({ chain }) => chain.joints.map(({ name }) => row[name]));
     assertNear((await shown(page)).joints, joints, 1e-6, `at ${t[index]} s`);
   }
   await press(page, 'Home');
@@ -400,6 +407,11 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   const names = await page.$$eval('.chart', (all) => all.map((one) => one.ariaLabel));
   assert.equal(new Set(names).size, names.length, 'charts of one name');
   assert.match(await page.textContent('#bodies'), /arm of left.*arm of right.*follower/s);
+  const colours = await page
+    .locator('#bodies button', { hasText: /^arm of/ })
+    .locator('i')
+    .evaluateAll((all) => all.map((one) => getComputedStyle(one).backgroundColor));
+  assert.equal(new Set(colours).size, 2, `arms of colours ${colours}`);
   for (const [section, name] of [
     ['map', 'maps'],
     ['plots', 'plots'],
@@ -432,7 +444,10 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     '--refine',
     '--speed',
     '0.05',
+    '--out',
+    join(folder, 'motion.csv'),
   );
+  timed.csv = join(folder, 'motion.csv');
   const run = await open(timed.html, { viewport: wide });
   await drawn(run.page);
   await checkTimes(run.page, timed);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 
 #include "drawing.hpp"
 #include "page/page_parts.hpp"
@@ -33,6 +34,14 @@ class JobPage {
         json_(Json::parse(result_json)) {
     for (const RunResult& run : result_.runs) order_.push_back(run.run);
     for (std::size_t k = 0; order_.size() < job_.strokes.size(); ++k) order_.push_back({k, false});
+    if (motion_ == nullptr) return;
+    std::size_t run = 0;
+    for (std::size_t part = 0; part < result_.parts.size(); ++part) {
+      const bool is_run = result_.parts[part].run.has_value();
+      places_.push_back(places_of(samples_of(part), result_.parts[part].rows,
+                                  is_run ? &runs_[run].lattice.path_of_rows() : nullptr));
+      run += is_run ? 1 : 0;
+    }
   }
 
   /// Returns the data of the page. Throws Stopped.
@@ -69,6 +78,15 @@ class JobPage {
     return std::nullopt;
   }
 
+  /// Returns the samples of the motion that lead through a part, from the one at its begin on.
+  [[nodiscard]] std::span<const TimedRow> samples_of(std::size_t part) const {
+    const auto [first, last] = std::ranges::equal_range(motion_->part, part);
+    const auto begin = first - motion_->part.begin() - (first == motion_->part.begin() ? 0 : 1);
+    return std::span(motion_->rows)
+        .subspan(static_cast<std::size_t>(begin),
+                 static_cast<std::size_t>(last - motion_->part.begin() - begin));
+  }
+
   /// Returns a stroke in its direction: where the tool goes, its rows, map, and where its paths
   /// end. A run between lift-offs counts s along the whole of its stroke.
   Json stroke(std::size_t k) {
@@ -76,6 +94,7 @@ class JobPage {
     const double begin = s_of_piece(job_.strokes[order_[k].stroke]);
     Json json = {{"name", name}, {"reversed", order_[k].reversed}, {"rows", Json::array()}};
     if (runs_.empty()) {
+      json["beside"] = Json::array();
       json["tool_path"] =
           tool_path_json(path_within_scale(problem_of_run(job_, order_[k]), chain_, budget_));
       json["map"] = json["cut"] = json["run"] = json["near"] = nullptr;
@@ -85,8 +104,9 @@ class JobPage {
     const Lattice& lattice = view.lattice;
     const auto part = part_of(k);
     LatticeMap map = make_map(view, false, budget_);
-    std::vector<PageRow> rows = part ? placed_part(*part, view, map)
-                                     : placed(lattice, map, rows_of(lattice, view.path), view.path);
+    const std::vector<PageRow> path = placed(lattice, map, rows_of(lattice, view.path), view.path);
+    std::vector<PageRow> rows = part ? placed_part(*part, view, map) : path;
+    json["beside"] = motion_ && part ? beside_json(path, rows) : Json::array();
     for (double& s : map.s) s += begin;
     for (PageRow& row : rows) row.at.s += begin;
     json["run"] = json_["runs"][k];
@@ -112,6 +132,7 @@ class JobPage {
   [[nodiscard]] std::vector<PageRow> placed_part(std::size_t part, const PlanView& view,
                                                  const LatticeMap& map) const {
     std::vector<TrajectoryRow> rows = result_.parts[part].rows;
+    if (motion_) rows = passed_rows(std::move(rows), samples_of(part), places_[part]);
     const bool piece = job_.strokes[result_.parts[part].run->stroke].piece.has_value();
     const double turned =
         piece ? wrap_angle(view.lattice.phi(0, view.path.front()) - rows.front().phi) : 0;
@@ -164,24 +185,19 @@ class JobPage {
   /// parts; the last row of a part is the first one of the next.
   [[nodiscard]] Json motion() const {
     if (motion_ == nullptr) return nullptr;
-    std::vector<SampleFinder> finders;
-    std::vector<double> first, begin(result_.parts.size(), 0.0);
+    std::vector<double> places{0}, begin(result_.parts.size(), 0.0);
     double steps = 0;
-    std::size_t run = 0;
-    for (const JobPart& part : result_.parts) {
-      finders.emplace_back(part.rows, part.run ? &runs_[run].lattice.path_of_rows() : nullptr);
-      run += part.run ? 1 : 0;
-      first.push_back(steps);
-      steps += static_cast<double>(part.rows.size() - 1);
+    for (std::size_t part = 0; part < result_.parts.size(); ++part) {
+      // The first sample of a part is the last one of the part before.
+      for (std::size_t k = 1; k < places_[part].size(); ++k)
+        places.push_back(steps + places_[part][k]);
+      steps += static_cast<double>(result_.parts[part].rows.size() - 1);
     }
     const auto& rows = motion_->rows;
     for (std::size_t k = 1; k < rows.size(); ++k)
       if (motion_->part[k] != motion_->part[k - 1]) begin[motion_->part[k]] = rows[k - 1].t;
     Json json = motion_json(rows, motion_->rate, joint_rates(chain_, job_.limits, job_.source),
-                            chain_, [&](std::size_t k) {
-                              const std::size_t part = motion_->part[k];
-                              return first[part] + finders[part].place(rows[k].row);
-                            });
+                            chain_, places);
     json["begin"] = begin;
     return json;
   }
@@ -196,6 +212,8 @@ class JobPage {
   const Budget& budget_;
   Json json_;                     ///< the result
   std::vector<StrokeRun> order_;  ///< in which the strokes are shown
+  /// Of each part, where there is a motion: the places of samples_of() it in its rows.
+  std::vector<std::vector<double>> places_;
   std::string maps_;
 };
 

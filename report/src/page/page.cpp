@@ -12,21 +12,6 @@ namespace swivel {
 
 using namespace detail;
 
-namespace {
-
-/// Returns the motion of the rows that are shown.
-Json motion_of(const TimedPath& motion, const Problem& problem, const Lattice& lattice,
-               const std::vector<PageRow>& rows) {
-  std::vector<TrajectoryRow> at;
-  for (const PageRow& row : rows) at.push_back(row.at);
-  SampleFinder finder(at, &lattice.path_of_rows());
-  return motion_json(motion.rows, motion.rate,
-                     joint_rates(lattice.chain(), problem.limits, problem.source), lattice.chain(),
-                     [&](std::size_t k) { return finder.place(motion.rows[k].row); });
-}
-
-}  // namespace
-
 bool page_available() {
   return !page_template().empty();
 }
@@ -42,8 +27,17 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   if (words.visual != nullptr)
     bodies.add_visual(*words.visual, *problem.model, {{view.robot.arm()}});
   const std::vector<PageRow> found = placed(lattice, map, rows_of(lattice, view.path), view.path);
-  const std::vector<PageRow> rows =
-      motion.refined ? placed(lattice, map, *motion.refined, view.path) : found;
+  std::vector<TrajectoryRow> shown = motion.refined ? *motion.refined : rows_of(lattice, view.path);
+  Json moved = nullptr;
+  if (motion.motion) {
+    const std::vector<TimedRow>& samples = motion.motion->rows;
+    const std::vector<double> places = places_of(samples, shown, &lattice.path_of_rows());
+    moved = motion_json(samples, motion.motion->rate,
+                        joint_rates(lattice.chain(), problem.limits, problem.source),
+                        lattice.chain(), places);
+    shown = passed_rows(std::move(shown), samples, places);
+  }
+  const std::vector<PageRow> rows = placed(lattice, map, shown, view.path);
   const std::string name = std::filesystem::path(problem.source).filename().string();
   const std::string title = words.which.empty() ? name : name + ", " + words.which;
   Json data = {
@@ -61,8 +55,8 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"tool_path", tool_path_json(lattice.path_of_rows())},
       {"rows", rows_json(world, lattice, rows, budget)},
       {"near", near_json(world, rows, budget)},
-      {"beside", motion.refined ? beside_json(found) : Json::array()},
-      {"motion", motion.motion ? motion_of(*motion.motion, problem, lattice, rows) : Json(nullptr)},
+      {"beside", beside_json(found, rows)},
+      {"motion", std::move(moved)},
       {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, rows, diagnosis)
                                     : Json(nullptr)},
       {"map", map_json(map, lattice, world, view.path, rows, kMostCells, budget)}};

@@ -133,8 +133,9 @@ int distance(const LatticeMap& map, int cell, int other) {
 }
 
 /// Returns the drawn node of the first layer that no path reaches that is nearest to the path's
-/// last node: among those that the bodies of the diagnosis block, or, if there are none, among the
-/// others. Returns nullopt if there is no node.
+/// last node and of the same solution: among those that the bodies of the diagnosis block, or, if
+/// there are none, among the others. Where there is no path, it may be of any solution. Returns
+/// nullopt if there is no node.
 std::optional<Lattice::Node> node_past_end(const PathEnd& end) {
   const LatticeMap& map = end.map;
   const Json bodies = end.bodies();
@@ -148,6 +149,7 @@ std::optional<Lattice::Node> node_past_end(const PathEnd& end) {
     for (const Lattice::Node& candidate : listed) {
       const int cell = map_cell(map, end.lattice, end.layer(), candidate.slot);
       if (!is_drawn(end, candidate, cell)) continue;
+      if (!map.path.empty() && cell / map.angles != from / map.angles) continue;
       const LatticeMap::Node& node = map.at(end.layer(), cell / map.angles, cell % map.angles);
       const bool blocked = node.state == NodeState::kBlocked && at_node &&
                            bodies[0] == map.blockers[node.cause].first &&
@@ -222,6 +224,17 @@ Obstruction obstruction(const PathEnd& end, const LatticeMap::Node& node, const 
           joint_step_words(end, q)};
 }
 
+/// Returns the last row of the path as the place where every path has ended.
+Json last_row_json(const PathEnd& end, const PageRow& row) {
+  Json json = place_json(row);
+  json["s"] = row.at.s;
+  json["q"] = std::vector<double>(row.at.q.begin(), row.at.q.end());
+  json["pair"] = json["line"] = nullptr;
+  json["what"] = "no way on from here: " + end.reason() + limit_words(end);
+  json["is_row"] = true;
+  return json;
+}
+
 }  // namespace
 
 Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
@@ -232,18 +245,21 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   const PathEnd end{map, lattice, path, diagnosis, rank_at_end(lattice, path)};
   const int layer = end.layer();
   if (layer >= map.layers) return nullptr;
-  const auto past = node_past_end(end);
-  if (!past) return nullptr;
+  const bool at_limit = cause.is_object() && cause["cause"] == "limit" && !rows.empty();
+  const auto past = at_limit ? std::nullopt : node_past_end(end);
+  if (!past && rows.empty()) return nullptr;
+  if (!past) return last_row_json(end, rows.back());
   const int cell = map_cell(map, lattice, layer, past->slot);
   const Config q =
       turned_towards(lattice, lattice.exact_config(layer, past->slot, past->q).value_or(past->q),
                      rows, rows.size());
   Obstruction by = obstruction(end, map.at(layer, cell / map.angles, cell % map.angles), q, world);
+  const double value = map.value_at(lattice.phi(layer, past->slot), q);
   Json json = {{"layer", layer},
                {"s", lattice.path().layer(layer).s},
-               {"phi", lattice.phi(layer, past->slot)},
+               {"phi", value},
                {"sheet", cell / map.angles},
-               {"angle", map.place(lattice.phi(layer, past->slot))},
+               {"angle", map.place(value)},
                {"q", std::vector<double>(q.begin(), q.end())},
                {"pair", std::move(by.pair)},
                {"line", std::move(by.line)},

@@ -99,7 +99,7 @@ class MapWriter {
   /// The node that a cell shows; layer -1: none.
   struct Shown {
     int layer = -1, slot = -1;
-    double phi = 0, roll = 0;  ///< rad
+    double phi = 0, roll = 0;  ///< rad; phi: of the map's coordinate, of a slide m
     Config q;
   };
   /// The cells of a column, by panel and row.
@@ -177,7 +177,7 @@ class MapWriter {
                        rows_, near < row_of_layer_.size() ? row_of_layer_[near] : rows_.size());
     const double roll =
         turned_ ? roll_between(lattice_.path().layer(layer).tool, lattice_.chain().tool(q)) : 0;
-    shown[k] = {layer, node.slot, lattice_.phi(layer, node.slot), roll, q};
+    shown[k] = {layer, node.slot, map_.value_at(lattice_.phi(layer, node.slot), q), roll, q};
   }
 
   /// Appends states, postures and clearances of a column's cells.
@@ -232,6 +232,7 @@ class MapWriter {
             {"angles_each", cells_.angles_each},
             {"coordinate", map_.coordinate_name()},
             {"letter", map_.letter(0)},
+            {"slides", map_.slides},
             {"low", map_.low},
             {"step", map_.step},
             {"closed", map_.closed},

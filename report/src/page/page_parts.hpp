@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the pages of plans and of jobs say of one path: rows, motion, map, and where it ends.
 #pragma once
-#include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,8 +23,9 @@ struct PageRow {
   /// the path has more layers than the lattice.
   double layer = 0;
   int solution = 0;
-  double angle = 0;              ///< in cells
-  std::optional<double> roll{};  ///< rad
+  double angle = 0;               ///< in cells
+  std::optional<double> joint{};  ///< rad or m: of the joint that is the map's coordinate
+  std::optional<double> roll{};   ///< rad
 };
 
 /// Returns true if the tool may stand turned, so that nodes have rolls.
@@ -39,6 +40,8 @@ struct PageRow {
 /// Returns the rows of a path that may end anywhere, as far as its joints stay within their limits.
 [[nodiscard]] std::vector<TrajectoryRow> rows_of(const Lattice& lattice, std::vector<int> slots);
 
+/// Returns the place of a row in the map.
+[[nodiscard]] Json place_json(const PageRow& row);
 /// Returns the rows with their clearances, which it asks for. Throws Stopped.
 [[nodiscard]] Json rows_json(const World& world, const Lattice& lattice,
                              const std::vector<PageRow>& shown, const Budget& budget);
@@ -64,45 +67,42 @@ struct NearBodies {
 [[nodiscard]] Json near_json(const World& world, const std::vector<PageRow>& rows,
                              const Budget& budget);
 
-/// Returns the path beside which a refined one is drawn.
-[[nodiscard]] Json beside_json(const std::vector<PageRow>& rows);
+/// Returns a path that is drawn beside the rows that are shown; empty where they have its joints
+/// but for whole turns.
+[[nodiscard]] Json beside_json(const std::vector<PageRow>& path, const std::vector<PageRow>& shown);
 /// Returns the points of the tool in each layer.
 [[nodiscard]] Json tool_path_json(const ToolPath& path);
 /// Returns what was asked of a path, for the page's table and the bounds in its plots.
 [[nodiscard]] Json settings_json(const Problem& problem, const Lattice& lattice);
 
-/// Finds samples of a motion among the rows that it leads through.
-class SampleFinder {
- public:
-  /// `path`: the layers of the rows; null where the joints move straight from row to row. All
-  /// references must outlive the finder; there are at least two rows.
-  SampleFinder(const std::vector<TrajectoryRow>& rows, const ToolPath* path)
-      : rows_(rows), path_(path) {}
-  /// Returns the place of a sample in rows, not always whole. Samples are asked for in their order.
-  [[nodiscard]] double place(const TrajectoryRow& sample);
+/// Returns the place of each sample of a motion in the rows of the path that it executes.
+[[nodiscard]] std::vector<double> places_of(std::span<const TimedRow> samples,
+                                            const std::vector<TrajectoryRow>& rows,
+                                            const ToolPath* path);
+/// Returns the rows of a path with the joints, arm angles and rolls that its motion has where it
+/// passes them; a row that differs from these by less than is seen stays as it is. `places`: of the
+/// motion's samples, as places_of() returns them.
+[[nodiscard]] std::vector<TrajectoryRow> passed_rows(std::vector<TrajectoryRow> rows,
+                                                     std::span<const TimedRow> samples,
+                                                     const std::vector<double>& places);
 
- private:
-  const std::vector<TrajectoryRow>& rows_;
-  const ToolPath* path_;
-  std::size_t step_ = 0;
-};
-
-/// Returns a motion over time at as many samples as a plot has room for: the place, as `place_of`
-/// says for the index of each sample, which it is asked for in their order; the tool's speed; and
-/// for speed, acceleration and jerk, the largest share of a joint's limit since the sample before
-/// that is shown, in percent.
+/// Returns a motion over time at as many samples as a plot has room for: the place, of `places`,
+/// one for each sample; the tool's speed; and for speed, acceleration and jerk, the largest share
+/// of a joint's limit since the sample before that is shown, in percent. With them come the joints
+/// of all samples, or of 20,000 that follow each other evenly.
 [[nodiscard]] Json motion_json(const std::vector<TimedRow>& samples, double rate,
                                const JointRates& rates, const Chain& chain,
-                               const std::function<double(std::size_t)>& place_of);
+                               const std::vector<double>& places);
 
 /// Returns a node's joints `q`, turned by whole turns to come nearest to a row of the path, as the
 /// trajectory has them. A joint that such a turn would take out of its limits stays as it is.
 [[nodiscard]] Config turned_towards(const Lattice& lattice, const Config& q,
                                     const std::vector<PageRow>& rows, std::size_t row);
 
-/// Returns the place where every path has ended: the node past it that the path's last node would
-/// have moved to, and what keeps it from there. Null if there is no such node, or the problem is
-/// solved.
+/// Returns the place where every path has ended, and what keeps it from going on: the node past it,
+/// of the same solution, that the path's last node would have moved to; the last row (`is_row`) if
+/// there is no such node, or a joint limit ends all paths. Null if there is neither, or the problem
+/// is solved.
 [[nodiscard]] Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
                             const std::vector<int>& path, const std::vector<PageRow>& rows,
                             const Json& diagnosis);

@@ -8,9 +8,16 @@
 #include <map>
 
 #include "page/packed.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/timing/time_path.hpp"
 
 namespace swivel::detail {
+
+namespace {
+
+constexpr double kSeen = 1e-3;  ///< rad or m: a smaller difference of a joint is not seen
+
+}  // namespace
 
 bool may_turn(const Lattice& lattice) {
   const auto grid = lattice.describe().grid;
@@ -36,7 +43,9 @@ std::vector<PageRow> placed(const Lattice& lattice, const LatticeMap& map,
       const auto count = static_cast<double>(i - first) / static_cast<double>(last - first);
       row.layer += s(last) > s(first) ? (s(i) - s(first)) / (s(last) - s(first)) : count;
     }
-    row.angle = map.place(row.at.phi);
+    const double value = map.value_at(row.at.phi, row.at.q);
+    row.angle = map.place(value);
+    if (map.joint >= 0) row.joint = value;
     row.solution = map.path[knot] / map.angles;
     if (turned) row.roll = turns[i];
     if (const int branch = row.at.branch; row.solution / map.windings != branch) {
@@ -73,15 +82,16 @@ std::vector<double> errors_mm(const Lattice& lattice, const std::vector<PageRow>
   return errors;
 }
 
-/// Returns the place of a row in the map.
+}  // namespace
+
 Json place_json(const PageRow& row) {
-  Json json = {
-      {"layer", row.layer}, {"phi", row.at.phi}, {"sheet", row.solution}, {"angle", row.angle}};
+  Json json = {{"layer", row.layer},
+               {"phi", row.joint.value_or(row.at.phi)},
+               {"sheet", row.solution},
+               {"angle", row.angle}};
   if (row.roll) json["roll"] = *row.roll;
   return json;
 }
-
-}  // namespace
 
 Json rows_json(const World& world, const Lattice& lattice, const std::vector<PageRow>& shown,
                const Budget& budget) {
@@ -161,9 +171,15 @@ Json near_json(const World& world, const std::vector<PageRow>& rows, const Budge
   return near_json(near);
 }
 
-Json beside_json(const std::vector<PageRow>& rows) {
+Json beside_json(const std::vector<PageRow>& path, const std::vector<PageRow>& shown) {
+  const auto same = [](const PageRow& a, const PageRow& b) {
+    return (a.at.q - b.at.q)
+               .unaryExpr([](double way) { return std::abs(std::remainder(way, kTwoPi)); })
+               .maxCoeff() < kSeen;
+  };
   Json json = Json::array();
-  for (const PageRow& row : rows) json.push_back(place_json(row));
+  if (std::equal(path.begin(), path.end(), shown.begin(), shown.end(), same)) return json;
+  for (const PageRow& row : path) json.push_back(place_json(row));
   return json;
 }
 
@@ -189,24 +205,75 @@ Json settings_json(const Problem& problem, const Lattice& lattice) {
           {"edges", problem.limits.edges == EdgeMode::kContinuous ? "continuous" : "nodes"}};
 }
 
-double SampleFinder::place(const TrajectoryRow& sample) {
-  // The step is found by s, or by the joints where nothing but they tell it.
-  double share = 0;
-  for (;; ++step_) {
-    const double length = path_ == nullptr ? 0 : path_->layer(static_cast<int>(step_)).step_length;
-    const Config way = rows_[step_ + 1].q - rows_[step_].q;
-    if (length > 0)
-      share = (sample.s - path_->layer(static_cast<int>(step_)).s) / length;
-    else
-      share = way.squaredNorm() > 0 ? (sample.q - rows_[step_].q).dot(way) / way.squaredNorm() : 0;
-    if (share < 1 || step_ + 2 >= rows_.size()) break;
+std::vector<double> places_of(std::span<const TimedRow> samples,
+                              const std::vector<TrajectoryRow>& rows, const ToolPath* path) {
+  std::vector<double> places;
+  std::size_t step = 0;
+  for (const TimedRow& sample : samples) {
+    // The step is found by s, or by the joints where nothing but they tell it.
+    double share = 0;
+    for (;; ++step) {
+      const double length = path == nullptr ? 0 : path->layer(static_cast<int>(step)).step_length;
+      const Config way = rows[step + 1].q - rows[step].q;
+      if (length > 0)
+        share = (sample.row.s - path->layer(static_cast<int>(step)).s) / length;
+      else if (way.squaredNorm() > 0)
+        share = (sample.row.q - rows[step].q).dot(way) / way.squaredNorm();
+      else
+        share = 0;
+      if (share < 1 || step + 2 >= rows.size()) break;
+    }
+    places.push_back(static_cast<double>(step) + std::clamp(share, 0.0, 1.0));
   }
-  return static_cast<double>(step_) + std::clamp(share, 0.0, 1.0);
+  return places;
 }
 
+std::vector<TrajectoryRow> passed_rows(std::vector<TrajectoryRow> rows,
+                                       std::span<const TimedRow> samples,
+                                       const std::vector<double>& places) {
+  std::size_t next = 0;  // the first sample at a row or beyond it, or the last of all
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto place = static_cast<double>(i);
+    while (next + 1 < samples.size() && places[next] < place) ++next;
+    const std::size_t last = next > 0 ? next - 1 : 0;
+    const double way = places[next] - places[last],
+                 share = way > 0 ? std::clamp((place - places[last]) / way, 0.0, 1.0) : 1;
+    const TrajectoryRow &from = samples[last].row, &to = samples[next].row;
+    const Config q = from.q + share * (to.q - from.q);
+    if ((q - rows[i].q).cwiseAbs().maxCoeff() < kSeen) continue;
+    rows[i].q = q;
+    rows[i].phi = from.phi + share * wrap_angle(to.phi - from.phi);
+    rows[i].roll = from.roll + share * wrap_angle(to.roll - from.roll);
+    rows[i].branch = (share < 0.5 ? from : to).branch;
+  }
+  return rows;
+}
+
+namespace {
+
+/// Returns the joints of a motion's samples, or of `most` that follow each other evenly, for the
+/// page to play: in steps of `unit` rad or m, `dt` seconds apart.
+Json played_joints(const std::vector<TimedRow>& samples, double rate, std::size_t most) {
+  constexpr double kUnit = 1e-7, kMost = std::numeric_limits<std::int32_t>::max() / 4;
+  const std::size_t each = samples.size() / most + 1;
+  std::vector<std::int32_t> values;
+  const auto add = [&](const TimedRow& sample) {
+    for (const double q : sample.row.q)
+      values.push_back(
+          static_cast<std::int32_t>(std::lround(std::clamp(q / kUnit, -kMost, kMost))));
+  };
+  for (std::size_t k = 0; k < samples.size(); k += each) add(samples[k]);
+  if ((samples.size() - 1) % each != 0) add(samples.back());
+  return {{"unit", kUnit},
+          {"dt", static_cast<double>(each) / rate},
+          {"values", Json::binary(encode_samples(values, kDof))}};
+}
+
+}  // namespace
+
 Json motion_json(const std::vector<TimedRow>& samples, double rate, const JointRates& rates,
-                 const Chain& chain, const std::function<double(std::size_t)>& place_of) {
-  constexpr std::size_t kMost = 2000;
+                 const Chain& chain, const std::vector<double>& places) {
+  constexpr std::size_t kMost = 2000, kMostPlayed = 20'000;
   const auto n = static_cast<std::ptrdiff_t>(samples.size());
   const auto q = [&](std::ptrdiff_t k) -> const Config& {  // at rest before and after
     return samples[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
@@ -216,7 +283,6 @@ Json motion_json(const std::vector<TimedRow>& samples, double rate, const JointR
        ratios[3] = {Json::array(), Json::array(), Json::array()};
   std::array<double, 3> most{};
   for (std::ptrdiff_t k = 0; k < n; ++k) {
-    const double place = place_of(static_cast<std::size_t>(k));
     const Config move = q(k) - q(k - 1), before = q(k - 1) - q(k - 2), first = q(k - 2) - q(k - 3);
     for (int j = 0; j < kDof; ++j) {
       most[0] = std::max(most[0], std::abs(move[j]) * rate / rates.speed[j]);
@@ -227,7 +293,7 @@ Json motion_json(const std::vector<TimedRow>& samples, double rate, const JointR
     }
     if (k % each != 0 && k + 1 < n) continue;
     t.push_back(samples[static_cast<std::size_t>(k)].t);
-    layers.push_back(place);
+    layers.push_back(places[static_cast<std::size_t>(k)]);
     tool.push_back(1e3 * rate *
                    (chain.tool(q(k)).translation() - chain.tool(q(k - 1)).translation()).norm());
     for (std::size_t order = 0; order < 3; ++order) ratios[order].push_back(100 * most[order]);
@@ -238,7 +304,8 @@ Json motion_json(const std::vector<TimedRow>& samples, double rate, const JointR
           {"tool_mm_s", std::move(tool)},
           {"speed", std::move(ratios[0])},
           {"acceleration", std::move(ratios[1])},
-          {"jerk", std::move(ratios[2])}};
+          {"jerk", std::move(ratios[2])},
+          {"joints", played_joints(samples, rate, kMostPlayed)}};
 }
 
 }  // namespace swivel::detail

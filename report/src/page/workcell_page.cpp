@@ -123,10 +123,12 @@ class WorkcellPage {
     const Lattice& lattice = of.lattice;
     const std::vector<TrajectoryRow>& answer = result_.arms[k].trajectory;
     const LatticeMap map = make_map(of, false, budget_);
-    const std::vector<PageRow> rows =
-        placed(lattice, map, answer.empty() ? rows_of(lattice, of.path) : answer, of.path);
+    std::vector<TrajectoryRow> path = answer.empty() ? rows_of(lattice, of.path) : answer;
+    Json moved = motion(k, path);
+    const std::vector<PageRow> rows = placed(lattice, map, path, of.path);
     for (const PageRow& row : rows) shown_[k].push_back(row.at.q);
-    refined_[k] = !answer.empty() && result_.arms[k].cost != result_.arms[k].lattice.cost;
+    refined_[k] = !moved.is_null() ||
+                  (!answer.empty() && result_.arms[k].cost != result_.arms[k].lattice.cost);
     const int leader = planned_.cell.leader_of(k);
     const Json& diagnosis = json_["arms"][k]["diagnosis"];
     Json json = {
@@ -138,9 +140,9 @@ class WorkcellPage {
         {"tool_path", tool_path_json(lattice.path_of_rows())},
         {"on_leader", leader >= 0 ? on_tool(k, static_cast<std::size_t>(leader)) : Json(nullptr)},
         {"rows", rows_json(of.world, lattice, rows, budget_)},
-        {"beside", beside(k, map)},
+        {"beside", beside(k, map, rows)},
         {"refined", refined_[k]},
-        {"motion", planned_.motion ? motion(k, rows) : Json(nullptr)},
+        {"motion", std::move(moved)},
         {"cut", diagnosis.is_object() ? cut_json(map, lattice, of.world, of.path, rows, diagnosis)
                                       : Json(nullptr)},
         {"region", region(k, map)}};
@@ -158,30 +160,31 @@ class WorkcellPage {
           vector_json(carrying.layer(layer).tool.inverse() * path.layer(layer).tool.translation()));
     return points;
   }
-  /// Returns the motion in time of an arm, with the place of each sample in its rows.
-  [[nodiscard]] Json motion(std::size_t k, const std::vector<PageRow>& rows) const {
+  /// Returns the motion in time of an arm, null where there is none, and gives the rows of its path
+  /// the joints that the motion has there.
+  [[nodiscard]] Json motion(std::size_t k, std::vector<TrajectoryRow>& rows) const {
+    if (planned_.motion == nullptr) return nullptr;
     const PlanView& of = view(k);
     const TimedPath& timed = planned_.motion->arms[k];
-    std::vector<TrajectoryRow> at;
-    for (const PageRow& row : rows) at.push_back(row.at);
-    SampleFinder finder(at, &of.lattice.path_of_rows());
+    const std::vector<double> places = places_of(timed.rows, rows, &of.lattice.path_of_rows());
     const JointRates rates = joint_rates(of.lattice.chain(), of.problem.limits, of.problem.source);
-    return motion_json(timed.rows, timed.rate, rates, of.lattice.chain(),
-                       [&](std::size_t sample) { return finder.place(timed.rows[sample].row); });
+    rows = passed_rows(std::move(rows), timed.rows, places);
+    return motion_json(timed.rows, timed.rate, rates, of.lattice.chain(), places);
   }
   /// Returns the path of the lattice, where the answer was refined; else the path of an arm by
   /// itself, where the answer is another one.
-  [[nodiscard]] Json beside(std::size_t k, const LatticeMap& map) const {
+  [[nodiscard]] Json beside(std::size_t k, const LatticeMap& map,
+                            const std::vector<PageRow>& rows) const {
     const std::vector<int>& alone = planned_.view.alone[k];
     const PlanView& of = view(k);
     if (refined_[k])
-      return beside_json(placed(of.lattice, map, rows_of(of.lattice, of.path), of.path));
+      return beside_json(placed(of.lattice, map, rows_of(of.lattice, of.path), of.path), rows);
     if (alone.empty() || alone == of.path) return Json::array();
     LatticeMap own = map;
     own.path.clear();
     for (const int slot : alone)
       own.path.push_back(map_cell(map, of.lattice, static_cast<int>(own.path.size()), slot));
-    return beside_json(placed(of.lattice, own, rows_of(of.lattice, alone), alone));
+    return beside_json(placed(of.lattice, own, rows_of(of.lattice, alone), alone), rows);
   }
 
   /// Returns the cells of an arm's map in which its nodes of the region of conflict are: of each

@@ -40,11 +40,15 @@ struct LatticeMap {
   };
   enum class Coordinate : std::uint8_t {
     kArmAngle,             ///< carried, of S-R-S arms
-    kGeneralisedArmAngle,  ///< of other arms of seven joints: arc_angle()
-    kCarriageAngle,        ///< of arms with a joint that slides: arc_angle()
-    kRoll,                 ///< of the tool: of arms of six joints
+    kGeneralisedArmAngle,  ///< of arms without a closed form: arc_angle()
+    kJoint,  ///< of other arms of seven joints: the position of the joint that is free, `joint`
+    kRoll,   ///< of the tool: of arms of six joints
   };
   Coordinate coordinate = Coordinate::kArmAngle;
+  /// Of kJoint, 0-based: the joint that slides, that of a turntable, or the one that the closed
+  /// form locks.
+  int joint = -1;
+  bool slides = false;  ///< that joint slides: m stands for rad in `low`, `step` and values
   int layers = 0, angles = 0, windings = 1;
   double low = -kPi,
          step = 0;          ///< rad: cell k of a panel stands for low + k step of the coordinate
@@ -71,12 +75,18 @@ struct LatticeMap {
   /// Returns where a value of the coordinate lies, in cells: k at the middle of cell k. Where cells
   /// are closed, the result is at least -0.5 and less than angles - 0.5.
   [[nodiscard]] double place(double value) const;
-  /// Returns the value that cell k stands for, rad, in [-pi, pi].
+  /// Returns the value that cell k stands for, rad, in [-pi, pi], or m.
   [[nodiscard]] double value(double k) const;
-  /// Returns "arm angle", "generalised arm angle", "carriage angle" or "roll"; letter() returns its
-  /// letter.
-  [[nodiscard]] const char* coordinate_name() const;
-  [[nodiscard]] const char* letter(int panel) const;
+  /// Returns the value of the coordinate, rad or m, at a row or a node with angle phi, rad, and
+  /// joints q.
+  [[nodiscard]] double value_at(double phi, const Config& q) const;
+  /// Returns "arm angle", "generalised arm angle", "roll", or the joint's name; letter() returns
+  /// its letter, or the joint's name.
+  [[nodiscard]] std::string coordinate_name() const;
+  [[nodiscard]] std::string letter(int panel) const;
+  /// Returns "deg" or "m", and what a value is multiplied with to have that unit.
+  [[nodiscard]] const char* unit() const { return slides ? "m" : "deg"; }
+  [[nodiscard]] double scale() const { return slides ? 1 : 180 / kPi; }
   /// Says what it means that a cell has no node.
   [[nodiscard]] const char* emptiness() const;
   [[nodiscard]] int solutions() const;
