@@ -17,6 +17,7 @@
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_guess.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/io/io.hpp"
@@ -308,12 +309,17 @@ void print_joints(const Chain& chain) {
 }
 
 /// Prints what is doubtful about limits, held joints and the robot's files.
-void print_warnings(const RobotModel& robot, const ArmModel& arm) {
+void print_warnings(const std::shared_ptr<const RobotModel>& model, const ArmModel& arm) {
+  const RobotModel& robot = *model;
+  Robot whole;
+  whole.model = model;
   for (const std::string& warning : limit_warnings(arm.chain))
     say("warning    %s\n", warning.c_str());
   for (const std::string& warning : held_warnings(arm.held))
     say("warning    %s\n", warning.c_str());
   for (const std::string& warning : file_warnings(robot, arm.chain))
+    say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : scale_warnings(arm.chain, whole))
     say("warning    %s\n", warning.c_str());
   if (const std::string rest = joints_at_rest(robot, arm.chain); !rest.empty())
     say("warning    %s\n", rest.c_str());
@@ -385,7 +391,7 @@ int run(const InfoArguments& arguments) {
     if (arm.chain.roll) print_more_axes(*robot, chosen);
     print_class(arm.chain, kind);
     print_joints(arm.chain);
-    print_warnings(*robot, arm);
+    print_warnings(robot, arm);
   }
   if (!arguments.write.empty()) write_problem(arguments, chosen, arm, hold);
   return kOk;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "robots.hpp"
@@ -316,6 +317,43 @@ TEST(Arm, CylinderWithTwoSpheresReadsAsACapsule) {
   EXPECT_TRUE(std::holds_alternative<Sphere>(bodies[0].shape));
   ASSERT_TRUE(std::holds_alternative<Capsule>(bodies[1].shape));
   EXPECT_EQ(std::get<Capsule>(bodies[1].shape).length, 0.3);
+}
+
+/// Limits and speeds of a URDF that has degrees are suspected, once for all joints.
+TEST(Scale, JointsInDegreesAreSuspected) {
+  const TestRobot robot = data_robot("iiwa14");
+  const Chain chain = arm_of(robot).chain;
+  Robot whole;
+  auto model = std::make_shared<RobotModel>(*robot.model);
+  whole.model = model;
+  EXPECT_TRUE(scale_warnings(chain, whole).empty());
+  Joint& second = model->joints[static_cast<std::size_t>(model->find_joint(chain.joint_names[1]))];
+  second.velocity = 98;
+  ASSERT_EQ(scale_warnings(chain, whole).size(), 1u);
+  EXPECT_EQ(scale_warnings(chain, whole)[0],
+            model->source + ":" + std::to_string(second.line) + ": joint '" + second.name +
+                "' may turn at 98 rad/s: are these degrees? Angles are read as radians");
+  second.lower = -120, second.upper = 120;
+  Joint& last = model->joints[static_cast<std::size_t>(model->find_joint(chain.joint_names[6]))];
+  last.lower = -175, last.upper = 175;
+  ASSERT_EQ(scale_warnings(chain, whole).size(), 1u);
+  EXPECT_NE(scale_warnings(chain, whole)[0].find(
+                "may turn from -120 to 120 rad, at 98 rad/s, and 1 more joint: are these degrees?"),
+            std::string::npos)
+      << scale_warnings(chain, whole)[0];
+  second.velocity = 1;
+  for (Joint* const joint : {&second, &last}) {  // a joint without limits
+    joint->lower = -1e9, joint->upper = 1e9;
+  }
+  EXPECT_TRUE(scale_warnings(chain, whole).empty());
+}
+
+TEST(Scale, SpeedsOfMillimetresAreRefused) {
+  const TestRobot robot = data_robot("iiwa14");
+  const Chain chain = arm_of(robot).chain;
+  EXPECT_NO_THROW(require_tool_speed(chain, 5, "speed"));
+  EXPECT_THROW(require_tool_speed(chain, 50, "speed"), InputError);
+  EXPECT_TRUE(tool_speed_warnings(chain, most_tool_speed(chain), "speed").empty());
 }
 
 /// What a file says so large is refused at its line; problems made in memory are warned of.

@@ -7,6 +7,7 @@
 
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 
@@ -50,6 +51,42 @@ std::string suspicion(double reach) {
       ", and the arm reaches %.3g m: are these millimetres? Lengths are read as metres", reach);
 }
 
+constexpr const char* kAskDegrees = ": are these degrees? Angles are read as radians";
+constexpr double kMostTurnSpeed = 50;  // rad/s: joints of arms reach 20
+// Limits of joints beyond the first, rad, are suspected; those beyond the second mean that there is
+// no limit.
+constexpr double kFarTurned = 25, kUnlimited = 1000;
+
+/// Returns what a joint's limits say that is suspected to be in degrees; "" if nothing is.
+std::string large_turns(const Joint& joint) {
+  std::string text;
+  const double furthest = std::max(std::abs(joint.lower), std::abs(joint.upper));
+  if (joint.type == Joint::Type::kRevolute && furthest > kFarTurned && furthest <= kUnlimited)
+    text = formatted("may turn from %.4g to %.4g rad", joint.lower, joint.upper);
+  const bool turns = joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kContinuous;
+  if (turns && joint.velocity > kMostTurnSpeed)
+    text += formatted(text.empty() ? "may turn at %.4g rad/s" : ", at %.4g rad/s", joint.velocity);
+  return text;
+}
+
+/// Returns one warning for all joints of the chain whose limits are suspected to be in degrees.
+std::vector<std::string> turn_warnings(const Chain& chain, const RobotModel& robot) {
+  std::vector<const Joint*> suspects;
+  for (const std::string& name : chain.joint_names)
+    if (const int index = robot.find_joint(name); index >= 0) {  // the roll is no joint
+      const Joint& joint = robot.joints[static_cast<std::size_t>(index)];
+      if (!large_turns(joint).empty()) suspects.push_back(&joint);
+    }
+  if (suspects.empty()) return {};
+  const Joint& first = *suspects.front();
+  std::string text = first.line > 0 ? robot.source + ":" + std::to_string(first.line) : "robot";
+  text += ": joint '" + first.name + "' " + large_turns(first);
+  if (suspects.size() > 1)
+    text +=
+        formatted(", and %zu more joint%s", suspects.size() - 1, suspects.size() > 2 ? "s" : "");
+  return {text + kAskDegrees};
+}
+
 class Scale {
  public:
   explicit Scale(double reach) : reach_(reach) {}
@@ -82,6 +119,21 @@ class Scale {
 
 double most_reach(const Chain& chain) {
   return reach_of_arm(chain, Pose::Identity());
+}
+
+double most_tool_speed(const Chain& chain) {
+  return 10 * most_reach(chain);
+}
+
+std::vector<std::string> tool_speed_warnings(const Chain& chain, double speed,
+                                             const std::string& what) {
+  if (!(speed > most_tool_speed(chain))) return {};
+  return {what + formatted(" is %.4g m/s", speed) + suspicion(most_reach(chain))};
+}
+
+void require_tool_speed(const Chain& chain, double speed, const std::string& what) {
+  for (const std::string& fault : tool_speed_warnings(chain, speed, what + ":"))
+    throw InputError(fault + formatted(": allowed is at most %.3g m/s", most_tool_speed(chain)));
 }
 
 std::optional<int> first_far_waypoint(const Chain& chain, const ToolPath& path) {
@@ -117,6 +169,19 @@ std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& proble
   look("limits", "tool_path_error", limits.tool_path_error, tolerance, "m");
   look("limits", "tool_speed", limits.tool_speed, speed, "m/s");
   if (problem.smooth) look("path.smooth", "position", problem.smooth->position, tolerance, "m");
+  const auto look_at_turn = [&](const char* key, const std::optional<double>& value, double most,
+                                const char* unit) {
+    if (value && *value > most)
+      found.push_back({"limits", key, formatted("is %.4g ", *value) + unit + kAskDegrees, most});
+  };
+  look_at_turn("tool_angle_error", limits.tool_angle_error, kPi, "rad");
+  look_at_turn("tool_turn_speed", limits.tool_turn_speed, kMostTurnSpeed, "rad/s");
+  for (std::size_t k = 0; limits.joint_speed && k < kDof; ++k) {
+    const double joint_speed = (*limits.joint_speed)[k];
+    if (chain.limit[k].slides || joint_speed <= kMostTurnSpeed) continue;
+    look_at_turn("joint_speed", joint_speed, kMostTurnSpeed, "rad/s");
+    break;
+  }
   return found;
 }
 
@@ -138,7 +203,10 @@ std::vector<std::string> scale_warnings(const Chain& chain, const Robot& robot) 
     scale.length("robot.attached: the way from its link to '" + body.name + "'",
                  body.pose.translation().norm());
   }
-  return scale.take();
+  std::vector<std::string> warnings = scale.take();
+  for (std::string& warning : turn_warnings(chain, *robot.model))
+    warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 std::vector<std::string> scale_warnings(const Chain& chain, const ToolPath& path,

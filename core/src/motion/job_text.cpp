@@ -208,6 +208,21 @@ std::string job_text(const JobResult& result, const Job& job) {
          '\n';
 }
 
+namespace {
+
+/// Returns the speed that a job's motion was asked for along its strokes, in words.
+std::string speed_words(const JobMotion& motion, const Job& job) {
+  if (motion.runs.empty()) return "";
+  double least = motion.runs.front().speed, most = least;
+  for (const TimedPath& run : motion.runs)
+    least = std::min(least, run.speed), most = std::max(most, run.speed);
+  const bool feeds = std::any_of(job.strokes.begin(), job.strokes.end(),
+                                 [](const Stroke& stroke) { return !stroke.feed.empty(); });
+  return formatted(least < most || feeds ? " at up to %g mm/s" : " at %g mm/s", 1e3 * most);
+}
+
+}  // namespace
+
 std::string job_motion_text(const JobTimingResult& timing, const std::vector<JobPart>& parts,
                             const Job& job) {
   if (const auto& failure = timing.failure) {
@@ -225,10 +240,10 @@ std::string job_motion_text(const JobTimingResult& timing, const std::vector<Job
   for (std::size_t k = 1; k < motion.rows.size(); ++k)
     if (parts.at(motion.part[k]).run) on_strokes += motion.rows[k].t - motion.rows[k - 1].t;
   return formatted(
-      "motion: %.3f s, %.3f s of it on strokes and %.3f s in transitions, %zu samples at %g Hz, "
+      "motion: %.3f s, %.3f s of it on strokes%s and %.3f s in transitions, %zu samples at %g Hz, "
       "%zu events\n",
-      motion.duration, on_strokes, motion.duration - on_strokes, motion.rows.size(), motion.rate,
-      motion.events.size());
+      motion.duration, on_strokes, speed_words(motion, job).c_str(), motion.duration - on_strokes,
+      motion.rows.size(), motion.rate, motion.events.size());
 }
 
 }  // namespace swivel

@@ -8,6 +8,7 @@
 #include "job/process_range.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/motion/joint_moves.hpp"
@@ -106,6 +107,7 @@ class JobTimer {
         motion_.warnings.push_back("stroke '" + job_.strokes[run.stroke].name + "': " + warning);
     }
     timed.motion->rows.clear();
+    timed.motion->speed = fastest_of(run, problem);
     motion_.runs.push_back(std::move(*timed.motion));
     return std::nullopt;
   }
@@ -118,6 +120,16 @@ class JobTimer {
     timing.speed = speeds.first;
     timing.speeds = std::move(speeds.from);
     return timing;
+  }
+  /// Returns the largest speed asked for along the stroke of a run, m/s, its approach and retract
+  /// aside.
+  [[nodiscard]] double fastest_of(const StrokeRun& run, const Problem& problem) const {
+    // Each waypoint but the last begins a stretch; where the tool retracts, one more follows.
+    const std::vector<SpeedFrom> speeds = required_speeds(job_, run, problem, options_).from;
+    const std::size_t stretches = job_.strokes[run.stroke].waypoints.size() - 1;
+    double fastest = 0;
+    for (std::size_t k = 0; k < stretches; ++k) fastest = std::max(fastest, speeds[k].speed);
+    return std::min(fastest, problem.limits.tool_speed.value_or(fastest));
   }
   /// Adds the events of a run whose rows begin at motion_.rows[first].
   void add_events(const StrokeRun& run, const Problem& problem, std::size_t first) {
@@ -141,6 +153,10 @@ class JobTimer {
 void require_speeds(const Job& job, const JobTimingOptions& options) {
   for (std::size_t k = 0; k < job.strokes.size(); ++k)
     static_cast<void>(required_speeds(job, {k, false}, problem_of_run(job, {k, false}), options));
+  if (!options.speed) return;
+  require_tool_speed(
+      build_arm(*job.model, job.base_link, job.tip_link, job.hold, job.tool, job.roll).chain,
+      *options.speed, "speed");
 }
 
 JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
@@ -149,6 +165,7 @@ JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
   const TraceSpan span("time job");
   validate(job);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
+  require_speeds(job, options);
   if (!(options.rate > 0 && std::isfinite(options.rate)))
     throw InvalidArgument("rate: allowed are numbers above 0, samples a second");
   const Job completed = with_motion_defaults(job);

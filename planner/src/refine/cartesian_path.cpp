@@ -11,6 +11,7 @@
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -207,7 +208,8 @@ class Follower {
       return;
     }
     TimingOptions timing;
-    timing.speed = options_.tool_speed.value_or(kAsFastAsJointsAllow);
+    timing.speed = std::min(options_.tool_speed.value_or(kAsFastAsJointsAllow),
+                            most_tool_speed(planner_.prepare(budget_).arm().chain));
     timing.rate = options_.rate;
     MotionPlan found = plan_motion(planner_, options, true, timing);
     result = std::move(found.result);

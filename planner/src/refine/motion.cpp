@@ -13,6 +13,7 @@
 #include "refine/motion_faults.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -220,6 +221,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
     return time_rows(robot, turned, rows, asked, between_layers, budget);
   }
   require_positive(asked);
+  require_tool_speed(robot.arm().chain, asked.speed, "speed");
   return RowTimer(robot, problem, rows, asked, budget).run(between_layers);
 }
 
@@ -293,6 +295,14 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
 
 MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
                        const std::optional<TimingOptions>& timing) {
+  if (timing) {
+    const Problem& problem = planner.problem();
+    validate(problem);
+    require_tool_speed(build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold,
+                                 problem.tool, problem.roll)
+                           .chain,
+                       timing->speed, "speed");
+  }
   const Budget budget = options.budget();
   // The caller's own cost is not known off the lattice.
   const bool own_cost = refined && options.hooks.cost;

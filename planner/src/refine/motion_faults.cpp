@@ -109,10 +109,12 @@ TimingOptions within_limits(TimingOptions options, const Limits& limits,
     warnings.push_back(formatted(format, asked, *limit));
     asked = *limit;
   };
-  lower(options.speed, limits.tool_speed,
+  double fastest = options.speed;
+  for (const SpeedFrom& from : options.speeds) fastest = std::max(fastest, from.speed);
+  lower(fastest, limits.tool_speed,
         "a tool speed of %.6g m/s is asked for: limits.tool_speed allows %.6g m/s, which is kept");
-  if (limits.tool_speed)
-    for (SpeedFrom& from : options.speeds) from.speed = std::min(from.speed, *limits.tool_speed);
+  options.speed = std::min(options.speed, fastest);
+  for (SpeedFrom& from : options.speeds) from.speed = std::min(from.speed, fastest);
   if (!options.turn_speed) options.turn_speed = limits.tool_turn_speed;
   if (options.turn_speed)
     lower(*options.turn_speed, limits.tool_turn_speed,

@@ -141,6 +141,7 @@ WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
   if (refined) require_refinable(prepared);
   if (timing) {
     require_positive(*timing);
+    require_tool_speed_of_arms(prepared, timing->speed);
     require_motion_defaults(prepared);
   }
   const Budget budget = options.budget();

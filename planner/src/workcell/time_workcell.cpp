@@ -343,6 +343,7 @@ WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
   require_positive(options);
   if (!options.speeds.empty())
     throw InvalidArgument("TimingOptions: speeds: allowed for workcells are none");
+  require_tool_speed_of_arms(prepared, options.speed);
   require_motion_defaults(prepared);
   return WorkcellTimer(prepared, rows, options, budget).run();
 }
@@ -351,6 +352,7 @@ RefinedWorkcellMotion refine_and_time_workcell(
     const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
     const TimingOptions& options, const Budget& budget) {
   require_positive(options);
+  require_tool_speed_of_arms(prepared, options.speed);
   require_motion_defaults(prepared);
   std::array<std::vector<TrajectoryRow>, 2> laid;
   for (std::size_t k = 0; k < 2; ++k) {

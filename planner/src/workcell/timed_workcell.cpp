@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -25,6 +26,11 @@ void require_motion_defaults(const PreparedWorkcell& prepared) {
       throw InvalidArgument(
           "the workcell has no motion defaults: allowed for motions are those of "
           "with_motion_defaults()");
+}
+
+void require_tool_speed_of_arms(const PreparedWorkcell& prepared, double speed) {
+  const Chain &one = prepared.robot(0).arm().chain, &other = prepared.robot(1).arm().chain;
+  require_tool_speed(most_reach(one) > most_reach(other) ? one : other, speed, "speed");
 }
 
 FollowerMeter::FollowerMeter(const PreparedWorkcell& prepared, const Budget& budget)

@@ -10,6 +10,8 @@ void require_refinable(const PreparedWorkcell& prepared);
 /// Throws InvalidArgument unless a workcell was completed by with_motion_defaults() before it was
 /// prepared.
 void require_motion_defaults(const PreparedWorkcell& prepared);
+/// Throws InputError for a speed of the tool, m/s, that is out of all proportion to both arms.
+void require_tool_speed_of_arms(const PreparedWorkcell& prepared, double speed);
 
 /// How far a follower's tool is off its path on the leader's tool: m and rad.
 struct FollowerError {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds lengths that were probably given in millimetres although they are read as metres, because
-// they are out of all proportion to the arm.
+// Finds lengths that were probably given in millimetres although they are read as metres, and
+// angles that were probably given in degrees although they are read as radians, because they are
+// out of all proportion to the arm.
 #pragma once
 #include <optional>
 #include <string>
@@ -29,15 +30,28 @@ inline constexpr double kFar = 20;
 [[nodiscard]] ToolPath path_within_scale(const Problem& problem, const Chain& chain,
                                          const Budget& budget = {});
 
+/// Returns the largest speed of the tool that is not suspected to be in millimetres a second: 10
+/// times the arm's reach in a second, m/s.
+[[nodiscard]] double most_tool_speed(const Chain& chain);
+/// Returns one warning for a speed of the tool that is above most_tool_speed(), m/s; none else.
+/// `what` names the speed, such as "speed".
+[[nodiscard]] std::vector<std::string> tool_speed_warnings(const Chain& chain, double speed,
+                                                           const std::string& what);
+/// Throws InputError in the name of `what`, such as "--speed", for a speed of the tool that is
+/// above most_tool_speed() of the arm, m/s.
+void require_tool_speed(const Chain& chain, double speed, const std::string& what);
+
 /// A length of `limits` or `path.smooth` that is suspected to be in millimetres: a clearance of
 /// more than the arm's reach, a tolerance of more than a quarter of it, or a tool speed of more
-/// than 10 times the reach in a second.
+/// than 10 times the reach in a second. Likewise an angle of `limits` that is suspected to be in
+/// degrees: a speed of joints that turn, or of the tool's turn, of more than 50 rad/s, or a
+/// tolerance of more than half a turn.
 struct LargeLength {
   std::string section, key;  ///< such as "limits" and "clearance"
   /// Such as "is 5 m, and the arm reaches 1.31 m: are these millimetres? Lengths are read as
   /// metres".
   std::string fault;
-  double most = 0;  ///< the largest value that is not suspected, m or m/s
+  double most = 0;  ///< the largest value that is not suspected, m, m/s, rad or rad/s
 };
 [[nodiscard]] std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& problem);
 /// Returns one warning for each of large_lengths().
@@ -45,7 +59,8 @@ struct LargeLength {
                                                             const Problem& problem);
 
 /// Returns one warning for the tool and one for each body of the robot that is as large as if its
-/// lengths were millimetres.
+/// lengths were millimetres, and one for all joints of the chain whose limits are as large as if
+/// their angles were degrees: positions from 25 to 1000 rad, or speeds of more than 50 rad/s.
 [[nodiscard]] std::vector<std::string> scale_warnings(const Chain& chain, const Robot& robot);
 /// Returns one warning for the path and one for each object of the scene that is as large or as far
 /// away as if its lengths were millimetres.
