@@ -26,6 +26,7 @@ void require_planner_of(const std::string& kind, const SearchOptions& search) {
 Job chosen_job(Job job, const LatticeOptions& lattice, const EpisodeChoice& episode) {
   job = episode.apply(job);
   for (Stroke& stroke : job.strokes) lattice.apply(stroke);
+  if (lattice.dphi || lattice.arcs) lattice.require_used(unused_keys_of(job, job.source));
   return job;
 }
 
@@ -33,6 +34,9 @@ Workcell chosen_workcell(Workcell cell, const LatticeOptions& lattice,
                          const EpisodeChoice& episode) {
   cell = episode.apply(cell);
   for (WorkcellArm& arm : cell.arms) lattice.apply(arm);
+  if (lattice.dphi || lattice.arcs)
+    lattice.require_used(unused_by_both(unused_keys_of(cell.arms[0], cell.source),
+                                        unused_keys_of(cell.arms[1], cell.source)));
   return cell;
 }
 

@@ -9,6 +9,8 @@
 #include <csignal>
 
 #include "options/commands.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/report/page.hpp"
@@ -60,6 +62,29 @@ void LatticeOptions::apply(Task& task) const {
       throw InputError("--edges: unknown mode '" + edges + "': allowed are continuous, nodes");
     task.limits.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
   }
+}
+
+void LatticeOptions::apply(Problem& problem) const {
+  apply(static_cast<Task&>(problem));
+  if (dphi || arcs.value_or(false)) require_used(unused_keys_of(problem, problem.source));
+}
+
+void LatticeOptions::require_used(const std::vector<UnusedKey>& unused) const {
+  for (const UnusedKey& key : unused) {
+    const std::string option = key.key == "dphi" && dphi   ? "--dphi"
+                               : key.key == "arcs" && arcs ? "--arcs"
+                                                           : "";
+    if (!option.empty() && (key.key != "arcs" || *arcs))
+      throw InputError(option + ": is given, but " + key.why +
+                       ": allowed is no such option for this arm");
+  }
+}
+
+std::vector<UnusedKey> unused_keys_of(const Robot& robot, const std::string& source) {
+  const Chain chain =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll)
+          .chain;
+  return unused_keys(chain, classify(chain, source));
 }
 
 std::string percent(double share) {

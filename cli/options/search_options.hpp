@@ -4,7 +4,9 @@
 #include <atomic>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "swivel/core/lattice/kinds/unused_keys.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 
@@ -18,6 +20,10 @@ struct LatticeOptions {
   void add_to(CLI::App& command);
   /// Replaces values of the problem file by those that the command line gives.
   void apply(Task& task) const;
+  /// Does so for a problem of one path. Throws InputError for options that its arm does not use.
+  void apply(Problem& problem) const;
+  /// Throws InputError for options that are given and of which no lattice makes use.
+  void require_used(const std::vector<UnusedKey>& unused) const;
 };
 
 /// The options of `plan` and `campaign` that say how to search.
@@ -33,6 +39,10 @@ struct SearchOptions : LatticeOptions {
   /// the planner is always among them.
   [[nodiscard]] std::string words() const;
 };
+
+/// Returns the keys of problem files that no lattice of a robot's arm reads. `source` is the file
+/// for messages.
+[[nodiscard]] std::vector<UnusedKey> unused_keys_of(const Robot& robot, const std::string& source);
 
 /// Returns the shortest digits that read back as the same number.
 [[nodiscard]] std::string shortest(double value);

@@ -187,6 +187,27 @@ TEST(ProblemFile, ArmSlopeIsForArmsWithAnArmAngle) {
                    {"problem.yaml:1: limits.arm_slope", "no arm angle", "allowed is no such key"});
 }
 
+/// As for arm_slope: a key that no lattice of the arm reads is given in vain.
+TEST(ProblemFile, KeysOfAnArmAngleAreForArmsThatHaveOne) {
+  const ProblemFolder folder;
+  EXPECT_EQ(folder.load({{"resolution", "{dphi: 0.1, arcs: true}"}}).resolution.dphi, 0.1);
+  std::string bent = arm_urdf();
+  bent.replace(bent.rfind("0 0 0.2"), 7, "0.1 0 0");
+  folder.folder().write("robots/bent.urdf", bent);
+  const std::string robot = "{urdf: ../robots/bent.urdf, base_link: base_link, tip_link: link_7}";
+  const auto load = [&](const std::string& section, const std::string& text) {
+    return folder.load({{"robot", robot}, {section, text}});
+  };
+  EXPECT_EQ(load("resolution", "{arc: 0.1}").resolution.arc, 0.1);
+  for (const char* const key : {"dphi: 0.05", "arcs: true", "arcs: false"})
+    expect_message(
+        input_error([&] { return load("resolution", std::string("{ds: 0.1,\n ") + key + "}"); }),
+        {std::string("problem.yaml:2: resolution.") + std::string(key, 4), "no arm angle",
+         "allowed is no such key"});
+  expect_message(input_error([&] { return load("limits", "{step_error: 0.1}"); }),
+                 {"problem.yaml:1: limits.step_error", "no arm angle"});
+}
+
 /// Loads a problem file with every key.
 Problem load_every_key(const ProblemFolder& folder) {
   return folder.load({

@@ -108,7 +108,7 @@ std::string words(const Advice& advice) {
     case Advice::Change::kFreeRoll:
       return "a tool free to turn about its axis (path.roll)";
     case Advice::Change::kFiner:
-      return "half the steps of the lattice, and nodes on narrow arcs (--ds, --dphi, --arcs)";
+      return "half the steps of the lattice, and nodes on narrow arcs (`resolution`)";
     case Advice::Change::kDepth:
       return "contact with '" + advice.object +
              formatted("' up to %.3g mm deep instead of %.3g mm", 1e3 * *advice.to,

@@ -143,7 +143,8 @@ class JobReader : ProblemReader {
     shared_ = problem_;
     model_ = suitable_arm();
     require_free_axis(*model_);
-    if (const auto limits = root_.find_filled("limits")) require_arm_angle(*model_, *limits);
+    unused_ = unused_keys_of(*model_);
+    require_used(unused_);
   }
 
   /// Reads what a stroke has of its own besides its path, and sets the rest as all strokes have it.
@@ -156,7 +157,7 @@ class JobReader : ProblemReader {
     if (const auto value = root_.find_filled("limits")) limits.push_back(*value);
     if (const auto value = place.find("limits"); value && !value->is_null()) {
       read_limits(*value);
-      require_arm_angle(*model_, *value);
+      require_used(unused_, *value, "limits");
       limits.push_back(*value);
     }
     require_in_scale(*model_, place.path, limits);
@@ -262,6 +263,7 @@ class JobReader : ProblemReader {
   std::size_t waypoints_ = 0;
   Task shared_;
   std::optional<ArmModel> model_;
+  std::vector<UnusedKey> unused_;
 };
 
 YamlSection load_root(const fs::path& yaml) {

@@ -12,6 +12,7 @@
 #include "robots/urdf.hpp"
 #include "schema/yaml_value.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/lattice/kinds/unused_keys.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/core/problem/job.hpp"
@@ -98,8 +99,14 @@ class ProblemReader {
   /// that has the key.
   void require_in_scale(const ArmModel& model, const YamlValue& path,
                         const std::vector<YamlValue>& limits) const;
-  /// Throws InputError if the section `limits` has an arm_slope and the arm no arm angle.
-  void require_arm_angle(const ArmModel& model, const YamlValue& limits) const;
+  /// Throws InputError, at its key, for a value that no lattice of the arm reads: of a section
+  /// `resolution` or `limits`, whose name is given.
+  static void require_used(const std::vector<UnusedKey>& unused, const YamlValue& value,
+                           const std::string& section);
+  /// Calls require_used() for both sections of the file.
+  void require_used(const std::vector<UnusedKey>& unused) const;
+  /// Returns the keys of those sections that no lattice of the arm reads.
+  [[nodiscard]] std::vector<UnusedKey> unused_keys_of(const ArmModel& model) const;
   /// Throws InputError if the file of a path has the tool's axis alone, and the arm has seven
   /// joints but no arm angle: no lattice turns its tool then.
   void require_free_axis(const ArmModel& model) const;

@@ -121,7 +121,7 @@ Problem ProblemReader::read() {
   require_free_axis(model);
   const auto limits = root_.find_filled("limits");
   require_in_scale(model, path, limits ? std::vector{*limits} : std::vector<YamlValue>());
-  if (limits) require_arm_angle(model, *limits);
+  require_used(unused_keys_of(model));
   if (const auto value = root_.find_filled("start")) read_start(*value);
   read_start_place();
   read_end(path, model.chain);
@@ -609,12 +609,21 @@ void ProblemReader::require_in_scale(const ArmModel& model, const YamlValue& pat
   }
 }
 
-void ProblemReader::require_arm_angle(const ArmModel& model, const YamlValue& limits) const {
-  const auto slope = limits.section().find("arm_slope");
-  if (!slope) return;
-  if (!classify(model.chain, problem_.model->source).srs)
-    slope->fail("is given, but the arm has no arm angle, since it is not S-R-S",
-                "no such key for this arm");
+std::vector<UnusedKey> ProblemReader::unused_keys_of(const ArmModel& model) const {
+  return unused_keys(model.chain, classify(model.chain, problem_.model->source));
+}
+
+void ProblemReader::require_used(const std::vector<UnusedKey>& unused, const YamlValue& value,
+                                 const std::string& section) {
+  for (const UnusedKey& key : unused)
+    if (key.section == section)
+      if (const auto given = value.section().find_filled(key.key))
+        given->fail("is given, but " + key.why, "no such key for this arm");
+}
+
+void ProblemReader::require_used(const std::vector<UnusedKey>& unused) const {
+  for (const char* const section : {"resolution", "limits"})
+    if (const auto value = root_.find_filled(section)) require_used(unused, *value, section);
 }
 
 void ProblemReader::read_start(const YamlValue& value) {

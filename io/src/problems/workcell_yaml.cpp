@@ -42,6 +42,7 @@ class WorkcellReader : ProblemReader {
       read_steps(*given);
     else
       require_equal_lengths();
+    require_used_by_one();
     read_may_touch();
     read_vary();
     cell_.source = problem_.source;
@@ -121,7 +122,9 @@ class WorkcellReader : ProblemReader {
                        "quaternions or tangents in it: in a workcell the roll of arms of six "
                        "joints alone may be free");
     require_in_scale(model, path, limits);
-    for (const YamlValue& value : limits) require_arm_angle(model, value);
+    unused_[k] = unused_keys_of(model);
+    if (const auto value = section.find_filled("limits"))
+      require_used(unused_[k], *value, "limits");
     if (const auto start = section.find_filled("start")) read_start(*start);
     if (const auto end = path.section().find_filled("end");
         end && model.chain.roll && problem_.path_frame == cell_.arms[1 - k].name)
@@ -137,6 +140,18 @@ class WorkcellReader : ProblemReader {
     static_cast<Task&>(arm) = problem_;
     if (cell_.leader_of(k) >= 0 && k == 1 && cell_.leader_of(0) >= 0)
       path.fail("leads the arm that leads it", "one arm in the frame of the other");
+  }
+
+  /// Throws InputError for a key of the file that no lattice of either arm reads. Lattices refuse
+  /// some that are of the other arm alone.
+  void require_used_by_one() const {
+    const auto given = cell_.given_arm();
+    require_used(given ? unused_[1 - *given] : unused_by_both(unused_[0], unused_[1]));
+    const auto limits = root_.find_filled("limits");
+    for (const std::vector<UnusedKey>& keys : unused_)
+      for (const UnusedKey& key : keys)
+        if (limits && (key.key == "arm_slope" || key.key == "step_error"))
+          require_used({key}, *limits, "limits");
   }
 
   /// Returns the names of the joints between the root of the robot and a link, and that of a roll.
@@ -253,7 +268,8 @@ class WorkcellReader : ProblemReader {
   }
 
   Workcell cell_;
-  std::vector<YamlValue> sections_;  // of the arms
+  std::vector<YamlValue> sections_;               // of the arms
+  std::array<std::vector<UnusedKey>, 2> unused_;  // of the arms that are planned
 };
 
 }  // namespace

@@ -27,6 +27,7 @@
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/unused_keys.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -284,6 +285,8 @@ class JobPlan {
     SpecialPairs pairs;
     add_lines(robot_warnings(robot_, job_), result_.warnings);
     for (const auto& run : runs_) {
+      add_lines(unused_key_warnings(unused_keys(chain_, robot_.arm_class()), run->problem),
+                result_.warnings);
       add_lines(path_warnings(robot_, run->problem, run->path, *run->world), result_.warnings);
       pairs.add(*run->world);
     }

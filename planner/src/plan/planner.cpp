@@ -19,6 +19,7 @@
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/unused_keys.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -298,8 +299,10 @@ struct Planner::Impl {
     result.held = robot->arm().held;
     if (!of_robot) of_robot = robot_warnings(*robot, problem);
     result.warnings = *of_robot;
-    for (std::string& line : path_warnings(*robot, problem, layout->path, *world))
-      result.warnings.push_back(std::move(line));
+    for (const auto& lines :
+         {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
+          path_warnings(*robot, problem, layout->path, *world)})
+      result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     SpecialPairs pairs;
     pairs.add(*world);
     result.dropped_pairs = std::move(pairs.dropped);

@@ -19,6 +19,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/unused_keys.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -137,12 +138,23 @@ class WorkcellPlan {
                        "are read as metres");
     for (std::size_t k = 0; k < 2; ++k) describe(*arms_[k], result_.arms[k]);
     result_.warnings = prepared_.between().warnings();
+    warn_of_unused_keys();
     if (!given) return;
     const PlannedArm& planned = *arms_[1 - *given];
     if (const std::string warning =
             long_step_warning(planned.path, planned.problem.resolution, prepared_.name(1 - *given));
         !warning.empty())
       result_.warnings.push_back(warning);
+  }
+  /// Warns of keys that are given in vain: a key of one arm may stand with both.
+  void warn_of_unused_keys() {
+    std::array<std::vector<UnusedKey>, 2> unused;
+    for (std::size_t k = 0; k < 2; ++k)
+      unused[k] = unused_keys(arms_[k]->robot.arm().chain, arms_[k]->robot.arm_class());
+    const auto keys = unused_by_both(unused[0], unused[1]);
+    for (std::size_t k = 0; k < 2; ++k)
+      for (const std::string& line : unused_key_warnings(keys, arms_[k]->problem))
+        result_.arms[k].warnings.push_back(line);
   }
   void describe(const PlannedArm& arm, PlanResult& result) const {
     const Chain& chain = arm.robot.arm().chain;
