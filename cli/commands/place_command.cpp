@@ -82,6 +82,11 @@ AskedPlacements asked_placements(const PlaceArguments& arguments) {
 void require_options_agree(const PlaceArguments& arguments) {
   if (arguments.refine_grid && arguments.request.sample)
     throw InputError("--refine-grid: a sample has no neighbours: allowed without --sample");
+  for (const PlacementAxis& axis : arguments.request.placement.axes())
+    if (arguments.request.sample && axis.step > 0)
+      throw InputError("--" + (axis.joint.empty() ? "" : std::string("hold ")) + axis.name() +
+                       ": a range with a step, of which --sample makes no use: allowed is FROM:TO, "
+                       "or no --sample");
   if (arguments.refine_grid && !arguments.shard.empty())
     throw InputError(
         "--refine-grid: which cells come next hangs on those of other shards: allowed without "

@@ -499,23 +499,27 @@ std::string EpisodeChoice::words() const {
              : "";
 }
 
-void EpisodeChoice::require_both_or_neither() const {
+void EpisodeChoice::require_episodes(const std::vector<Variation>& vary) const {
   if (seed.has_value() != episode.has_value())
     throw InputError("--seed, --episode: one without the other: allowed are both or neither");
+  if (seed && vary.empty())
+    throw InputError(
+        "--seed, --episode: the file has no `vary`, so that all episodes are alike: allowed is a "
+        "file with it, or neither option");
 }
 
 Job EpisodeChoice::apply(const Job& job) const {
-  require_both_or_neither();
+  require_episodes(job.vary);
   return placement.apply(seed ? episode_job(job, *seed, *episode) : job);
 }
 
 Workcell EpisodeChoice::apply(const Workcell& cell) const {
-  require_both_or_neither();
+  require_episodes(cell.vary);
   return placement.apply(seed ? episode_workcell(cell, *seed, *episode) : cell);
 }
 
 Problem EpisodeChoice::apply(const Problem& problem) const {
-  require_both_or_neither();
+  require_episodes(problem.vary);
   return placement.apply(seed ? episode_problem(problem, *seed, *episode) : problem);
 }
 

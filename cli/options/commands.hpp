@@ -47,8 +47,9 @@ struct EpisodeChoice {
   [[nodiscard]] std::string words() const;
 
  private:
-  /// Throws InputError where the seed or the episode is given without the other.
-  void require_both_or_neither() const;
+  /// Throws InputError where the seed or the episode is given without the other, or both for a file
+  /// in which nothing varies.
+  void require_episodes(const std::vector<Variation>& vary) const;
 };
 
 /// Flushes standard output. Throws InputError if it does not take the text, because it is full or

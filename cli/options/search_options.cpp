@@ -29,10 +29,12 @@ void LatticeOptions::add_to(CLI::App& command) {
   command.add_option("--ds", ds, "resolution along the path, m");
   command.add_option("--dphi", dphi, "resolution of the arm angle, rad");
   // A flag bound to an optional would be false, not unset, if it is not given.
-  command.add_flag_callback(
+  CLI::Option* const with = command.add_flag_callback(
       "--arcs", [this] { arcs = true; }, "nodes on arcs of arm angles that the grid misses, too");
-  command.add_flag_callback(
-      "--no-arcs", [this] { arcs = false; }, "no such nodes, whatever the problem file says");
+  command
+      .add_flag_callback(
+          "--no-arcs", [this] { arcs = false; }, "no such nodes, whatever the problem file says")
+      ->excludes(with);
   command.add_option("--edges", edges, "continuous | nodes");
 }
 

@@ -408,7 +408,8 @@ class Cells {
     }
     const auto& [from, to, step] = std::get<2>(range);
     if (!(step > 0)) throw InvalidArgument(name + ": allowed is a step > 0");
-    return make(from, to, sample ? 0 : step);
+    if (sample) throw InvalidArgument(name + ": allowed is a number, or (from, to), with sample");
+    return make(from, to, step);
   }
 
   PlacementGrid grid_;

@@ -232,6 +232,22 @@ TEST(Robot, WordsThatAreNotKnownAreRefused) {
 }
 
 /// Unknown words of links, second shapes and second robots are refused at their line.
+TEST(Robot, NamesThatXacroDidNotExpandAreRefused) {
+  const auto message = [](const std::string& body) {
+    return input_error([&] { (void)parse_robot(robot(body)); });
+  };
+  expect_message(message("<link name='$(arg prefix)a'/>"),
+                 {"URDF text:3", "'$(arg prefix)a'", "xacro expanded"});
+  const std::string links = "<link name='a'/><link name='b'/>";
+  for (const char* const name : {"$(arg prefix)j1", "${prefix}j1"})
+    expect_message(message(links + "<joint name='" + name +
+                           "' type='fixed'><parent link='a'/><child link='b'/></joint>"),
+                   {"URDF text:3", "<joint> has the name '" + std::string(name), "xacro expanded"});
+  expect_message(message("<link name='a'><collision><geometry><mesh "
+                         "filename='$(find robot)/a.stl'/></geometry></collision></link>"),
+                 {"URDF text:3", "'$(find robot)/a.stl'", "xacro expanded"});
+}
+
 TEST(Robot, WordsThatAreNotKnownInLinksAreRefused) {
   const auto message = [](const std::string& body) {
     return input_error([&] { (void)parse_robot(robot(body)); });

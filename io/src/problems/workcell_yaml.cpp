@@ -174,7 +174,7 @@ class WorkcellReader : ProblemReader {
     const YamlValue file = section.require("trajectory");
     if (sections_[1 - k].section().find_filled("trajectory"))
       file.fail("is given, as is that of the other arm", "one arm with a `path`");
-    for (const char* const key : {"start", "at_rows"})
+    for (const char* const key : {"path", "start", "at_rows"})
       if (const auto value = section.find_filled(key))
         value->fail("is given for an arm whose motion is given", "no such key here");
     static_cast<Robot&>(problem_) = arm;

@@ -109,6 +109,11 @@ Quaterniond from_urdf_rpy(const Vector3d& rpy) {
   return {w / length, x / length, y / length, z / length};
 }
 
+/// Returns whether a text has a "${...}" or "$(...)" that xacro would have expanded.
+bool is_xacro(const std::string& text) {
+  return text.find("${") != std::string::npos || text.find("$(") != std::string::npos;
+}
+
 /// An XML element of a link or joint, which reads its attributes as numbers, names and poses.
 /// Messages name the file, the line, and the link or joint.
 class Element {
@@ -134,6 +139,8 @@ class Element {
     const char* const value = xml_.Attribute(attribute);
     if (value == nullptr || *value == 0)
       fail(label(attribute) + (value == nullptr ? " is missing" : " is empty"), allowed);
+    if (is_xacro(value))
+      fail(label(attribute) + " is '" + value + "'", allowed + ", xacro expanded");
     return value;
   }
   /// Returns the number that an attribute states. It must be finite unless `infinite` allows
@@ -143,7 +150,7 @@ class Element {
     Words words(all);
     const auto value = to_number<double>(words.next());
     if (!value || !words.next().empty() || std::isnan(*value) || (!infinite && std::isinf(*value)))
-      fail(label(attribute) + " is '" + all + "'", expanded(attribute, allowed));
+      fail(label(attribute) + " is '" + all + "'", allowed);
     return *value;
   }
   [[nodiscard]] double number_or(const char* attribute, double otherwise) const {
@@ -161,8 +168,7 @@ class Element {
       right = right && value && std::isfinite(*value);
       if (right) number = *value;
     }
-    if (!right || !words.next().empty())
-      fail(label(attribute) + " is '" + all + "'", expanded(attribute, allowed));
+    if (!right || !words.next().empty()) fail(label(attribute) + " is '" + all + "'", allowed);
     return result;
   }
   [[nodiscard]] double length(const char* attribute) const {
@@ -183,11 +189,6 @@ class Element {
  private:
   [[nodiscard]] std::string label(const char* attribute) const {
     return std::string(xml_.Name()) + " " + attribute;
-  }
-  /// Returns what a message says is allowed, with a hint at xacro if the attribute has a "${...}"
-  /// that xacro would have expanded.
-  [[nodiscard]] std::string expanded(const char* attribute, const std::string& allowed) const {
-    return text(attribute).find("${") == std::string::npos ? allowed : allowed + ", xacro expanded";
   }
   double positive(const char* attribute, double value) const {
     if (!(value > 0 && value <= kMostMetres))
@@ -310,6 +311,9 @@ class ModelBuilder {
                 std::string("<") + element.Name() + "> " +
                     (name == nullptr ? "has no name" : "has the name '" + std::string(name) + "'"),
                 kValidName);
+    if (is_xacro(name))
+      bad_input(at(element), std::string("<") + element.Name() + "> has the name '" + name + "'",
+                "a name, xacro expanded");
   }
 
   void check_names(const tinyxml2::XMLElement& robot, const char* kind, Index& index) const {

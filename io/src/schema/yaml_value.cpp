@@ -60,8 +60,13 @@ void YamlValue::fail(const std::string& what, const std::string& allowed) const 
   bad_input(where(), what, allowed);
 }
 
+void YamlValue::require_unquoted(const std::string& allowed) const {
+  if (is_quoted()) fail("is the text '" + node_.Scalar() + "', in quotes", allowed);
+}
+
 double YamlValue::number() const {
   const Range& range = schema_->as(Schema::Type::kNumber).range;
+  require_unquoted(range.allowed);
   const std::optional<double> value = number_in(node_);
   if (!value) fail(shown(node_) + " is not a number", range.allowed);
   if (!range.has(*value)) fail("is " + node_.Scalar(), range.allowed);
@@ -70,6 +75,7 @@ double YamlValue::number() const {
 
 int YamlValue::whole_number() const {
   const Range& range = schema_->as(Schema::Type::kInteger).range;
+  require_unquoted(range.allowed);
   const std::optional<double> value = number_in(node_);
   if (!value) fail(shown(node_) + " is not a number", range.allowed);
   if (!range.has(*value) || *value != std::floor(*value))
@@ -120,6 +126,7 @@ void YamlValue::count(std::size_t more) const {
 
 bool YamlValue::boolean() const {
   static_cast<void>(schema_->as(Schema::Type::kBoolean));
+  require_unquoted("true or false");
   const std::string word = node_.IsScalar() ? node_.Scalar() : "";
   if (word != "true" && word != "false") fail(shown(node_) + " is neither", "true or false");
   return word == "true";

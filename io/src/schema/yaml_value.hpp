@@ -35,6 +35,8 @@ class YamlValue {
   [[nodiscard]] bool is_map() const { return node_.IsMap(); }
   [[nodiscard]] bool is_sequence() const { return node_.IsSequence(); }
   [[nodiscard]] const std::string& key() const { return key_; }
+  /// Returns whether the value is a text in quotes, which is no number and neither true nor false.
+  [[nodiscard]] bool is_quoted() const { return node_.IsScalar() && node_.Tag() == "!"; }
 
   // Each of these throws InputError if the value is not what the schema allows for that type.
   [[nodiscard]] double number() const;
@@ -61,6 +63,8 @@ class YamlValue {
   [[noreturn]] void fail(const std::string& what, const std::string& allowed) const;
 
  private:
+  /// Throws InputError for a text in quotes.
+  void require_unquoted(const std::string& allowed) const;
   void count(std::size_t more) const;
   /// Returns names and values of a map. schema_of(name, value) is called for each after all names
   /// were read.
