@@ -12,6 +12,7 @@
 #include "options/commands.hpp"
 #include "options/known_name.hpp"
 #include "options/packages_option.hpp"
+#include "options/search_options.hpp"
 #include "output/first_problem.hpp"
 #include "output/pairs_report.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -204,28 +205,57 @@ std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
   return beside;
 }
 
+/// Returns whether a joint may turn or shift a table: it alone moves between the root and the
+/// plate, and at most one more joint moves on it, as of a table on a table. A leg has more.
+bool moves_a_table(const RobotModel& robot, const Joint& table) {
+  const auto plate_of = [&](const Joint& joint) -> const std::string& {
+    return robot.links[static_cast<std::size_t>(joint.child_link)].name;
+  };
+  int on_it = 0;
+  for (const Joint& joint : robot.joints) {
+    if (&joint == &table || !joint.movable()) continue;
+    if (is_above(robot, plate_of(joint), plate_of(table))) return false;
+    on_it += is_above(robot, plate_of(table), plate_of(joint));
+  }
+  return on_it <= 1;
+}
+
 /// Prints which joints beside an arm of six joints may be its seventh: rails and torsos, whose
-/// parent is then the base, and tables, whose plate is.
-void print_more_axes(const RobotModel& robot, const ArmGuess& chosen) {
+/// parent is then the base, and tables, whose plate is. Where others lie between base and tip as
+/// well, they are to be held.
+void print_more_axes(const RobotModel& robot, const ArmGuess& chosen, const Chain& six) {
   for (const Joint& joint : robot.joints) {
     if (joint.mimic || !joint.movable()) continue;
     const auto name = [&](int link) -> const std::string& {
       return robot.links[static_cast<std::size_t>(link)].name;
     };
+    std::map<std::string, double> others;
+    for (const Joint& other : robot.joints)
+      if (other.movable() && !other.mimic && &other != &joint &&
+          std::find(six.joint_names.begin(), six.joint_names.end(), other.name) ==
+              six.joint_names.end())
+        others[other.name] =
+            other.type == Joint::Type::kContinuous ? 0 : std::clamp(0.0, other.lower, other.upper);
     const bool slides = joint.type == Joint::Type::kPrismatic;
     const auto print_where_first = [&](const char* what, const std::string& base) {
       try {
-        const ArmModel with_it = build_arm(robot, base, chosen.tip, {}, Pose::Identity());
-        if (with_it.chain.joint_names[0] == joint.name && with_it.held.empty())
-          say("%-11s%s %s %s: --base %s makes it the first of seven joints\n", what,
-              joint.name.c_str(), slides ? "shifts" : "turns", name(joint.child_link).c_str(),
-              base.c_str());
+        const ArmModel with_it = build_arm(robot, base, chosen.tip, others, Pose::Identity());
+        if (with_it.chain.joint_names[0] != joint.name) return;
+        std::string hold;
+        for (const HeldJoint& held : with_it.held)
+          if (held.leader.empty())
+            hold += " --hold " + quoted(held.name) + "=" + shortest(held.position);
+        say("%-11s%s %s %s: --base %s%s makes it the first of seven joints\n", what,
+            joint.name.c_str(), slides ? "shifts" : "turns", name(joint.child_link).c_str(),
+            base.c_str(), hold.c_str());
       } catch (const InputError&) {
         // not a row of seven joints
       }
     };
-    print_where_first(slides ? "rail" : "torso", name(joint.parent_link));
-    print_where_first("table", name(joint.child_link));
+    if (is_above(robot, name(joint.child_link), chosen.tip))
+      print_where_first(slides ? "rail" : "torso", name(joint.parent_link));
+    else if (moves_a_table(robot, joint))
+      print_where_first("table", name(joint.child_link));
   }
 }
 
@@ -388,7 +418,7 @@ int run(const InfoArguments& arguments) {
   if (arguments.write != "-") {
     print_robot(*robot, shapes);
     print_arm(*robot, chosen, arm, hold, others);
-    if (arm.chain.roll) print_more_axes(*robot, chosen);
+    if (arm.chain.roll) print_more_axes(*robot, chosen, arm.chain);
     print_class(arm.chain, kind);
     print_joints(arm.chain);
     print_warnings(robot, arm);

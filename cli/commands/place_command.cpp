@@ -155,7 +155,7 @@ PlacedProblem load_problem(const PlaceArguments& arguments) {
     source = placed.problem.source;
     arguments.search.apply(placed.problem);
   }
-  placed.thing = arguments.request.placement.thing(placed.problem.scene, source);
+  placed.thing = arguments.request.placement.thing(placed.problem, placed.problem.scene, source);
   return placed;
 }
 
@@ -410,8 +410,10 @@ int run(PlaceArguments arguments) {
   outputs.write("--out", (arguments.shard.empty() ? "" : io::to_line(record)) + io::to_csv(rows));
   if (outputs.wants("--write")) write_best(placed, rows, asked.criteria, outputs);
   char rate[64];
-  std::snprintf(rate, sizeof rate, "; %.1f s, %.0f a second", seconds,
-                static_cast<double>(rows.size()) / seconds);
+  const double a_second = static_cast<double>(rows.size()) / seconds;
+  std::snprintf(rate, sizeof rate,
+                a_second < 10 ? "; %.1f s, %.2g a second" : "; %.1f s, %.0f a second", seconds,
+                a_second);
   PlacementScene scene;
   io::VisualRobot visual;
   if (outputs.wants("--report") && placed.has_one_path()) {

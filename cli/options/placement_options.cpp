@@ -115,7 +115,7 @@ void PlacementOptions::add_to(CLI::App& command, const std::string& values) {
         ->group(group);
 }
 
-Movable PlacementOptions::thing(const std::vector<SceneObject>& scene,
+Movable PlacementOptions::thing(const Robot& robot, const std::vector<SceneObject>& scene,
                                 const std::string& source) const {
   if (!arm.empty() && !path)
     throw InputError("--arm: '" + arm + "': allowed with --path, of which it says whose it is");
@@ -129,6 +129,11 @@ Movable PlacementOptions::thing(const std::vector<SceneObject>& scene,
                      ": allowed is exactly one of them");
   if (path) return {Movable::Kind::kPath, "", arm};
   if (base) return {Movable::Kind::kBase, ""};
+  for (const AttachedBody& body : robot.attached)
+    if (body.name == object)
+      throw InputError("--object: '" + object + "' is fixed to link '" + body.link +
+                       "' and moves with it alone: allowed are objects of the scene of " + source +
+                       " in the frame of '" + robot.base_link + "'");
   std::vector<std::string> names;
   for (const SceneObject& known : scene) names.push_back(known.name);
   if (std::find(names.begin(), names.end(), object) == names.end())
@@ -162,7 +167,7 @@ bool PlacementOptions::any() const {
 
 Problem PlacementOptions::apply(const Problem& problem) const {
   if (!any()) return problem;
-  const Movable what = thing(problem.scene, problem.source);
+  const Movable what = thing(problem, problem.scene, problem.source);
   const Placement at = one_placement();
   return in_the_name_of_options(
       [&] { return placed_problem(held_as(problem, at.hold), what, at.offset); });
@@ -170,14 +175,14 @@ Problem PlacementOptions::apply(const Problem& problem) const {
 
 Job PlacementOptions::apply(const Job& job) const {
   if (!any()) return job;
-  const Movable what = thing(job.scene, job.source);
+  const Movable what = thing(job, job.scene, job.source);
   const Placement at = one_placement();
   return in_the_name_of_options([&] { return placed_job(held_as(job, at.hold), what, at.offset); });
 }
 
 Workcell PlacementOptions::apply(const Workcell& cell) const {
   if (!any()) return cell;
-  const Movable what = thing(cell.scene, cell.source);
+  const Movable what = thing(cell.arms[0], cell.scene, cell.source);
   const Placement at = one_placement();
   return in_the_name_of_options(
       [&] { return placed_workcell(held_as(cell, at.hold), what, at.offset); });

@@ -24,7 +24,7 @@ struct PlacementOptions {
   /// Returns what is to be moved: nothing where joints alone are held elsewhere. Throws InputError
   /// unless otherwise exactly one thing is named and the scene has it. `source`: the problem file,
   /// for messages.
-  [[nodiscard]] Movable thing(const std::vector<SceneObject>& scene,
+  [[nodiscard]] Movable thing(const Robot& robot, const std::vector<SceneObject>& scene,
                               const std::string& source) const;
   /// Lists the joints that are given, then the coordinates in the order of kCoordinates:
   /// FROM:TO:STEP, FROM:TO (count 0) or a number (count 1). Throws InputError.

@@ -82,7 +82,7 @@ void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint
   say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool "
       "within %.2g um of its path "
       "between; %s of '%s' at %s of its limit, s = %.4f m",
-      motion.duration, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate,
+      motion.rows.back().t, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate,
       1e6 * motion.between_position, to_string(rate),
       joint_names[static_cast<std::size_t>(most->joint)].c_str(), percent(most->ratio).c_str(),
       most->s);
@@ -98,7 +98,7 @@ void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names) {
   const auto name = [&](int joint) { return joint_names[static_cast<std::size_t>(joint)].c_str(); };
   say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n",
-      motion.duration, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate);
+      motion.rows.back().t, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate);
   for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
     const auto& peaks = motion.peaks[static_cast<std::size_t>(rate)];
     const TimedPath::Peak* most = &peaks[0];

@@ -62,8 +62,8 @@ std::string workcell_motion_text(const WorkcellTiming& timing,
   std::string text = formatted(
       "motion: %.3f s at %g mm/s (%.3f s with the faster tool at that speed throughout), %zu "
       "samples at %g Hz",
-      motion.duration, 1e3 * std::max(motion.arms[0].speed, motion.arms[1].speed), motion.ideal,
-      motion.arms[0].rows.size(), motion.rate);
+      motion.arms[0].rows.back().t, 1e3 * std::max(motion.arms[0].speed, motion.arms[1].speed),
+      motion.ideal, motion.arms[0].rows.size(), motion.rate);
   if (motion.blended > 0)
     text += "; the ratio of the tools' speeds changes in passing at " +
             plural(static_cast<std::size_t>(motion.blended), "waypoint");

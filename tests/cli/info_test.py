@@ -937,6 +937,32 @@ class MoreAxes(WithFolder):
             found = ["a"] if '"q"' in more else ["rail"] if "rail" in more else []
             self.assertEqual(tilts, found, done.stdout)
 
+    def test_tables_beside_a_rail_and_legs(self):
+        urdf, turn = self.folder / "robot.urdf", joint("table", "revolute", "track", "plate")
+        rail = (DATA / "robots/ur10e_rail_like.urdf").read_text()
+        urdf.write_text(rail.replace("</robot>", turn + "</robot>"))
+        done = run("info", urdf).stdout
+        self.assertIn("table      table turns plate: --base plate --hold rail=0 makes it", done)
+        self.assertRegex(done, r"\nrail +rail shifts carriage: --base track makes it the first of")
+        with_it = run("info", urdf, "--base", "plate", "--hold", "rail=0").stdout
+        self.assertRegex(with_it, r"joint 1 +table ")
+        parents = zip(("base_link", "thigh", "shin"), ("thigh", "shin", "foot"))
+        leg = "".join(joint(f"on_{child}", "revolute", up, child) for up, child in parents)
+        kr6 = (DATA / "robots/kr6_like.urdf").read_text()
+        urdf.write_text(kr6.replace("</robot>", leg + "</robot>"))
+        self.assertNotIn("\ntable ", run("info", urdf, "--tip", "flange", "--roll").stdout)
+
+    def test_short_rows(self):
+        turns = joint("j1", "revolute", "room", "a") + joint("j2", "revolute", "a", "b")
+        urdf = self.folder / "robot.urdf"
+        urdf.write_text(
+            f'<robot name="r"><link name="room"/>{turns}{joint("turn", "revolute", "room", "t")}'
+            "</robot>"
+        )
+        done = run("info", urdf)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("longest row of joints that turn has 2, from 'j1' to 'j2'", done.stderr)
+
     def test_rails_and_torsos(self):
         done = run("info", DATA / "robots/ur10e_rail_like.urdf")
         self.assertIn(

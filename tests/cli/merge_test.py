@@ -150,7 +150,7 @@ class Merge(WithFolder):
                     name == "report" and unpacked(file) != whole[name],
                     name == "report" and '"scene":{' in whole[name],
                 )
-            self.assertEqual(again.stdout, re.sub("; [0-9.]+ s, [0-9]+ a second", "", told.stdout))
+            self.assertEqual(again.stdout, re.sub("; [0-9.]+ s, [0-9.]+ a second", "", told.stdout))
 
     def test_nothing_has_a_path(self):
         command = ("place", PROBLEM, *QUICK, "--object", "door", "--x", "5:6:0.5")

@@ -160,7 +160,8 @@ std::string figures(const Cause& cause, std::optional<double> most) {
              (cause.over ? formatted(": %.3g mm less what motions need", kMillimetres * *cause.over)
                          : "");
     case Cause::Kind::kContact:
-      return formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit);
+      return *cause.limit > 0 ? formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit)
+                              : std::string("they touch");
     case Cause::Kind::kRollSlope:
       return cause.joint +
              formatted(": %.3g rad in %.3g mm, allowed %.3g rad: roll_slope %.3g rad/m",

@@ -211,8 +211,8 @@ class JobCheck {
       const double lower = limit.lower + margin_, upper = limit.upper - margin_;
       if (x >= lower - kSame && x <= upper + kSame) continue;
       fail(name(k) + ": " +
-           formatted("row %zu: joint '%s' is at %.6g rad: allowed is %.6g to %.6g", row,
-                     chain_.joint_names[j].c_str(), x, lower, upper));
+           formatted("row %zu: joint '%s' is at %.6g %s: allowed is %.6g to %.6g", row,
+                     chain_.joint_names[j].c_str(), x, limit.slides ? "m" : "rad", lower, upper));
     }
   }
   /// Returns what the moves of a transition cost. The roll of a six-joint arm costs nothing.

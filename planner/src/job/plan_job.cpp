@@ -410,12 +410,14 @@ class JobPlan {
     for (std::size_t j = 0; j < kDof; ++j) {
       const double x = (*job_.home)[static_cast<Eigen::Index>(j)];
       const JointLimit& limit = chain_.limit[j];
-      const bool none = limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof);
+      bool none = limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof);
       const double lower = limit.lower + transition_limits_.joint_margin,
                    upper = limit.upper - transition_limits_.joint_margin;
+      none = none || lower > upper;  // the fault of limits.joint_margin, which lattices refuse
       if (!none && !(x >= lower && x <= upper))
         throw InputError(job_.source, "home: joint '" + chain_.joint_names[j] + "' is at " +
-                                          formatted("%.6g", x) + " rad: allowed is " +
+                                          formatted(limit.slides ? "%.6g m" : "%.6g rad", x) +
+                                          ": allowed is " +
                                           formatted("%.6g to %.6g", lower, upper));
     }
   }

@@ -96,6 +96,7 @@ class WorkcellPlan {
       result_.time_ms["lattice"] = watch.lap();
       search();
       result_.time_ms["search"] = watch.lap();
+      result_.time_ms["plan"] = result_.time_ms["lattice"] + result_.time_ms["search"];
       if (!result_.arms[0].trajectory.empty())
         prove_answer(options_, budget_, result_, [&] {
           require_passed(check_workcell(prepared_,

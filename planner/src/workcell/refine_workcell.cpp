@@ -66,9 +66,8 @@ class BesideOther final : public LayerCheck {
 void require_refinable(const PreparedWorkcell& prepared) {
   if (const auto given = prepared.given_arm())
     throw InputError(prepared.problem(*given).source,
-                     "arm '" + prepared.name(*given) +
-                         "': its motion is given, beside which nothing is refined yet: allowed are "
-                         "two arms that are planned");
+                     "its motion is given, beside which nothing is refined yet: allowed are two "
+                     "arms that are planned");
 }
 
 RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,

@@ -55,12 +55,13 @@ std::vector<std::string> file_warnings(const RobotModel& robot, const Chain& cha
     soft.add(joint);
     ranges.append(ranges.empty() ? "" : ", ")
         .append(range(joint.lower, joint.upper) + " of " +
-                range(joint.hard->lower, joint.hard->upper));
+                range(joint.hard->lower, joint.hard->upper) +
+                (joint.type == Joint::Type::kPrismatic ? " m" : " rad"));
   });
   if (soft.count > 0)
     warnings.push_back(soft.sentence(robot, "keeps", "keep",
                                      " the soft limits of a safety_controller: " + ranges +
-                                         " rad (`limits.soft_limits: false` leaves them out)"));
+                                         " (`limits.soft_limits: false` leaves them out)"));
   return warnings;
 }
 
@@ -78,7 +79,8 @@ std::string joints_at_rest(const RobotModel& robot, const Chain& chain) {
     return empty.sentence(
         robot, "has", "have",
         " an empty range in the URDF (lower = upper = " + text(empty.first->lower) +
-            " rad): allowed is lower < upper, or robot.hold for a joint that stands still");
+            (empty.first->type == Joint::Type::kPrismatic ? " m" : " rad") +
+            "): allowed is lower < upper, or robot.hold for a joint that stands still");
   return {};
 }
 

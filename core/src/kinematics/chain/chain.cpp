@@ -356,7 +356,8 @@ void require_slides_allowed(const RobotModel& robot, const ArmJoints& arm, std::
   if (slide != nullptr && between > kDof)
     fail(robot, "joint '" + slide->name + "' is prismatic, and " + std::to_string(between) +
                     " joints move between base and tip: allowed with one that slides are seven: "
-                    "hold others by robot.hold");
+                    "the file's robot.hold must say where one of them stands (--hold then says "
+                    "where else)");
 }
 
 /// Chooses the arm's joints: the last seven on the way to the tip that move and are neither held

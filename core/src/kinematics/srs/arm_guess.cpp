@@ -244,7 +244,26 @@ class Guesser {
     }
   }
 
+  /// Returns the joints of the longest row below the root that an arm could have, even where they
+  /// are as few as a finger's.
+  std::vector<std::string> longest_row_anywhere() const {
+    const auto longest = [&](const auto& joints) -> const Joint* {
+      const Joint* best = nullptr;
+      for (const Joint* joint : joints)
+        if (row_from(*joint) > (best == nullptr ? 0 : row_from(*best))) best = joint;
+      return best;
+    };
+    std::vector<const Joint*> all;
+    for (const Joint& joint : robot_.joints) all.push_back(&joint);
+    std::vector<std::string> names;
+    for (const Joint* joint = longest(all); joint != nullptr;
+         joint = longest(children_[joint->child_link]))
+      if (is_arm_joint(*joint)) names.push_back(joint->name);
+    return names;
+  }
+
   std::vector<std::string> longest_row() const {
+    if (most_ == 0) return longest_row_anywhere();
     std::vector<std::string> names;
     for (int joint = robot_.links[end_of_most_].parent_joint;
          joint >= 0 && static_cast<int>(names.size()) < most_;) {
