@@ -7,6 +7,7 @@
 #include "io_support.hpp"
 #include "seed.hpp"
 #include "swivel/io/motions/motion.hpp"
+#include "swivel/io/workcells/workcell_csv.hpp"
 
 namespace swivel::io::test {
 namespace {
@@ -439,6 +440,47 @@ TEST(TrajectoryFiles, LogsAreReadStrictly) {
     SCOPED_TRACE(name);
     const fs::path file = folder.write("m.mcap", text);
     expect_message(input_error([&] { (void)load_trajectory_file(file, kNames); }), needles);
+  }
+}
+
+/// The rolls of two arms of six joints have columns of their own; files that name both alike, as
+/// earlier versions wrote them, are read as well.
+TEST(Trajectory, RollsOfTwoArmsAreNamedByArm) {
+  const TempFolder folder;
+  const std::array<std::string, 2> names{"left", "right"};
+  const std::array<JointNames, 2> joints{
+      {{"a", "b", "c", "d", "e", "f", "roll"}, {"g", "h", "i", "j", "k", "l", "roll"}}};
+  WorkcellResult result;
+  WorkcellMotion motion;
+  result.names = motion.names = names;
+  for (std::size_t k = 0; k < 2; ++k) {
+    result.arms[k] = random_result(3);
+    result.arms[k].joint_names = joints[k];
+    for (std::size_t i = 0; i < 3; ++i) {
+      TimedRow& row = motion.arms[k].rows.emplace_back();
+      row.t = static_cast<double>(i) / 250;
+      row.row = result.arms[k].trajectory[i];
+    }
+  }
+  const std::string rows = to_workcell_csv(result), timed = to_workcell_motion_csv(motion, joints);
+  EXPECT_TRUE(rows.starts_with(
+      "s_left,s_right,phi_left,phi_right,branch_left,branch_right,a,b,c,d,e,f,roll_left,g,h,i,j,k,"
+      "l,roll_right\n"));
+  EXPECT_NE(timed.find(",f_v,roll_left_v,g_v,"), std::string::npos);
+  for (const std::string& text : {rows, timed}) {
+    std::string before = text;
+    for (const std::string& name : names)
+      for (std::size_t at = before.find("roll_" + name); at != std::string::npos;
+           at = before.find("roll_" + name))
+        before.erase(at + 4, name.size() + 1);
+    ASSERT_NE(before, text);
+    for (const std::string& one : {text, before}) {
+      const WorkcellRows read = load_workcell_rows(folder.write("t.csv", one), names, joints);
+      EXPECT_EQ(read.timed[0].empty(), text == rows);
+      for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+          EXPECT_EQ(read.rows[k].at(i).q, result.arms[k].trajectory[i].q);
+    }
   }
 }
 

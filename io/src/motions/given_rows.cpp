@@ -4,17 +4,26 @@
 #include "files/bad_input.hpp"
 #include "files/csv.hpp"
 #include "files/files.hpp"
+#include "motions/joint_rows.hpp"
 
 namespace swivel::io {
 
 std::vector<std::string> workcell_columns(const std::array<std::string, 2>& names,
-                                          const std::array<JointNames, 2>& joints) {
+                                          const std::array<JointNames, 2>& joints,
+                                          RollColumns rolls) {
   std::vector<std::string> columns;
   for (const char* const what : {"s_", "phi_", "branch_"})
     for (const std::string& name : names) columns.push_back(what + name);
-  for (const JointNames& of_arm : joints)
-    columns.insert(columns.end(), of_arm.begin(), of_arm.end());
+  for (std::size_t arm = 0; arm < 2; ++arm) {
+    columns.insert(columns.end(), joints[arm].begin(), joints[arm].end());
+    if (rolls == RollColumns::kOfArms && may_lack_last(joints[arm]))
+      columns.back() += "_" + names[arm];
+  }
   return columns;
+}
+
+bool have_roll(const std::array<JointNames, 2>& joints) {
+  return may_lack_last(joints[0]) || may_lack_last(joints[1]);
 }
 
 namespace {
@@ -33,8 +42,10 @@ std::vector<Config> load_given_rows(const std::filesystem::path& file, std::size
                                     const std::array<std::string, 2>& names,
                                     const std::array<JointNames, 2>& joints) {
   std::vector<Config> rows;
-  const std::vector<std::string> of_both = workcell_columns(names, joints);
-  if (begins_with(read_file(file, "trajectory file", kMostTableBytes), of_both)) {
+  const std::string text = read_file(file, "trajectory file", kMostTableBytes);
+  for (const RollColumns rolls : {RollColumns::kOfArms, RollColumns::kPlain}) {
+    const std::vector<std::string> of_both = workcell_columns(names, joints, rolls);
+    if (!begins_with(text, of_both)) continue;
     const CsvTable table(file, of_both);
     for (std::size_t k = 0; k < table.rows(); ++k)
       rows.emplace_back(Config::Map(&table.row(k)[of_both.size() - kDof * (2 - arm)]));

@@ -12,13 +12,16 @@ namespace swivel::io {
 
 namespace {
 
+constexpr std::size_t kBeforeJoints = 6;  // s, phi and branch of both arms
+
 std::vector<std::string> workcell_motion_header(const std::array<std::string, 2>& names,
-                                                const std::array<JointNames, 2>& joint_names) {
-  std::vector<std::string> columns = workcell_columns(names, joint_names);
+                                                const std::array<JointNames, 2>& joint_names,
+                                                RollColumns rolls = RollColumns::kOfArms) {
+  std::vector<std::string> columns = workcell_columns(names, joint_names, rolls);
+  const std::vector<std::string> joints(columns.begin() + kBeforeJoints, columns.end());
   columns.insert(columns.begin(), "t");
   for (const char* const what : {"_v", "_a"})
-    for (const JointNames& joints : joint_names)
-      for (const std::string& joint : joints) columns.push_back(joint + what);
+    for (const std::string& joint : joints) columns.push_back(joint + what);
   return columns;
 }
 
@@ -37,8 +40,6 @@ std::string fields_of(const std::array<const TrajectoryRow*, 2>& rows) {
     for (const double joint : row->q) text += ',' + csv_number(joint);
   return text;
 }
-
-constexpr std::size_t kBeforeJoints = 6;  // s, phi and branch of both arms
 
 /// Returns the row of an arm from the values of a line, without those of times.
 TrajectoryRow row_of(const std::span<const double>& values, std::size_t arm,
@@ -92,7 +93,10 @@ std::string to_workcell_csv(const WorkcellResult& result) {
 std::array<std::vector<TrajectoryRow>, 2> load_workcell_csv(
     const std::filesystem::path& csv, const std::array<std::string, 2>& names,
     const std::array<JointNames, 2>& joint_names) {
-  return rows_of(CsvTable(csv, workcell_columns(names, joint_names)), false, names).rows;
+  std::vector<std::vector<std::string>> headers{workcell_columns(names, joint_names)};
+  if (have_roll(joint_names))
+    headers.push_back(workcell_columns(names, joint_names, RollColumns::kPlain));
+  return rows_of(CsvTable(csv, headers), false, names).rows;
 }
 
 std::string to_workcell_motion_csv(const WorkcellMotion& motion,
@@ -125,9 +129,14 @@ std::string workcell_motion_text(const WorkcellMotion& motion,
 WorkcellRows load_workcell_rows(const std::filesystem::path& csv,
                                 const std::array<std::string, 2>& names,
                                 const std::array<JointNames, 2>& joint_names) {
-  const CsvTable table(
-      csv, {workcell_columns(names, joint_names), workcell_motion_header(names, joint_names)});
-  return rows_of(table, table.header() == 1, names);
+  std::vector<std::vector<std::string>> headers;
+  for (const RollColumns rolls : {RollColumns::kOfArms, RollColumns::kPlain}) {
+    if (rolls == RollColumns::kPlain && !have_roll(joint_names)) break;
+    headers.push_back(workcell_columns(names, joint_names, rolls));
+    headers.push_back(workcell_motion_header(names, joint_names, rolls));
+  }
+  const CsvTable table(csv, headers);
+  return rows_of(table, table.header() % 2 == 1, names);
 }
 
 }  // namespace swivel::io
