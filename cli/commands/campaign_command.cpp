@@ -214,9 +214,11 @@ void plan_episodes(const std::optional<PreparedRobot>& robot, const Drawn& drawn
   auto solved = std::count_if(rows.begin(), rows.end(), [](const EpisodeRow& row) {
     return row.status == PlanStatus::kSolved;
   });
+  const std::uint64_t before = rows.size();
   const auto show = [&] {
     progress.show(std::to_string(rows.size()) + " of " + std::to_string(size) + " episodes, " +
-                  std::to_string(solved) + " solved");
+                  std::to_string(solved) + " solved" +
+                  time_to_go(rows.size() - before, size - before, progress.seconds()));
   };
   show();
   const auto row_done = [&](const EpisodeRow& row) {

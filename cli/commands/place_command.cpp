@@ -305,7 +305,8 @@ struct PlacementRun {
       ++done;
       solved += row.status == PlanStatus::kSolved;
       progress.show(std::to_string(done) + " of " + (grows ? "at least " : "") +
-                    std::to_string(of) + " placements, " + std::to_string(solved) + " with a path");
+                    std::to_string(of) + " placements, " + std::to_string(solved) + " with a path" +
+                    (grows ? "" : time_to_go(done, of, progress.seconds())));
     });
     rows.insert(rows.end(), more.begin(), more.end());
     return more;

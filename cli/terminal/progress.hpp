@@ -2,6 +2,7 @@
 #pragma once
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <cstdio>
 #include <mutex>
 #include <string>
@@ -10,6 +11,21 @@
 #include "swivel/core/base/budget.hpp"
 
 namespace swivel::cli {
+
+/// Returns how long work will go on, in words such as ", about 40 s to go", from how much of it is
+/// done after some time; "" where nothing is done yet, or all.
+inline std::string time_to_go(std::uint64_t done, std::uint64_t of, double seconds) {
+  if (done == 0 || done >= of) return "";
+  const double left = seconds * static_cast<double>(of - done) / static_cast<double>(done);
+  char text[48];
+  if (left < 100)
+    std::snprintf(text, sizeof text, ", about %.0f s to go", left);
+  else if (left < 6000)
+    std::snprintf(text, sizeof text, ", about %.0f min to go", left / 60);
+  else
+    std::snprintf(text, sizeof text, ", about %.1f h to go", left / 3600);
+  return text;
+}
 
 /// Shows the progress of work that takes more than half a second as one line on the terminal
 /// (standard error). A thread of its own redraws the line five times a second, so that stages which
@@ -28,20 +44,21 @@ class ProgressLine {
     progress_ = progress;
     phrase_.clear();
   }
+  /// Returns how long ago the line was made, s.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+  }
   /// Erases the line; nothing is shown afterwards.
   void clear() { painter_ = {}; }
 
  private:
   void paint(const std::stop_token& stop) {
-    const auto start = std::chrono::steady_clock::now();
     bool shown = false;
     std::unique_lock lock(mutex_);
     for (auto wait = std::chrono::milliseconds(500);
          !wake_.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); });
          wait = std::chrono::milliseconds(200)) {
-      std::fprintf(stderr, "\r\033[K%.1f s: %s",
-                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                   phrase().c_str());
+      std::fprintf(stderr, "\r\033[K%.1f s: %s", seconds(), phrase().c_str());
       shown = true;
     }
     if (shown) std::fprintf(stderr, "\r\033[K");
@@ -56,6 +73,7 @@ class ProgressLine {
     return text;
   }
 
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   Progress progress_;
   std::condition_variable_any wake_;

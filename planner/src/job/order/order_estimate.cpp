@@ -99,6 +99,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     (of_ends ? gates[run].ends : gates[run].begins) = std::move(found);
     if (!of_ends) gates[run].least = least;
   });
+  budget.tell(Stage::kSearch);  // the lattices of all strokes are swept
   const Problem first = problem_of_run(job, {0, false});
   const ToolPath path = path_within_scale(first, robot.arm().chain, budget);
   const auto metric = make_lattice(robot.arm().chain, robot.arm_class(), path, first, budget);

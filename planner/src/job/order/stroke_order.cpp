@@ -42,6 +42,7 @@ Runs exact_order(const OrderCosts& costs, const Budget& budget) {
     double cost = kNone;
     std::uint8_t before = 0;
   };
+  budget.tell(Stage::kSearch);
   std::vector<Best> least(sets * runs);
   for (std::size_t run = 0; run < runs; ++run)
     least[(std::size_t{1} << run / 2) * runs + run].cost = costs.first[run];
