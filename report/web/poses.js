@@ -145,7 +145,7 @@ export const offPath = (at, row) => ({
  */
 export const endPose = (cut, rows, steps) =>
   cut.is_row
-    ? { ...poseAt(rows, steps, rows.length - 1), note: cut.what }
+    ? { ...poseAt(rows, steps, rows.length - 1), pair: null, line: null, note: cut.what }
     : offPath(cut, rowOf(rows, cut.layer));
 /** What the button that leads there is called. */
 export const endName = (cut) => (cut?.is_row ? 'Where it ends' : 'Blocked pose');
