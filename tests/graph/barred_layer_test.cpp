@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "robots.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/search/path_first.hpp"
 
@@ -169,6 +171,54 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
   if (at_least(8) > 0) {
     EXPECT_LE(rounds_of_barred, 20 * barred);  // 30 where nobody asks about the rest of a layer
   }
+}
+
+/// Bars a layer, as a search does that sees that all of its nodes fail, and looks how far paths
+/// lead. Returns the deepest layer, that paths lead to it, and the cost of the cheapest one.
+std::pair<int, double> depth_before(int layer, CostToGo& values) {
+  const Lattice& lattice = values.lattice();
+  if (!values.restart({})) values.sweep(lattice.layers() - 1);
+  for (int slot = 0; slot < lattice.slots(layer); ++slot)
+    values.verdicts().remove_node(layer, slot);
+  const int deepest = values.deepest_reachable();
+  if (deepest < 0) return {deepest, kUnreachable};
+  values.sweep(deepest);
+  return {deepest, values.best()};
+}
+
+TEST(PathFirst, ForgetsTheLayerThatWasBarredBefore) {
+  const std::uint64_t base = seed("PathFirst.ForgetsTheLayerThatWasBarredBefore");
+  int grids = 0, lists = 0, reached = 0;
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    TestRobot robot = data_robot(trial % 2 == 0 ? "sda5f" : "xarm7_like");
+    if (trial % 2 == 1) robot.tip_link = "flange";
+    const Chain chain = arm_of(robot).chain;
+    Problem problem = random_problem(robot, chain, random);
+    problem.resolution.ds *= 4;
+    problem.resolution.arc = 0.6;
+    const ArmClass arm = classify(chain, robot.name);
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+    const auto plain = make_lattice(chain, arm, path, problem);
+    std::vector<Lattice::Node> nodes;
+    plain->layer_nodes(0, nodes);
+    if (nodes.empty()) continue;
+    if (random.coin()) problem.start = plain->exact_config(0, nodes.front().slot);
+    const auto lattice = make_lattice(chain, arm, path, problem);
+    (trial % 2 == 0 ? grids : lists) += 1;
+    const auto kept = make_cost_to_go(*lattice, Pruning::kByBound);
+    for (int search = 0; search < 4; ++search) {
+      const int layer = 1 + random.below(lattice->layers() - 1);
+      const auto found = depth_before(layer, *kept);
+      ASSERT_EQ(found, depth_before(layer, *make_cost_to_go(*lattice, Pruning::kByBound)))
+          << "SWIVEL_TEST_SEED=" << base << " trial " << trial << ", search " << search;
+      reached += found.first == layer - 1;
+    }
+  }
+  EXPECT_GE(grids, at_least(count / 4));
+  EXPECT_GE(lists, at_least(count / 4));
+  EXPECT_GE(reached, at_least(count));
 }
 
 }  // namespace

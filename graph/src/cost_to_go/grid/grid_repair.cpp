@@ -498,6 +498,7 @@ class GridCostToGo::ReachSweep {
 int GridCostToGo::deepest_reachable() {
   if (knows_reach()) return reach_.deepest;
   const TraceSpan span("reach");
+  save_unremoved();
   reach_.known = false;
   reach_.rows.clear();
   forget_joints();

@@ -195,6 +195,7 @@ double LayerValues::best() const {
 int LayerValues::deepest_reachable() {
   if (before_.known && before_.removed == verdicts_.removed()) return before_.deepest;
   const TraceSpan span("reach");
+  save_unremoved();
   before_ = {};
   Values before, here;
   for (int layer = 0; layer < lattice().layers(); ++layer) {

@@ -102,6 +102,9 @@ class CostToGo {
   /// Keeps the present values for restore(), which brings them back as often as asked.
   virtual void save() = 0;
   virtual void restore() = 0;
+  /// Saves the values without removals, if they are present, before they or what goes with them are
+  /// overwritten.
+  void save_unremoved();
 
   Budget budget_;
   ParallelFor work_;
@@ -112,7 +115,6 @@ class CostToGo {
  private:
   /// Where the values without removals and with the last layer as goal are.
   enum class Unremoved { kUnknown, kPresent, kSaved };
-  void save_unremoved();
   Unremoved unremoved_ = Unremoved::kUnknown;
   bool restarts_ = true;
 };
