@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "commands/advice_or_warning.hpp"
 #include "commands/plan_job_command.hpp"
 #include "commands/workcell_command.hpp"
 #include "options/commands.hpp"
@@ -197,7 +198,8 @@ void find_advice(const Planner& planner, const PlanRequest& request, const Budge
   if (!request.advise_s || !answer.infeasible()) return;
   PlanOptions trials = request.options;
   trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
-  answer.advice = advise(planner, answer.plan.result, trials);
+  answer.advice = advice_or_warning(answer.plan.result.warnings,
+                                    [&] { return advise(planner, answer.plan.result, trials); });
 }
 
 /// Where there is no path, proves it with a certificate. Adds a warning to the result if the budget

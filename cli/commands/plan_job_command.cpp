@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "commands/advice_or_warning.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "swivel/core/answer/answer_text.hpp"
@@ -103,7 +104,9 @@ void find_advice(const JobRequest& request, const PreparedRobot& robot, const Jo
   if (!request.advise_s) return;
   PlanOptions trials = request.options;
   trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
-  answer.advice = advise_job(robot, job, answer.plan.result, trials);
+  answer.advice = advice_or_warning(answer.plan.result.warnings, [&] {
+    return advise_job(robot, job, answer.plan.result, trials);
+  });
 }
 
 /// Returns what followed the plan, for the result file. It points into `answer`.

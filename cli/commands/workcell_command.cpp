@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "commands/advice_or_warning.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "output/check_output.hpp"
@@ -93,7 +94,9 @@ void find_advice(const WorkcellRequest& request, const Budget& budget, WorkcellA
   if (!request.advise_s || answer.plan.result.status != PlanStatus::kInfeasible) return;
   PlanOptions trials = request.options;
   trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
-  answer.advice = advise_workcell(request.cell, answer.plan.result, trials);
+  answer.advice = advice_or_warning(answer.plan.result.warnings, [&] {
+    return advise_workcell(request.cell, answer.plan.result, trials);
+  });
 }
 
 /// Returns the answer of a workcell for people, with its advice, its refinement and its motion.

@@ -533,6 +533,35 @@ class Errors(WithFiles):
         done = self.faulty("plan", SOLVED, *self.EAGER, "--json", "-")
         self.assertEqual((done.returncode, json.loads(done.stdout)["status"]), (5, "error"))
 
+    def test_an_error_of_advice_costs_no_answer(self):
+        """Half the steps need more memory than the plan: the largest fault is in the advice."""
+        problem = self.folder / "barred.yaml"
+        problem.write_text(
+            cli_test.BadInput.BASE.format(data=DATA)
+            .replace("clearance: 0.005", "clearance: 0.005, joint_margin: 1.5")
+            .replace("ds: 0.02, dphi: 0.2", "ds: 0.005, dphi: 0.05")
+        )
+        plain = subprocess.run([SWIVEL, "plan", problem], capture_output=True, text=True, timeout=60)
+        self.assertEqual(plain.returncode, 1, plain.stdout + plain.stderr)
+        for power in range(32, 12, -1):
+            environment = {
+                **os.environ, "LD_PRELOAD": self.library, "SWIVEL_FAULT_BYTES": str(1 << power)
+            }
+            done = subprocess.run(
+                [SWIVEL, "plan", problem, "--advise", "5", "--json", self.json],
+                capture_output=True, text=True, timeout=60, env=environment
+            )
+            if "injected" in done.stderr:
+                break
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(
+            [line for line in done.stderr.splitlines() if "injected" in line],
+            ["swivel: warning: --advise: ended by an error, there is no advice: injected"],
+        )
+        self.assertEqual(done.stdout.splitlines()[0], plain.stdout.splitlines()[0])
+        result = json.loads(self.json.read_text())
+        self.assertEqual((result["status"], result["advice"]), ("infeasible", None))
+
     def test_campaign(self):
         problem, out = self.folder / "problem.yaml", self.folder / "rows.csv"
         problem.write_text(

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -106,11 +107,15 @@ class JobTrials {
     if (seconds > 0) {
       PlanOptions options = options_;
       options.timeout_s = seconds;
-      const JobResult found = plan_job(robot_, changed, options);
-      if (!found.parts.empty()) {
-        advice.outcome = Advice::Outcome::kSolved;
-        advice.cost = found.cost;
-      } else if (found.status == PlanStatus::kInfeasible) {
+      try {
+        const JobResult found = plan_job(robot_, changed, options);
+        if (!found.parts.empty()) {
+          advice.outcome = Advice::Outcome::kSolved;
+          advice.cost = found.cost;
+        } else if (found.status == PlanStatus::kInfeasible) {
+          advice.outcome = Advice::Outcome::kNoHelp;
+        }
+      } catch (const InputError&) {  // the form of a job does not allow the change
         advice.outcome = Advice::Outcome::kNoHelp;
       }
     }
