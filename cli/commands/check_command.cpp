@@ -159,6 +159,10 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
                      "stroke: '" + certificate.stroke +
                          "' is reversible, and a certificate is of one direction: allowed are "
                          "strokes that are not reversible");
+  if (certificate.reversed && !job.strokes[*stroke].reversible)
+    throw InputError(arguments.certificate, "reversed: stroke '" + certificate.stroke +
+                                                "' is not `reversible`: allowed is a certificate "
+                                                "of it forwards");
   const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
   return run_on_certificate(
       problem, certificate,

@@ -58,6 +58,14 @@ class Reader {
     if (found == object.end()) fail(where + key, "is missing", "what plan --certificate writes");
     return *found;
   }
+  /// Refuses an object with another key than these.
+  void only(const Parsed& object, const std::string& where,
+            std::initializer_list<std::string_view> keys) const {
+    if (!object.is_object()) return;  // at() says so
+    for (const auto& [key, value] : object.items())
+      if (std::find(keys.begin(), keys.end(), key) == keys.end())
+        fail(where + key, "is unknown here", "what plan --certificate writes");
+  }
   std::int64_t whole(const Parsed& value, const std::string& key,
                      std::int64_t most = std::numeric_limits<int>::max()) const {
     if (!value.is_number_integer() || value.get<double>() < 0 ||
@@ -112,6 +120,7 @@ int depth_of(std::string_view text) {
 
 Cause witness_of(const Reader& read, const Parsed& json, const std::string& key) {
   Cause cause;
+  read.only(json, key, {"cause", "joint", "side", "bodies", "check"});
   const std::string name = read.text(read.at(json, "cause", key), key + "cause");
   for (int kind = 0; kind <= static_cast<int>(Cause::Kind::kCheck); ++kind)
     if (name == to_string(static_cast<Cause::Kind>(kind)))
@@ -136,6 +145,7 @@ Cause witness_of(const Reader& read, const Parsed& json, const std::string& key)
 InfeasibilityCertificate::Layer layer_of(const Reader& read, const Parsed& json,
                                          const std::string& key) {
   InfeasibilityCertificate::Layer layer;
+  read.only(json, key, {"layer", "slots", "reached", "nodes", "edges"});
   layer.slots = read.small(read.at(json, "slots", key), key + "slots");
   const auto each = [&](const char* name, std::size_t size, const auto& take) {
     const std::string where = key + name;
@@ -188,6 +198,7 @@ void read_layout(const Reader& read, const Parsed& json, const std::string& key,
                  std::vector<std::array<bool, kDof>>& windings) {
   const std::string within = key + "resolution.";
   const Parsed& steps = read.at(json, "resolution", key);
+  read.only(steps, within, {"ds", "dphi", "dalpha", "arc", "arcs"});
   const auto real = [&](const char* name) {
     return read.real(read.at(steps, name, within), within + name);
   };
@@ -263,6 +274,7 @@ WorkcellCertificate::Region region_of(const Reader& read, const Parsed& json,
   WorkcellCertificate::Region region;
   region.layer = read.small(read.at(json, "layer", key), key + "layer");
   const bool of_moves = json.contains("moves");
+  read.only(json, key, {"layer", of_moves ? "moves" : "nodes", "bodies"});
   const std::string name = of_moves ? "moves" : "nodes", where = key + name;
   const Parsed& sides = read.list(read.at(json, name.c_str(), key), where, 2);
   for (std::size_t k = 0; k < 2; ++k)
@@ -300,14 +312,18 @@ Json set_json(const WorkcellCertificate::Branch& set) {
 WorkcellCertificate::Branch set_of(const Reader& read, const Parsed& json, const std::string& key) {
   WorkcellCertificate::Branch set;
   if (!json.is_object()) read.fail(key, "is no object", "what plan --certificate writes");
+  if (json.contains("arm") && !json.contains("parent"))
+    read.fail(key + "arm", "is given without a parent", "what plan --certificate writes");
   if (json.contains("parent")) {
     set.parent = read.small(json["parent"], key + "parent");
     set.arm = static_cast<int>(read.whole(read.at(json, "arm", key), key + "arm", 1));
   }
   if (json.contains("region")) {
+    read.only(json, key, {"parent", "arm", "region"});
     set.region = region_of(read, json["region"], key + "region.");
     return set;
   }
+  read.only(json, key, {"parent", "arm", "without_path", "witnesses", "layers"});
   set.arm_without_path =
       static_cast<int>(read.whole(read.at(json, "without_path", key), key + "without_path", 1));
   read_cut(read, json, key, set.cut);
@@ -338,6 +354,11 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   const Reader read(file.string());
   const Parsed json = parsed_certificate(read, file, kFormat);
   InfeasibilityCertificate certificate;
+  read.only(json, "",
+            {"format", "stroke", "reversed", "resolution", "edges", "windings", "path_layers",
+             "witnesses", "layers"});
+  if (json.contains("reversed") && !json.contains("stroke"))
+    read.fail("reversed", "is given without a stroke", "what plan --certificate writes");
   if (json.contains("stroke")) {
     certificate.stroke = read.text(json["stroke"], "stroke");
     certificate.reversed = read.truth(read.at(json, "reversed", ""), "reversed");
@@ -366,7 +387,9 @@ WorkcellCertificate load_workcell_certificate(const std::filesystem::path& file)
   const Reader read(file.string());
   const Parsed json = parsed_certificate(read, file, kWorkcellFormat);
   WorkcellCertificate certificate;
+  read.only(json, "", {"format", "arms", "path_layers", "sets"});
   const Parsed& arms = read.list(read.at(json, "arms", ""), "arms", 2);
+  for (const Parsed& arm : arms) read.only(arm, "arms.", {"resolution", "edges", "windings"});
   for (std::size_t k = 0; k < 2; ++k)
     read_layout(read, arms[k], "arms[" + std::to_string(k) + "].", certificate.resolution[k],
                 certificate.edges[k], certificate.windings[k]);

@@ -66,6 +66,12 @@ class RegionSides {
   std::size_t arm_ = 0;
 };
 
+/// Returns a lattice in which the turns of joints are told apart as a certificate says, list by
+/// list; null where a list has no joint, one of less than two turns, or one that was told apart
+/// before.
+[[nodiscard]] std::unique_ptr<Lattice> told_apart(std::unique_ptr<Lattice> lattice,
+                                                  const std::vector<Lattice::Joints>& windings);
+
 /// Returns a cut of a lattice in which no path is left once what `verdicts` call removed is left
 /// out: its band and its witnesses. Throws InvalidArgument if there is a path, std::logic_error for
 /// a removal that has no witness, and Stopped.

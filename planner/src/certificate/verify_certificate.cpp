@@ -42,6 +42,7 @@ class Verifier {
       if (!witnesses_.add(certificate_.witnesses[k]))
         throw Refused{"witness " + std::to_string(k) + ": " + words(certificate_.witnesses[k]) +
                       ": is nothing that this problem has"};
+    removes_.assign(certificate_.witnesses.size(), 0);
     const int count = static_cast<int>(certificate_.band.size());
     if (count == 0 || certificate_.first_layer < 0 ||
         certificate_.first_layer > lattice_.layers() - count)
@@ -56,6 +57,10 @@ class Verifier {
         nothing_leads_on(before_, here_, certificate_.band[index(k)].edges);
       std::swap(before_, here_);
     }
+    for (std::size_t k = 0; k < removes_.size(); ++k)
+      if (!removes_[k])
+        throw Refused{"witness " + std::to_string(k) + ": " + words(certificate_.witnesses[k]) +
+                      ": removes nothing"};
     if (!certificate_.band.back().reached.empty())
       throw Refused{"layer " + number(before_.layer) + ", the last: slot " +
                     number(certificate_.band.back().reached[0].first) + " is reached"};
@@ -114,9 +119,10 @@ class Verifier {
     return layer;
   }
 
-  void require_witness(int k, int layer) const {
+  void require_witness(int k, int layer) {
     if (k < 0 || k - regions_.count() >= static_cast<int>(certificate_.witnesses.size()))
       throw Refused{"layer " + number(layer) + ": witness " + number(k) + " is not listed"};
+    if (k >= regions_.count()) removes_[index(k - regions_.count())] = 1;
   }
   [[nodiscard]] std::string words_of(int witness) const {
     return witness < regions_.count()
@@ -212,6 +218,7 @@ class Verifier {
   CertificateCheck& result_;
   const Budget& budget_;
   Witnesses witnesses_;
+  std::vector<char> removes_;  // by witness: whether something is said to be removed by it
   Layer before_, here_;
 };
 
@@ -233,6 +240,24 @@ void require_same_layout(const Problem& problem, const StatedLayout& stated, int
   require(own.arcs == other.arcs, "resolution.arcs (--arcs, --no-arcs)");
   require(problem.limits.edges == stated.edges, "limits.edges (--edges)");
   require(layers == stated.layers, "the number of layers");
+}
+
+std::unique_ptr<Lattice> told_apart(std::unique_ptr<Lattice> lattice,
+                                    const std::vector<Lattice::Joints>& windings) {
+  constexpr double kSlack = 1e-3;  // rad, that a range of two turns may be narrower by rounding
+  Lattice::Joints before{};
+  for (const Lattice::Joints& joints : windings) {
+    if (joints == Lattice::Joints{}) return nullptr;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const JointLimit& limit = lattice->chain().limit[j];
+      const bool turns = !limit.continuous && limit.upper - limit.lower >= kTwoPi - kSlack;
+      if (joints[j] && (!turns || before[j])) return nullptr;
+      before[j] = before[j] || joints[j];
+    }
+    lattice = lattice->with_windings(joints);
+    if (!lattice) return nullptr;
+  }
+  return lattice;
 }
 
 std::string fault_of_cut(const Lattice& lattice, const World& world, const EdgeRule& rule,
@@ -262,10 +287,8 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& p
   CertificateCheck result;
   result.complete = robot.arm_class().complete();
   try {
-    for (const auto& joints : certificate.windings) {
-      lattice = lattice->with_windings(joints);
-      if (!lattice) throw Refused{"windings: of joints that are told apart anyway"};
-    }
+    lattice = told_apart(std::move(lattice), certificate.windings);
+    if (!lattice) throw Refused{"windings: of joints whose turns are told apart anyway"};
     const World world(robot.world(), problem, budget);
     const std::string fault = fault_of_cut(*lattice, world, world.edge_rule(robot.radii()),
                                            certificate, {}, check, budget, result);

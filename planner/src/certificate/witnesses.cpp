@@ -8,6 +8,20 @@
 
 namespace swivel {
 
+namespace {
+
+/// Returns true if a cause says nothing but what causes of its kind need as witnesses.
+bool says_no_more(const Cause& cause) {
+  Cause needed;
+  needed.kind = cause.kind;
+  if (cause.kind == Cause::Kind::kLimit) needed.joint = cause.joint, needed.side = cause.side;
+  if (cause.kind == Cause::Kind::kPair) needed.bodies = cause.bodies;
+  if (cause.kind == Cause::Kind::kCheck) needed.check = cause.check;
+  return cause == needed;
+}
+
+}  // namespace
+
 Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule,
                      DistanceProofs distance_proofs, const std::shared_ptr<StateCheck>& check,
                      const Budget& budget)
@@ -19,6 +33,7 @@ Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule&
       budget_(budget) {}
 
 std::optional<Witnesses::About> Witnesses::about(const Cause& cause) const {
+  if (!says_no_more(cause)) return std::nullopt;
   About about;
   switch (cause.kind) {
     case Cause::Kind::kLimit: {

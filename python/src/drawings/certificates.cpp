@@ -122,6 +122,10 @@ CertificateCheck verdict_on_stroke(const Job& of, const InfeasibilityCertificate
     throw InputError("certificate", "stroke: '" + certificate.stroke +
                                         "' is none of the job: allowed are the names of its "
                                         "strokes");
+  if (certificate.reversed && !job.strokes[*stroke].reversible)
+    throw InputError("certificate", "reversed: stroke '" + certificate.stroke +
+                                        "' is not `reversible`: allowed is a certificate of it "
+                                        "forwards");
   const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);

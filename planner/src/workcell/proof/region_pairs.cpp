@@ -32,7 +32,7 @@ std::optional<std::array<std::size_t, 2>> find_pair_apart(
       for (std::size_t a = 0; a < q[0].size(); ++a)
         for (std::size_t b = 0; b < q[1].size(); ++b)
           if (stances.of[0].stance_of(a) == i && stances.of[1].stance_of(b) == j &&
-              !query.find_violating_pair({q[0][a], q[1][b]}, ClearanceRule::kNode))
+              (pair || !query.find_violating_pair({q[0][a], q[1][b]}, ClearanceRule::kNode)))
             return std::array{a, b};
     }
   return std::nullopt;

@@ -12,9 +12,8 @@
 namespace swivel {
 
 /// Returns the first pair of configurations, one of each list of joints, at which two arms are
-/// apart, by their indices; nothing if there is none. `pair`: the bodies to ask about first, or
-/// nothing for all; configurations that these leave open are asked about with all bodies. Throws
-/// Stopped.
+/// apart, by their indices; nothing if there is none. `pair`: the bodies that are meant, as
+/// find_pair_always_near() returns them, or nothing for all. Throws Stopped.
 [[nodiscard]] std::optional<std::array<std::size_t, 2>> find_pair_apart(
     InterArmWorld::Query& query, const std::array<std::vector<Config>, 2>& q,
     const std::optional<BodyPair>& pair, const Budget& budget);

@@ -40,11 +40,9 @@ class WorkcellVerifier {
     try {
       for (std::size_t k = 0; k < 2; ++k) {
         result_.complete = result_.complete && arms_[k]->robot.arm_class().complete();
-        for (const auto& joints : certificate_.windings[k]) {
-          arms_[k]->lattice = arms_[k]->lattice->with_windings(joints);
-          if (!arms_[k]->lattice)
-            throw CellRefused{"windings: of joints that are told apart anyway"};
-        }
+        arms_[k]->lattice = told_apart(std::move(arms_[k]->lattice), certificate_.windings[k]);
+        if (!arms_[k]->lattice)
+          throw CellRefused{"windings: of joints whose turns are told apart anyway"};
       }
       require_whole_tree();
       for (std::size_t k = 0; k < certificate_.tree.size(); ++k)
@@ -80,8 +78,10 @@ class WorkcellVerifier {
         if (!tree[index(branch.parent)].region) refuse(k, "its parent is not divided by a region");
         ++children[index(branch.parent)][index(branch.arm)];
       }
-      if (!branch.region && (branch.arm_without_path < 0 || branch.arm_without_path > 1))
-        refuse(k, "it has neither a region nor an arm without a path");
+      if (branch.region.has_value() ==
+          (branch.arm_without_path >= 0 && branch.arm_without_path <= 1))
+        refuse(k, "allowed is either a region or an arm without a path");
+      if (is_root && branch.arm >= 0) refuse(k, "it is the first, and of an arm");
     }
     for (std::size_t k = 0; k < tree.size(); ++k)
       if (tree[k].region && children[k] != std::array{1, 1})
@@ -133,9 +133,12 @@ class WorkcellVerifier {
     std::optional<std::array<std::size_t, 2>> apart;
     for (const std::optional<BodyPair>& pair : pairs_of(branch, said))
       if (apart = find_pair_apart(query_, rows, pair, budget_); !apart) return;
+    const std::string bodies =
+        said.bodies[0].empty() ? "" : ": '" + said.bodies[0] + "' and '" + said.bodies[1] + "'";
     refuse(branch, "layer " + std::to_string(said.layer) + ": slot " +
                        std::to_string(region.slots[0][(*apart)[0]]) + " and slot " +
-                       std::to_string(region.slots[1][(*apart)[1]]) + " of its region are apart");
+                       std::to_string(region.slots[1][(*apart)[1]]) + " of its region are apart" +
+                       bodies);
   }
 
   /// Returns the pairs of bodies of a region's names, or nothing, which stands for all pairs.
@@ -165,6 +168,8 @@ class WorkcellVerifier {
     if (arms_[0]->problem.limits.edges != EdgeMode::kContinuous &&
         arms_[1]->problem.limits.edges != EdgeMode::kContinuous)
       refuse(branch, "its region is of moves, of which `limits.edges` asks nothing");
+    if (said.bodies != std::array<std::string, 2>{})
+      refuse(branch, "its region is of moves, and names bodies: allowed are bodies at nodes");
     std::array<std::vector<std::array<Config, 2>>, 2> ends;
     for (std::size_t k = 0; k < 2; ++k) {
       const Lattice& lattice = *arms_[k]->lattice;
