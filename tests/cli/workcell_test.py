@@ -357,6 +357,43 @@ class Workcells(WithWorkcells):
         self.assertEqual(done.returncode, 1)
         self.assertIn("row 2: a joint of 'left' is 1e-07 rad from the given motion", done.stdout)
 
+    def test_a_leader_of_six_joints(self):
+        """Its tool may turn, and takes the follower's path along: so its motion must be given."""
+        six = cell()
+        six["robot"]["hold"]["arm_left_joint_3_e"] = 0
+        left = six["arms"][0]
+        left["path"]["roll"] = [0.2, 0.3]
+        alone = {key: six[key] for key in ("robot", "resolution")}
+        alone["robot"] = {**six["robot"], "tip_link": left["tip_link"], "tool": left["tool"]}
+        single = self.folder / "left.yaml"
+        single.write_text(json.dumps({**alone, "path": left["path"]}))
+        rows = self.folder / "left.csv"
+        done = run("plan", single, "--out", rows)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        right = six["arms"][1]
+        right["path"]["frame"] = "left"
+        for waypoint in right["path"]["waypoints"]:  # half a metre beside the left tool
+            waypoint.update(xyz=[-0.124, -0.484, 0], rpy=[0, 0, -0.25])
+        self.refused(six, "lets the tool turn that carries the path of 'right'")
+        self.refused(six, "cell.yaml:")
+        del left["path"]
+        left["trajectory"] = str(rows)
+        table = list(csv.reader(rows.read_text().splitlines()))
+        roll = table[0].index("roll")
+        self.assertTrue(any(abs(float(row[roll])) > 1e-3 for row in table[1:]))
+        costs = []
+        for without in (False, True):
+            if without:  # as controllers write it
+                rows.write_text(
+                    "\n".join(",".join(row[:roll] + row[roll + 1:]) for row in table) + "\n"
+                )
+            done = self.plan(six)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            costs.append(json.loads(self.result.read_text())["arms"][1]["cost"])
+            done = run("check", self.folder / "cell.yaml", self.out)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertAlmostEqual(*costs, places=6)
+
     def test_no_path_beside_a_given_motion(self):
         apart = cell(arms=[arm("left", 0.02), arm("right", -0.4)])
         self.assertEqual(self.plan(apart).returncode, 0)

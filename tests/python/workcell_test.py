@@ -175,6 +175,49 @@ class Workcells(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "has other joints"):
             swivel.Workcell({"left": arms["left"], "right": (arms["right"].robot, left)})
 
+    def test_a_leader_of_six_joints(self):
+        arms = self.arms(0.5)
+        robots = {
+            name: swivel.Robot(
+                DATA / "robots" / "sda10f.urdf", DATA / "robots" / "sda10f.srdf",
+                base="base_link", tip=f"arm_{name}_link_tool0",
+                hold={"torso_joint_b1": 0, "arm_left_joint_3_e": 0},
+                **({"roll": swivel.Roll()} if name == "left" else {})
+            ) for name in arms
+        }
+        alone = swivel.Problem(robots["left"], arms["left"].task)
+        plan = swivel.plan(alone)
+        self.assertTrue(plan.solved)
+        turned = plan.trajectory.joints[:, -1]
+
+        def real_tool(row):
+            c, s = np.cos(turned[row]), np.sin(turned[row])
+            roll = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+            return robots["left"].tool_pose(plan.trajectory.joints[row]) @ roll
+
+        task = arms["right"].task
+        places = [
+            (np.linalg.inv(real_tool(row)) @ [*at[:3], 1])[:3]
+            for row, at in zip((0, len(turned) - 1), task.waypoints)
+        ]
+        on_tool = swivel.Task([[*at, 1, 0, 0, 0] for at in places], frame="left")
+        on_tool.resolution = task.resolution
+        right = swivel.Problem(robots["right"], on_tool)
+        with self.assertRaisesRegex(ValueError, "whose path would turn with its tool"):
+            swivel.plan_workcell(swivel.Workcell({"left": alone, "right": right}))
+        cell = swivel.Workcell({"left": (robots["left"], plan.trajectory), "right": right})
+        both = swivel.plan_workcell(cell)
+        self.assertTrue(both.solved)
+        self.assertTrue(swivel.check_workcell(cell, both))
+        joints = both.trajectories["left"].joints
+        self.assertTrue(np.array_equal(joints[:, -1], turned))
+        for row in range(len(joints)):
+            pose = robots["right"].tool_pose(both.trajectories["right"].joints[row])
+            there = (np.linalg.inv(real_tool(row)) @ pose[:, 3])[:3]
+            share = row / (len(joints) - 1)
+            asked = places[0] + share * (places[1] - places[0])
+            self.assertLess(np.abs(there - asked).max(), 1e-5)
+
     def test_a_motion_in_time(self):
         cell = swivel.Workcell(self.arms(0.5))
         plan = swivel.plan_workcell(cell, speed=0.1, rate=125)

@@ -53,10 +53,12 @@ void validate_given(const Workcell& cell, std::size_t number) {
   for (std::size_t row = 0; row < arm.given.size(); ++row)
     require(arm.given[row].allFinite(),
             "given: row " + std::to_string(row) + ": allowed are finite joints");
-  require(arm.waypoints.empty() && !arm.start && !arm.end && !arm.smooth && !arm.roll &&
-              cell.leader_of(number) < 0,
-          "waypoints, start, end, smooth, roll, path_frame: allowed for an arm whose motion is "
-          "given are none");
+  require(
+      arm.waypoints.empty() && !arm.start && !arm.end && !arm.smooth && cell.leader_of(number) < 0,
+      "waypoints, start, end, smooth, path_frame: allowed for an arm whose motion is given are "
+      "none");
+  require(!arm.roll || arm.roll->circle(),
+          "roll: allowed for an arm whose motion is given is a whole turn, of six joints, or none");
   const std::size_t last = arm.given.size() - 1, waypoints = other.waypoints.size();
   if (other.steps.empty()) {
     require(waypoints == 2 || waypoints == arm.given.size(),
@@ -70,6 +72,17 @@ void validate_given(const Workcell& cell, std::size_t number) {
   require(sum == static_cast<std::int64_t>(last), "steps: together " + std::to_string(sum) +
                                                       ": allowed are " + std::to_string(last) +
                                                       ", since the given motion ends then");
+}
+
+/// Refuses a leader whose tool would not be where its path says: nobody knows then where its
+/// follower must go before the leader is planned.
+void validate_leader(const WorkcellArm& leader, const std::string& follower) {
+  require(!leader.roll, "roll: '" + leader.name + "' leads '" + follower +
+                            "', whose path would turn with its tool: allowed for a leader is no "
+                            "roll, or a motion that is given");
+  require(!leader.start_at && leader.start_tolerance <= Task().start_tolerance,
+          "start_at, start_tolerance: '" + leader.name + "' leads '" + follower +
+              "': allowed for a leader are the start of its path and the default tolerance");
 }
 
 /// Returns the problem of an arm by itself, for its validation. An arm whose motion is given takes
@@ -106,6 +119,7 @@ void validate(const Workcell& cell) {
               ": allowed is the same number for both arms, since they are at them at one time");
   for (std::size_t k = 0; k < 2; ++k) {
     const WorkcellArm& arm = cell.arms[k];
+    if (cell.leader_of(k) >= 0 && given != 1 - k) validate_leader(cell.arms[1 - k], arm.name);
     require(!arm.smooth || cell.leader_of(k) < 0,
             "smooth: allowed for a follower is none: it keeps to the leader's curve");
     require(arm.rolls.empty() && (arm.steps.empty() || given == 1 - k),

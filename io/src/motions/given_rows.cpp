@@ -39,7 +39,7 @@ bool begins_with(const std::string& text, const std::vector<std::string>& column
 }  // namespace
 
 std::vector<Config> load_given_rows(const std::filesystem::path& file, std::size_t arm,
-                                    const std::array<std::string, 2>& names,
+                                    bool six_joints, const std::array<std::string, 2>& names,
                                     const std::array<JointNames, 2>& joints) {
   std::vector<Config> rows;
   const std::string text = read_file(file, "trajectory file", kMostTableBytes);
@@ -55,9 +55,9 @@ std::vector<Config> load_given_rows(const std::filesystem::path& file, std::size
   if (!read.timed.empty())
     bad_input(file.string(), "has times, which the plan of two arms would not keep",
               "rows without times, as `swivel plan --out` writes them");
-  if (!read.stated.last_joint)
-    bad_input(file.string(), "lacks the roll of an arm of six joints",
-              "a motion of an arm of seven joints");
+  if (!read.stated.last_joint && !six_joints)
+    bad_input(file.string(), "lacks joint '" + joints[arm].back() + "'",
+              "a motion of all joints of the arm");
   for (const TrajectoryRow& row : read.rows) rows.push_back(row.q);
   return rows;
 }

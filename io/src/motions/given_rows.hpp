@@ -24,10 +24,11 @@ enum class RollColumns {
 [[nodiscard]] bool have_roll(const std::array<JointNames, 2>& joints);
 /// Loads the rows of a motion that is given for arm `arm` of a workcell: its joints, rad, from a
 /// trajectory without times that load_trajectory_file() reads, or from the trajectories of both
-/// arms. What else the file says of a row follows from the joints, and is not read. Throws
+/// arms. What else the file says of a row follows from the joints, and is not read. `six_joints`:
+/// the arm's last joint is the roll of its tool, which the file may leave out: it is 0 then. Throws
 /// InputError.
 [[nodiscard]] std::vector<Config> load_given_rows(const std::filesystem::path& file,
-                                                  std::size_t arm,
+                                                  std::size_t arm, bool six_joints,
                                                   const std::array<std::string, 2>& names,
                                                   const std::array<JointNames, 2>& joints);
 

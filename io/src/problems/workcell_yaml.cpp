@@ -38,6 +38,8 @@ class WorkcellReader : ProblemReader {
       if (!is_given(k)) read_arm(k);
     for (std::size_t k = 0; k < 2; ++k)
       if (is_given(k)) read_given_arm(k);
+    for (std::size_t k = 0; k < 2; ++k)
+      if (cell_.leader_of(k) >= 0 && !is_given(1 - k)) refuse_rolling_leader(1 - k);
     if (const auto given = cell_.given_arm())
       read_steps(*given);
     else
@@ -163,6 +165,18 @@ class WorkcellReader : ProblemReader {
     return names;
   }
 
+  /// Refuses the roll of an arm that leads: the follower's path turns with the leader's tool, and
+  /// must be known before the leader's roll is chosen.
+  void refuse_rolling_leader(std::size_t leader) const {
+    if (!cell_.arms[leader].roll) return;
+    const YamlValue path = sections_[leader].section().require("path");
+    path.section().find("roll").value_or(path).fail(
+        "lets the tool turn that carries the path of '" + cell_.arms[1 - leader].name +
+            "', which would turn with it",
+        "no roll of an arm that leads, or its motion as `trajectory`, which says how the tool "
+        "stands turned");
+  }
+
   [[nodiscard]] bool is_given(std::size_t k) const {
     return sections_[k].section().find_filled("trajectory").has_value();
   }
@@ -179,7 +193,10 @@ class WorkcellReader : ProblemReader {
         value->fail("is given for an arm whose motion is given", "no such key here");
     static_cast<Robot&>(problem_) = arm;
     static_cast<Task&>(problem_) = Task();
-    problem_.roll.reset();
+    problem_.roll = Roll{};  // of an arm of six joints, whose rows say how its tool stands turned
+    const bool six_joints = suitable_arm().chain.roll;
+    if (!six_joints) problem_.roll.reset();
+    arm.roll = problem_.roll;
     more_joints_ = joints_before(cell_.arms[1 - k].tip_link);
     read_task();
     if (const auto value = section.find_filled("limits")) read_limits(*value);
@@ -190,7 +207,7 @@ class WorkcellReader : ProblemReader {
       joints[each] = suitable_arm().chain.joint_names;
     }
     arm.given = with_key(file, resolve(file), [&](const std::filesystem::path& path) {
-      return load_given_rows(path, k, {cell_.arms[0].name, cell_.arms[1].name}, joints);
+      return load_given_rows(path, k, six_joints, {cell_.arms[0].name, cell_.arms[1].name}, joints);
     });
     static_cast<Task&>(arm) = problem_;
   }

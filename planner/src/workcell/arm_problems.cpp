@@ -78,22 +78,30 @@ void raise(std::vector<int>& steps, const std::vector<int>& more) {
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = std::max(steps[k], more[k]);
 }
 
-/// Returns the waypoints of a follower, one at each layer, in the base frame: each is the leader's
-/// tool at that layer times the follower's path, which the leader's tool carries. `steps`: those of
-/// both paths between waypoints.
-std::vector<Waypoint> carried(const ToolPath& leader, const std::vector<Waypoint>& on_tool,
-                              const std::vector<int>& steps) {
-  std::vector<Waypoint> waypoints;
-  const auto add = [&](const Pose& on_leader) {
-    const Pose tool = leader.layer(static_cast<int>(waypoints.size())).tool * on_leader;
-    Waypoint& waypoint = waypoints.emplace_back();
-    waypoint.position = tool.translation();
-    waypoint.orientation = Quaterniond(tool.linear()).normalized();
-  };
-  add(pose_between(on_tool[0], on_tool[1], 0));
+Waypoint waypoint_at(const Pose& tool) {
+  Waypoint waypoint;
+  waypoint.position = tool.translation();
+  waypoint.orientation = Quaterniond(tool.linear()).normalized();
+  return waypoint;
+}
+
+/// Returns the poses of a follower's tool in the leader's tool frame, one at each layer. `steps`:
+/// those of both paths between waypoints.
+std::vector<Pose> at_layers(const std::vector<Waypoint>& on_tool, const std::vector<int>& steps) {
+  std::vector<Pose> poses{pose_between(on_tool[0], on_tool[1], 0)};
   for (std::size_t k = 0; k < steps.size(); ++k)
     for (int step = 1; step <= steps[k]; ++step)
-      add(pose_between(on_tool[k], on_tool[k + 1], static_cast<double>(step) / steps[k]));
+      poses.push_back(
+          pose_between(on_tool[k], on_tool[k + 1], static_cast<double>(step) / steps[k]));
+  return poses;
+}
+
+/// Returns the waypoints of a follower, one at each layer, in the base frame: each is the leader's
+/// tool at that layer times the follower's pose in the frame of that tool.
+std::vector<Waypoint> carried(const ToolPath& leader, const std::vector<Pose>& on_tool) {
+  std::vector<Waypoint> waypoints;
+  for (const Pose& pose : on_tool)
+    waypoints.push_back(waypoint_at(leader.layer(static_cast<int>(waypoints.size())).tool * pose));
   return waypoints;
 }
 
@@ -121,7 +129,7 @@ std::vector<Waypoint> follow(Problem& leader, Problem& follower, const Budget& b
         steps_between(on_tool, follower.resolution, follower.source, turns_freely(follower)));
   for (;;) {
     const std::vector<Waypoint> waypoints =
-        carried(path_of(leader, carrying, steps, budget), on_tool, steps);
+        carried(path_of(leader, carrying, steps, budget), at_layers(on_tool, steps));
     const std::vector<int> times = too_long(waypoints, steps, follower.resolution, follower.source);
     if (std::all_of(times.begin(), times.end(), [](int n) { return n == 1; })) {
       follower.waypoints = waypoints;
@@ -154,10 +162,7 @@ std::vector<Waypoint> waypoints_of_rows(const Chain& chain, const std::vector<Co
   constexpr double kSamePlace = 1e-9;  // m and rad
   std::vector<Waypoint> waypoints;
   for (const Config& q : rows) {
-    const Pose tool = chain.tool(q);
-    Waypoint waypoint;
-    waypoint.position = tool.translation();
-    waypoint.orientation = Quaterniond(tool.linear()).normalized();
+    const Waypoint waypoint = waypoint_at(chain.tool(q));
     const std::size_t row = waypoints.size();
     if (row > 0) {
       const Waypoint& before = waypoints.back();
@@ -185,25 +190,30 @@ void lay_along_rows(Problem& problem, const WorkcellArm& arm, const Chain& chain
   if (!leads) problem.limits.tool_path_error = problem.limits.tool_angle_error = std::nullopt;
 }
 
-/// Cuts the path of an arm into steps that end where those of the other arm's given motion do.
+/// Cuts the path of an arm beside a given motion into steps that end where those of the motion do.
 /// `steps` of the problem says how, or is empty (Workcell).
-void cut_along(const Problem& given, Problem& planned, bool follows, const Budget& budget) {
-  const std::size_t rows = given.waypoints.size();
-  if (planned.steps.empty()) {
-    if (planned.waypoints.size() == rows)
-      planned.steps.assign(rows - 1, 1);
-    else
-      planned.steps = {static_cast<int>(rows - 1)};
-  }
-  const ToolPath along = path_of(given, given.waypoints, given.steps, budget);
-  if (follows) planned.path_frame = planned.base_link;
-  const auto waypoints = waypoints_in_base(planned);  // or in the leader's tool frame
-  if (follows) {
-    planned.waypoints = carried(along, waypoints, planned.steps);
+void cut_along(std::size_t rows, Problem& planned) {
+  if (!planned.steps.empty()) return;
+  if (planned.waypoints.size() == rows)
     planned.steps.assign(rows - 1, 1);
-  }
-  // Throws for a path that has no such steps.
-  static_cast<void>(path_of(planned, waypoints_in_base(planned), planned.steps, budget));
+  else
+    planned.steps = {static_cast<int>(rows - 1)};
+}
+
+/// Gives the follower of a given motion its path in the base frame, at the tool of each row as the
+/// joints have turned it. `chain`: of the leader. Returns the follower's waypoints in the leader's
+/// tool frame, one for each row.
+std::vector<Waypoint> follow_rows(const Problem& leader, const Chain& chain,
+                                  const std::vector<Config>& rows, Problem& follower,
+                                  const Budget& budget) {
+  std::vector<Waypoint> tools, waypoints;
+  for (const Config& q : rows) tools.push_back(waypoint_at(turned_tool(chain, q)));
+  follower.path_frame = follower.base_link;
+  const std::vector<Pose> on_tool = at_layers(waypoints_in_base(follower), follower.steps);
+  follower.waypoints = carried(path_of(leader, tools, leader.steps, budget), on_tool);
+  follower.steps = leader.steps;
+  for (const Pose& pose : on_tool) waypoints.push_back(waypoint_at(pose));
+  return waypoints;
 }
 
 }  // namespace
@@ -213,6 +223,11 @@ Pose pose_between(const Waypoint& from, const Waypoint& to, double t) {
   pose.translation() = from.position + t * (to.position - from.position);
   pose.linear() = from.orientation.slerp(t, to.orientation).toRotationMatrix();
   return pose;
+}
+
+Pose turned_tool(const Chain& chain, const Config& q) {
+  const Pose tool = chain.tool(q);
+  return chain.roll ? rolled(tool, q[kDof - 1]) : tool;
 }
 
 ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget) {
@@ -233,8 +248,15 @@ ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget) {
   if (const auto given = cell.given_arm()) {
     const std::size_t planned = 1 - *given;
     const bool follows = cell.leader_of(planned) >= 0;
+    const std::vector<Config>& rows = cell.arms[*given].given;
     lay_along_rows(problems[*given], cell.arms[*given], arms[*given].chain, follows);
-    cut_along(problems[*given], problems[planned], follows, budget);
+    cut_along(rows.size(), problems[planned]);
+    if (follows)
+      of_arms.on_leader =
+          follow_rows(problems[*given], arms[*given].chain, rows, problems[planned], budget);
+    // Throws for a path that has no such steps.
+    static_cast<void>(path_of(problems[planned], waypoints_in_base(problems[planned]),
+                              problems[planned].steps, budget));
     return of_arms;
   }
   for (std::size_t k = 0; k < 2; ++k)

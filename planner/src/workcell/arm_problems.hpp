@@ -18,6 +18,9 @@ struct ArmProblems {
 /// Returns the problems of both arms. Throws InputError where the arms share a joint or a link, and
 /// as ToolPath does; Stopped.
 [[nodiscard]] ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget);
+/// Returns the pose of the tool in the base frame as the joints q, rad, have turned it: of an arm
+/// of six joints with the roll that Chain::tool() leaves out.
+[[nodiscard]] Pose turned_tool(const Chain& chain, const Config& q);
 /// Returns a pose between two waypoints: the position is linear, the orientation turns on the short
 /// arc. `t`: 0 to 1.
 [[nodiscard]] Pose pose_between(const Waypoint& from, const Waypoint& to, double t);

@@ -49,7 +49,10 @@ class WorkcellCheck {
               ? check_motion(prepared_.robot(k), prepared_.problem(k), (*timed_)[k], options_)
               : check_trajectory(prepared_.robot(k), prepared_.problem(k), rows_[k], options_);
     if (timed_ != nullptr ? by_one_clock() : simultaneous()) {
-      if (timed_ == nullptr) examine_given();
+      if (timed_ == nullptr) {
+        examine_given();
+        if (prepared_.follower() >= 0) examine_follower_at_layers();
+      }
       examine_both();
     }
     result_.passed = result_.arms[0].passed && result_.arms[1].passed && result_.failure_count == 0;
@@ -101,6 +104,26 @@ class WorkcellCheck {
                       row, prepared_.name(*prepared_.given_arm()).c_str(), off));
     }
   }
+  /// Examines whether a follower's tool is on its path on the leader's tool where that really is.
+  void examine_follower_at_layers() {
+    constexpr double kOnPath = 4e-6;  // m and rad: either tool may be 1e-6 off its own path
+    const auto follower = static_cast<std::size_t>(prepared_.follower());
+    for (std::size_t row = 0; row < rows_[0].size(); ++row) {
+      if (row % 64 == 0) options_.budget.poll();
+      const int layer = static_cast<int>(row);
+      const FollowerError error =
+          follower_error(prepared_, {rows_[0][row].q, rows_[1][row].q}, layer);
+      const double lever = 1 + prepared_.on_leader(layer).translation().norm();
+      if (!(error.position <= kOnPath * lever && error.angle <= kOnPath))
+        fail_off_leader(row, follower, error);
+    }
+  }
+  void fail_off_leader(std::size_t row, std::size_t follower, const FollowerError& error) {
+    fail(formatted("row %zu: the tool of '", row) + prepared_.name(follower) +
+         formatted("' is %.4g mm and %.4g rad off its path on the tool of '", 1e3 * error.position,
+                   error.angle) +
+         prepared_.name(1 - follower) + "'");
+  }
   /// Returns whether the rows of both arms are at the same times, with finite joints, and both
   /// tools at their places together.
   bool by_one_clock() {
@@ -139,11 +162,7 @@ class WorkcellCheck {
       if (row % 64 == 0) options_.budget.poll();
       const FollowerError error =
           meter.at({rows_[0][row].q, rows_[1][row].q}, rows_[1 - follower][row].s);
-      if (!(error.position <= off && error.angle <= turned))
-        fail(formatted("row %zu: the tool of '", row) + prepared_.name(follower) +
-             formatted("' is %.4g mm and %.4g rad off its path on the tool of '",
-                       1e3 * error.position, error.angle) +
-             prepared_.name(1 - follower) + "'");
+      if (!(error.position <= off && error.angle <= turned)) fail_off_leader(row, follower, error);
     }
   }
   /// Examines whether both tools are at their waypoints together.

@@ -9,6 +9,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "workcell/arm_problems.hpp"
 
 namespace swivel {
 
@@ -16,6 +17,17 @@ namespace {
 
 double turn_from(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+/// Returns the pose of the follower's tool in the frame of the leader's, as joints have turned it.
+Pose on_real_leader(const PreparedWorkcell& prepared, const std::array<Config, 2>& q) {
+  const auto follower = static_cast<std::size_t>(prepared.follower());
+  return turned_tool(prepared.robot(1 - follower).arm().chain, q[1 - follower]).inverse() *
+         prepared.robot(follower).arm().chain.tool(q[follower]);
+}
+
+FollowerError error_between(const Pose& there, const Pose& tool) {
+  return {(tool.translation() - there.translation()).norm(), turn_from(there, tool)};
 }
 
 }  // namespace
@@ -33,6 +45,11 @@ void require_tool_speed_of_arms(const PreparedWorkcell& prepared, double speed) 
   require_tool_speed(most_reach(one) > most_reach(other) ? one : other, speed, "speed");
 }
 
+FollowerError follower_error(const PreparedWorkcell& prepared, const std::array<Config, 2>& q,
+                             int layer) {
+  return error_between(prepared.on_leader(layer), on_real_leader(prepared, q));
+}
+
 FollowerMeter::FollowerMeter(const PreparedWorkcell& prepared, const Budget& budget)
     : prepared_(&prepared),
       follower_(static_cast<std::size_t>(prepared.follower())),
@@ -42,7 +59,7 @@ FollowerMeter::FollowerMeter(const PreparedWorkcell& prepared, const Budget& bud
 FollowerError FollowerMeter::at(const std::array<Config, 2>& q, double leader_s) const {
   constexpr double kSame = 1e-6;  // m
   const Pose leader = prepared_->robot(1 - follower_).arm().chain.tool(q[1 - follower_]);
-  const Pose tool = leader.inverse() * prepared_->robot(follower_).arm().chain.tool(q[follower_]);
+  const Pose tool = on_real_leader(*prepared_, q);
   FollowerError least{std::numeric_limits<double>::infinity(),
                       std::numeric_limits<double>::infinity()};
   for (int i = 0; i + 1 < path_.size(); ++i) {
@@ -54,8 +71,7 @@ FollowerError FollowerMeter::at(const std::array<Config, 2>& q, double leader_s)
                              ? turn_from(path_.at_travel(from.travel), leader) / from.step_angle
                              : 0;
     const Pose there = prepared_->on_leader(i + std::clamp(share, 0.0, 1.0));
-    const FollowerError error{(tool.translation() - there.translation()).norm(),
-                              turn_from(there, tool)};
+    const FollowerError error = error_between(there, tool);
     if (error.position + error.angle < least.position + least.angle) least = error;
   }
   return least;

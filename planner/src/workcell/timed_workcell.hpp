@@ -18,7 +18,13 @@ struct FollowerError {
   double position = 0, angle = 0;
 };
 
-/// Measures followers of a workcell that has one.
+/// Returns how far the follower's tool of a workcell that has one is off its path on the leader's
+/// tool, as the leader's joints have turned that, at a layer of both paths; `q` is by arm, rad.
+[[nodiscard]] FollowerError follower_error(const PreparedWorkcell& prepared,
+                                           const std::array<Config, 2>& q, int layer);
+
+/// Measures followers of a workcell that has one, against the leader's tool as its joints have
+/// turned it.
 class FollowerMeter {
  public:
   /// The workcell must outlive it.

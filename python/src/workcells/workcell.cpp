@@ -48,6 +48,7 @@ bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObjec
 /// ValueError for rows of other joints.
 void give(WorkcellArm& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
   static_cast<Robot&>(arm) = robot;
+  if (arm.roll) arm.roll = Roll{};  // the rows say how the tool stands turned
   const auto names =
       build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll)
           .chain.joint_names;

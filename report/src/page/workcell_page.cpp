@@ -59,8 +59,10 @@ Json chain_of_both(const std::array<const Chain*, 2>& chains,
       follower["leader"] = follower["leader"].get<int>() + static_cast<int>(arm) * kJoints;
       both["followers"].push_back(std::move(follower));
     }
+    // The seventh joint of an arm of six is the roll, which does not turn the tool.
+    const std::size_t last = chains[arm]->roll ? kDof - 1 : kDof;
     both["tools"].push_back(
-        {{"name", names[arm]}, {"group", of[kDof]}, {"home", std::move(chain["home"])}});
+        {{"name", names[arm]}, {"group", of[last]}, {"home", std::move(chain["home"])}});
   }
   return both;
 }
@@ -138,7 +140,7 @@ class WorkcellPage {
         {"chain", chain_json(lattice.chain())},
         {"settings", settings_json(of.problem, lattice)},
         {"tool_path", tool_path_json(lattice.path_of_rows())},
-        {"on_leader", leader >= 0 ? on_tool(k, static_cast<std::size_t>(leader)) : Json(nullptr)},
+        {"on_leader", leader >= 0 ? on_tool(k) : Json(nullptr)},
         {"rows", rows_json(of.world, lattice, rows, budget_)},
         {"beside", beside(k, map, rows)},
         {"refined", refined_[k]},
@@ -151,13 +153,10 @@ class WorkcellPage {
     return json;
   }
   /// Returns the points of a follower's path in the tool frame of its leader.
-  [[nodiscard]] Json on_tool(std::size_t follower, std::size_t leader) const {
-    const ToolPath &path = view(follower).lattice.path_of_rows(),
-                   &carrying = view(leader).lattice.path_of_rows();
+  [[nodiscard]] Json on_tool(std::size_t follower) const {
     Json points = Json::array();
-    for (int layer = 0; layer < std::min(path.size(), carrying.size()); ++layer)
-      points.push_back(
-          vector_json(carrying.layer(layer).tool.inverse() * path.layer(layer).tool.translation()));
+    for (int layer = 0; layer < view(follower).lattice.path_of_rows().size(); ++layer)
+      points.push_back(vector_json(planned_.prepared.on_leader(layer).translation()));
     return points;
   }
   /// Returns the motion in time of an arm, null where there is none, and gives the rows of its path

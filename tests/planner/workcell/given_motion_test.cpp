@@ -12,6 +12,7 @@
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -276,6 +277,127 @@ TEST(GivenMotion, IsRefusedWhereItDoesNotKeepTheLimits) {
       },
       "are none");
   refuses([](Workcell& c) { c.arms[1].steps = {1}; }, "since the given motion ends then");
+}
+
+/// Returns the pose of the flange's tool frame for six joints, whatever the roll beside them says.
+Pose real_tool(const Chain& chain, const Config& q) {
+  return chain.displacements(q)[kDof - 1] * chain.home;
+}
+
+/// Returns a workcell whose left arm has six joints and its own answer with a free roll as given
+/// motion; the right arm's path is on the left one's real tool. Nothing where the left arm has no
+/// answer, or hardly rolls.
+std::optional<Workcell> random_cell_led_by_six_joints(const TestRobot& robot, Random& random) {
+  Workcell cell = random_workcell(robot, random);
+  for (WorkcellArm& arm : cell.arms) arm.hold["arm_left_joint_3_e"] = 0;
+  cell.arms[0].roll = Roll{};
+  const PreparedWorkcell both(cell);
+  const PlanResult left = Planner(both.problem(0)).plan(lazily());
+  if (left.status != PlanStatus::kSolved) return std::nullopt;
+  const std::vector<Config> rows = joints_of(left.trajectory);
+  if (std::abs(rows.front()[kDof - 1]) < 0.2 && std::abs(rows.back()[kDof - 1]) < 0.2)
+    return std::nullopt;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Pose tool = real_tool(both.robot(0).arm().chain, k == 0 ? rows.front() : rows.back());
+    Waypoint& waypoint = cell.arms[1].waypoints[k];
+    waypoint.position = tool.inverse() * waypoint.position;
+    waypoint.orientation = Quaterniond(tool.linear()).inverse() * waypoint.orientation;
+  }
+  cell.arms[1].path_frame = "left";
+  cell.arms[0].given = rows;
+  cell.arms[0].waypoints.clear();
+  return cell;
+}
+
+/// Returns how far, m and rad, the right tool is off its path on the real tool of the left arm.
+std::pair<double, double> off_real_tool(const Workcell& cell, const PreparedWorkcell& prepared,
+                                        const WorkcellResult& found) {
+  double off = 0, turned = 0;
+  const std::size_t rows = cell.arms[0].given.size();
+  const auto& waypoints = cell.arms[1].waypoints;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double t = static_cast<double>(row) / static_cast<double>(rows - 1);
+    const Pose on_tool =
+        real_tool(prepared.robot(0).arm().chain, found.arms[0].trajectory[row].q).inverse() *
+        prepared.robot(1).arm().chain.tool(found.arms[1].trajectory[row].q);
+    const Vector3d there =
+        waypoints[0].position + t * (waypoints[1].position - waypoints[0].position);
+    off = std::max(off, (on_tool.translation() - there).norm());
+    turned = std::max(
+        turned, Quaterniond(on_tool.linear())
+                    .angularDistance(waypoints[0].orientation.slerp(t, waypoints[1].orientation)));
+  }
+  return {off, turned};
+}
+
+TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
+  Random random(seed("GivenMotion.CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt"));
+  const TestRobot robot = data_robot("sda10f");
+  int solved = 0, drawn = 0;
+  const int count = trials(20);
+  while (solved < count && drawn < 100 * count) {
+    SCOPED_TRACE(drawn++);
+    const auto cell = random_cell_led_by_six_joints(robot, random);
+    if (!cell) continue;
+    const PreparedWorkcell prepared(*cell);
+    const WorkcellResult found = plan_workcell(prepared, lazily());
+    if (found.status != PlanStatus::kSolved) continue;
+    ++solved;
+    const auto [off, turned] = off_real_tool(*cell, prepared, found);
+    EXPECT_LE(off, 2e-6);
+    EXPECT_LE(turned, 2e-6);
+    const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
+                                                         found.arms[1].trajectory};
+    const WorkcellCheckResult check = check_workcell(prepared, rows);
+    EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
+    // What the file says of the roll does not matter: the joints say where the tool is.
+    Workcell without = *cell;
+    for (Config& q : without.arms[0].given) q[kDof - 1] = 0;
+    const PreparedWorkcell other(without);
+    for (int layer = 0; layer < static_cast<int>(rows[0].size()); ++layer)
+      EXPECT_TRUE(
+          problem_path(other.problem(1), other.robot(1).arm().chain)
+              .layer(layer)
+              .tool.isApprox(problem_path(prepared.problem(1), prepared.robot(1).arm().chain)
+                                 .layer(layer)
+                                 .tool,
+                             1e-9));
+    // A follower that is off it is found.
+    std::array<std::vector<TrajectoryRow>, 2> spoilt = rows;
+    spoilt[1].back().q[kDof - 1] += 1e-4;
+    const WorkcellCheckResult refused = check_workcell(prepared, spoilt);
+    EXPECT_FALSE(refused.passed);
+    EXPECT_TRUE(std::any_of(refused.failures.begin(), refused.failures.end(), [](const auto& line) {
+      return line.find("off its path on the tool of 'left'") != std::string::npos;
+    }));
+  }
+  std::printf("%d of %d cells solved\n", solved, drawn);
+  EXPECT_EQ(solved, count);
+}
+
+TEST(Workcell, RefusesALeaderWhoseToolIsNotWhereItsPathSays) {
+  Random random(seed("Workcell.RefusesALeaderWhoseToolIsNotWhereItsPathSays"));
+  const TestRobot robot = data_robot("sda10f");
+  for (int trial = 0; trial < 20; ++trial) {
+    Workcell cell = random_workcell(robot, random);
+    for (WorkcellArm& arm : cell.arms) arm.hold["arm_left_joint_3_e"] = 0;
+    cell.arms[0].roll = random.coin() ? Roll{} : Roll{-0.4, 0.4};
+    EXPECT_NO_THROW(validate(cell));
+    cell.arms[1].path_frame = "left";
+    const auto refuses = [&](const Workcell& refused, const char* words) {
+      try {
+        validate(refused);
+        ADD_FAILURE() << "not refused: " << words;
+      } catch (const InvalidArgument& error) {
+        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+      }
+    };
+    refuses(cell, "roll: 'left' leads 'right', whose path would turn with its tool");
+    cell.arms[0].roll.reset();
+    cell.arms[0].start.emplace(Config::Zero());
+    cell.arms[0].start_tolerance = 0.01;
+    refuses(cell, "start_at, start_tolerance: 'left' leads 'right'");
+  }
 }
 
 }  // namespace

@@ -16,7 +16,9 @@ namespace swivel {
 struct WorkcellArm : Robot, Task {
   std::string name;
   /// Joints at each row of a given motion, rad, base to tip: the arm moves straight in joint space
-  /// from row to row, and is not planned. It has no waypoints then. Empty: the arm is planned.
+  /// from row to row, and is not planned. It has no waypoints then. Robot::roll of an arm of six
+  /// joints is a whole circle then, and the seventh number of a row says how far these joints have
+  /// turned the tool about its z axis. Empty: the arm is planned.
   std::vector<Config> given;
 };
 
@@ -28,8 +30,10 @@ struct WorkcellArm : Robot, Task {
 /// says at which rows its waypoints are: so many rows after the one before. Empty: it has one
 /// waypoint for each row, or two, at the first and at the last row.
 ///
-/// Task::path_frame of one arm may be the name of the other one. That other arm leads: its tool
-/// carries the path of this arm, the follower.
+/// Task::path_frame of one arm may be the name of the other one. That other arm leads: its tool, as
+/// its joints have turned it, carries the path of this arm, the follower. The leader has no roll
+/// unless its motion is given: which roll the plan would choose is not known where the follower's
+/// path is laid out.
 struct Workcell {
   std::string source;  ///< workcell file, for messages
   std::array<WorkcellArm, 2> arms;
@@ -56,9 +60,9 @@ struct Workcell {
 /// are empty, equal or those of a scene object or the base link; arms whose model, base_link or
 /// hold differ, which lead each other, or whose paths have different numbers of waypoints; two
 /// given motions, or one of fewer than two rows, with joints that are not finite, or of an arm with
-/// a path, a start or an end; `steps` that do not lead to its last row; windows of the roll at
-/// waypoints; attached bodies of one name; and what validate(Problem) refuses of
-/// either arm.
+/// a path, a start, an end or a bounded roll; `steps` that do not lead to its last row; windows of
+/// the roll at waypoints; a leader that is planned with a roll, or whose start may be off its path;
+/// attached bodies of one name; and what validate(Problem) refuses of either arm.
 void validate(const Workcell& cell);
 
 }  // namespace swivel

@@ -29,7 +29,9 @@ struct WorkcellCheckResult {
 /// are, so that row k of one arm and row k of the other are simultaneous; and at every row, and on
 /// every motion from one row to the next in which both arms move at one time, each straight in
 /// joint space, bodies of the two arms keep clear of each other (0.05 mm are forgiven, contact
-/// never). Throws InvalidArgument and InputError as PreparedWorkcell does, and Stopped.
+/// never). At every row the tool of a follower is on its path on the leader's tool, where the
+/// leader's joints have that tool. Throws InvalidArgument and InputError as PreparedWorkcell does,
+/// and Stopped.
 [[nodiscard]] WorkcellCheckResult check_workcell(
     const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
     const CheckOptions& options = {});
