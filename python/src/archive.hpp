@@ -249,8 +249,8 @@ void serialize(A& archive, Diagnosis& x) {
 }
 template <class A>
 void serialize(A& archive, Advice& x) {
-  auto& [change, object, slides, from, to, offset, outcome, cost, reached_s] = x;
-  archive(change, object, slides, from, to, offset, outcome, cost, reached_s);
+  auto& [change, object, slides, from, to, offset, also, also_offset, outcome, cost, reached_s] = x;
+  archive(change, object, slides, from, to, offset, also, also_offset, outcome, cost, reached_s);
 }
 template <class A>
 void serialize(A& archive, Evidence& x) {

@@ -428,6 +428,11 @@ void bind_verdicts(py::module_& m) {
       .def_readonly("asked", &Advice::from, "Of limits: what the problem asks, in its unit.")
       .def_readonly("changed_to", &Advice::to, "Of limits: what this is about.")
       .def_readonly("offset", &Advice::offset, "Of an object that is moved, (3,), m, base frame.")
+      .def_property_readonly(
+          "also", [](const Advice& a) { return or_none(a.also); },
+          "Name of a second object that is moved or removed with the first one; None: none is.")
+      .def_readonly("also_offset", &Advice::also_offset,
+                    "Of a second object that is moved, (3,), m, base frame.")
       .def_readonly("outcome", &Advice::outcome, "Outcome.")
       .def_readonly("cost", &Advice::cost, "Where it solves.")
       .def_readonly("reached_s", &Advice::reached_s, "Where there is no path either, m.")

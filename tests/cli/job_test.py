@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Jobs from outside: what `plan`, `check` and `time` say and write of them, and who refuses
 them."""
+import copy
 import csv
 import json
 import os
@@ -189,6 +190,24 @@ class Jobs(WithFolder):
         done = run("plan", file, "--certificate", proof, "--speed", 0.1)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--certificate: is of the job as its file has it", done.stderr)
+
+    def test_strokes_that_one_body_bars_are_told_together(self):
+        job = one_job()
+        job["strokes"].append(copy.deepcopy(job["strokes"][1]))
+        job["strokes"][2]["name"] = "again"
+        job["scene"] = [{"name": "plate", "box": [0.4, 0.6, 0.02], "xyz": [0.5, 0, 0.4]}]
+        done, _, result = self.plan(job, "--advise", 30)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertEqual(len(result["advice"]["strokes"]), 3)  # each of its own
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "no job: 3 of 3 strokes have no path by themselves")
+        self.assertEqual(sum(line.startswith("  stroke '") for line in lines), 1, done.stdout)
+        told = [line for line in lines if line.startswith("  likewise ")]
+        self.assertEqual(len(told), 1, done.stdout)
+        self.assertRegex(told[0], r"^  likewise '\w+' \(.*\), '\w+' \(.*\)$")
+        self.assertIn("  for strokes by themselves:", lines)
+        self.assertIn("  would help: no 'plate'", lines)
+        self.assertEqual(sum("no 'plate'" in line for line in lines), 1, done.stdout)
 
     def test_advice_ends_with_the_time_out(self):
         """Six strokes on a door out of reach, on fine lattices: what would help takes seconds."""

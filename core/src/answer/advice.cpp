@@ -66,6 +66,8 @@ const char* to_string(Advice::Change change) {
       return "without_object";
     case Advice::Change::kHold:
       return "hold";
+    case Advice::Change::kTurnedOver:
+      return "turned_over";
     case Advice::Change::kLeads:
       return "leads";
     case Advice::Change::kMovePaths:
@@ -114,18 +116,24 @@ std::string words(const Advice& advice) {
              formatted("' up to %.3g mm deep instead of %.3g mm", 1e3 * *advice.to,
                        1e3 * *advice.from);
     case Advice::Change::kMoveObject:
-      return "'" + advice.object + "' moved by " + words(advice.offset, Advice::kMostMove);
+      return "'" + advice.object + "' moved by " + words(advice.offset, Advice::kMostMove) +
+             (advice.also.empty() ? ""
+                                  : " and '" + advice.also + "' by " +
+                                        words(advice.also_offset, Advice::kMostMove));
     case Advice::Change::kHold:
       return "'" + advice.object + "' held " +
              (advice.to ? formatted("at %.3g", *advice.to) : std::string("elsewhere than")) +
              formatted(advice.to ? " instead of %.3g %s" : " at %.3g %s", *advice.from,
                        advice.slides ? "m" : "rad");
+    case Advice::Change::kTurnedOver:
+      return "the tool turned over, by 180 deg about its x axis (robot.tool)";
     case Advice::Change::kLeads:
       return "leads";
     case Advice::Change::kMovePaths:
       return "paths moved by " + words(advice.offset, Advice::kMostPathMove);
     default:
-      return "no '" + advice.object + "'";
+      return "no '" + advice.object + "'" +
+             (advice.also.empty() ? "" : " and no '" + advice.also + "'");
   }
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -16,6 +18,45 @@ std::string quoted_names(const std::vector<std::string>& names) {
 
 std::string stroke_or_strokes(const std::vector<std::string>& names) {
   return (names.size() == 1 ? "stroke " : "strokes ") + quoted_names(names);
+}
+
+/// One change of several strokes, each planned by itself.
+struct ChangeOfStrokes {
+  Advice::Outcome outcome;
+  std::string change;
+  std::vector<std::string> strokes;
+};
+
+/// Returns what helps strokes by themselves, a line for each change with the strokes that it is
+/// about, what helps most of them first.
+std::string advice_on_strokes(const std::vector<StrokeAdvice>& advice) {
+  std::vector<ChangeOfStrokes> changes;
+  for (const StrokeAdvice& of : advice)
+    for (const Advice& one : of.advice) {
+      const auto known =
+          std::find_if(changes.begin(), changes.end(), [&](const ChangeOfStrokes& other) {
+            return other.outcome == one.outcome && other.change == words(one);
+          });
+      if (known != changes.end())
+        known->strokes.push_back(of.stroke);
+      else
+        changes.push_back({one.outcome, words(one), {of.stroke}});
+    }
+  std::stable_sort(
+      changes.begin(), changes.end(), [](const ChangeOfStrokes& a, const ChangeOfStrokes& b) {
+        return a.outcome != b.outcome ? a.outcome < b.outcome : a.strokes.size() > b.strokes.size();
+      });
+  std::string lines = "  for strokes by themselves:\n";
+  for (const ChangeOfStrokes& one : changes) {
+    const char* const says = one.outcome == Advice::Outcome::kSolved    ? "  would help"
+                             : one.outcome == Advice::Outcome::kFurther ? "  not enough"
+                             : one.outcome == Advice::Outcome::kNoHelp  ? "  no help"
+                                                                        : "  not tried in the time";
+    lines += std::string(says) +
+             (one.strokes.size() == advice.size() ? "" : " for " + stroke_or_strokes(one.strokes)) +
+             ": " + one.change + '\n';
+  }
+  return lines;
 }
 
 }  // namespace
@@ -77,6 +118,7 @@ std::string advice_text(const AdviceOnJob& advice) {
       lines += "  no help: " + words(one) + '\n';
   }
   if (!unknown.empty()) lines += "  not tried in the time: " + unknown + '\n';
+  if (advice.strokes.size() > 1) return lines + advice_on_strokes(advice.strokes);
   for (const StrokeAdvice& one : advice.strokes)
     if (!one.advice.empty())
       lines += "  for stroke '" + one.stroke + "' by itself:\n" + advice_text(one.advice);

@@ -177,16 +177,56 @@ std::string run_text(const JobResult& result, const RunResult& run, const Job& j
          (either ? ", which has no path backwards either: " : ": ") + answer_text(alone);
 }
 
-std::string infeasible_text(const JobResult& result, const Job& job) {
+/// Returns what ends the paths of a run that has none, whatever the place and the figures: of two
+/// bodies the object of the scene alone.
+std::string ending_of(const Diagnosis& diagnosis, const Job& job) {
   std::string text;
-  std::size_t without = 0;
-  for (const RunResult& run : result.runs)
-    if (run.status == PlanStatus::kInfeasible) {
-      ++without;
-      if (run.diagnosis) text += run_text(result, run, job);
+  const auto add = [&](const Cause& cause) {
+    std::string what = words(cause);
+    for (const SceneObject& object : job.scene)
+      if (object.name == cause.object || object.name == cause.bodies[0] ||
+          object.name == cause.bodies[1])
+        what = "'" + object.name + "'";
+    text += what + '\n';
+  };
+  add(diagnosis.cause);
+  for (const Cause& cause : diagnosis.together) add(cause);
+  return text;
+}
+
+/// Returns the verdicts on runs that have no path by themselves: one in full of those that one
+/// cause ends, and where the others end.
+std::string verdicts_by_cause(const JobResult& result, const Job& job) {
+  std::vector<std::string> endings, texts, likewise;
+  for (const RunResult& run : result.runs) {
+    if (run.status != PlanStatus::kInfeasible || !run.diagnosis) continue;
+    const std::string ending = ending_of(*run.diagnosis, job);
+    const auto known = std::find(endings.begin(), endings.end(), ending);
+    if (known == endings.end()) {
+      endings.push_back(ending);
+      texts.push_back(run_text(result, run, job));
+      likewise.emplace_back();
+      continue;
     }
+    const auto& reached = run.diagnosis->reached_s;
+    std::string& others = likewise[static_cast<std::size_t>(known - endings.begin())];
+    others += (others.empty() ? "  likewise " : ", ") + quoted_name(job, run.run) +
+              (reached ? formatted(" (paths to s = %.4f m)", *reached)
+                       : std::string(" (no valid node at its begin)"));
+  }
+  std::string text;
+  for (std::size_t k = 0; k < texts.size(); ++k)
+    text += texts[k] + (likewise[k].empty() ? "" : likewise[k] + '\n');
+  return text;
+}
+
+std::string infeasible_text(const JobResult& result, const Job& job) {
+  const std::string text = verdicts_by_cause(result, job);
+  const auto without =
+      std::count_if(result.runs.begin(), result.runs.end(),
+                    [](const RunResult& run) { return run.status == PlanStatus::kInfeasible; });
   if (without > 0)
-    return formatted("no job: %zu of %zu strokes ha%s no path by %s\n", without, job.strokes.size(),
+    return formatted("no job: %td of %zu strokes ha%s no path by %s\n", without, job.strokes.size(),
                      without == 1 ? "s" : "ve", without == 1 ? "itself" : "themselves") +
            text;
   if (!result.no_transition) return "no job found\n";

@@ -235,18 +235,22 @@ Json refinement_json(const Refined& refined) {
 }
 
 Json advice_json(const Advice& one) {
+  const auto vector = [](const Vector3d& offset) {
+    return Json({offset.x(), offset.y(), offset.z()});
+  };
   const bool moves =
       one.change == Advice::Change::kMoveObject || one.change == Advice::Change::kMovePaths;
-  return {
-      {"change", to_string(one.change)},
-      {"words", words(one)},
-      {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
-      {"from", or_null(one.from)},
-      {"to", or_null(one.to)},
-      {"offset", moves ? Json({one.offset.x(), one.offset.y(), one.offset.z()}) : Json(nullptr)},
-      {"outcome", to_string(one.outcome)},
-      {"cost", or_null(one.cost)},
-      {"reached_s", or_null(one.reached_s)}};
+  return {{"change", to_string(one.change)},
+          {"words", words(one)},
+          {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
+          {"from", or_null(one.from)},
+          {"to", or_null(one.to)},
+          {"offset", moves ? vector(one.offset) : Json(nullptr)},
+          {"also", one.also.empty() ? Json(nullptr) : Json(one.also)},
+          {"also_offset", moves && !one.also.empty() ? vector(one.also_offset) : Json(nullptr)},
+          {"outcome", to_string(one.outcome)},
+          {"cost", or_null(one.cost)},
+          {"reached_s", or_null(one.reached_s)}};
 }
 
 Json advice_json(const std::vector<Advice>& advice) {

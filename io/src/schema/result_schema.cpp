@@ -352,7 +352,8 @@ Schema advice() {
               "steps of the lattice), "
               "the name of a limit, `allow` (all depths that the object's `allow` gives, "
               "by one factor), "
-              "`move_object`, `without_object`, `hold` (a joint that is held, held elsewhere)"),
+              "`move_object`, `without_object`, `hold` (a joint that is held, held elsewhere), "
+              "`turned_over` (the tool's frame by 180° about its x axis)"),
           key("words", text(), "the change in a phrase"),
           key("object", or_null(text()),
               "of `allow`, `move_object` and `without_object`; of `hold` the joint"),
@@ -360,6 +361,9 @@ Schema advice() {
           key("to", or_null(number()), "of limits, `allow` and `hold`: what was tried"),
           key("offset", or_null(numbers(3)),
               "of `move_object`, base frame; zeros where no way helps", "m"),
+          key("also", or_null(text()),
+              "of `move_object` and `without_object`: a second object that is changed with it"),
+          key("also_offset", or_null(numbers(3)), "of `move_object` with `also`, base frame", "m"),
           key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
               "`further`: paths come further; `unknown`: no time left"),
           key("cost", or_null(number()), "of `solved`"),
@@ -693,6 +697,9 @@ Schema advice_on_workcell() {
        key("to", or_null(number()), "of limits and `allow`: what was tried"),
        key("offset", or_null(numbers(3)),
            "of `move_object` and `move_paths`, base frame; zeros where no way helps", "m"),
+       key("also", or_null(text()),
+           "of `move_object` and `without_object`: a second object that is changed with it"),
+       key("also_offset", or_null(numbers(3)), "of `move_object` with `also`, base frame", "m"),
        key("outcome", one_of({"solved", "no_help", "unknown"}), "`unknown`: no time left"),
        key("cost", or_null(number()), "of `solved`: of both paths")}));
   const Schema of_arms = list(section(

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "study/changes.hpp"
@@ -43,10 +44,12 @@ class Adviser {
         try_once({.change = Change::kWithoutObject, .object = object.name});
     move(problem_.path_frame);
     hold_elsewhere();
+    if (!problem_.start && !problem_.end) try_once({.change = Change::kTurnedOver});
     // Last, because it changes the process as well.
     if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs)
       try_once({.change = Change::kFreeRoll});
     try_all();
+    two_objects();
     std::stable_sort(advice_.begin(), advice_.end(), [](const Advice& a, const Advice& b) {
       if (a.outcome != b.outcome) return a.outcome < b.outcome;
       return a.outcome == Outcome::kFurther && a.reached_s > b.reached_s;
@@ -184,13 +187,14 @@ class Adviser {
     advice.outcome = Outcome::kUnknown;
     advice.cost.reset();
     advice.reached_s.reset();
+    last_cause_ = {};
     options_.timeout_s = seconds_left();
     if (!(*options_.timeout_s > 0)) return;
     Problem changed = changed_problem(advice);
     PlanResult found;
     try {
-      // another arm: its roll has other limits, or its base stands elsewhere
-      if (advice.change == Change::kFreeRoll || advice.change == Change::kHold) {
+      // another arm: its roll has other limits, its base stands elsewhere, or its tool
+      if (dearness(advice.change) == dearness(Change::kFreeRoll)) {
         found = Planner(std::move(changed)).plan(options_);
       } else {
         trial_.set_problem(std::move(changed));
@@ -205,6 +209,7 @@ class Adviser {
       advice.outcome = Outcome::kSolved;
       advice.cost = found.cost;
     } else if (found.status == PlanStatus::kInfeasible) {
+      last_cause_ = found.diagnosis.cause;
       advice.reached_s = found.diagnosis.reached_s;
       const double before = result_.diagnosis.reached_s.value_or(-1), step = problem_.resolution.ds;
       advice.outcome = advice.reached_s.value_or(-1) > before + step * (1 + 1e-9)
@@ -268,10 +273,67 @@ class Adviser {
     propose({.change = Change::kMoveObject, .object = name}, &Adviser::plan_moved);
   }
 
-  /// Finds the shortest move of the object by 5, 10 or 20 mm along an axis of the base frame that
-  /// helps.
   void plan_moved(Advice& best) {
-    find_shortest_move(best, Advice::kMostMove, [this](Advice& one) { plan_changed(one); });
+    find_shortest_move(best, kObjectMoves, directions_of_moves(problem_.scene, best.object),
+                       [this](Advice& one) { plan_changed(one); });
+  }
+
+  /// Where no change of one object helps: tries two together, removed, and where paths come further
+  /// with the first one moved, moved.
+  void two_objects() {
+    if (std::any_of(advice_.begin(), advice_.end(), [](const Advice& one) {
+          return is_of_scene(one.change) && one.outcome == Outcome::kSolved;
+        }))
+      return;
+    trial_end_ = end_;
+    Advice gone{.change = Change::kWithoutObject};
+    std::tie(gone.object, gone.also) = two_in_the_way();
+    if (gone.also.empty()) return;
+    plan_changed(gone);
+    advice_.push_back(gone);
+    const auto moved = further(Change::kMoveObject, gone.object);
+    if (gone.outcome != Outcome::kSolved || moved == advice_.end()) return;
+    Advice apart{.change = Change::kMoveObject,
+                 .object = gone.object,
+                 .offset = moved->offset,
+                 .also = gone.also};
+    find_shortest_move(
+        apart, kObjectMoves, directions_of_moves(problem_.scene, apart.also),
+        [this](Advice& trial) { plan_changed(trial); }, &Advice::also_offset);
+    if (apart.outcome == Outcome::kSolved) advice_.push_back(apart);
+  }
+  /// Returns a change with which paths come further, of an object or of any.
+  [[nodiscard]] std::vector<Advice>::const_iterator further(Change change,
+                                                            const std::string& object = {}) const {
+    return std::find_if(advice_.begin(), advice_.end(), [&](const Advice& one) {
+      return one.change == change && one.outcome == Outcome::kFurther &&
+             (object.empty() || one.object == object);
+    });
+  }
+  /// Returns two objects that end paths: one without which paths come further, and the one that
+  /// ends them then; or two that must go together. The second is empty where there are no such.
+  [[nodiscard]] std::pair<std::string, std::string> two_in_the_way() {
+    const auto gone = further(Change::kWithoutObject);
+    if (gone != advice_.end()) {
+      Advice one = *gone;
+      plan_changed(one);
+      return {one.object, object_of(last_cause_, one.object)};
+    }
+    std::string first = object_of(result_.diagnosis.cause), second;
+    for (const Cause& cause : result_.diagnosis.together)
+      if (first.empty())
+        first = object_of(cause);
+      else if (second.empty())
+        second = object_of(cause, first);
+    return {first, second};
+  }
+  /// Returns the object of a cause that may go, since it does not carry the path, and is not the
+  /// one named `but`; an empty text where there is none.
+  [[nodiscard]] std::string object_of(const Cause& cause, const std::string& but = {}) const {
+    for (const std::string& name : {cause.object, cause.bodies[0], cause.bodies[1]})
+      if (!name.empty() && name != but && name != problem_.path_frame && is_object(name))
+        return name;
+    return {};
   }
 
   /// Proposes to hold the joints between base and tip that are not planned elsewhere, where neither
@@ -322,6 +384,7 @@ class Adviser {
   PlanOptions options_;
   Planner trial_;
   Clock::time_point end_, trial_end_;
+  Cause last_cause_;            // of the trial that was planned last, where it has no path
   std::vector<Advice> advice_;  // equal outcomes are reported in this order
   std::vector<Trial> trials_;   // of each
 };

@@ -182,7 +182,8 @@ class WorkcellTrials {
       of_cell.reached_s.reset();
       of_cell.cost.reset();
       if (one.outcome == Outcome::kFurther) of_cell.outcome = Outcome::kNoHelp;
-      if (of_cell.outcome == Outcome::kNoHelp) of_cell.offset.setZero();
+      if (of_cell.outcome == Outcome::kNoHelp)
+        of_cell.offset.setZero(), of_cell.also_offset.setZero();
       // what does not help the arm by itself does not help it beside the other one
       propose(of_cell, one.outcome == Outcome::kSolved ? &WorkcellTrials::plan_changed
                                                        : &WorkcellTrials::leave);
@@ -195,7 +196,10 @@ class WorkcellTrials {
     // A joint that is held may carry both arms.
     if (one.change == Change::kFiner || one.change == Change::kHold) return false;
     if (one.change == Change::kFreeRoll) return cell_.arms[arm].roll.has_value();
-    return one.object.empty() || !carries_path(one.object);
+    // A leader's tool carries the other arm's path.
+    if (one.change == Change::kTurnedOver) return cell_.leader_of(1 - arm) < 0;
+    return (one.object.empty() || !carries_path(one.object)) &&
+           (one.also.empty() || !carries_path(one.also));
   }
 
   /// Proposes what changes both arms, or the scene.
@@ -241,7 +245,7 @@ class WorkcellTrials {
     const bool known =
         std::any_of(advice_.cell.begin(), advice_.cell.end(), [&](const WorkcellAdvice& other) {
           return other.change == advice.change && other.object == advice.object &&
-                 other.arm == advice.arm;
+                 other.also == advice.also && other.arm == advice.arm;
         });
     if (known) return;
     advice_.cell.push_back(advice);
@@ -318,7 +322,8 @@ class WorkcellTrials {
   }
   void plan_moved(WorkcellAdvice& advice) {
     const bool paths = advice.change == Change::kMovePaths;
-    find_shortest_move(advice, paths ? Advice::kMostPathMove : Advice::kMostMove,
+    find_shortest_move(advice, paths ? kPathMoves : kObjectMoves,
+                       directions_of_moves(cell_.scene, advice.object),
                        [this](WorkcellAdvice& one) { plan_changed(one); });
   }
 

@@ -59,6 +59,7 @@ int dearness(Advice::Change change) {
   switch (change) {
     case Advice::Change::kFreeRoll:
     case Advice::Change::kHold:
+    case Advice::Change::kTurnedOver:
       return 1;
     case Advice::Change::kArmSlope:
     case Advice::Change::kRollSlope:
@@ -101,6 +102,9 @@ void change_arm(const Advice& advice, Robot& robot, Task& task) {
       robot.roll = Roll{};
       for (Waypoint& waypoint : task.waypoints) waypoint.roll.reset();
       break;
+    case Advice::Change::kTurnedOver:
+      robot.tool.linear() *= Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
+      break;
     case Advice::Change::kHold:
       robot.hold[advice.object] = *advice.to;
       break;
@@ -119,17 +123,35 @@ void change_arm(const Advice& advice, Robot& robot, Task& task) {
 void change_scene(const Advice& advice, std::vector<SceneObject>& scene,
                   std::vector<Variation>& vary) {
   if (advice.change == Advice::Change::kWithoutObject) {
-    std::erase_if(scene, [&](const SceneObject& object) { return object.name == advice.object; });
-    std::erase_if(vary, [&](const Variation& one) { return one.object == advice.object; });
+    const auto goes = [&](const std::string& name) {
+      return name == advice.object || name == advice.also;
+    };
+    std::erase_if(scene, [&](const SceneObject& object) { return goes(object.name); });
+    std::erase_if(vary, [&](const Variation& one) { return goes(one.object); });
     return;
   }
   for (SceneObject& object : scene) {
+    if (object.name == advice.also) object.pose.translation() += advice.also_offset;
     if (object.name != advice.object) continue;
     if (advice.change == Advice::Change::kDepth)
       object = deeper(object, *advice.to / *advice.from);
     else
       object.pose.translation() += advice.offset;
   }
+}
+
+std::vector<Vector3d> directions_of_moves(const std::vector<SceneObject>& scene,
+                                          const std::string& object) {
+  constexpr double kParallel = 1 - 1e-3;
+  std::vector<Vector3d> directions{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  for (const SceneObject& one : scene) {
+    if (one.name != object) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d own = one.pose.linear().col(axis);
+      if (own.cwiseAbs().maxCoeff() < kParallel) directions.push_back(own);
+    }
+  }
+  return directions;
 }
 
 SceneObject deeper(SceneObject object, double factor) {

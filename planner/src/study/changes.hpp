@@ -59,27 +59,65 @@ void relax_to_strictest(OneAdvice& advice, double most, Plan plan) {
   }
 }
 
-/// Finds the shortest move by a quarter, a half or all of `most`, m, along an axis of the base
-/// frame that helps. `plan(advice)` sets the outcome of `advice`.
+/// Returns the directions in which moves are tried, unit vectors in the base frame, without their
+/// opposites: the axes of the base frame, and those of an object that stands slanted, since bodies
+/// part along the normals of its faces.
+[[nodiscard]] std::vector<Vector3d> directions_of_moves(const std::vector<SceneObject>& scene = {},
+                                                        const std::string& object = {});
+
+/// The lengths of moves that are tried: `least`, twice as much, ... `most`, m.
+struct MoveLengths {
+  double least, most;
+};
+inline constexpr MoveLengths kObjectMoves{0.005, Advice::kMostMove};
+inline constexpr MoveLengths kPathMoves{0.01, Advice::kMostPathMove};
+
+/// Finds the shortest move that helps, along one of some directions (directions_of_moves()) or
+/// against it; one of more than 20 mm is then shortened to an eighth of its length. `offset`: the
+/// member of the advice that is the move. `plan(advice)` sets the outcome of `advice`; the outcome
+/// of `best` is unknown where time was up before a move was found to help.
 template <class OneAdvice, class Plan>
-void find_shortest_move(OneAdvice& best, double most, Plan plan) {
+void find_shortest_move(OneAdvice& best, const MoveLengths& lengths,
+                        const std::vector<Vector3d>& directions, Plan plan,
+                        Vector3d Advice::*offset = &Advice::offset) {
+  constexpr double kShort = 0.02;
+  using Outcome = Advice::Outcome;
   const OneAdvice unmoved = best;
-  for (double way = most / 4; way <= most && best.outcome != Advice::Outcome::kSolved; way *= 2)
-    for (int axis = 0; axis < 3; ++axis)
+  bool all_tried = true;
+  for (double way = lengths.least;
+       way <= lengths.most * (1 + 1e-9) && best.outcome != Outcome::kSolved; way *= 2)
+    for (const Vector3d& direction : directions)
       for (const double sign : {1.0, -1.0}) {
         OneAdvice moved = unmoved;
-        moved.offset[axis] = sign * way;
+        moved.*offset = sign * way * direction;
         plan(moved);
-        if (moved.outcome == Advice::Outcome::kUnknown) break;
+        all_tried = all_tried && moved.outcome != Outcome::kUnknown;
+        if (moved.outcome == Outcome::kUnknown) break;
         const bool better =
             moved.outcome < best.outcome ||
             (moved.outcome == best.outcome &&
-             (moved.outcome == Advice::Outcome::kSolved ? moved.cost < best.cost
-                                                        : moved.reached_s > best.reached_s));
+             (moved.outcome == Outcome::kSolved ? moved.cost < best.cost
+                                                : moved.reached_s > best.reached_s));
         if (better) best = std::move(moved);
       }
-  // no single move is to be named
-  if (best.outcome == Advice::Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();
+  const Vector3d longest = best.*offset;
+  if (best.outcome == Outcome::kSolved && longest.norm() > kShort * (1 + 1e-9)) {
+    double short_of = 0.5, enough = 1;  // shares of it
+    for (int k = 0; k < 2; ++k) {
+      const double share = (short_of + enough) / 2;
+      OneAdvice shorter = unmoved;
+      shorter.*offset = share * longest;
+      plan(shorter);
+      if (shorter.outcome == Outcome::kUnknown) break;
+      if (shorter.outcome == Outcome::kSolved)
+        best = std::move(shorter), enough = share;
+      else
+        short_of = share;
+    }
+  }
+  if (best.outcome != Outcome::kNoHelp) return;
+  best = unmoved;  // no single move is to be named
+  if (all_tried) best.outcome = Outcome::kNoHelp;
 }
 
 }  // namespace swivel

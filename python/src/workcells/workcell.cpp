@@ -432,6 +432,12 @@ void bind_advice(py::module_& m) {
           "offset", [](const WorkcellAdvice& a) { return a.offset; },
           "Of an object or of paths that are moved, (3,), m, base frame.")
       .def_property_readonly(
+          "also", [or_none](const WorkcellAdvice& a) { return or_none(a.also); },
+          "Name of a second object that is moved or removed with the first one; None: none is.")
+      .def_property_readonly(
+          "also_offset", [](const WorkcellAdvice& a) { return a.also_offset; },
+          "Of a second object that is moved, (3,), m, base frame.")
+      .def_property_readonly(
           "outcome", [](const WorkcellAdvice& a) { return a.outcome; }, "Outcome.")
       .def_property_readonly(
           "cost", [](const WorkcellAdvice& a) { return a.cost; }, "Of both paths, where it solves.")

@@ -31,9 +31,11 @@ void set_clearance(Limits& limits, double clearance) {
   limits.clearance = clearance;
 }
 
-void move_object(Problem& problem, const Advice& advice) {
-  for (SceneObject& object : problem.scene)
+void move_objects(Problem& problem, const Advice& advice) {
+  for (SceneObject& object : problem.scene) {
     if (object.name == advice.object) object.pose.translation() += advice.offset;
+    if (object.name == advice.also) object.pose.translation() += advice.also_offset;
+  }
 }
 
 /// The problem as a reader of the advice would change it by hand.
@@ -87,12 +89,15 @@ Problem followed(Problem problem, const Advice& advice) {
       problem.hold[advice.object] = share;
       break;
     case Change::kMoveObject:
-      move_object(problem, advice);
+      move_objects(problem, advice);
       break;
     case Change::kWithoutObject:
-      problem.scene.erase(
-          std::find_if(problem.scene.begin(), problem.scene.end(),
-                       [&](const SceneObject& object) { return object.name == advice.object; }));
+      std::erase_if(problem.scene, [&](const SceneObject& object) {
+        return object.name == advice.object || object.name == advice.also;
+      });
+      break;
+    case Change::kTurnedOver:
+      problem.tool.linear() *= Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
       break;
   }
   return problem;
@@ -313,6 +318,93 @@ TEST(Advise, AWallMustGo) {
     EXPECT_NE(advice[k].outcome, Outcome::kSolved) << words(advice[k]);
   Planner solved(io::load_problem(data_dir() / "problems" / "experiment_a.yaml"));
   EXPECT_TRUE(advise(solved, solved.plan(), for_seconds(1)).empty());
+}
+
+/// Returns a line of an iiwa 14 that works downwards on a part, with a sander as its tool.
+Problem sanded_line() {
+  Problem problem = problem_for(data_robot("iiwa14"));
+  problem.tip_link = "tool0";
+  problem.tool.translation() = Vector3d(0, 0, 0.15);
+  AttachedBody sander;
+  sander.name = "sander";
+  sander.link = problem.tip_link;
+  sander.shape = Cylinder{0.03, 0.1};
+  sander.pose.translation() = Vector3d(0, 0, 0.06);
+  problem.attached.push_back(sander);
+  for (const double y : {-0.15, 0.15}) {
+    Waypoint& waypoint = problem.waypoints.emplace_back();
+    waypoint.position = Vector3d(0.55, y, 0.41);
+    waypoint.orientation = Quaterniond(0, 1, 0, 0);  // down
+  }
+  problem.resolution = {.ds = 0.02, .dphi = 0.1};
+  SceneObject part;
+  part.name = "part";
+  part.shape = Box{{0.3, 0.4, 0.1}};
+  part.pose.translation() = Vector3d(0.55, 0, 0.3);
+  problem.scene.push_back(part);
+  return problem;
+}
+
+SceneObject wall(const std::string& name, double y) {
+  SceneObject object;
+  object.name = name;
+  object.shape = Box{{0.4, 0.04, 0.12}};
+  object.pose.translation() = Vector3d(0.55, y, 0.43);
+  return object;
+}
+
+TEST(Advise, AToolThatPointsIntoItsFlangeIsTurnedOver) {
+  Problem problem = sanded_line();
+  EXPECT_EQ(plan(problem).status, PlanStatus::kSolved);
+  problem.tool.linear() = Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
+  Planner planner(problem);
+  const std::vector<Advice> advice = advise(planner, planner.plan(), for_seconds(60));
+  ASSERT_FALSE(advice.empty());
+  const auto over = std::find_if(advice.begin(), advice.end(),
+                                 [](const Advice& a) { return a.change == Change::kTurnedOver; });
+  ASSERT_NE(over, advice.end());
+  EXPECT_EQ(over->outcome, Outcome::kSolved) << words(*over);
+  EXPECT_EQ(plan(followed(problem, *over)).cost, over->cost);
+}
+
+/// A wall over the end of the line must be moved away from it, by 45 mm.
+TEST(Advise, AWallIsMovedAsFarAsItMust) {
+  Problem problem = sanded_line();
+  problem.scene.push_back(wall("wall", 0.16));
+  Planner planner(problem);
+  const std::vector<Advice> advice = advise(planner, planner.plan(), for_seconds(120));
+  const auto moved = std::find_if(advice.begin(), advice.end(), [](const Advice& a) {
+    return a.change == Change::kMoveObject && a.object == "wall";
+  });
+  ASSERT_NE(moved, advice.end());
+  ASSERT_EQ(moved->outcome, Outcome::kSolved) << words(*moved);
+  EXPECT_NEAR(moved->offset.norm(), 0.05, 1e-9);
+  EXPECT_EQ(plan(followed(problem, *moved)).cost, moved->cost);
+  Advice less = *moved;
+  less.offset *= 0.8;
+  EXPECT_NE(plan(followed(problem, less)).status, PlanStatus::kSolved);
+}
+
+/// Two walls, one over either end: neither alone helps.
+TEST(Advise, TwoWallsAreMovedTogether) {
+  Problem problem = sanded_line();
+  problem.scene.push_back(wall("left", 0.16));
+  problem.scene.push_back(wall("right", -0.16));
+  Planner planner(problem);
+  const std::vector<Advice> advice = advise(planner, planner.plan(), for_seconds(240));
+  int both = 0;
+  for (const Advice& one : advice) {
+    if (one.change != Change::kMoveObject && one.change != Change::kWithoutObject) continue;
+    if (one.also.empty()) {
+      EXPECT_NE(one.outcome, Outcome::kSolved) << words(one);
+      continue;
+    }
+    ++both;
+    ASSERT_EQ(one.outcome, Outcome::kSolved) << words(one);
+    EXPECT_EQ(plan(followed(problem, one)).cost, one.cost) << words(one);
+    EXPECT_NE(words(one).find(" and "), std::string::npos);
+  }
+  EXPECT_EQ(both, 2);
 }
 
 }  // namespace

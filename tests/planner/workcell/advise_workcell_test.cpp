@@ -155,6 +155,9 @@ Workcell as_advised(Workcell cell, const WorkcellAdvice& advice, double stricter
       case Change::kPathError:
         limits.tool_path_error = to;
         break;
+      case Change::kTurnedOver:
+        arm.tool.linear() *= Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
+        break;
       case Change::kLeads:
         swap_leader(arm, cell.arms[1 - k]);
         return cell;
@@ -166,11 +169,15 @@ Workcell as_advised(Workcell cell, const WorkcellAdvice& advice, double stricter
         break;
     }
   }
-  for (SceneObject& object : cell.scene)
-    if (advice.change == Change::kMoveObject && object.name == advice.object)
-      object.pose.translation() += advice.offset;
+  for (SceneObject& object : cell.scene) {
+    if (advice.change != Change::kMoveObject) break;
+    if (object.name == advice.object) object.pose.translation() += advice.offset;
+    if (object.name == advice.also) object.pose.translation() += advice.also_offset;
+  }
   if (advice.change == Change::kWithoutObject)
-    std::erase_if(cell.scene, [&](const auto& object) { return object.name == advice.object; });
+    std::erase_if(cell.scene, [&](const auto& object) {
+      return object.name == advice.object || object.name == advice.also;
+    });
   return cell;
 }
 

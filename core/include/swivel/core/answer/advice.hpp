@@ -31,6 +31,7 @@ struct Advice {
     kMoveObject,     ///< an object moved, and the path with it if it is given in its frame
     kWithoutObject,  ///< an object removed
     kHold,           ///< a joint between base and tip that is held, held elsewhere
+    kTurnedOver,     ///< the tool turned over: its frame by 180 deg about its x axis
     kLeads,          ///< of workcells: the arm leads, and its leader so far follows
     kMovePaths,      ///< of workcells: the path of an arm moved, or those of both alike
   };
@@ -42,7 +43,7 @@ struct Advice {
     kUnknown,  ///< not decided in time, or not tried
   };
 
-  static constexpr double kMostMove = 0.02;      ///< most that kMoveObject moves an object, m
+  static constexpr double kMostMove = 0.08;      ///< most that kMoveObject moves an object, m
   static constexpr double kMostPathMove = 0.04;  ///< most that kMovePaths moves paths, m
 
   Change change = Change::kFreeStart;
@@ -54,6 +55,10 @@ struct Advice {
   std::optional<double> from, to;
   /// For kMoveObject and kMovePaths: the move in the base frame, m; zero where none helps.
   Vector3d offset{0, 0, 0};
+  /// For kMoveObject and kWithoutObject: a second object that is moved or removed as well, and its
+  /// move; empty: none is.
+  std::string also = {};
+  Vector3d also_offset{0, 0, 0};
   Outcome outcome = Outcome::kUnknown;
   std::optional<double> cost;       ///< for kSolved: cost of the path
   std::optional<double> reached_s;  ///< if there is no path: how far one comes, m along it
@@ -64,7 +69,7 @@ struct Advice {
 /// Returns "solved", "further", "no_help" or "unknown".
 [[nodiscard]] const char* to_string(Advice::Outcome outcome);
 /// Returns the change in a phrase: "clearance of 3.75 mm instead of 5 mm", "'rail' moved by 10 mm
-/// along +y", "contact with 'plate' up to 3.5 mm deep instead of 3 mm".
+/// along +y", "no 'rail' and no 'post'", "contact with 'plate' up to 3.5 mm deep instead of 3 mm".
 [[nodiscard]] std::string words(const Advice& advice);
 
 /// One change of a job that cannot be planned, and what planning the changed job gave.

@@ -13,8 +13,9 @@ namespace swivel {
 /// Returns changes that would help a problem that has no path, each planned alone: a free start, a
 /// free end, a tool that may turn freely about its axis, one limit relaxed (by bisection, the
 /// strictest value of those tried that solves), deeper allowed contact, half the lattice's steps,
-/// an object moved by up to 20 mm, or an object removed. What the verdict's cause suggests comes
-/// first.
+/// an object moved by up to 80 mm along an axis of the base frame or of its own, an object removed,
+/// two objects where one is not enough, or the tool turned over. What the verdict's cause suggests
+/// comes first.
 ///
 /// The order is by outcome: changes that solve the problem; those whose path comes further, the
 /// furthest first; those that do not help; those that were not tried or not decided. Equal outcomes
