@@ -14,12 +14,12 @@
 #include <variant>
 #include <vector>
 
-#include "commands/advice_or_warning.hpp"
 #include "commands/plan_job_command.hpp"
 #include "commands/workcell_command.hpp"
 #include "options/commands.hpp"
 #include "options/job_options.hpp"
 #include "options/search_options.hpp"
+#include "output/advice_or_warning.hpp"
 #include "output/motion_output.hpp"
 #include "output/self_time_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"

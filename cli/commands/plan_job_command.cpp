@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "commands/advice_or_warning.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
+#include "output/advice_or_warning.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/motion/job_text.hpp"

@@ -10,9 +10,9 @@
 #include <set>
 #include <utility>
 
-#include "commands/advice_or_warning.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
+#include "output/advice_or_warning.hpp"
 #include "output/check_output.hpp"
 #include "output/workcell_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"

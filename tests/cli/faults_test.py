@@ -541,7 +541,9 @@ class Errors(WithFiles):
             .replace("clearance: 0.005", "clearance: 0.005, joint_margin: 1.5")
             .replace("ds: 0.02, dphi: 0.2", "ds: 0.005, dphi: 0.05")
         )
-        plain = subprocess.run([SWIVEL, "plan", problem], capture_output=True, text=True, timeout=60)
+        plain = subprocess.run(
+            [SWIVEL, "plan", problem], capture_output=True, text=True, timeout=60
+        )
         self.assertEqual(plain.returncode, 1, plain.stdout + plain.stderr)
         for power in range(32, 12, -1):
             environment = {

@@ -38,6 +38,12 @@ void move_objects(Problem& problem, const Advice& advice) {
   }
 }
 
+void remove_objects(Problem& problem, const Advice& advice) {
+  std::erase_if(problem.scene, [&](const SceneObject& object) {
+    return object.name == advice.object || object.name == advice.also;
+  });
+}
+
 /// The problem as a reader of the advice would change it by hand.
 Problem followed(Problem problem, const Advice& advice) {
   const double share = advice.to.value_or(0);
@@ -92,9 +98,7 @@ Problem followed(Problem problem, const Advice& advice) {
       move_objects(problem, advice);
       break;
     case Change::kWithoutObject:
-      std::erase_if(problem.scene, [&](const SceneObject& object) {
-        return object.name == advice.object || object.name == advice.also;
-      });
+      remove_objects(problem, advice);
       break;
     case Change::kTurnedOver:
       problem.tool.linear() *= Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
