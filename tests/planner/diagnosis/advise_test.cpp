@@ -102,7 +102,6 @@ Problem followed(Problem problem, const Advice& advice) {
       break;
     case Change::kTurnedOver:
       problem.tool.linear() *= Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
-      break;
   }
   return problem;
 }
