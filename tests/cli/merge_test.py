@@ -233,7 +233,7 @@ class Merge(WithFolder):
                     ("--y", "0.1", "with y 0.1"),
                     ("--best", "speed", "best speed"),
                     ("--object", "post", "object post"),
-                    ("--sample", "6", "with sample 6"),
+                    ("--sample", "6", "x 0:0.1, where"),
                 ),
             ),
         ):
@@ -243,6 +243,8 @@ class Merge(WithFolder):
                     words[words.index(option) + 1] = value
                 else:
                     words += [option, value]
+                if option == "--sample":  # of ranges without a step
+                    words = [re.sub(r"^(.*:.*):.*$", r"\1", word) for word in words]
                 self.ran(*words, "--shard", f"1/{3 if first is a else 2}", "--out", other)
                 self.refused((word, "other.csv", first.name), first, other)
                 count += 1

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "robots.hpp"
@@ -107,11 +108,13 @@ TEST(OutOfRange, AJointOfSixThatLeavesItsRangeIsNamedWithHowFar) {
     ASSERT_TRUE(cause.value && cause.limit) << what;
     EXPECT_TRUE(result.diagnosis.together.empty()) << what;
     Problem wider = problem;
-    wider.model = with_limits(robot, [&](int, Joint& joint) {
-                    if (joint.name != cause.joint) return;
-                    (cause.side == Cause::Side::kUpper ? joint.upper : joint.lower) =
-                        *cause.value + (cause.side == Cause::Side::kUpper ? 0.01 : -0.01);
-                  }).model;
+    auto model = std::make_shared<RobotModel>(*robot.model);
+    for (Joint& joint : model->joints) {
+      if (joint.name != cause.joint) continue;
+      const bool upper = cause.side == Cause::Side::kUpper;
+      (upper ? joint.upper : joint.lower) = *cause.value + (upper ? 0.01 : -0.01);
+    }
+    wider.model = model;
     EXPECT_EQ(planned(wider).status, PlanStatus::kSolved)
         << what << ": " << words(cause) << ' ' << figures(cause);
   }
