@@ -66,7 +66,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/verify/complete_rows.hpp
   swivel/planner/workcell/check_workcell.hpp
   swivel/planner/workcell/plan_workcell.hpp
-  swivel/planner/workcell/prepared_workcell.hpp
+  swivel/planner/workcell/prepared/prepared_workcell.hpp
   swivel/planner/workcell/refine_workcell.hpp
   swivel/planner/workcell/time_workcell.hpp
   swivel/planner/workcell/workcell_view.hpp

@@ -8,7 +8,7 @@
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
-#include "swivel/planner/workcell/prepared_workcell.hpp"
+#include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 #include "workcell/given_motion.hpp"
 
 namespace swivel {

@@ -9,7 +9,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
-#include "workcell/arm_problems.hpp"
+#include "workcell/prepared/arm_problems.hpp"
 
 namespace swivel {
 

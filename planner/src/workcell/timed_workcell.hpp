@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "swivel/core/problem/tool_path.hpp"
-#include "swivel/planner/workcell/prepared_workcell.hpp"
+#include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 
 namespace swivel {
 

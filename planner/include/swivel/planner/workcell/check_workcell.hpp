@@ -11,7 +11,7 @@
 #include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/verify/check.hpp"
-#include "swivel/planner/workcell/prepared_workcell.hpp"
+#include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
-#include "swivel/planner/workcell/prepared_workcell.hpp"
+#include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 
 namespace swivel {
 

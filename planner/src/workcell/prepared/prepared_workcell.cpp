@@ -9,9 +9,9 @@
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
-#include "swivel/planner/workcell/prepared_workcell.hpp"
+#include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 #include "verify/between_samples.hpp"
-#include "workcell/arm_problems.hpp"
+#include "workcell/prepared/arm_problems.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workcell/arm_problems.hpp"
+#include "workcell/prepared/arm_problems.hpp"
 
 #include <algorithm>
 #include <cmath>
