@@ -626,7 +626,8 @@ void bind_task(py::module_& m) {
       .finish();
   PlainStruct<Cost>(m, "Cost", "What is summed over the steps of a path, as keywords.")
       .choice("metric", &Cost::metric, "CostMetric, or its name.")
-      .member("weights", &Cost::weights, "Seven, each 0 or 1e-6 to 1e6.")
+      .member("weights", &Cost::weights,
+              "Seven, each 0 or 1e-6 to 1e6; None: 1 each, that of the roll of six-joint arms 0.")
       .member("roll", &Cost::roll,
               "Per metre and rad that the tool stands turned from the waypoints' own; 0 or 1e-6 to "
               "1e6.")

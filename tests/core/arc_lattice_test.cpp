@@ -262,8 +262,8 @@ TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
     for (int trial = 0; trial < trials(4); ++trial) {
       Problem problem = random_path(chain, 0.3, 0.02, random);
       if (trial % 2 == 1) problem.cost.metric = CostMetric::kMax;
-      for (std::size_t j = 0; trial % 4 == 3 && j < kDof; ++j)
-        problem.cost.weights[j] = random.uniform(0.2, 3);
+      if (trial % 4 == 3)
+        for (double& weight : problem.cost.weights.emplace()) weight = random.uniform(0.2, 3);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const ArcLattice lattice(chain, method, path, problem);
       nodes += static_cast<double>(lattice.nodes()) / lattice.layers();

@@ -473,15 +473,15 @@ TEST(Lattice, CostsGrowWithTheWeightsToTheLastBit) {
   for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax})
     for (int trial = 0; trial < trials(100); ++trial) {
       small.problem.cost.metric = metric;
-      for (double& weight : small.problem.cost.weights)
+      for (double& weight : small.problem.cost.weights.emplace())
         weight = random.coin(0.3) ? 0 : random.uniform(0, 1);
       small.rebuild();
       const std::unique_ptr<SrsLattice> plain = std::move(small.lattice);
       const double factor = std::exp2(random.below(41) - 20);
-      for (double& weight : small.problem.cost.weights) weight *= factor;
+      for (double& weight : *small.problem.cost.weights) weight *= factor;
       small.rebuild();
       const double largest =
-          *std::max_element(small.problem.cost.weights.begin(), small.problem.cost.weights.end());
+          *std::max_element(small.problem.cost.weights->begin(), small.problem.cost.weights->end());
       if (largest > 0) {
         EXPECT_GE(small.lattice->cost_unit(), largest);
         EXPECT_LT(small.lattice->cost_unit(), 2 * largest);

@@ -173,7 +173,6 @@ Problem random_roll_problem(const Chain& chain, bool free, const Roll& roll, Ran
   problem.resolution.ds = 0.02;
   problem.limits.roll_slope = random.uniform(3, 12);
   problem.limits.tool_path_error.reset();
-  problem.cost.weights.back() = 0;
   Config q = random_configuration(chain, random);
   if (!free) q[kDof - 1] = random.uniform(roll.lower, roll.upper);
   Pose tool = chain.tool(q);

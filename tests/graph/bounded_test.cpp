@@ -36,7 +36,7 @@ Problem random_problem(const TestRobot& robot, const Chain& chain, Random& rando
   problem.cost.metric = std::array{CostMetric::kL2, CostMetric::kMax,
                                    CostMetric::kTime}[static_cast<std::size_t>(random.below(3))];
   if (random.coin())
-    for (double& weight : problem.cost.weights)
+    for (double& weight : problem.cost.weights.emplace())
       weight = random.coin(0.1) ? 0 : random.uniform(0.1, 10);
   if (random.coin()) problem.start = q0;
   if (random.coin(0.3)) end_at(problem, chain, q1);

@@ -99,7 +99,7 @@ struct RandomProblem {
     problem.limits.joint_step = random.uniform(0.4, 1);
     if (random.coin(0.3)) problem.cost.metric = CostMetric::kMax;
     if (random.coin(0.3))
-      for (double& weight : problem.cost.weights)
+      for (double& weight : problem.cost.weights.emplace())
         weight = random.coin(0.2) ? 0 : random.uniform(0.1, 5);
     if (!open && random.coin()) problem.start = q0;
   }

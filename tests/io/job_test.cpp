@@ -103,7 +103,7 @@ TEST(JobFile, KeysOfTheJobAndOfStrokes) {
   for (const Stroke* stroke : {&a, &b}) {
     EXPECT_EQ(stroke->resolution.ds, 0.01);
     EXPECT_EQ(stroke->cost.metric, CostMetric::kMax);
-    EXPECT_EQ(stroke->cost.weights[6], 0.5);
+    EXPECT_EQ(stroke->cost.weights->back(), 0.5);
     EXPECT_EQ(stroke->refinement.smoothing, 0.02);
     EXPECT_EQ(stroke->limits.joint_step, 0.4);
     EXPECT_EQ((*stroke->limits.joint_speed)[3], 1);
@@ -137,7 +137,7 @@ TEST(JobFile, RollIsShared) {
   };
   const Job free = load(path("roll: free, ", ""), path("roll: free, ", ""));
   EXPECT_EQ(free.roll, Roll{});
-  EXPECT_EQ(free.strokes[1].cost.weights[6], 0);
+  EXPECT_FALSE(free.strokes[1].cost.weights);
   const Job windows =
       load(path("roll: free, ", ", roll: [-0.5, 0]"), path("roll: free, ", ", roll: [0.1, 0.7]"));
   EXPECT_EQ(windows.roll, (Roll{-0.5, 0.7}));

@@ -344,7 +344,7 @@ void change_rest(Problem& p, swivel::test::Random& random) {
   if (random.coin(0.3)) p.resolution.arcs = !p.resolution.arcs;
   if (random.coin(0.2)) p.resolution = Resolution();
   if (random.coin(0.3)) p.cost.metric = CostMetric::kTime;
-  if (random.coin(0.3)) p.cost.weights[2] = random.uniform(1, 2);
+  if (random.coin(0.3)) p.cost.weights = {1, 1, random.uniform(1, 2), 1, 1, 1, 1};
   if (random.coin(0.3)) p.refinement.smoothing = random.uniform(0, 0.1);
   if (random.coin(0.3))
     p.attached.push_back({"held", Cylinder{0.1, 0.2}, random_pose(random), p.tip_link});

@@ -747,6 +747,20 @@ class Robots(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no arm of six joints in a row was found"):
             swivel.Robot(ROBOTS / "iiwa14.urdf", roll=swivel.Roll())
 
+    def test_roll_weighs_alike_from_files_and_from_memory(self):
+        for name, weights in (("kr6_weld_pipe", [1] * 6 + [0]), ("torch_door", [1] * 7)):
+            problem = swivel.load_problem(PROBLEMS / f"{name}.yaml")
+            self.assertIsNone(problem.cost.weights)
+            costs = []
+            for cost in (None, swivel.Cost(), swivel.Cost(weights=weights)):
+                if cost is not None:
+                    problem.cost = cost
+                plan = swivel.plan(problem, planner="lazy")
+                steps = np.diff(plan.joints, axis=0) * weights
+                self.assertAlmostEqual(plan.cost, np.linalg.norm(steps, axis=1).sum(), delta=1e-9)
+                costs.append(plan.cost)
+            self.assertEqual(costs, [costs[0]] * 3)
+
     def test_windows_of_roll(self):
         problem = swivel.load_problem(PROBLEMS / "ur5e_deburr_edge.yaml")
         n = len(problem.waypoints)

@@ -127,7 +127,7 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
   problem_parts::draw_limits(problem, random);
   if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
   if (random.coin(0.3))
-    for (double& weight : problem.cost.weights) weight = random.uniform(0, 2);
+    for (double& weight : problem.cost.weights.emplace()) weight = random.uniform(0, 2);
   if (random.coin(0.4)) problem_parts::start_at(problem, chain, q0);
   problem.resolution.arcs = (waypoints + obstacles) % 2 == 1;
   return problem;

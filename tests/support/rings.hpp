@@ -71,7 +71,7 @@ inline void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, 
   // Where nodes lie close together and joints weigh unlike, the cheapest open path drifts.
   const bool unlike = random.coin(), fine = unlike && !coarse;
   if (unlike)
-    for (double& weight : problem.cost.weights) weight = random.uniform(0.05, 2);
+    for (double& weight : problem.cost.weights.emplace()) weight = random.uniform(0.05, 2);
   if (nodes == RingNodes::kArmAngles) {
     resolution.arcs = random.coin();
     if (fine && problem.source != "windings") {

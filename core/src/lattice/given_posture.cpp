@@ -6,6 +6,7 @@
 
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
@@ -14,10 +15,6 @@ namespace swivel {
 namespace {
 
 constexpr double kOnPath = 1e-6;  // m and rad: how far the tool may stand from the path at the end
-
-const Config& joints_of(PathEnd which, const Problem& problem) {
-  return which == PathEnd::kFirst ? *problem.start : *problem.end;
-}
 
 const PathLayer& layer_of(PathEnd which, const ToolPath& path) {
   return path.layer(which == PathEnd::kFirst ? 0 : path.size() - 1);
@@ -45,9 +42,16 @@ std::string off_path(PathEnd which, const Problem& problem, double distance, dou
 
 }  // namespace
 
+Config joints_given(PathEnd which, const Problem& problem, const Chain& chain,
+                    const ToolPath& path) {
+  TrajectoryRow row;
+  row.q = which == PathEnd::kFirst ? *problem.start : *problem.end;
+  return counted_from_path(chain, path, layer_of(which, path).travel, row).q;
+}
+
 void validate_given(PathEnd which, const Problem& problem, const Chain& chain,
                     const ToolPath& path) {
-  const Config& q = joints_of(which, problem);
+  const Config q = joints_given(which, problem, chain, path);
   const Pose reached = chain.tool(q);
   const Pose& wanted = layer_of(which, path).tool;
   const double distance = (reached.translation() - wanted.translation()).norm();
@@ -72,7 +76,7 @@ void validate_given(PathEnd which, const Problem& problem, const Chain& chain,
 double roll_of_given(PathEnd which, const Problem& problem, const Chain& chain,
                      const ToolPath& path, const Roll& range) {
   constexpr double kRoll = 1e-6;  // rad: the precision to which joints are usually written
-  const Config& q = joints_of(which, problem);
+  const Config q = joints_given(which, problem, chain, path);
   const PathLayer& layer = layer_of(which, path);
   double roll = chain.roll ? q[kDof - 1] : roll_between(layer.tool, chain.tool(q));
   if (!range.circle())

@@ -9,6 +9,11 @@ namespace swivel {
 /// layer, Problem::end at the last one.
 enum class PathEnd { kFirst, kLast };
 
+/// Returns the joints that the problem gives for an end of the path, which must be set. The roll of
+/// an arm of six joints is counted from the frame of that layer (counted_from_path()).
+[[nodiscard]] Config joints_given(PathEnd which, const Problem& problem, const Chain& chain,
+                                  const ToolPath& path);
+
 /// Throws InputError if the joints that the problem gives for an end of the path, which must be
 /// set, are outside their limits, or if their tool pose is too far from that layer's. Allowed are
 /// Problem::start_tolerance (m and rad) for the start, and 1e-6 m and rad for the end.

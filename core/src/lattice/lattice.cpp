@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/equations/pose_error_bound.hpp"
 #include "swivel/core/lattice/places_near.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -72,9 +74,12 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
       limits_(problem.limits),
       cost_(problem.cost),
       starts_given_(problem.start.has_value()),
-      end_(path.ends_early() ? std::nullopt : problem.end),
+      end_(problem.end && !path.ends_early()
+               ? std::optional(joints_given(PathEnd::kLast, problem, chain, path))
+               : std::nullopt),
       fit_error_(fit_error) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
+  const std::array<double, kDof> weights = joint_weights(cost_, chain);
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
     const bool roll = chain.roll && k + 1 == kDof;
@@ -90,9 +95,7 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
       throw InputError(problem.source, "limits.joint_margin: leaves no range for joint '" +
                                            chain.joint_names[k] + "'" + ": allowed is at most " +
                                            formatted("%.9g", (limit.upper - limit.lower) / 2));
-    cost_scale_[k] = cost_.metric != CostMetric::kTime ? cost_.weights[k]
-                     : roll                            ? 0
-                                                       : 1 / limit.velocity;
+    cost_scale_[k] = cost_.metric != CostMetric::kTime ? weights[k] : roll ? 0 : 1 / limit.velocity;
     if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[k]))
       throw InputError(problem.source, "joint '" + chain.joint_names[k] +
                                            "': its speed limit in the URDF does not suit "
@@ -388,6 +391,7 @@ std::vector<TrajectoryRow> Lattice::path_rows(const std::vector<int>& slots) con
     const int i = static_cast<int>(rows.size()), slot = slots[rows.size()];
     rows.push_back({path_->layer(i).s, phi(i, slot), branch(i, slot), q});
   }
+  count_from_waypoints(*chain_, *path_, rows);
   return rows;
 }
 

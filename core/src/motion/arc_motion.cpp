@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 
 namespace swivel {
 
@@ -97,7 +98,9 @@ void ArcMotion::find_jumps() {
 }
 
 TrajectoryRow ArcMotion::row(double travel, const Config& q) const {
-  return {place(travel).s, arc_angle(*chain_, q), arc_branch(*chain_, lock_, q), q};
+  return counted_from_waypoints(
+      *chain_, *path_, travel,
+      {place(travel).s, arc_angle(*chain_, q), arc_branch(*chain_, lock_, q), q});
 }
 
 std::optional<PathMotion::Singular> ArcMotion::nearest_singular(const Config& q) const {

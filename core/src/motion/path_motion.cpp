@@ -6,6 +6,7 @@
 
 #include "motion/arc_motion.hpp"
 #include "motion/srs_motion.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
@@ -38,7 +39,7 @@ PathMotion::PathMotion(const Chain& chain, const ToolPath& path,
       }
       travel_.push_back(travel);
       layer_.push_back(layer);
-      rows_.push_back(rows[k]);
+      rows_.push_back(counted_from_path(chain, path, travel, rows[k]));
     }
   }
   if (rows.size() < 2 || layer + 1 != path.size())
@@ -51,6 +52,7 @@ PathMotion::PathMotion(const Chain& chain, const ToolPath& path,
     TrajectoryRow row = rows_[static_cast<std::size_t>(k) - 1];
     row.s = place(one.travel).s;
     row.q = one.q;
+    row = counted_from_path(chain, path, one.travel, row);
     travel_.insert(after, one.travel);
     layer_.insert(layer_.begin() + k, -1);
     rows_.insert(rows_.begin() + k, row);

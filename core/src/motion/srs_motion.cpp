@@ -7,6 +7,7 @@
 
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 
 namespace swivel {
 
@@ -84,7 +85,9 @@ TrajectoryRow SrsMotion::row(double travel, const Config& q) const {
   ArmPlane plane =
       t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
   if (path_->unturned()) plane = carry_plane(*arm_, plane, path_->at_travel(travel));
-  return {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q, path_->roll_at(travel)};
+  return counted_from_waypoints(
+      *chain_, *path_, travel,
+      {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q, path_->roll_at(travel)});
 }
 
 std::optional<PathMotion::Singular> SrsMotion::nearest_singular(const Config& q) const {

@@ -6,19 +6,29 @@
 
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/axis_frames.hpp"
 
 namespace swivel {
 
 namespace {
 
-/// Gives the last waypoint of a closed path the pose of the first. Throws InputError where the two
+/// Returns the angle between the z axes of two waypoints, rad.
+double angle_between_axes(const Waypoint& a, const Waypoint& b) {
+  const Vector3d one = a.orientation * Vector3d::UnitZ(), other = b.orientation * Vector3d::UnitZ();
+  return std::atan2(one.cross(other).norm(), one.dot(other));
+}
+
+/// Gives the last waypoint of a closed path the pose of the first, of which with `axis_alone` the
+/// turn about the z axis does not count. Throws InputError where the two
 /// are not one pose, or allow different rolls.
-void close_at_first_pose(std::vector<Waypoint>& waypoints, const std::string& source) {
+void close_at_first_pose(std::vector<Waypoint>& waypoints, bool axis_alone,
+                         const std::string& source) {
   constexpr double kOnePose = 1e-6;  // m and rad
   const Waypoint& first = waypoints.front();
   Waypoint& last = waypoints.back();
   const double apart = (last.position - first.position).norm(),
-               angle = last.orientation.angularDistance(first.orientation);
+               angle = axis_alone ? angle_between_axes(last, first)
+                                  : last.orientation.angularDistance(first.orientation);
   if (!(apart <= kOnePose && angle <= kOnePose))
     throw InputError(source, "path.closed: waypoint " + std::to_string(waypoints.size() - 1) +
                                  ", the last, is " +
@@ -34,7 +44,7 @@ void close_at_first_pose(std::vector<Waypoint>& waypoints, const std::string& so
 
 }  // namespace
 
-std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
+std::vector<Waypoint> given_waypoints_in_base(const Problem& problem) {
   Pose frame = Pose::Identity();
   if (problem.path_frame != problem.base_link && !problem.path_frame.empty()) {
     const auto object = std::find_if(problem.scene.begin(), problem.scene.end(),
@@ -63,8 +73,18 @@ std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
   if (result.size() < 2)
     throw InputError(problem.source, "path: " + std::to_string(result.size()) +
                                          " waypoint(s): allowed are at least two");
-  if (problem.closed) close_at_first_pose(result, problem.source);
+  if (problem.closed) close_at_first_pose(result, axis_alone(problem), problem.source);
   return result;
+}
+
+bool axis_alone(const Problem& problem) {
+  return problem.roll && problem.roll->circle() && problem.cost.roll == 0;
+}
+
+std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
+  std::vector<Waypoint> waypoints = given_waypoints_in_base(problem);
+  if (axis_alone(problem)) carry_frames(waypoints);
+  return waypoints;
 }
 
 }  // namespace swivel

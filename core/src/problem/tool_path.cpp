@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
@@ -527,7 +528,47 @@ double ToolPath::roll_at(double travel) const {
 
 Pose ToolPath::at_travel(double travel) const {
   if (unturned_) return rolled(unturned_->at_travel(travel), roll_at(travel));
-  return on_curve(segment_of(step_at(travel)), travel);
+  return twisted(on_curve(segment_of(step_at(travel)), travel), travel);
+}
+
+Pose ToolPath::twisted(const Pose& pose, double travel) const {
+  return twist_ == 0 ? pose : rolled(pose, twist_ * travel);
+}
+
+void ToolPath::set_waypoint_turns(const std::vector<double>& angles) {
+  constexpr double kHalfTurn = kPi - 1e-9;  // rad, by rounding
+  constexpr double kNone = 1e-12;           // rad, rounding
+  double before = 0;
+  turned_waypoints_ = false;
+  for (Place& place : waypoints_) {
+    const double change =
+        wrap_angle(angles[static_cast<std::size_t>(place.row)] - twist_ * place.travel - before);
+    place.turn = before += change < -kHalfTurn ? change + kTwoPi : change;
+    turned_waypoints_ = turned_waypoints_ || std::abs(place.turn) > kNone;
+  }
+}
+
+double ToolPath::waypoint_turn(double travel) const {
+  if (!turned_waypoints_) return 0;
+  const auto after =
+      std::upper_bound(waypoints_.begin() + 1, waypoints_.end() - 1, travel,
+                       [](double value, const Place& place) { return value < place.travel; });
+  const Place &from = *(after - 1), &to = *after;
+  const double share = std::clamp((travel - from.travel) / (to.travel - from.travel), 0.0, 1.0);
+  return from.turn + share * (to.turn - from.turn);
+}
+
+void ToolPath::close() {
+  closed_ = true;
+  PathLayer& last = layers_.back();
+  if (last.tool.matrix() == layers_.front().tool.matrix()) return;
+  twist_ = -roll_between(layers_.front().tool, last.tool) / last.travel;
+  for (PathLayer& layer : layers_) {
+    layer.tool = twisted(layer.tool, layer.travel);
+    layer.step_rotation =
+        Eigen::AngleAxisd(-twist_ * layer.travel, Vector3d::UnitZ()) * layer.step_rotation;
+  }
+  last.tool = layers_.front().tool;
 }
 
 Pose ToolPath::on_curve(std::size_t k, double travel) const {
@@ -570,8 +611,10 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
   if (t > 0 || aside) {
     before_.push_back(layer(first).tool);
     begins_on_layer_ = false;
+    PathLayer to = layer(first + 1);
+    to.tool = twisted(to.tool, (1 - t) * (layer(first).travel - to.travel));
     layers_[static_cast<std::size_t>(first)] =
-        layer_within_step(layer(first), layer(first + 1), s, t, aside ? tool : at(first, t));
+        layer_within_step(layer(first), to, s, t, aside ? tool : at(first, t));
     begins_aside_ = aside;
   }
   layers_.erase(layers_.begin(), layers_.begin() + first);
@@ -626,8 +669,9 @@ Pose ToolPath::at(int i, double t) const {
                   roll_at(layer(i).travel + t * (layer(i + 1).travel - layer(i).travel)));
   const PathLayer& from = layer(i);
   const PathLayer& to = layer(i + 1);
+  const double way = t * (to.travel - from.travel);
   if (rounded_ && !(begins_aside_ && i == 0))
-    return on_curve(segment_of(i), from.travel + t * (to.travel - from.travel));
+    return twisted(on_curve(segment_of(i), from.travel + way), from.travel + way);
   Pose X;
   X.translation() = from.tool.translation() + t * (to.tool.translation() - from.tool.translation());
   X.linear() = from.tool.linear();
@@ -635,7 +679,7 @@ Pose ToolPath::at(int i, double t) const {
     X.linear() = from.tool.linear() *
                  Eigen::AngleAxisd(t * from.step_angle, from.step_rotation / from.step_angle)
                      .toRotationMatrix();
-  return X;
+  return twisted(X, way);
 }
 
 }  // namespace swivel

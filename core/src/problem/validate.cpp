@@ -345,8 +345,8 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(refine("joint_margin"), problem.refinement.joint_margin, kNonNegative);
   number(refine("singular_margin"), problem.refinement.singular_margin, kNonNegative);
   validate_postures(root, problem);
-  for (std::size_t k = 0; k < kDof; ++k) {
-    const double weight = problem.cost.weights[k];
+  for (std::size_t k = 0; problem.cost.weights && k < kDof; ++k) {
+    const double weight = (*problem.cost.weights)[k];
     if (weight_allowed(weight)) continue;
     const std::string text = formatted("is %g", weight);
     fail(root("cost")("weights", k), text, kAllowedWeights);

@@ -8,6 +8,7 @@
 
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/timing/time_arms.hpp"
 #include "timing/derivative_weights.hpp"
@@ -797,6 +798,14 @@ class Samples {
     return beside;
   }
 
+  /// Returns the joints of an arm at parameter x as rows have them.
+  [[nodiscard]] Config as_in_rows(const TimedArm& arm, double x, const Config& q) const {
+    const PathMotion& motion = *arm.motion;
+    TrajectoryRow row;
+    row.q = q;
+    return counted_from_waypoints(motion.chain(), motion.path(), travel_at(arm, x), row).q;
+  }
+
   /// Adds the sample of an arm at parameter x to its motion. `beside` gives its speeds and
   /// accelerations, if set. Returns why the arm has none.
   std::optional<NoMotion> take_row(std::size_t m, double t, double x,
@@ -814,8 +823,10 @@ class Samples {
     if (beside) {
       const auto before = joints_at(arm, beside->before.x), after = joints_at(arm, beside->after.x);
       if (!before || !after) return NoMotion{row.row.s, "the arm has no solution between layers"};
-      row.v = (*after - *before) / (2 * beside->step);
-      row.a = ((*after - *q) - (*q - *before)) / (beside->step * beside->step);
+      const Config behind = as_in_rows(arm, beside->before.x, *before),
+                   ahead = as_in_rows(arm, beside->after.x, *after), &here = row.row.q;
+      row.v = (ahead - behind) / (2 * beside->step);
+      row.a = ((ahead - here) - (here - behind)) / (beside->step * beside->step);
     }
     if (!roll_allowed(motion.chain(), motion.path(), travel, row.row))
       return NoMotion{row.row.s,

@@ -137,7 +137,6 @@ class JobReader : ProblemReader {
   /// Reads into `problem_` what holds for every stroke.
   void read_shared_task() {
     static_cast<Task&>(problem_) = Task();
-    if (problem_.roll) problem_.cost.weights.back() = 0;
     read_task();
     read_cost();
     shared_ = problem_;

@@ -4,6 +4,7 @@
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
 #include "problems/path_file.hpp"
+#include "swivel/core/problem/axis_frames.hpp"
 #include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
@@ -46,14 +47,6 @@ Vector3d first_x(const std::vector<AxisPoint>& points, const Vector3d& z) {
   return *across(Vector3d::Unit(axis), z);
 }
 
-/// Returns x, perpendicular to z, turned by the smallest turn that takes z to `to`, both of length
-/// 1 and not opposite.
-Vector3d carried(const Vector3d& x, const Vector3d& z, const Vector3d& to) {
-  if (z == to) return x;
-  const Vector3d turned = x - x.dot(to) / (1 + z.dot(to)) * (z + to);
-  return (turned - turned.dot(to) * to).normalized();
-}
-
 }  // namespace
 
 std::vector<Quaterniond> tool_frames(const std::vector<AxisPoint>& points, bool either_side,
@@ -77,7 +70,7 @@ std::vector<Quaterniond> tool_frames(const std::vector<AxisPoint>& points, bool 
                 "normal is opposite to the one before: which way the tool turns is undefined",
                 "less than 180 deg from row to row");
     const Vector3d expected =
-        k == 0 ? (along ? *along : first_x(points, axis)) : carried(x, z, axis);
+        k == 0 ? (along ? *along : first_x(points, axis)) : carried_x(x, z, axis);
     x = along ? *along : expected;
     if (along && either_side && x.dot(expected) < 0) x = -x;
     z = axis;

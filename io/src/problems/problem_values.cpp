@@ -316,7 +316,7 @@ class ProblemValues {
     section["metric"] = cost.metric == CostMetric::kL2    ? "l2"
                         : cost.metric == CostMetric::kMax ? "max"
                                                           : "time";
-    section["weights"] = numbers_node(cost.weights);
+    if (cost.weights) section["weights"] = numbers_node(*cost.weights);
     section["roll"] = number_node(cost.roll);
     return section;
   }
@@ -397,7 +397,6 @@ YAML::Node strokes_beyond(const YAML::Node& strokes, const YAML::Node& of_path) 
 YAML::Node without_defaults(const YAML::Node& values, const Robot& robot) {
   Problem plain;
   static_cast<Robot&>(plain) = robot;
-  if (plain.roll) plain.cost.weights.back() = 0;
   plain.roll.reset();
   plain.start = Config::Zero();
   auto model = std::make_shared<RobotModel>();

@@ -456,7 +456,6 @@ void ProblemReader::free_axis(const YamlSection& section, const YamlValue& name,
   if (first) free_axis_ = name;
   if (problem_.roll) return;
   problem_.roll = path_roll_ = Roll{};
-  problem_.cost.weights.back() = 0;
   if (first)
     warnings.push_back(name.where() +
                        ": has the tool's axis alone: the tool may turn about it (`roll: free`)");
@@ -507,7 +506,6 @@ void ProblemReader::narrow_roll(const YamlValue& poses) {
 
 void ProblemReader::read_roll(const YamlValue& value) {
   problem_.roll = Roll{};
-  problem_.cost.weights.back() = 0;
   if (!value.is_sequence()) {
     constexpr const char* kAllowed = "free, or [lower, upper] in rad";
     if (value.is_map()) value.fail("is a map", kAllowed);
@@ -653,9 +651,10 @@ void ProblemReader::read_end(const YamlValue& path, const Chain& chain) {
   const auto end = path.section().find_filled("end");
   if (!end) return;
   const YamlValue joints = end->section().require("joints");
-  problem_.end = leaves_out_roll(joints, chain) ? with_roll_onto(waypoints_in_base(problem_).back(),
-                                                                 chain, without_roll(joints))
-                                                : Config(Config::Map(joint_numbers(joints).data()));
+  problem_.end =
+      leaves_out_roll(joints, chain)
+          ? with_roll_onto(given_waypoints_in_base(problem_).back(), chain, without_roll(joints))
+          : Config(Config::Map(joint_numbers(joints).data()));
 }
 
 void ProblemReader::read_closed(const YamlValue& path, const Chain& chain) {
@@ -714,12 +713,14 @@ void ProblemReader::read_weights(const YamlValue& value) {
     return weight;
   };
   if (!value.is_map()) {
-    const std::vector<double> weights = joint_numbers(value);
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      problem_.cost.weights[k] = allowed(value.items()[k], weights[k]);
+    const std::vector<double> numbers = joint_numbers(value);
+    std::array<double, kDof>& weights = problem_.cost.weights.emplace();
+    for (std::size_t k = 0; k < kDof; ++k) weights[k] = allowed(value.items()[k], numbers[k]);
     return;
   }
-  const auto& names = arm().chain.joint_names;
+  const Chain chain = arm().chain;
+  const auto& names = chain.joint_names;
+  std::array<double, kDof> weights = joint_weights(Cost(), chain);
   for (const auto& [joint, weight] : value.entries()) {
     const auto at = std::find(names.begin(), names.end(), joint);
     if (at == names.end() &&
@@ -729,9 +730,9 @@ void ProblemReader::read_weights(const YamlValue& value) {
       weight.fail("'" + joint + "' is no joint of the arm, nearest is '" +
                       nearest_name(joint, {names.begin(), names.end()}) + "'",
                   "a joint of the arm");
-    problem_.cost.weights[static_cast<std::size_t>(at - names.begin())] =
-        allowed(weight, weight.number());
+    weights[static_cast<std::size_t>(at - names.begin())] = allowed(weight, weight.number());
   }
+  problem_.cost.weights = weights;
 }
 
 void ProblemReader::read_vary() {

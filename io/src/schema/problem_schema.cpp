@@ -288,7 +288,7 @@ Schema cost() {
                    "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v "
                    "with the velocities of the URDF"},
                   {"weights", either(numbers(kDof, kNonNegative), map(number(kNonNegative))),
-                   "per rad or m", in_words("1 each, that of a roll 0"),
+                   "per rad or m", in_words("1 each, that of the roll of six-joint arms 0"),
                    "w, base to tip: each 0 or from 1e-6 to 1e6; or, `{joint_1: 2}`, of the joints "
                    "that are named"},
                   {"roll", number(kNonNegative), "", otherwise(Cost().roll),

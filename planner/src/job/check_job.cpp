@@ -218,6 +218,7 @@ class JobCheck {
   /// Returns what the moves of a transition cost. The roll of a six-joint arm costs nothing.
   [[nodiscard]] double cost_of(const std::vector<TrajectoryRow>& rows) const {
     const Cost& cost = job_.strokes.front().cost;
+    const std::array<double, kDof> weights = joint_weights(cost, chain_);
     double sum = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
       double squares = 0, most = 0;
@@ -225,7 +226,7 @@ class JobCheck {
         if (chain_.roll && j + 1 == kDof) continue;
         const auto x = static_cast<Eigen::Index>(j);
         const double scale =
-            cost.metric == CostMetric::kTime ? 1 / chain_.limit[j].velocity : cost.weights[j];
+            cost.metric == CostMetric::kTime ? 1 / chain_.limit[j].velocity : weights[j];
         const double scaled = scale * (rows[i].q[x] - rows[i - 1].q[x]);
         squares += scaled * scaled;
         most = std::max(most, std::abs(scaled));
@@ -352,7 +353,7 @@ bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job, std::si
   if (rows.empty() || !rows.front().q.allFinite()) return false;
   const Pose tool = robot.arm().chain.tool(rows.front().q);
   const auto distance = [&](bool reversed) {
-    const Waypoint first = waypoints_in_base(problem_of_run(job, {stroke, reversed})).front();
+    const Waypoint first = given_waypoints_in_base(problem_of_run(job, {stroke, reversed})).front();
     return std::pair((first.position - tool.translation()).norm(),
                      Quaterniond(tool.linear()).angularDistance(first.orientation));
   };

@@ -133,15 +133,23 @@ std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
   Problem line = problem_;
   line.end.reset();
   if (layer == 0) {
-    line.waypoints.resize(1);
+    // The stroke beyond the line says how the tool's frame is carried along its axis.
+    line.waypoints.insert(line.waypoints.begin(), line.waypoints.front());
   } else if (layer + 1 < path_.size()) {
     const Job cut = with_lift_offs(*job_, {{stroke_, s, s}});
     line.waypoints = cut.strokes[stroke_].waypoints;
   }
-  Waypoint away = line.waypoints.back();
-  away.position += away.orientation.normalized() * offset;
-  line.waypoints.push_back(away);
+  if (layer > 0) line.waypoints.push_back(line.waypoints.back());
+  const auto beyond = layer > 0 ? line.waypoints.end() - 1 : line.waypoints.begin() + 1;
+  const Vector3d away = beyond->orientation.normalized() * offset;
+  for (auto waypoint = beyond; waypoint != line.waypoints.end(); ++waypoint)
+    waypoint->position += away;
   ToolPath path = problem_path(line, robot_->arm().chain, budget_);
+  if (layer == 0) {
+    int end = 1;
+    while (path.layer(end).waypoint != 1) ++end;
+    path.end_at(end);
+  }
   path.begin_at(s, path_.layer(layer).tool, 0, line.source);
   const auto lattice = with_all_windings(
       make_lattice(robot_->arm().chain, robot_->arm_class(), path, line, budget_));

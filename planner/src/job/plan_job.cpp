@@ -540,7 +540,30 @@ class JobPlan {
       end = *lattice.exact_config(lattice.layers() - 1, path.back());
     }
     if (job_.home) add_transition(runs_.size(), *job_.home);
+    if (chain_.roll) join_rolls(parts);
     return parts;
+  }
+
+  /// Moves the rolls of transitions, which may change as they like, so that they lead from that of
+  /// the row before to that of the row behind: rows of runs count them from the waypoints.
+  static void join_rolls(std::vector<JobPart>& parts) {
+    const auto roll_of_row = [](TrajectoryRow& row) -> double& { return row.q[kDof - 1]; };
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      std::vector<TrajectoryRow>& rows = parts[k].rows;
+      if (parts[k].run || rows.empty()) continue;
+      const auto gap = [&](std::size_t other, bool before) {
+        if (other >= parts.size() || parts[other].rows.empty()) return 0.0;
+        std::vector<TrajectoryRow>& beside = parts[other].rows;
+        return before ? roll_of_row(beside.back()) - roll_of_row(rows.front())
+                      : roll_of_row(beside.front()) - roll_of_row(rows.back());
+      };
+      const double begin = gap(k - 1, true), end = gap(k + 1, false);
+      if (begin == 0 && end == 0) continue;
+      const auto last = static_cast<double>(rows.size() - 1);
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        roll_of_row(rows[i]) +=
+            last > 0 ? begin + (end - begin) * static_cast<double>(i) / last : begin;
+    }
   }
 
   /// Measures the arm angles of a run's rows from the planes of its own path, as everyone does who

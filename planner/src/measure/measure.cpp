@@ -55,7 +55,12 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
     manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
     if (const auto& srs = robot.arm_class().srs)
       arm_angle.push_back(conventional_arm_angle(
-          *srs, rolled(path.layer(i).tool, trajectory[static_cast<std::size_t>(i)].roll), q));
+          *srs,
+          rolled(path.layer(i).tool,
+                 counted_from_path(robot.arm().chain, path, path.layer(i).travel,
+                                   trajectory[static_cast<std::size_t>(i)])
+                     .roll),
+          q));
   }
   std::vector<Config> joints;
   for (const TrajectoryRow& row : trajectory) joints.push_back(row.q);

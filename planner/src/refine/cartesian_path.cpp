@@ -93,7 +93,8 @@ Task path_up_to(const Problem& problem, const Chain& chain, int last, const Budg
   for (int i = 0; i <= last; ++i) {
     const PathLayer& layer = path.layer(i);
     if (i > 0 && i < last && layer.waypoint < 0) continue;
-    Waypoint waypoint{layer.tool.translation(), Quaterniond(layer.tool.linear()), {}};
+    const Pose own = rolled(layer.tool, path.waypoint_turn(layer.travel));
+    Waypoint waypoint{own.translation(), Quaterniond(own.linear()), {}};
     if (windows) waypoint.roll = layer.window;
     part.waypoints.push_back(waypoint);
   }

@@ -33,14 +33,22 @@ double ms_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
+/// Returns the rolls of rows at the layers of a path, rad, counted from its frames.
+std::vector<double> rolls_on(const Chain& chain, const ToolPath& path,
+                             std::vector<TrajectoryRow> rows) {
+  if (rows.size() == static_cast<std::size_t>(path.size())) count_from_path(chain, path, rows);
+  return rolls_of(rows);
+}
+
 /// Returns the rolls of the rows, rad, moved so that the spline through them stays within the range
 /// and the waypoints' windows: where it leaves them, the rolls beside are moved by as much, again
 /// and again. In a window no wider than the spline's own bends it may stay outside a little.
-std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path,
+std::vector<double> rolls_for_motion(const Chain& chain, const ToolPath& path,
                                      const std::vector<TrajectoryRow>& rows, bool ends_given) {
   constexpr int kMost = 40;
   constexpr double kFurther = 1.2;  // so that it ends
-  std::vector<double> rolls = rolls_of(rows);
+  const Roll& range = *chain.free_roll;
+  std::vector<double> rolls = rolls_on(chain, path, rows);
   if (range.circle() || rolls.size() != static_cast<std::size_t>(path.size())) return rolls;
   const auto into = [&range](const Roll& window, double roll) {
     const double lower = std::max(range.lower, window.lower),
@@ -215,9 +223,9 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
   robot.require_prepared_for(problem);
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
     Problem turned = problem;
-    turned.rolls = rolls_for_motion(*robot.arm().chain.free_roll,
-                                    problem_path(problem, robot.arm().chain, budget), rows,
-                                    problem.end.has_value());
+    turned.rolls =
+        rolls_for_motion(robot.arm().chain, problem_path(problem, robot.arm().chain, budget), rows,
+                         problem.end.has_value());
     return time_rows(robot, turned, rows, asked, between_layers, budget);
   }
   require_positive(asked);
@@ -363,7 +371,7 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
   robot.require_prepared_for(problem);
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {
     Problem turned = problem;
-    turned.rolls = rolls_of(rows);
+    turned.rolls = rolls_on(robot.arm().chain, problem_path(problem, robot.arm().chain), rows);
     return rows_on_path(robot, turned, rows);
   }
   const ToolPath path = problem_path(problem, robot.arm().chain);

@@ -466,10 +466,13 @@ std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobo
   for (int i = 0; i < lattice.layers(); ++i) {
     TrajectoryRow row;
     row.s = lattice.path().layer(i).s;
-    const auto q = i == 0 ? found.trajectory.front().q
-                   : ends_given && i + 1 == lattice.layers()
-                       ? found.trajectory.back().q
-                       : motion->joints(lattice.path().layer(i).travel);
+    const double travel = lattice.path().layer(i).travel;
+    const auto found_joints = [&](const TrajectoryRow& one) {
+      return counted_from_path(robot.arm().chain, lattice.path(), travel, one).q;
+    };
+    const auto q = i == 0 ? found_joints(found.trajectory.front())
+                   : ends_given && i + 1 == lattice.layers() ? found_joints(found.trajectory.back())
+                                                             : motion->joints(travel);
     if (!q) return std::nullopt;
     row.q = *q;
     row.phi = redundancy.coordinate(i, *q);
@@ -745,15 +748,10 @@ Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, cons
   return result;
 }
 
-/// Refines a path whose given ends, if any, stay as they are.
-Refined refine_between_ends(const PreparedRobot& robot, const Problem& problem,
-                            const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
-                            const Budget& budget) {
-  const ToolPath path = problem_path(problem, robot.arm().chain, budget);
-  if (rows.size() != static_cast<std::size_t>(path.size()))
-    throw InvalidArgument("refine: " + std::to_string(rows.size()) +
-                          " rows: allowed are those of plan(), " + std::to_string(path.size()) +
-                          ", one for each layer");
+/// Refines rows whose roll is counted from the frames of the path (counted_from_path()).
+Refined refine_counted(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+                       const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+                       const Budget& budget) {
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {
     auto coaxial = refine_coaxial(robot, problem, path, rows, options, budget);
     return coaxial ? *std::move(coaxial)
@@ -763,6 +761,23 @@ Refined refine_between_ends(const PreparedRobot& robot, const Problem& problem,
       make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
   return refine_along(*redundancy, robot, problem, path, rows, options,
                       options.second_seed && problem.rolls.empty(), budget);
+}
+
+/// Refines a path whose given ends, if any, stay as they are.
+Refined refine_between_ends(const PreparedRobot& robot, const Problem& problem,
+                            const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
+                            const Budget& budget) {
+  const Chain& chain = robot.arm().chain;
+  const ToolPath path = problem_path(problem, chain, budget);
+  if (rows.size() != static_cast<std::size_t>(path.size()))
+    throw InvalidArgument("refine: " + std::to_string(rows.size()) +
+                          " rows: allowed are those of plan(), " + std::to_string(path.size()) +
+                          ", one for each layer");
+  std::vector<TrajectoryRow> counted = rows;
+  count_from_path(chain, path, counted);
+  Refined refined = refine_counted(robot, problem, path, counted, options, budget);
+  count_from_waypoints(chain, path, refined.rows);
+  return refined;
 }
 
 }  // namespace

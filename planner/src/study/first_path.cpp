@@ -133,7 +133,6 @@ FirstPath find_first_path(const Robot& robot, const PlanOptions& options) {
     if (path[0].position == path[1].position) continue;  // an arm that hardly moves
     Task task;
     task.waypoints = path;
-    if (chain.roll) task.cost.weights.back() = 0;  // as a file has it
     planner.set_task(task);
     if (options.timeout_s) {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;

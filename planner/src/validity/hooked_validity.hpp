@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/verdicts/validity.hpp"
 #include "validity/asked_hooks.hpp"
 
@@ -32,10 +33,14 @@ class HookedValidity final : public Validity {
   void check_layers_between(std::span<const EdgeQuestion> questions,
                             std::span<std::uint8_t> answers);
   /// Returns the state that hooks are given for a node: its exact configuration
-  /// (Lattice::exact_config) if it has one of its own, else its joints.
+  /// (Lattice::exact_config) if it has one of its own, else its joints. The roll is counted as that
+  /// of rows is.
   [[nodiscard]] Config state(int layer, int slot, const Config& node) const {
-    return lattice_->is_approximate() ? lattice_->exact_config(layer, slot, node).value_or(node)
-                                      : node;
+    TrajectoryRow row;
+    row.q = lattice_->is_approximate() ? lattice_->exact_config(layer, slot, node).value_or(node)
+                                       : node;
+    const ToolPath& path = lattice_->path();
+    return counted_from_waypoints(lattice_->chain(), path, path.layer(layer).travel, row).q;
   }
 
   const Lattice* lattice_;

@@ -27,6 +27,7 @@
 #include "verify/check_rates.hpp"
 #include "verify/given_ends.hpp"
 #include "verify/path_following.hpp"
+#include "verify/places_on_path.hpp"
 
 namespace swivel {
 
@@ -131,6 +132,28 @@ class Contacts {
   const Budget* budget_;
 };
 
+/// Returns rows with their rolls counted from the frames of the path (counted_from_path()). The
+/// place of a row is the first at its s at which the path has the tool's position and axis, of
+/// those that are not before the place of the row before it.
+std::vector<TrajectoryRow> rows_counted_from(const ToolPath& path, const Problem& problem,
+                                             const Chain& chain, std::vector<TrajectoryRow> rows) {
+  if (!path.has_waypoint_turns()) return rows;
+  const PlacesOnPath places(path, problem.smooth.has_value(),
+                            problem.smooth ? problem.smooth->position : 0, true);
+  double before = 0;
+  for (TrajectoryRow& row : rows) {
+    if (!row.q.allFinite() || !std::isfinite(row.s)) continue;
+    const std::vector<double> fits = places.fits(chain.tool(row.q), row.s);
+    const auto next = std::lower_bound(fits.begin(), fits.end(), before);
+    const double place = next != fits.end() ? *next
+                         : !fits.empty()    ? fits.back()
+                                            : places.place_at(row.s);
+    before = place;
+    row = counted_from_path(chain, path, travel_at(path, place), row);
+  }
+  return rows;
+}
+
 class Check {
  public:
   /// Prepares the check of `rows`. `like` is a world of the robot; `timed` holds the same rows with
@@ -143,9 +166,10 @@ class Check {
         limits_(problem.limits),
         chain_(robot.arm().chain),
         arm_(robot.arm_class().srs ? &*robot.arm_class().srs : nullptr),
-        rows_(rows),
+        given_rows_(rows),
         timed_(timed),
         path_(problem_path(problem, chain_, options.budget)),
+        rows_(rows_counted_from(path_, problem, chain_, rows)),
         allowed_(allowed_moves(problem, chain_, path_)),
         planes_(arm_ ? carried_planes(*arm_, path_, options.budget) : std::vector<ArmPlane>{}),
         contacts_(robot, problem, like, options.budget),
@@ -162,7 +186,8 @@ class Check {
   CheckResult run() {
     if (rows_.size() < 2) fail("%zu row(s): at least two are needed", rows_.size());
     if (!rows_.empty())
-      for (const std::string& line : faults_of_given_ends(problem_, chain_, rows_)) fail(line);
+      for (const std::string& line : faults_of_given_ends(problem_, chain_, given_rows_))
+        fail(line);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       options_.budget.poll();
       const bool is_sound = sound(k);
@@ -755,12 +780,12 @@ class Check {
   }
 
   [[nodiscard]] double cost_of(const Config& move) const {
+    const std::array<double, kDof> weights = joint_weights(problem_.cost, chain_);
     double l2 = 0, most = 0;
     for (std::size_t j = 0; j < kDof; ++j) {
       const double dq = move[static_cast<Eigen::Index>(j)];
-      const double scaled = problem_.cost.metric != CostMetric::kTime
-                                ? problem_.cost.weights[j] * dq
-                            : chain_.roll && j + 1 == kDof ? 0
+      const double scaled = problem_.cost.metric != CostMetric::kTime ? weights[j] * dq
+                            : chain_.roll && j + 1 == kDof            ? 0
                                                            : dq / chain_.limit[j].velocity;
       l2 += scaled * scaled;
       most = std::max(most, std::abs(scaled));
@@ -785,9 +810,10 @@ class Check {
   const Limits& limits_;
   const Chain& chain_;
   const SrsArm* arm_;  // null: no arm angle; phi and branch of rows are for reports alone
-  const std::vector<TrajectoryRow>& rows_;
+  const std::vector<TrajectoryRow>& given_rows_;
   const std::vector<TimedRow>* timed_;
   ToolPath path_;
+  const std::vector<TrajectoryRow> rows_;  // with rolls counted from the frames of the path
   std::vector<Config> allowed_;
   std::vector<ArmPlane> planes_;
   std::optional<SrsLattice> lattice_;  // for the estimate of the step error alone

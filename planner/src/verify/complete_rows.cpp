@@ -46,7 +46,8 @@ class Completion {
         rows_(std::move(rows)),
         path_(problem_path(problem, chain_, budget)),
         first_turn_(problem.start ? (*problem.start)[kDof - 1] : 0),
-        any_turn_(chain_.roll ? !stated.last_joint : chain_.free_roll && !stated.roll),
+        any_turn_(path_.has_waypoint_turns() ||
+                  (chain_.roll ? !stated.last_joint : chain_.free_roll && !stated.roll)),
         places_(path_, problem.smooth.has_value(), problem.smooth ? problem.smooth->position : 0,
                 any_turn_) {
     if (!stated.last_joint && !chain_.roll)
@@ -65,7 +66,7 @@ class Completion {
   /// Returns the rows, completed with what was not stated. Call once.
   std::vector<TrajectoryRow> rows() {
     label();
-    return std::move(rows_);
+    return counted_from_waypoints();
   }
 
   /// Returns completed rows at the layers of the path, as rows_at_layers() describes. Call once.
@@ -95,7 +96,7 @@ class Completion {
         std::all_of(place_.begin(), place_.end(),
                     [](double place) { return place == std::floor(place); }) &&
         std::adjacent_find(place_.begin(), place_.end(), std::greater_equal<>()) == place_.end();
-    if (at_layers) return std::move(rows_);
+    if (at_layers) return counted_from_waypoints();
     std::vector<TrajectoryRow> laid;
     std::vector<std::size_t> made;
     std::size_t k = 0;  // the last row at or before the layer
@@ -112,7 +113,7 @@ class Completion {
     stated_.phi = stated_.branch = false;
     if (class_.srs && planes_.empty()) planes_ = carried_planes(*class_.srs, path_, budget_);
     for (const std::size_t i : made) label_posture(i);
-    return std::move(rows_);
+    return counted_from_waypoints();
   }
 
  private:
@@ -121,6 +122,14 @@ class Completion {
     std::size_t row = 0;
     std::ptrdiff_t before = -1;
   };
+
+  /// Returns the rows, whose rolls are counted from the frames of the path since label(), as rows
+  /// have them. Call once.
+  std::vector<TrajectoryRow> counted_from_waypoints() {
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      rows_[k] = swivel::counted_from_waypoints(chain_, path_, travel(place_[k]), rows_[k]);
+    return std::move(rows_);
+  }
 
   /// Returns the tool's pose without the turn that the file states.
   [[nodiscard]] Pose tool_of(const TrajectoryRow& row) const {
@@ -225,11 +234,7 @@ class Completion {
       place_[k] = layer;
   }
 
-  [[nodiscard]] double travel(double place) const {
-    const int i = std::min(static_cast<int>(std::floor(place)), path_.size() - 2);
-    return path_.layer(i).travel +
-           (place - i) * (path_.layer(i + 1).travel - path_.layer(i).travel);
-  }
+  [[nodiscard]] double travel(double place) const { return travel_at(path_, place); }
 
   /// Returns a row at a layer between row k and the next row. Throws InputError if Newton's method
   /// finds no joints near those between the two.
@@ -284,6 +289,9 @@ class Completion {
   void label(std::size_t k) {
     TrajectoryRow& row = rows_[k];
     const Pose there = pose_at(path_, place_[k]);
+    TrajectoryRow counted = counted_from_path(chain_, path_, travel(place_[k]), row);
+    if (chain_.roll ? stated_.last_joint : stated_.roll) row.q = counted.q, row.roll = counted.roll;
+    if (chain_.roll && stated_.phi) row.phi = counted.phi;
     if (!stated_.s) row.s = places_.s_at(place_[k]);
     if (!stated_.last_joint) {
       const JointLimit& limit = chain_.limit.back();

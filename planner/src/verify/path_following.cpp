@@ -110,6 +110,11 @@ class Pieces {
 
 }  // namespace
 
+double travel_at(const ToolPath& path, double place) {
+  const int i = std::min(static_cast<int>(std::floor(place)), path.size() - 2);
+  return path.layer(i).travel + (place - i) * (path.layer(i + 1).travel - path.layer(i).travel);
+}
+
 Pose pose_at(const ToolPath& path, double place) {
   const int layer = static_cast<int>(std::floor(place));
   return layer == place ? path.layer(layer).tool : path.at(layer, place - layer);

@@ -33,6 +33,8 @@ struct ToolMotion {
 /// Returns the tool pose at a place on a path. A place is a layer's number plus the fraction of the
 /// step from it: 3.5 is half way from layer 3 to layer 4.
 [[nodiscard]] Pose pose_at(const ToolPath& path, double place);
+/// Returns the travel, m, at a place on a path.
+[[nodiscard]] double travel_at(const ToolPath& path, double place);
 
 /// Returns for each of the places `ends` (ascending, none before `begin`) whether tool and path can
 /// be traversed together, neither ever going back, from (first pose, begin) to (last pose, end),

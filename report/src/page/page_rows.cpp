@@ -9,6 +9,7 @@
 
 #include "page/packed.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/timing/time_path.hpp"
 
 namespace swivel::detail {
@@ -27,8 +28,10 @@ bool may_turn(const Lattice& lattice) {
 std::vector<PageRow> placed(const Lattice& lattice, const LatticeMap& map,
                             const std::vector<TrajectoryRow>& rows, const std::vector<int>& slots) {
   const bool turned = may_turn(lattice);
-  const std::vector<double> turns = rolls_of(rows);
   const ToolPath& path = lattice.path_of_rows();
+  std::vector<TrajectoryRow> counted = rows;  // as the map has its angles
+  count_from_path(lattice.chain(), path, counted);
+  const std::vector<double> turns = rolls_of(counted);
   std::vector<PageRow> shown;
   std::size_t knot = 0;  // the layer of the lattice at the row, or before it
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -43,7 +46,7 @@ std::vector<PageRow> placed(const Lattice& lattice, const LatticeMap& map,
       const auto count = static_cast<double>(i - first) / static_cast<double>(last - first);
       row.layer += s(last) > s(first) ? (s(i) - s(first)) / (s(last) - s(first)) : count;
     }
-    const double value = map.value_at(row.at.phi, row.at.q);
+    const double value = map.value_at(counted[i].phi, counted[i].q);
     row.angle = map.place(value);
     if (map.joint >= 0) row.joint = value;
     row.solution = map.path[knot] / map.angles;

@@ -46,10 +46,11 @@ std::vector<Arm> arms() {
 double most_deviation(const Chain& chain, const ToolPath& path,
                       const std::vector<TrajectoryRow>& rows) {
   double most = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    most = std::max(
-        most,
-        (chain.tool(rows[i].q).matrix() - path.layer(static_cast<int>(i)).tool.matrix()).norm());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const PathLayer& layer = path.layer(static_cast<int>(i));
+    const Config q = counted_from_path(chain, path, layer.travel, rows[i]).q;
+    most = std::max(most, (chain.tool(q).matrix() - layer.tool.matrix()).norm());
+  }
   return most;
 }
 

@@ -73,7 +73,7 @@ Problem basin_problem(const TestRobot& robot, int shape, Random& random) {
   if (random.coin(0.2)) problem_parts::draw_obstacles(problem, chain, q, 2, random);
   if (random.coin(0.25)) problem.cost.metric = random.coin() ? CostMetric::kMax : CostMetric::kTime;
   if (random.coin(0.2))
-    for (double& weight : problem.cost.weights) weight = random.uniform(0, 2);
+    for (double& weight : problem.cost.weights.emplace()) weight = random.uniform(0, 2);
   if (random.coin(0.2)) problem.limits.joint_margin = 0.05;
   return problem;
 }

@@ -281,7 +281,7 @@ TEST(Agreement, FclAloneGivesTheSameAnswersOnOtherLattices) {
 enum class Weights { kAllZero, kSomeZero, kLeast, kMost, kBothEnds, kCount };
 
 void set_weights(Weights kind, Random& random, Cost& cost) {
-  for (double& weight : cost.weights) switch (kind) {
+  for (double& weight : cost.weights.emplace()) switch (kind) {
       case Weights::kAllZero:
         weight = 0;
         break;

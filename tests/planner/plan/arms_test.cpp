@@ -403,7 +403,7 @@ RollCostCase random_roll_cost_case(const char* name, const Roll& roll, Random& r
   problem.limits.roll_slope = random.uniform(10, 30);
   problem.limits.edges = random.coin() ? EdgeMode::kContinuous : EdgeMode::kNodes;
   problem.limits.edge_tolerance = 0.005;
-  problem.cost.weights[6] = random.coin(0.3) ? 0.5 : 0;
+  if (random.coin(0.3)) problem.cost.weights = {1, 1, 1, 1, 1, 1, 0.5};
   if (!problem.roll->circle() && random.coin())
     draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
   drawn.weight = std::array{0.3, 3.0, 30.0, 1e5}[static_cast<std::size_t>(random.below(4))];

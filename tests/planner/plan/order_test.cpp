@@ -55,7 +55,10 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
     problem.cost.metric = random.coin(0.3) ? CostMetric::kMax : CostMetric::kL2;
-    if (random.coin(0.3)) problem.cost.weights[static_cast<std::size_t>(random.below(kDof))] = 0;
+    if (random.coin(0.3)) {
+      problem.cost.weights = {1, 1, 1, 1, 1, 1, 1};
+      (*problem.cost.weights)[static_cast<std::size_t>(random.below(kDof))] = 0;
+    }
     const PlanResult of_one = plan(problem);
     problem.model = two.model;
     const PlanResult of_two = plan(problem);

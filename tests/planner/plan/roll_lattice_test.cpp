@@ -91,7 +91,8 @@ void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem,
   ASSERT_EQ(static_cast<int>(rows.size()), path.size()) << what;
   for (int i = 0; i < path.size(); ++i) {
     const TrajectoryRow& row = rows[static_cast<std::size_t>(i)];
-    const Pose wanted = path.layer(i).tool * Eigen::AngleAxisd(row.roll, Vector3d::UnitZ()),
+    const double turn = row.roll + path.waypoint_turn(path.layer(i).travel);
+    const Pose wanted = path.layer(i).tool * Eigen::AngleAxisd(turn, Vector3d::UnitZ()),
                tool = chain.tool(row.q);
     const double tolerance = i == 0 && problem.start ? 1e-6 : 1e-9;
     ASSERT_LE((wanted.matrix() - tool.matrix()).norm(), tolerance) << what << " row " << i;
@@ -386,6 +387,29 @@ TEST(RollLattice, JointSevenRests) {
   EXPECT_GE(counts.cheaper, at_least_among(count / 20));
   EXPECT_GE(counts.refined, at_least_among(count / 8));
   EXPECT_GE(counts.inexact, at_least_among(count / 10));
+}
+
+/// A URDF or a tool that rounds pi, or writes lengths to a tenth of a millimetre, does not hide
+/// that the tool turns about joint 7's axis.
+TEST(RollLattice, JointSevenRestsUnderARoundedTool) {
+  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  problem.attached.clear();
+  problem.resolution.droll = 0.3;
+  problem.resolution.dphi = 0.3;
+  for (const double angle : {0.0, 5e-8, 3e-6, 2e-3}) {
+    problem.tool =
+        Eigen::Translation3d(1e-2 * angle, 0, 0.2) * Eigen::AngleAxisd(angle, Vector3d::UnitX());
+    const PreparedRobot robot(problem);
+    EXPECT_TRUE(robot.srs().coaxial) << angle;
+    EXPECT_EQ(robot.srs().exact, angle == 0) << angle;
+    const PlanResult result = plan(robot, problem);
+    ASSERT_EQ(result.status, PlanStatus::kSolved) << angle;
+    EXPECT_EQ(result.lattice.grid->rolls, 1) << angle;
+    const CheckResult check = check_trajectory(robot, problem, result.trajectory);
+    EXPECT_TRUE(check.passed) << angle << ": " << check.failures[0];
+  }
+  problem.tool = Eigen::Translation3d(0, 0, 0.2) * Eigen::AngleAxisd(0.02, Vector3d::UnitX());
+  EXPECT_FALSE(PreparedRobot(problem).srs().coaxial);
 }
 
 /// Where joint 7 rests determines what the tool meets: joint 7 moves if there is no path otherwise.

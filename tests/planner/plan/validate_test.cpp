@@ -102,7 +102,10 @@ void add_resolution_and_cost(std::vector<Case>& cases) {
       not_positive);
   for (std::size_t k : {0u, 6u})
     add_number(cases, "cost.weights[" + std::to_string(k) + "]",
-               [=](Problem& p) -> double& { return p.cost.weights[k]; },
+               [=](Problem& p) -> double& {
+                 if (!p.cost.weights) p.cost.weights = {1, 1, 1, 1, 1, 1, 1};
+                 return (*p.cost.weights)[k];
+               },
                {-1, 1e-7, 1.1e6, 1e160, 1e-300});
   add_number(cases, "cost.roll",
              [](Problem& p) -> double& {

@@ -570,6 +570,14 @@ double Chain::manipulability(const Config& q) const {
   return std::sqrt(std::max(0.0, JJt.determinant()));
 }
 
+std::array<double, kDof> joint_weights(const Cost& cost, const Chain& chain) {
+  if (cost.weights) return *cost.weights;
+  std::array<double, kDof> weights;
+  weights.fill(1);
+  if (chain.roll) weights.back() = 0;
+  return weights;
+}
+
 std::vector<std::string> limit_warnings(const Chain& chain) {
   std::vector<std::string> warnings;
   for (std::size_t j = 0; j < kDof; ++j)

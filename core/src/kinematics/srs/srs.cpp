@@ -125,6 +125,13 @@ std::array<double, 3> solve_euler(const TripleCircle& circle, double shift, doub
   return {wrap_angle(first + kPi), -middle - shift, wrap_angle(last + kPi)};
 }
 
+/// Returns how far the tool's origin and its z axis are from a line, at q = 0.
+FitDeviation tool_off_axis(const Chain& chain, const Line& line) {
+  const Vector3d z = chain.home.linear().col(2);
+  return {(chain.home.translation() - line.p).cross(line.a).norm(),
+          std::atan2(z.cross(line.a).norm(), std::abs(z.dot(line.a)))};
+}
+
 }  // namespace
 
 SrsArm fit_srs(const Chain& chain, const std::string& source) {
@@ -169,6 +176,20 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   arm.wrist = fit_triple(arm.axis[4], arm.axis[5], arm.axis[6]);
   arm.home_rotation = chain.home.linear();
   arm.wrist_in_tool = chain.home.linear().transpose() * (arm.W - chain.home.translation());
+  if (chain.free_roll && chain.free_roll->circle()) {
+    const FitDeviation off = tool_off_axis(chain, line[6]);
+    arm.coaxial = off.offset <= kMissTolerance && off.angle <= kAngleTolerance;
+    if (arm.coaxial && (off.offset >= kExact || off.angle >= kExact)) {
+      arm.deviation.offset = std::max(arm.deviation.offset, off.offset);
+      arm.deviation.angle = std::max(arm.deviation.angle, off.angle);
+      // The fitted arm's tool is on the axis.
+      const Vector3d z = arm.home_rotation.col(2);
+      const Vector3d along = z.dot(arm.axis[6]) < 0 ? Vector3d(-arm.axis[6]) : arm.axis[6];
+      arm.home_rotation =
+          Quaterniond::FromTwoVectors(z, along).toRotationMatrix() * arm.home_rotation;
+      arm.wrist_in_tool = {0, 0, arm.wrist_in_tool.z()};
+    }
+  }
   arm.exact = arm.deviation.offset < kExact && arm.deviation.angle < kExact;
   if (!arm.exact) arm.fit_error = measure_fit_error(chain, arm);
   return arm;

@@ -409,7 +409,7 @@ void Layer::add_flipped(const Before& before) {
 }
 
 std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
-  std::array<double, kDof> weights = cost.weights;
+  std::array<double, kDof> weights = joint_weights(cost, chain);
   for (std::size_t j = 0; cost.metric == CostMetric::kTime && j < kDof; ++j)
     weights[j] = chain.limit[j].velocity > 0 ? 1 / chain.limit[j].velocity : chain.roll ? 0 : 1;
   return weights;
@@ -554,7 +554,8 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
     if (i + 1 == path.size() && ends_given) {  // the end is the only node, and continues none
-      result.points.push_back({given_point(motion, *problem.end)});
+      result.points.push_back(
+          {given_point(motion, joints_given(PathEnd::kLast, problem, chain, path))});
       break;
     }
     if (i + 1 == path.size() && path.closed() && !problem.start) {
@@ -581,7 +582,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     const int slots = static_cast<int>(layer.points.size());
     if (i == 0 && problem.start) {
       // The start is the only node of layer 0; the others are transported as if there were none.
-      const Point start = given_point(motion, *problem.start);
+      const Point start = given_point(motion, joints_given(PathEnd::kFirst, problem, chain, path));
       nodes.push_back(start.q);
       slot_of.push_back(slots);
       before = {std::move(nodes), std::move(slot_of), slots, true};
@@ -663,9 +664,10 @@ std::vector<Config> ArcLattice::followed(const std::vector<int>& slots) const {
     rows.push_back(i == 0 ? q : Config(rows.back() + delta(rows.back(), q)));
   }
   if (problem_.start) {
-    const Config turns = *problem_.start - rows.front();
+    const Config start = joints_given(PathEnd::kFirst, problem_, *chain_, *path_),
+                 turns = start - rows.front();
     for (Config& q : rows) q += turns;
-    rows.front() = *problem_.start;
+    rows.front() = start;
   }
   if (static_cast<int>(rows.size()) == layers()) turn_to_end(rows);
   return rows;

@@ -11,22 +11,6 @@
 
 namespace swivel {
 
-namespace {
-
-/// Returns whether the tool's z axis is the axis of the last joint and the tool may turn about it
-/// by any angle.
-bool turns_about_last_joint(const Chain& chain) {
-  constexpr double kApart = 1e-9;  // m and rad
-  if (!chain.free_roll || !chain.free_roll->circle()) return false;
-  Config turned = Config::Zero();
-  turned[kDof - 1] = kPi / 2;
-  const Pose one = chain.tool(Config::Zero()), other = chain.tool(turned);
-  return (one.translation() - other.translation()).norm() <= kApart &&
-         (one.linear().col(2) - other.linear().col(2)).norm() <= kApart;
-}
-
-}  // namespace
-
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                       const Problem& problem, const Budget& budget) {
   if (path.closed() && chain.free_roll)
@@ -49,8 +33,8 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                          const Problem& problem) {
   // If the roll has a cost, turning joint 7 may be cheaper than resting it.
-  if (!arm.srs || problem.start || problem.end || !problem.rolls.empty() || problem.cost.roll > 0 ||
-      !turns_about_last_joint(chain))
+  if (!arm.srs || !arm.srs->coaxial || problem.start || problem.end || !problem.rolls.empty() ||
+      problem.cost.roll > 0)
     return std::nullopt;
   const JointLimit& limit = chain.limit.back();
   if (limit.continuous) return 0.0;

@@ -13,6 +13,7 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
@@ -566,6 +567,7 @@ CircleTurns RollLattice::turns_along(const std::vector<TrajectoryRow>& rows,
 
 std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots) const {
   std::vector<TrajectoryRow> rows = followed(slots);
+  count_from_waypoints(*chain_, *whole_, rows);
   if (circles_ == Joints{}) return rows;
   const CircleTurns turns = turns_along(rows, slots.size());
   if (!turns.fit()) return {};

@@ -120,7 +120,7 @@ std::vector<int> too_long(const std::vector<Waypoint>& carried, const std::vecto
 /// Cuts the paths of a leader and its follower into as many steps each, and gives the follower its
 /// path in the base frame. Returns the follower's waypoints in the leader's tool frame.
 std::vector<Waypoint> follow(Problem& leader, Problem& follower, const Budget& budget) {
-  const auto carrying = waypoints_in_base(leader);
+  const auto carrying = given_waypoints_in_base(leader);
   follower.path_frame = follower.base_link;
   const auto on_tool = waypoints_in_base(follower);  // in the leader's tool frame
   std::vector<int> steps =

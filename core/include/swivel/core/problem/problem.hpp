@@ -150,8 +150,9 @@ struct Resolution {
 /// What a path costs.
 struct Cost {
   CostMetric metric = CostMetric::kL2;
-  /// Of the joints, base to tip: 0, or 1e-6 to 1e6.
-  std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};
+  /// Of the joints, base to tip: 0, or 1e-6 to 1e6. Unset: 1 each, and 0 of the roll of a six-joint
+  /// arm (joint_weights()).
+  std::optional<std::array<double, kDof>> weights;
   double roll = 0;  ///< per metre of path and rad of roll: 0, or 1e-6 to 1e6
   bool operator==(const Cost&) const = default;
 };
@@ -174,7 +175,7 @@ struct Robot {
   std::vector<AttachedBody> attached;
   /// The allowed range of the roll, where the tool may turn about its z axis. To an arm of six
   /// joints the roll is the seventh joint, last in every list of joints, without a speed of its
-  /// own, and its weight in Cost::weights is 0 where turning the tool costs nothing. For an S-R-S
+  /// own, and by default without a weight: turning the tool costs nothing. For an S-R-S
   /// arm of seven joints the roll is chosen besides the arm angle (roll_lattice.hpp).
   std::optional<Roll> roll;
 };
@@ -221,10 +222,19 @@ struct Problem : Robot, Task {
   std::vector<Variation> vary;
 };
 
-/// Returns the waypoints in base_link: path_frame applied, quaternions normalised. The last pose of
-/// a closed path is then the first one, bit for bit. Throws InputError for an unknown path_frame,
+/// Returns true if a path is the tool's position and z axis alone: the tool may be turned about its
+/// z axis by any angle, at no cost.
+[[nodiscard]] bool axis_alone(const Problem& problem);
+
+/// Returns the waypoints in base_link: path_frame applied, quaternions normalised. If axis_alone(),
+/// only the z axes of the orientations are those given: the others are carried along them
+/// (axis_frames.hpp). The last pose of a closed path is the first one, bit for bit, but for the
+/// turn about its z axis if axis_alone(). Throws InputError for an unknown path_frame,
 /// fewer than two waypoints, a number that is not finite, a quaternion whose length is off 1 by
 /// more than 1e-3, or the ends of a closed path that are not one pose with one range of the roll.
 [[nodiscard]] std::vector<Waypoint> waypoints_in_base(const Problem& problem);
+/// Returns waypoints_in_base() with the orientations as the problem gives them. Throws as that
+/// does.
+[[nodiscard]] std::vector<Waypoint> given_waypoints_in_base(const Problem& problem);
 
 }  // namespace swivel

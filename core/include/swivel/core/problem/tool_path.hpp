@@ -94,8 +94,20 @@ class ToolPath {
   /// Returns true if end_at() has cut off layers, so that the last layer is not the path's end.
   [[nodiscard]] bool ends_early() const { return ends_early_; }
   /// Notes that the motion along the path must end in the joints in which it begins (Task::closed).
-  /// The last layer's pose must be that of layer 0, bit for bit.
-  void close() { closed_ = true; }
+  /// The last layer's position and z axis must be those of layer 0. Where it stands turned about
+  /// its z axis from there, as frames that are carried along an axis do (axis_frames.hpp), the
+  /// layers are turned back about theirs, each by the share of the travel up to it, so that the
+  /// last pose is the first, bit for bit.
+  void close();
+  /// Notes by which angle about its z axis (rad, by index) each waypoint as the problem gives it
+  /// stands turned from the frame that the path was made with (carry_frames()).
+  void set_waypoint_turns(const std::vector<double>& angles);
+  /// Returns the angle, rad, about the tool's z axis from the path's pose at a travel (m) to the
+  /// waypoints' own, from which rows count the roll: linear in travel from waypoint to waypoint,
+  /// the short way (a half turn right-handed). 0 without set_waypoint_turns().
+  [[nodiscard]] double waypoint_turn(double travel) const;
+  /// Returns true if waypoint_turn() is not 0 everywhere.
+  [[nodiscard]] bool has_waypoint_turns() const { return turned_waypoints_; }
   /// Returns true if close() has been called, and the last layer is the path's end.
   [[nodiscard]] bool closed() const { return closed_ && !ends_early_; }
   /// Returns the poses of the layers that begin_at() has cut off: arm angles are carried along the
@@ -152,10 +164,13 @@ class ToolPath {
   struct Place {
     double travel = 0;
     int row = 0;
+    double turn = 0;  // waypoint_turn()
   };
   void find_corners(const PathSmoothing& smooth);
   void spread_windows();
   [[nodiscard]] Pose on_curve(std::size_t segment, double travel) const;
+  /// Returns a pose of the path before close() as it is after.
+  [[nodiscard]] Pose twisted(const Pose& pose, double travel) const;
   [[nodiscard]] std::size_t segment_of(int step) const;
 
   std::vector<PathLayer> layers_;
@@ -166,6 +181,8 @@ class ToolPath {
   bool begins_aside_ = false;  // layer 0 is off the curve
   bool ends_early_ = false;
   bool closed_ = false;
+  bool turned_waypoints_ = false;
+  double twist_ = 0;  // by how much close() turned the tool about its z axis, rad per m of travel
   std::vector<Segment> segments_;
   std::vector<Place> waypoints_;  // without repeated ones
   std::vector<Corner> corners_;

@@ -116,6 +116,10 @@ struct Chain {
   [[nodiscard]] double manipulability(const Config& q) const;
 };
 
+/// Returns the weights that a cost gives the joints of an arm, base to tip: Cost::weights, or by
+/// default 1 for each joint and 0 for the roll of a six-joint arm (Chain::roll).
+[[nodiscard]] std::array<double, kDof> joint_weights(const Cost& cost, const Chain& chain);
+
 /// Returns one line for every joint whose limits are so wide that it is planned as a continuous
 /// one.
 [[nodiscard]] std::vector<std::string> limit_warnings(const Chain& chain);

@@ -50,6 +50,9 @@ struct SrsArm {
   double elbow_shift = 0;
   EulerTriple shoulder, wrist;
   FitDeviation deviation;
+  /// The tool's z axis is the axis of joint 7, within what fit_srs() forgives, and the tool may be
+  /// turned about it by any angle.
+  bool coaxial = false;
   bool exact = false;  ///< the fitted arm equals the chain, to rounding
   /// How far the fitted arm's joints are from the chain's at the same pose, arm angle and branch,
   /// each joint, rad: 0 where exact, else the most over seeded postures within the limits at which
@@ -83,7 +86,8 @@ class NotSrs : public InputError {
 };
 
 /// Returns the S-R-S arm nearest to a chain. Throws NotSrs where the chain misses one by more than
-/// 1 mm or 10 mrad, or where axis 4 runs through the shoulder or wrist centre. `source` is the file
+/// 1 mm or 10 mrad (a tool as near as that to the axis of joint 7 is taken to be on it if it may
+/// turn freely), or where axis 4 runs through the shoulder or wrist centre. `source` is the file
 /// for messages.
 [[nodiscard]] SrsArm fit_srs(const Chain& chain, const std::string& source);
 
