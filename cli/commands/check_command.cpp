@@ -64,14 +64,7 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   if (result.min_clearance)
     say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance,
         1e3 * *result.min_margin);
-  if (const auto& contact = result.deepest_contact) {
-    say(", %s - %s at least %.3f mm", contact->bodies[0].c_str(), contact->bodies[1].c_str(),
-        1e3 * contact->depth);
-    if (contact->at_most) say(" and at most %.3f mm", 1e3 * *contact->at_most);
-    say(" deep in each other (%s)",
-        contact->allowed ? formatted("allowed %.3f mm", 1e3 * *contact->allowed).c_str()
-                         : "allowed however deep");
-  }
+  print_contact(result);
   say(", cost %.9g\n", result.cost);
   if (!result.motion) return;
   const char* const names[] = {"speed", "acceleration", "jerk"};

@@ -35,6 +35,7 @@ std::vector<std::vector<bool>> process_of(const io::JobTrajectory& read) {
 /// Returns what all runs of a job show together.
 CheckResult summary_of(const JobCheckResult& result) {
   CheckResult all;
+  bool measured = true;
   const auto lower = [](std::optional<double>& least, const std::optional<double>& value) {
     if (value && (!least || *value < *least)) least = value;
   };
@@ -45,11 +46,16 @@ CheckResult summary_of(const JobCheckResult& result) {
     all.worst_path_angle = std::max(all.worst_path_angle, run.worst_path_angle);
     lower(all.min_clearance, run.min_clearance);
     lower(all.min_margin, run.min_margin);
+    if (run.deepest_contact &&
+        (!all.deepest_contact || run.deepest_contact->depth > all.deepest_contact->depth))
+      all.deepest_contact = run.deepest_contact;
+    measured &= run.deepest_contact_status != Known::kNotMeasured;
     if (!run.motion) continue;
     if (!all.motion) all.motion.emplace();
     all.motion->tool_speed = std::max(all.motion->tool_speed, run.motion->tool_speed);
     all.motion->turn_speed = std::max(all.motion->turn_speed, run.motion->turn_speed);
   }
+  all.deepest_contact_status = known(measured, all.deepest_contact.has_value());
   return all;
 }
 
@@ -75,6 +81,7 @@ void print_verdict(const JobCheckResult& result, const Job& job, const std::vect
     if (all.min_clearance)
       say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *all.min_clearance,
           1e3 * *all.min_margin);
+    print_contact(all);
     say(", cost %.9g\n", result.cost);
     if (all.motion)
       say("motion: %.3f s, tool on strokes at most %.6g mm/s and %.4g rad/s\n", duration,

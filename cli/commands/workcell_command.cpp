@@ -322,6 +322,7 @@ int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
     if (arm.min_clearance)
       say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *arm.min_clearance,
           1e3 * *arm.min_margin);
+    print_contact(arm);
     say(", cost %.9g\n", arm.cost);
     if (arm.motion) print_rates(*arm.motion, prepared->robot(k).arm().chain.joint_names);
     print_failures(arm.failures, arm.failure_count);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "swivel/core/messages/formatted.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
@@ -49,6 +50,18 @@ void print_failures(const std::vector<std::string>& failures, std::int64_t count
   if (count > listed)
     say("  and %lld more failure%s\n", static_cast<long long>(count - listed),
         count - listed == 1 ? "" : "s");
+}
+
+void print_contact(const CheckResult& result) {
+  if (result.deepest_contact_status == Known::kNotMeasured) say(", depth of contact not measured");
+  const auto& contact = result.deepest_contact;
+  if (!contact) return;
+  say(", %s - %s at least %.3f mm", contact->bodies[0].c_str(), contact->bodies[1].c_str(),
+      1e3 * contact->depth);
+  if (contact->at_most) say(" and at most %.3f mm", 1e3 * *contact->at_most);
+  say(" deep in each other (%s)",
+      contact->allowed ? formatted("allowed %.3f mm", 1e3 * *contact->allowed).c_str()
+                       : "allowed however deep");
 }
 
 }  // namespace swivel::cli

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "swivel/planner/verify/check.hpp"
+
 namespace swivel::cli {
 
 /// What is said of rows without times where the problem asks for speeds of the tool.
@@ -13,5 +15,9 @@ inline constexpr const char* kSpeedsNotChecked =
 /// Prints one line for each kind of failure, with the number of further failures of that kind, and
 /// how many of the `count` failures are not listed.
 void print_failures(const std::vector<std::string>& failures, std::int64_t count);
+
+/// Prints how deep bodies that may touch are in each other, or that it was not measured. Prints
+/// nothing where none touch.
+void print_contact(const CheckResult& result);
 
 }  // namespace swivel::cli

@@ -254,8 +254,8 @@ void serialize(A& archive, Advice& x) {
 }
 template <class A>
 void serialize(A& archive, Evidence& x) {
-  auto& [tool_path_error, postures, layers] = x;
-  archive(tool_path_error, postures, layers);
+  auto& [tool_path_error, postures, layers, contact] = x;
+  archive(tool_path_error, postures, layers, contact);
 }
 template <class A>
 void serialize(A& archive, LeastMargin& x) {
@@ -289,9 +289,9 @@ void serialize(A& archive, DeepestContact& x) {
 }
 template <class A>
 void serialize(A& archive, Measures& x) {
-  auto& [nearest_limit, nearest_slide_limit, top_tool_speed, evidence, tool_path_error_mm,
+  auto& [nearest_limit, nearest_slide_limit, top_tool_speed, evidence, asked, tool_path_error_mm,
          min_clearance, min_margin, deepest_contact, min_manipulability, arm_angle] = x;
-  archive(nearest_limit, nearest_slide_limit, top_tool_speed, evidence, tool_path_error_mm,
+  archive(nearest_limit, nearest_slide_limit, top_tool_speed, evidence, asked, tool_path_error_mm,
           min_clearance, min_margin, deepest_contact, min_manipulability, arm_angle);
 }
 template <class A>
@@ -407,10 +407,12 @@ template <class A>
 void serialize(A& archive, CheckResult& x) {
   auto& [passed, failures, failure_count, worst_position, worst_angle, worst_path_error,
          worst_path_angle, largest_step, cost, rounded, min_clearance, min_margin, deepest_contact,
-         nearest_limit, nearest_slide_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
+         min_clearance_status, deepest_contact_status, nearest_limit, nearest_slide_limit, motion,
+         rows_examined, moves_examined, fcl_calls] = x;
   archive(passed, failures, failure_count, worst_position, worst_angle, worst_path_error,
           worst_path_angle, largest_step, cost, rounded, min_clearance, min_margin, deepest_contact,
-          nearest_limit, nearest_slide_limit, motion, rows_examined, moves_examined, fcl_calls);
+          min_clearance_status, deepest_contact_status, nearest_limit, nearest_slide_limit, motion,
+          rows_examined, moves_examined, fcl_calls);
 }
 template <class A>
 void serialize(A& archive, PlacementRow& x) {

@@ -275,9 +275,18 @@ void bind_measures(py::module_& m) {
           },
           "ToolPathError.")
       .def_readonly("min_clearance", &Measures::min_clearance, "Of the nearest pair on any row, m.")
+      .def_property_readonly(
+          "min_clearance_status",
+          [](const Measures& x) { return to_string(x.min_clearance_status()); },
+          "Of min_clearance and min_margin: 'measured', 'none' (no pair is near) or "
+          "'not_measured' (not asked for, or time ran out).")
       .def_readonly("min_margin", &Measures::min_margin, "LeastMargin.")
-      .def_readonly("deepest_contact", &Measures::deepest_contact,
-                    "DeepestContact; None where no allowed pair was found to touch.")
+      .def_readonly("deepest_contact", &Measures::deepest_contact, "DeepestContact.")
+      .def_property_readonly(
+          "deepest_contact_status",
+          [](const Measures& x) { return to_string(x.deepest_contact_status()); },
+          "'measured', 'none' (no allowed pair was found to touch) or 'not_measured' (not asked "
+          "for, or time ran out).")
       .def_property_readonly(
           "min_manipulability",
           [](const Measures& x) {
@@ -302,6 +311,8 @@ void bind_measures(py::module_& m) {
               x.min_margin->bodies[0] + " - " + x.min_margin->bodies[1] + ")");
         if (x.deepest_contact)
           add(formatted("contact %.3f mm deep", 1e3 * x.deepest_contact->depth));
+        if (const std::string missing = words_of_unmeasured(x); !missing.empty())
+          add("not measured: " + missing);
         for (const auto& nearest : {x.nearest_limit, x.nearest_slide_limit})
           if (nearest) add(nearest->joint + " " + distance_words(*nearest) + " from its limit");
         if (x.evidence.tool_path_error)
@@ -802,11 +813,21 @@ void bind_plan(py::module_& m) {
           "min_clearance", [](const Check& c) { return c.result.min_clearance; },
           "m, of any pair at the rows.")
       .def_property_readonly(
+          "min_clearance_status",
+          [](const Check& c) { return to_string(c.result.min_clearance_status); },
+          "Of min_clearance and min_margin: 'measured', 'none' (no pair is near) or "
+          "'not_measured' (no row could be examined).")
+      .def_property_readonly(
           "min_margin", [](const Check& c) { return c.result.min_margin; },
           "m, least clearance less what the pair must keep.")
       .def_property_readonly(
           "deepest_contact", [](const Check& c) { return c.result.deepest_contact; },
-          "DeepestContact; None where no allowed pair was found to touch.")
+          "DeepestContact.")
+      .def_property_readonly(
+          "deepest_contact_status",
+          [](const Check& c) { return to_string(c.result.deepest_contact_status); },
+          "'measured', 'none' (no allowed pair was found to touch) or 'not_measured' (a row has "
+          "joints that are no numbers).")
       .def_property_readonly(
           "duration",
           [](const Check& c) {

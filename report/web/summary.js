@@ -67,7 +67,9 @@ export function verdict(host, { answer, result, chain, map }, jump) {
         clearance.s,
         (_, k) => k !== result.min_margin.row,
       );
+    if (result.min_clearance_status === 'not_measured') say('clearance not measured');
     const contact = result.deepest_contact;
+    if (result.deepest_contact_status === 'not_measured') say('depth of contact not measured');
     if (contact)
       say(contactWords(contact), result.trajectory[contact.row]?.s, (_, k) => k !== contact.row);
     for (const [limit, room, unit] of [

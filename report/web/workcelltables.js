@@ -85,7 +85,7 @@ function sayFound(result, arms, say, go) {
         near.row,
       () => go(near.row),
     );
-  result.arms.forEach(({ name, summary, deepest_contact: contact }, k) => {
+  result.arms.forEach(({ name, summary, deepest_contact: contact, deepest_contact_status: looked }, k) => {
     const rowAt = (s) =>
       arms[k].rows.reduce(
         (best, row, i) => (Math.abs(row.s - s) < Math.abs(arms[k].rows[best].s - s) ? i : best),
@@ -99,6 +99,7 @@ function sayFound(result, arms, say, go) {
           clearance.s.toFixed(3),
         () => go(rowAt(clearance.s)),
       );
+    if (looked === 'not_measured') say(`${name}: depth of contact not measured`);
     if (contact) say(`${contactWords(contact)} at row ${contact.row}`, () => go(contact.row));
     if (limit)
       say(

@@ -210,12 +210,26 @@ TEST(Result, WhatWasNotAskedForIsNull) {
   PlanResult result = solved();
   result.evidence = {};
   result.min_clearance.reset();
+  result.min_margin.reset();
   const Json json = Json::parse(to_json(result));
   EXPECT_FALSE(json["cost"].is_null());
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
   EXPECT_TRUE(json["tool_path_error_mm"]["max"].is_null());
   EXPECT_TRUE(json["min_clearance"].is_null());
   EXPECT_TRUE(json["min_manipulability"].is_null());
+  EXPECT_EQ(json["min_clearance_status"], "not_measured");
+  EXPECT_EQ(json["deepest_contact_status"], "not_measured");
+}
+
+TEST(Result, NoContactIsToldFromContactThatWasNotMeasured) {
+  PlanResult result = solved();
+  EXPECT_EQ(Json::parse(to_json(result))["min_clearance_status"], "measured");
+  EXPECT_EQ(Json::parse(to_json(result))["deepest_contact_status"], "none");
+  result.deepest_contact = {0.001, 0.0015, {"pad", "part"}, std::nullopt, 1};
+  EXPECT_EQ(Json::parse(to_json(result))["deepest_contact_status"], "measured");
+  result.min_clearance.reset();
+  EXPECT_EQ(Json::parse(to_json(result))["min_clearance_status"], "none");
+  EXPECT_EQ(Json::parse(to_json(infeasible()))["deepest_contact_status"], "not_measured");
 }
 
 TEST(Result, EmptyFirstLayerAndTimeOut) {

@@ -139,9 +139,15 @@ class Plans(unittest.TestCase):
         self.assertEqual((contact.bodies, contact.allowed), (("disc", "plate"), None))
         self.assertLess(abs(contact.depth - 0.002), 1.2e-3)
         self.assertLessEqual(contact.at_most, contact.depth + 0.51e-3)
-        self.assertEqual(
-            swivel.check(problem, plan.trajectory).deepest_contact.bodies, contact.bodies
-        )
+        self.assertEqual(plan.measures.deepest_contact_status, "measured")
+        self.assertEqual(plan.measures.min_clearance_status, "measured")
+        check = swivel.check(problem, plan.trajectory)
+        self.assertEqual(check.deepest_contact.bodies, contact.bodies)
+        self.assertEqual(check.deepest_contact_status, "measured")
+        unasked = swivel.plan(problem).measures
+        self.assertEqual(unasked.deepest_contact_status, "not_measured")
+        self.assertEqual(unasked.min_clearance_status, "not_measured")
+        self.assertNotIn("not measured", repr(unasked))
 
     def test_refine_time_measure_check_advise(self):
         problem = experiment("c", ds=0.01)

@@ -117,6 +117,8 @@ std::string solved_text(const PlanResult& result) {
             (error.allowed ? formatted(" (allowed %.3g)", 1e3 * *error.allowed) : "");
   if (const auto& top = result.top_tool_speed)
     line += formatted(" | tool speed up to %.3g m/s (", top->speed) + top->joint + ")";
+  if (const std::string missing = words_of_unmeasured(result); !missing.empty())
+    line += " | not measured, for time ran out: " + missing;
   return line + held_text(result) + '\n';
 }
 

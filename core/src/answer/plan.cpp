@@ -35,6 +35,30 @@ const char* to_string(PlanStatus status) {
   return "?";
 }
 
+const char* to_string(Known known) {
+  switch (known) {
+    case Known::kMeasured:
+      return "measured";
+    case Known::kNone:
+      return "none";
+    case Known::kNotMeasured:
+      return "not_measured";
+  }
+  return "?";
+}
+
+std::string words_of_unmeasured(const Measures& measures) {
+  const Evidence &asked = measures.asked, &known = measures.evidence;
+  std::string words;
+  const auto add = [&](bool missing, const char* what) {
+    if (missing) words += (words.empty() ? "" : ", ") + std::string(what);
+  };
+  add(asked.tool_path_error && !known.tool_path_error, "tool path error");
+  add(asked.postures && !known.postures, "clearance");
+  add(asked.contact && !known.contact, "depth of contact");
+  return words;
+}
+
 const char* to_string(Diagnosis::Holds holds) {
   switch (holds) {
     case Diagnosis::Holds::kThisResolution:

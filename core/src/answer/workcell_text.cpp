@@ -67,6 +67,8 @@ std::string solved_text(const WorkcellResult& result) {
   if (const auto& nearest = result.between_arms)
     text += formatted("; nearest to each other %.3g mm: ", 1e3 * nearest->clearance) +
             nearest->bodies[0] + " and " + nearest->bodies[1];
+  if (result.arms[0].asked.postures && !result.between_arms_measured)
+    text += "; clearance between them not measured, for time ran out";
   return text + "\n";
 }
 

@@ -79,7 +79,12 @@ std::string table_of_runs(const JobResult& result, const Job& job) {
          measures.evidence.tool_path_error ? formatted("%.3f", measures.tool_path_error_mm.max)
                                            : "-"});
   }
-  return aligned(lines);
+  std::string text = aligned(lines);
+  for (const RunResult& one : result.runs)
+    if (const std::string missing = words_of_unmeasured(one.measures); !missing.empty())
+      text += "  not measured, for time ran out: " + missing + " of " + quoted_name(job, one.run) +
+              '\n';
+  return text;
 }
 
 std::string transitions_text(const JobResult& result, const Job& job) {

@@ -215,9 +215,11 @@ void add_measures(Json& json, const Measures& result, bool solved) {
       {"mean", if_known(evidence.tool_path_error, result.tool_path_error_mm.mean)},
       {"max", if_known(evidence.tool_path_error, result.tool_path_error_mm.max)}};
   json["min_clearance"] = or_null(result.min_clearance);
+  json["min_clearance_status"] = to_string(result.min_clearance_status());
   json["min_margin"] = result.min_margin ? margin_json(*result.min_margin) : Json(nullptr);
   json["deepest_contact"] =
       result.deepest_contact ? contact_json(*result.deepest_contact) : Json(nullptr);
+  json["deepest_contact_status"] = to_string(result.deepest_contact_status());
   json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
 }

@@ -129,6 +129,7 @@ std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras&
                             {"margin_mm", 1e3 * nearest->margin},
                             {"bodies", nearest->bodies},
                             {"row", nearest->row}};
+  json["between_arms_status"] = to_string(result.between_arms_status());
   json["counters"] = {{"rounds", result.counters.rounds},
                       {"pops", result.counters.pops},
                       {"node_pairs", result.counters.node_pairs},

@@ -406,6 +406,11 @@ Schema robot_pairs() {
                           "near by design")});
 }
 
+/// Returns the schema of a status beside a number, which tells why the number is null.
+Schema known() {
+  return one_of({"measured", "none", "not_measured"});
+}
+
 Schema min_margin() {
   return or_null(section("", {key("margin", number(), "what is left of it", "m"),
                               key("clearance", number(), "of the pair", "m"),
@@ -421,8 +426,7 @@ Schema deepest_contact() {
            "m"),
        key("at_most", or_null(number()),
            "proved for all rows and moves between them; `null` where a pair is of "
-           "two meshes, or of one "
-           "that is not closed",
+           "a mesh that is not closed",
            "m"),
        key("allowed", or_null(number()), "the depth that `allow` gives; `null`: however deep", "m"),
        key("bodies", bodies(), "their names"),
@@ -460,8 +464,10 @@ std::vector<Schema::Key> measure_keys() {
           section("", {key("mean", or_null(number()), "over the steps", "mm"),
                        key("max", or_null(number()), "over the steps", "mm")}),
           "`mean`, `max` between layers", "mm"),
-      key("min_clearance", or_null(number()),
-          "least over the rows; `null` too where nothing is near", "m"),
+      key("min_clearance", or_null(number()), "least over the rows; `null` unless measured", "m"),
+      key("min_clearance_status", known(),
+          "of `min_clearance` and `min_margin`: `measured`; `none`: no pair is near; "
+          "`not_measured`: there is no trajectory, or time ran out"),
       key("min_margin", min_margin(),
           "the row and pair that come nearest to what the pair must keep: `margin`, "
           "`clearance`, `required`, `bodies`, `row`",
@@ -470,8 +476,11 @@ std::vector<Schema::Key> measure_keys() {
           "the deepest [contact](model.md#contact) of bodies that a scene object's `allow` "
           "names: `depth`, `at_most`, "
           "`allowed`, "
-          "`bodies`, `row`; `null` where none was found to touch",
+          "`bodies`, `row`; `null` unless measured",
           "m"),
+      key("deepest_contact_status", known(),
+          "`measured`; `none`: no such bodies were found to touch; `not_measured`: there is no "
+          "trajectory, or time ran out"),
       key("min_manipulability", or_null(number()), "least over the rows"),
       key("arm_angle", list(or_null(number())), "conventional arm angle of each row", "rad"),
   };
@@ -824,6 +833,9 @@ Schema workcell_result() {
        key("between_arms", or_null(between),
            "the `row` and the `bodies` of both arms with the least margin, `clearance_mm` and "
            "`margin_mm`; `null` unless measured"),
+       key("between_arms_status", known(),
+           "`measured`; `none`: no pair is near; `not_measured`: there is no plan, or time ran "
+           "out"),
        key("counters", asked,
            "`rounds` of regions, `pops` of pairs of nodes, `node_pairs` and `move_pairs` asked "
            "about"),

@@ -580,15 +580,18 @@ class JobPlan {
   /// Measures the runs of a job, or finds out why there is none.
   void explain() {
     if (!result_.parts.empty()) {
-      std::size_t k = 0;
-      for (const JobPart& part : result_.parts) {
-        if (!part.run) continue;
-        Measures& measures = result_.runs[k].measures;
-        measure_margins(chain_, runs_[k]->path, part.rows, measures);
-        measure_rows(robot_, runs_[k]->path, *runs_[k]->world, part.rows, options_.evidence,
-                     budget_, measures);
-        ++k;
-      }
+      const auto each = [this](const auto& visit) {
+        std::size_t k = 0;
+        for (const JobPart& part : result_.parts)
+          if (part.run) visit(part.rows, *runs_[k], result_.runs[k].measures), ++k;
+      };
+      each([&](const auto&, const PlannedRun& run, Measures& measures) {
+        ask_for(options_.evidence, !run.world->allowed().empty(), measures);
+      });
+      each([&](const std::vector<TrajectoryRow>& rows, const PlannedRun& run, Measures& measures) {
+        measure_margins(chain_, run.path, rows, measures);
+        measure_rows(robot_, run.path, *run.world, rows, options_.evidence, budget_, measures);
+      });
       return;
     }
     for (std::size_t k = 0; k < result_.runs.size(); ++k)

@@ -41,7 +41,8 @@ class Search {
   void at_rows(const AllowedPair& allowed) {
     is_bounded_ = true;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      budget_.poll();
+      budget_.poll(Stage::kMeasuring, static_cast<std::int64_t>(k),
+                   static_cast<std::int64_t>(rows_.size()));
       if (!std::isfinite(look(allowed, k, rows_[k], deepest_).at_most))
         is_bounded_ = is_complete_ = false;
     }

@@ -62,9 +62,6 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
                      .roll),
           q));
   }
-  std::vector<Config> joints;
-  for (const TrajectoryRow& row : trajectory) joints.push_back(row.q);
-  result.deepest_contact = deepest_contact(world, world.edge_rule(robot.radii()), joints, budget);
   if (const auto nearest = nearest_approach(world, trajectory, Seek::kMarginAndLeast, budget)) {
     const World::Query::Clearance& c = nearest->clearance;
     result.min_clearance = nearest->least;
@@ -73,6 +70,15 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
   result.min_manipulability = manipulability;
   result.arm_angle = std::move(arm_angle);
   result.evidence.postures = true;
+}
+
+void measure_contact(const PreparedRobot& robot, const World& world,
+                     const std::vector<TrajectoryRow>& trajectory, const Budget& budget,
+                     Measures& result) {
+  std::vector<Config> joints;
+  for (const TrajectoryRow& row : trajectory) joints.push_back(row.q);
+  result.deepest_contact = deepest_contact(world, world.edge_rule(robot.radii()), joints, budget);
+  result.evidence.contact = true;
 }
 
 /// Returns the nearest limit of the joints that turn, or of those that slide.
@@ -128,12 +134,21 @@ void measure_margins(const Chain& chain, const ToolPath& path,
   measures.top_tool_speed = top_tool_speed(chain, path, rows);
 }
 
+void ask_for(const Evidence& wanted, bool may_touch, Measures& measures) {
+  measures.asked = wanted;
+  measures.asked.layers = false;  // where there is a trajectory, no layers are empty
+  measures.evidence.contact = wanted.contact && !may_touch;
+}
+
 void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world,
                   const std::vector<TrajectoryRow>& rows, const Evidence& wanted,
                   const Budget& budget, Measures& measures) {
+  ask_for(wanted, !world.allowed().empty(), measures);
   if (wanted.tool_path_error)
     measure_tool_path_error(robot.arm().chain, path, rows, budget, measures);
   if (wanted.postures) measure_postures(robot, path, world, rows, budget, measures);
+  if (wanted.contact && !measures.evidence.contact)
+    measure_contact(robot, world, rows, budget, measures);
 }
 
 Measures measure(const PreparedRobot& robot, const Problem& problem,

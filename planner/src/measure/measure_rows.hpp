@@ -8,6 +8,10 @@
 
 namespace swivel {
 
+/// Notes in measures.asked what `wanted` selects of rows, and in measures.evidence what is known
+/// before they are looked at: that no bodies touch if none may.
+void ask_for(const Evidence& wanted, bool may_touch, Measures& measures);
+
 /// Computes what `wanted` selects for rows at the layers of the path, and records in
 /// measures.evidence what is known. Throws Stopped.
 void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world,

@@ -317,7 +317,7 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   refined = refined && !own_cost;
   // The refined path is measured later, in place of the lattice's.
   PlanOptions first = options;
-  if (refined) first.evidence.tool_path_error = first.evidence.postures = false;
+  if (refined) first.evidence = {.layers = options.evidence.layers};
   MotionPlan plan;
   PlanResult& result = plan.result;
   result = plan_executable(planner, first, timing.has_value());

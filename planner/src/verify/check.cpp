@@ -105,6 +105,7 @@ class Contacts {
     }
     return std::nullopt;
   }
+  [[nodiscard]] bool may_touch() const { return !world_.allowed().empty(); }
   [[nodiscard]] std::optional<DeepestContact> deepest(const std::vector<Config>& rows) const {
     return deepest_contact(world_, rule_, rows, *budget_);
   }
@@ -213,7 +214,12 @@ class Check {
       std::vector<Config> joints;
       for (const TrajectoryRow& row : rows_)
         if (row.q.allFinite()) joints.push_back(row.q);
-      if (joints.size() == rows_.size()) result_.deepest_contact = contacts_.deepest(joints);
+      if (joints.size() == rows_.size() || !contacts_.may_touch()) {
+        result_.deepest_contact = contacts_.deepest(joints);
+        result_.deepest_contact_status = known(true, result_.deepest_contact.has_value());
+      }
+      result_.min_clearance_status =
+          known(result_.rows_examined > 0, result_.min_clearance.has_value());
     }
     result_.fcl_calls = contacts_.fcl_calls();
     result_.passed = result_.failure_count == 0;

@@ -304,6 +304,8 @@ class WorkcellPlan {
   /// Measures the trajectories, or finds out why an arm has no path by itself.
   void explain() {
     if (!result_.arms[0].trajectory.empty()) {
+      for (std::size_t k = 0; k < 2; ++k)
+        ask_for(options_.evidence, !arms_[k]->world.allowed().empty(), result_.arms[k]);
       for (std::size_t k = 0; k < 2; ++k) {
         PlanResult& arm = result_.arms[k];
         measure_margins(arms_[k]->robot.arm().chain, arms_[k]->path, arm.trajectory, arm);
@@ -383,6 +385,8 @@ std::optional<std::string> fault_of_given_motion(const PreparedWorkcell& prepare
 
 void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
                       const Budget& budget, WorkcellResult& result) {
+  for (std::size_t k = 0; k < 2; ++k)
+    ask_for(wanted, !prepared.robot(k).world().allowed().empty(), result.arms[k]);
   for (std::size_t k = 0; k < 2; ++k) {
     const PreparedRobot& robot = prepared.robot(k);
     const Problem& problem = prepared.problem(k);
@@ -399,15 +403,17 @@ void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget
                           WorkcellResult& result) {
   InterArmWorld::Query query(prepared.between());
   result.between_arms.reset();
+  result.between_arms_measured = false;
   const auto& rows = result.arms;
   for (std::size_t row = 0; row < rows[0].trajectory.size(); ++row) {
     budget.poll();
     const auto found = query.clearance({rows[0].trajectory[row].q, rows[1].trajectory[row].q});
-    if (!found) return;
+    if (!found) break;
     if (result.between_arms && found->margin() >= result.between_arms->margin) continue;
     result.between_arms = {found->margin(), found->distance, found->required,
                            prepared.between().names(found->pair), static_cast<int>(row)};
   }
+  result.between_arms_measured = true;
 }
 
 WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,

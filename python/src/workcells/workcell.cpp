@@ -316,6 +316,11 @@ void bind_plan(py::module_& m) {
             return p.plan->result.between_arms->clearance;
           },
           "Between bodies of both arms at rows, m, with evidence=True.")
+      .def_property_readonly(
+          "clearance_status",
+          [](const WorkcellPlan& p) { return to_string(p.plan->result.between_arms_status()); },
+          "'measured', 'none' (no pair is near) or 'not_measured' (not asked for, or time ran "
+          "out).")
       .def_property_readonly("time_ms",
                              [](const WorkcellPlan& p) { return p.plan->result.time_ms; })
       .def_property_readonly("warnings",

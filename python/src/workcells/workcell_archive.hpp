@@ -19,9 +19,11 @@ void serialize(A& archive, WorkcellCounters& x) {
 template <class A>
 void serialize(A& archive, WorkcellResult& x) {
   auto& [status, cost, bound, least_costs, names, given_arm, arms, decided_by, conflict,
-         between_arms, counters, planner, threads, time_ms, checked, refined, warnings] = x;
+         between_arms, between_arms_measured, counters, planner, threads, time_ms, checked, refined,
+         warnings] = x;
   archive(status, cost, bound, least_costs, names, given_arm, arms, decided_by, conflict,
-          between_arms, counters, planner, threads, time_ms, checked, refined, warnings);
+          between_arms, between_arms_measured, counters, planner, threads, time_ms, checked,
+          refined, warnings);
 }
 template <class A>
 void serialize(A& archive, RefinedWorkcell& x) {

@@ -4,20 +4,29 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
 
 #include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/answer_text.hpp"
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/motion/job_text.hpp"
+#include "swivel/core/problem/job.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
+#include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
+#include "swivel/planner/workcell/plan_workcell.hpp"
+#include "two_arms.hpp"
 
 namespace swivel {
 namespace {
@@ -249,6 +258,122 @@ TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
   EXPECT_LT(*deeper->to, 0.007);
   EXPECT_NE(advice_text(advice).find("contact with 'plate' up to"), std::string::npos)
       << advice_text(advice);
+}
+
+/// Plans with `plan`, cancelled when it measures for the `call`-th time. Returns its result; none
+/// if it measures less often.
+template <class Plan>
+auto stopped_while_measuring(const Plan& plan, int call) {
+  std::atomic<bool> cancel{false};
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  options.evidence = Evidence::all();
+  options.cancel = &cancel;
+  int heard = 0;
+  options.progress = [&](const Progress& progress) {
+    if (progress.stage == Stage::kMeasuring && heard++ == call) cancel = true;
+  };
+  auto result = plan(options);
+  return cancel ? std::optional(std::move(result)) : std::nullopt;
+}
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Contact, ThatWasNotMeasuredIsToldFromContactThatIsNone) {
+  const Problem touching = polishing(0.001), above = polishing(-0.002);
+  const PlanResult whole = planned(touching), none = planned(above);
+  EXPECT_EQ(whole.deepest_contact_status(), Known::kMeasured);
+  EXPECT_EQ(none.deepest_contact_status(), Known::kNone);
+  EXPECT_TRUE(says(io::to_json(none), "\"deepest_contact_status\": \"none\""));
+  EXPECT_TRUE(says(io::to_json(whole), "\"min_clearance_status\": \"measured\""));
+  EXPECT_FALSE(says(answer_text(whole), "not measured"));
+  PlanOptions least;
+  least.planner = PlannerKind::kLazy;
+  const PlanResult unasked = plan(touching, least);
+  EXPECT_EQ(unasked.deepest_contact_status(), Known::kNotMeasured);
+  EXPECT_FALSE(says(answer_text(unasked), "not measured"));
+
+  int without_either = 0, without_contact = 0;
+  for (int call = 0;; ++call) {
+    const auto stopped = stopped_while_measuring(
+        [&](const PlanOptions& options) { return plan(touching, options); }, call);
+    if (!stopped) break;
+    SCOPED_TRACE(call);
+    ASSERT_EQ(stopped->status, PlanStatus::kSolved);
+    const bool clearance = stopped->min_clearance_status() != Known::kNotMeasured;
+    const std::string json = io::to_json(*stopped);
+    EXPECT_EQ(stopped->deepest_contact_status(), Known::kNotMeasured);
+    EXPECT_TRUE(says(answer_text(*stopped),
+                     clearance ? "time ran out: depth of contact" : "clearance, depth of contact"))
+        << answer_text(*stopped);
+    EXPECT_TRUE(says(json, "\"deepest_contact_status\": \"not_measured\""));
+    EXPECT_EQ(says(json, "\"min_clearance_status\": \"not_measured\""), !clearance);
+    EXPECT_TRUE(stopped->min_clearance.has_value() == clearance && !stopped->deepest_contact);
+    ++(clearance ? without_contact : without_either);
+  }
+  EXPECT_GE(without_either, 2);
+  EXPECT_GE(without_contact, 2);
+
+  const CheckResult check = check_trajectory(above, none.trajectory);
+  EXPECT_EQ(check.deepest_contact_status, Known::kNone);
+  EXPECT_EQ(check.min_clearance_status, Known::kMeasured);
+  std::vector<TrajectoryRow> broken = none.trajectory;
+  broken[0].q[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(check_trajectory(above, broken).deepest_contact_status, Known::kNotMeasured);
+}
+
+TEST(Contact, ThatWasNotMeasuredOfAJobIsSaidOfEachRun) {
+  const Problem problem = polishing(0.001);
+  Job job;
+  static_cast<Robot&>(job) = problem;
+  job.scene = problem.scene;
+  job.limits = problem.limits;
+  for (const char* const name : {"first", "second"}) {
+    Stroke stroke;
+    static_cast<Task&>(stroke) = problem;
+    stroke.name = name;
+    job.strokes.push_back(stroke);
+  }
+  const auto stopped = stopped_while_measuring(
+      [&](const PlanOptions& options) { return plan_job(job, options); }, 0);
+  ASSERT_TRUE(stopped);
+  ASSERT_EQ(stopped->status, PlanStatus::kSolved);
+  ASSERT_EQ(stopped->runs.size(), 2u);
+  for (const RunResult& run : stopped->runs) {
+    EXPECT_EQ(run.measures.deepest_contact_status(), Known::kNotMeasured);
+    EXPECT_EQ(run.measures.min_clearance_status(), Known::kNotMeasured);
+  }
+  const std::string text = job_text(*stopped, job);
+  EXPECT_TRUE(says(text, "depth of contact of 'first'") &&
+              says(text, "depth of contact of 'second'"))
+      << text;
+  PlanOptions all;
+  all.evidence = Evidence::all();
+  const JobResult whole = plan_job(job, all);
+  for (const RunResult& run : whole.runs) {
+    ASSERT_TRUE(run.measures.deepest_contact);
+    EXPECT_NEAR(run.measures.deepest_contact->depth, 0.001, 1.2e-3);
+  }
+}
+
+TEST(Contact, ThatWasNotMeasuredOfTwoArmsIsSaidOfBoth) {
+  Random random(71);
+  for (int tried = 0; tried < 20; ++tried) {
+    Workcell cell = random_workcell(two_armed("sda10f"), random);
+    const auto stopped = stopped_while_measuring(
+        [&](const PlanOptions& options) { return plan_workcell(cell, options); }, 0);
+    if (!stopped) continue;  // this one has no plan
+    const std::string text = answer_text(*stopped), json = io::to_workcell_json(*stopped);
+    for (const PlanResult& arm : stopped->arms)
+      EXPECT_EQ(arm.min_clearance_status(), Known::kNotMeasured);
+    EXPECT_EQ(stopped->between_arms_status(), Known::kNotMeasured);
+    EXPECT_TRUE(says(text, "clearance between them not measured")) << text;
+    EXPECT_TRUE(says(text, "not measured, for time ran out")) << text;
+    EXPECT_TRUE(says(json, "\"between_arms_status\": \"not_measured\""));
+    return;
+  }
+  FAIL() << "no workcell has a plan";
 }
 
 TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {

@@ -143,10 +143,22 @@ struct Evidence {
   /// Exact clearances of all rows (which take more time than many a plan), manipulability, arm
   /// angle.
   bool postures = false;
-  bool layers = false;  ///< Diagnosis::empty_layers and removed
+  bool layers = false;   ///< Diagnosis::empty_layers and removed
+  bool contact = false;  ///< Measures::deepest_contact
   /// Returns the evidence that asks for everything.
-  [[nodiscard]] static Evidence all() { return {true, true, true}; }
+  [[nodiscard]] static Evidence all() { return {true, true, true, true}; }
 };
+
+/// Whether a number about a trajectory is known. kNone: there is nothing of which it could be said,
+/// such as a clearance where no pair is near. kNotMeasured: it was not asked for, or time ran out.
+enum class Known { kMeasured, kNone, kNotMeasured };
+/// Returns "measured", "none" or "not_measured".
+[[nodiscard]] const char* to_string(Known known);
+/// Returns whether a number is known that was or was not looked for, and was or was not there.
+[[nodiscard]] inline Known known(bool looked_for, bool found) {
+  if (!looked_for) return Known::kNotMeasured;
+  return found ? Known::kMeasured : Known::kNone;
+}
 
 /// The row and pair of bodies that come nearest to the clearance that they must keep.
 struct LeastMargin {
@@ -204,6 +216,7 @@ struct Measures {
   std::optional<TopToolSpeed> top_tool_speed;
   /// What was asked for, and is known: members below that it does not name mean nothing.
   Evidence evidence;
+  Evidence asked;  ///< what was asked for; more than `evidence` where time ran out
   struct {
     double mean = 0, max = 0;
     int row = 0;                    ///< index of the row whose step has the largest
@@ -212,10 +225,23 @@ struct Measures {
   /// Clearance of the nearest pair on any row, m; none where nothing is near.
   std::optional<double> min_clearance;
   std::optional<LeastMargin> min_margin;
-  std::optional<DeepestContact> deepest_contact;  ///< none where no allowed pair was found to touch
+  /// None where no allowed pair was found to touch, and unless Evidence::contact.
+  std::optional<DeepestContact> deepest_contact;
   double min_manipulability = 0;
   std::vector<double> arm_angle;  ///< conventional arm angle of each row of S-R-S arms, rad
+  /// Returns whether min_clearance and min_margin are known.
+  [[nodiscard]] Known min_clearance_status() const {
+    return known(evidence.postures, min_clearance.has_value());
+  }
+  /// Returns whether deepest_contact is known.
+  [[nodiscard]] Known deepest_contact_status() const {
+    return known(evidence.contact, deepest_contact.has_value());
+  }
 };
+
+/// Returns the names of what was asked for and is not known, as "clearance, depth of contact"; ""
+/// where all is known.
+[[nodiscard]] std::string words_of_unmeasured(const Measures& measures);
 
 /// What a plan found. Its measures are those of the trajectory, where there is one.
 struct PlanResult : Measures {

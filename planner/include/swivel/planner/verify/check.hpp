@@ -34,6 +34,8 @@ struct CheckResult {
   std::optional<double> min_margin;     ///< m, least clearance of a pair less what it must keep
   /// among the pairs that are allowed to touch; unset if none was found to touch
   std::optional<DeepestContact> deepest_contact;
+  /// Whether min_clearance and min_margin are known, of the rows examined; and deepest_contact.
+  Known min_clearance_status = Known::kNotMeasured, deepest_contact_status = Known::kNotMeasured;
   /// The row and joint that come nearest to a joint limit.
   struct LimitDistance {
     int joint = 0;  ///< 0..6
