@@ -169,18 +169,23 @@ int run_on_workcell(const CheckArguments& arguments, const Workcell& file) {
   return check_workcell_file(cell, arguments.trajectory);
 }
 
-int run(const CheckArguments& arguments) {
-  const std::variant<Problem, Job, Workcell> file = io::load_problem_file(arguments.problem);
-  if (arguments.speed && !(std::isfinite(*arguments.speed) && *arguments.speed > 0))
-    throw InputError(
-        formatted("--speed: %g: allowed are finite numbers above 0", *arguments.speed));
-  if (arguments.speed && !arguments.certificate.empty())
+/// Throws InputError for a --speed that is no speed, or is not of the motion of a job.
+void require_speed_of_job(const CheckArguments& arguments, bool is_job) {
+  if (!arguments.speed) return;
+  positive(*arguments.speed, "--speed");
+  if (!arguments.certificate.empty())
     throw InputError("--speed: is of motions: allowed without --certificate");
-  if (const Job* job = std::get_if<Job>(&file)) return run_on_job(arguments, *job);
-  if (arguments.speed)  // not of a job
+  if (!is_job)
     throw InputError(
         "--speed: is of a motion of a job, in place of the speeds in its file: "
         "allowed are jobs; elsewhere `limits.tool_speed` bounds the speed");
+}
+
+int run(const CheckArguments& arguments) {
+  const std::variant<Problem, Job, Workcell> file = io::load_problem_file(arguments.problem);
+  const Job* const job = std::get_if<Job>(&file);
+  require_speed_of_job(arguments, job != nullptr);
+  if (job) return run_on_job(arguments, *job);
   if (const Workcell* cell = std::get_if<Workcell>(&file)) return run_on_workcell(arguments, *cell);
   Problem problem = arguments.episode.apply(std::get<Problem>(file));
   arguments.lattice.apply(problem);

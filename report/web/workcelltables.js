@@ -85,7 +85,8 @@ function sayFound(result, arms, say, go) {
         near.row,
       () => go(near.row),
     );
-  result.arms.forEach(({ name, summary, deepest_contact: contact, deepest_contact_status: looked }, k) => {
+  result.arms.forEach((arm, k) => {
+    const { name, summary, deepest_contact: contact, deepest_contact_status: looked } = arm;
     const rowAt = (s) =>
       arms[k].rows.reduce(
         (best, row, i) => (Math.abs(row.s - s) < Math.abs(arms[k].rows[best].s - s) ? i : best),

@@ -293,7 +293,9 @@ class Workcells(WithWorkcells):
         self.refused(changed(1, name="left"), "name of the other arm")
         self.refused(changed(0, name="base_link"), "is the base link")
         self.refused(changed(0, tip_link="nowhere"), "unknown link 'nowhere'")
-        self.refused(changed(1, trajectory="x.csv"), "arms[1].path: is given for an arm whose motion")
+        self.refused(
+            changed(1, trajectory="x.csv"), "arms[1].path: is given for an arm whose motion"
+        )
         self.refused(changed(1, axes={}), "axes")
         self.refused(changed(1, tip_link="arm_left_link_7_t"), "moves with both arms")
         body = {"name": "tool", "sphere": 0.02, "xyz": [0, 0, 0.05]}

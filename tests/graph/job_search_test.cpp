@@ -236,8 +236,7 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
           if (!validity.node(layer, nodes[a].slot)) continue;
           const double cost = validity.cost(layer, nodes[a].slot);
           if (layer + 1 == lattice.layers()) {
-            own[a] = cost;
-            values[a] = cost + onward(nodes[a].q);
+            own[a] = cost, values[a] = cost + onward(nodes[a].q);
             continue;
           }
           for (std::size_t b = 0; b < next.size(); ++b) {
@@ -251,9 +250,7 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
             own[a] = std::min(own[a], cost + (edge + after_own[b]));
           }
         }
-        after.swap(values);
-        after_own.swap(own);
-        next.swap(nodes);
+        after.swap(values), after_own.swap(own), next.swap(nodes);
       }
       if (lattice.is_closed()) {
         after_own = plain_loops(lattice, validity);
@@ -263,8 +260,7 @@ double plain_cost(const RandomJob& job, const Cost& transition, std::vector<doub
       begins_here.insert(begins_here.end(), next.begin(), next.end());
       rest_here.insert(rest_here.end(), after.begin(), after.end());
     }
-    begins = begins_here;
-    rest = rest_here;
+    begins = begins_here, rest = rest_here;
   }
   double best = kUnreachable;
   for (std::size_t f = 0; f < begins.size(); ++f)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "kinematics/newton/pose_newton.hpp"
+#include "swivel/core/base/cubic_spline.hpp"
 #include "swivel/core/kinematics/equations/alignment.hpp"
 #include "swivel/core/motion/path_motion.hpp"
-#include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {
 

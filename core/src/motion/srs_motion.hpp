@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "swivel/core/base/cubic_spline.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/motion/path_motion.hpp"
-#include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {
 

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/base/cubic_spline.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {
 

@@ -299,18 +299,21 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
   measure_margins(view.robot.arm().chain, view.lattice.path_of_rows(), result.trajectory, result);
 }
 
+/// Throws InvalidArgument for a problem that makes no sense, and as require_tool_speed() does for a
+/// speed of its tool, m/s.
+void require_tool_speed_of(const Problem& problem, double speed) {
+  validate(problem);
+  require_tool_speed(build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold,
+                               problem.tool, problem.roll)
+                         .chain,
+                     speed, "speed");
+}
+
 }  // namespace
 
 MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
                        const std::optional<TimingOptions>& timing) {
-  if (timing) {
-    const Problem& problem = planner.problem();
-    validate(problem);
-    require_tool_speed(build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold,
-                                 problem.tool, problem.roll)
-                           .chain,
-                       timing->speed, "speed");
-  }
+  if (timing) require_tool_speed_of(planner.problem(), timing->speed);
   const Budget budget = options.budget();
   // The caller's own cost is not known off the lattice.
   const bool own_cost = refined && options.hooks.cost;

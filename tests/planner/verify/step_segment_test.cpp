@@ -217,10 +217,8 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
       Pose begin = chain.tool(q);
       begin.translation() += random_vector(random, 0.05);
       const auto paths = short_waypoints(begin, random);
-      for (std::size_t noisy : {0, 1}) {
-        jobs[noisy].strokes[k] = stroke;
-        jobs[noisy].strokes[k].waypoints = paths[noisy];
-      }
+      for (std::size_t noisy : {0, 1})
+        stroke.waypoints = paths[noisy], jobs[noisy].strokes[k] = stroke;
     }
     std::array<PlanStatus, 2> status{};
     for (const std::size_t noisy : {0, 1}) {

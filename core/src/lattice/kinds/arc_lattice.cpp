@@ -408,7 +408,7 @@ void Layer::add_flipped(const Before& before) {
     continued_.emplace_back(before.flipped_of(continued_[k].first), continued_[k].second + by);
 }
 
-std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
+std::array<double, kDof> scaling(const Chain& chain, const Cost& cost) {
   std::array<double, kDof> weights = joint_weights(cost, chain);
   for (std::size_t j = 0; cost.metric == CostMetric::kTime && j < kDof; ++j)
     weights[j] = chain.limit[j].velocity > 0 ? 1 / chain.limit[j].velocity : chain.roll ? 0 : 1;
@@ -541,8 +541,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
   const bool ends_given = problem.end && !path.ends_early();
   if (ends_given) require_fits(PathEnd::kLast, problem, chain, path);
-  const SelfMotion motion(chain, method, problem.limits.joint_margin,
-                          weights_of(chain, problem.cost));
+  const SelfMotion motion(chain, method, problem.limits.joint_margin, scaling(chain, problem.cost));
   // Nodes drift with the tool as the cost would have it.
   const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm
                                                             : SelfMotion::Least::kLargest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/problem/cubic_spline.hpp"
+#include "swivel/core/base/cubic_spline.hpp"
 
 #include <algorithm>
 #include <cstddef>
