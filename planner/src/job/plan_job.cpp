@@ -686,8 +686,8 @@ class OrderSearch {
                            [&](int parts, const auto& body) { executor.for_each(parts, body); }};
     costs_ = estimate_order_costs(robot_, job_, work, budget_);
   }
-  /// Plans in an order of strokes and keeps the job if it is the cheapest so far. Estimates then
-  /// know which runs have no path by themselves.
+  /// Plans in an order of strokes and keeps the job if it is the cheapest so far. Estimates, if there
+  /// are some, then know which runs have no path by themselves.
   void take(const std::vector<StrokeRun>& order) {
     const auto plan = std::make_shared<JobPlan>(robot_, job_, options_, budget_, runs_,
                                                 strokes_of(order), one_branch_);
@@ -702,7 +702,8 @@ class OrderSearch {
       }
     }
     planned_.push_back(order);
-    for (const StrokeRun& run : plan->runs_without_path()) forbid(run);
+    if (!costs_.first.empty())
+      for (const StrokeRun& run : plan->runs_without_path()) forbid(run);
   }
   /// Plans the given order and orders that differ by one move from the best one, as many as are
   /// likely to find a cheaper job: estimates, which know no obstacles, are off by some per cent.
