@@ -365,8 +365,10 @@ class Workcells(WithWorkcells):
         six["robot"]["hold"]["arm_left_joint_3_e"] = 0
         left = six["arms"][0]
         left["path"]["roll"] = [0.2, 0.3]
-        alone = {key: six[key] for key in ("robot", "resolution")}
-        alone["robot"] = {**six["robot"], "tip_link": left["tip_link"], "tool": left["tool"]}
+        alone = {
+            "robot": {**six["robot"], "tip_link": left["tip_link"], "tool": left["tool"]},
+            "resolution": {"ds": six["resolution"]["ds"]}
+        }
         single = self.folder / "left.yaml"
         single.write_text(json.dumps({**alone, "path": left["path"]}))
         rows = self.folder / "left.csv"
