@@ -360,7 +360,7 @@ TEST(Contact, ThatWasNotMeasuredOfAJobIsSaidOfEachRun) {
 TEST(Contact, ThatWasNotMeasuredOfTwoArmsIsSaidOfBoth) {
   Random random(71);
   for (int tried = 0; tried < 20; ++tried) {
-    Workcell cell = random_workcell(two_armed("sda10f"), random);
+    Workcell cell = random_workcell(data_robot("sda10f"), random);
     const auto stopped = stopped_while_measuring(
         [&](const PlanOptions& options) { return plan_workcell(cell, options); }, 0);
     if (!stopped) continue;  // this one has no plan
