@@ -41,7 +41,8 @@ std::vector<TrajectoryRow> rows_at(const std::vector<double>& places, double fir
 JobResult plan_of_two() {
   JobResult result;
   result.status = PlanStatus::kSolved;
-  result.cost = 6;
+  result.cost = 6.25;
+  result.lattice_cost = 6;
   result.bound = 5;
   result.bound_any = 4;
   result.planner = "parallel";
@@ -218,7 +219,8 @@ TEST(JobTrajectory, BadParts) {
 TEST(JobResult, Solved) {
   const Json json = Json::parse(to_job_json(plan_of_two(), two_strokes()));
   EXPECT_EQ(json["status"], "solved");
-  EXPECT_EQ(json["cost"], 6.0);
+  EXPECT_EQ(json["cost"], 6.25);
+  EXPECT_EQ(json["lattice_cost"], 6.0);
   EXPECT_EQ(json["bound"], 5.0);
   EXPECT_EQ(json["bound_any"], 4.0);
   EXPECT_NEAR(json["gap"].get<double>(), 0.2, 1e-12);
@@ -245,11 +247,11 @@ TEST(JobResult, Solved) {
   EXPECT_EQ(json["parts"][3]["rows"][2]["process"], true);
   EXPECT_EQ(json["parts"][3]["rows"][2]["branch"], 5);
   JobResult optimal = plan_of_two();
-  optimal.bound = optimal.cost;
+  optimal.bound = optimal.lattice_cost;
   EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
-  optimal.cost = optimal.bound = 0;
+  optimal.lattice_cost = optimal.bound = 0;
   EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
-  optimal.cost = 1;
+  optimal.lattice_cost = 1;
   EXPECT_TRUE(Json::parse(to_job_json(optimal, two_strokes()))["gap"].is_null());
 }
 
@@ -350,7 +352,9 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
   EXPECT_GE(known.size(), 100u);
   JobResult turning = plan_of_two();
   turning.parts[1].rows[0].roll = 0.1;
-  for (const JobResult& result : {turning, without_a_job(true), without_a_job(false)})
+  JobResult unproved = turning;
+  unproved.partial.swap(unproved.parts);
+  for (const JobResult& result : {turning, unproved, without_a_job(true), without_a_job(false)})
     add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
   const JobTimingResult timed = timed_plan(true);
   add_keys(Json::parse(to_job_json(plan_of_two(), two_strokes(), {&timed})), "", seen);

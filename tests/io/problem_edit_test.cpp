@@ -44,7 +44,7 @@ TEST(WithPoses, ReadsBackBitForBitAndKeepsTheRest) {
       "rpy: [0.1, 0.2,\n          0.3]",
       "\n  - name: part\n    box: [0.1, 0.1, 0.2]",
       "[{name: part, sphere: 0.1}, {name: post, sphere: 0.1}]",
-      "[{name: part, sphere: 0.1, xyz: [1, 2, \"3\"]}]",
+      "[{name: part, sphere: 0.1, xyz: [1, 2, 3]}]",
       "[{name: part, sphere: 0.1, xyz: }]",
       "[{name: shelf, sphere: 0.1, frame: link_2}, {name: part, sphere: 0.1}]",
       "\n  - name: part\n    sphere: 0.1\n    quat:\n      - 0.5\n      - 0.5\n      - 0.5\n      "

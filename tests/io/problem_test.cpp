@@ -202,7 +202,7 @@ TEST(ProblemFile, KeysOfAnArmAngleAreForArmsThatHaveOne) {
   for (const char* const key : {"dphi: 0.05", "arcs: true", "arcs: false"})
     expect_message(
         input_error([&] { return load("resolution", std::string("{ds: 0.1,\n ") + key + "}"); }),
-        {std::string("problem.yaml:2: resolution.") + std::string(key, 4), "no arm angle",
+        {std::string("problem.yaml:3: resolution.") + std::string(key, 4), "no arm angle",
          "allowed is no such key"});
   expect_message(input_error([&] { return load("limits", "{step_error: 0.1}"); }),
                  {"problem.yaml:1: limits.step_error", "no arm angle"});
@@ -329,7 +329,7 @@ TEST(ProblemFile, EndOfSixJoints) {
                                   problem.tool, problem.roll)
                             .chain;
     Pose wanted = Pose::Identity();
-    wanted.linear() = waypoints_in_base(problem).back().orientation.toRotationMatrix();
+    wanted.linear() = given_waypoints_in_base(problem).back().orientation.toRotationMatrix();
     EXPECT_NEAR(roll_between(wanted, chain.tool(*problem.end)), 0, 1e-9) << six;
     const std::string seven = std::string(six) + ", 0.25";
     EXPECT_EQ((*kr6_problem(place, seven).end)[6], 0.25);

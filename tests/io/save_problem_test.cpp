@@ -341,7 +341,7 @@ void change_path(Problem& p, swivel::test::Random& random) {
 
 void change_rest(Problem& p, swivel::test::Random& random) {
   if (random.coin(0.3)) p.resolution.ds = random.uniform(0.002, 0.02);
-  if (random.coin(0.3)) p.resolution.arcs = !p.resolution.arcs;
+  if (random.coin(0.3)) p.resolution.dalpha = random.uniform(0.02, 0.2);
   if (random.coin(0.2)) p.resolution = Resolution();
   if (random.coin(0.3)) p.cost.metric = CostMetric::kTime;
   if (random.coin(0.3)) p.cost.weights = {1, 1, random.uniform(1, 2), 1, 1, 1, 1};

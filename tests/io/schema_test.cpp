@@ -259,11 +259,14 @@ TEST(ProblemSchema, RequiredKeys) {
   EXPECT_GE(keys, 22);
 }
 
-/// Returns a problem or a job with all defaults that its keys have. Adds their number to `keys`.
+/// Returns a problem or a job with all defaults that its keys have, but of keys that an S-R-S arm
+/// without a roll is refused. Adds their number to `keys`.
 Json with_defaults(const Json& plain, int& keys) {
   Json said = plain;
   Walk walk{[&](const Place& place) {
+    const std::set<std::string> of_others{"arc", "droll", "knot", "roll_slope"};
     if (!place.schema.contains("default") || place.key == "scale") return;
+    if (of_others.contains(place.key)) return;
     // Keys of a job are none of a problem, and the other way round.
     if (!plain.contains(place.object) ||
         place.problem[place.object].size() < plain[place.object].size())

@@ -578,7 +578,7 @@ class JobStudies(unittest.TestCase):
         # What a worker of a Dask cluster does with the recipe that it gets, without Dask.
         job = self.job()
         rows = swivel.campaign(job, episodes=4, seed=2)
-        make = functools.partial(swivel._swivel._Campaigner, job, 4, 2, "lazy", 1)
+        make = functools.partial(swivel._swivel._Campaigner, job, 4, 2, "lazy", 1, True)
         planners = pickle.loads(pickle.dumps(swivel.runs._Planners(make)))
         parts = [
             planners.plan(swivel.runs._plan_episodes, (index, 2)) for index in reversed(range(2))

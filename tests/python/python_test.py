@@ -1606,7 +1606,7 @@ class Stubs(unittest.TestCase):
 
         (planner,) = [node for node in self.tree.body if getattr(node, "name", "") == "Planner"]
         self.assertEqual(options(self.tree.body), options(planner.body))
-        self.assertEqual(len(options(self.tree.body)[0]), 13)
+        self.assertEqual(len(options(self.tree.body)[0]), 14)
         with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'timout'"):
             swivel.plan(PROBLEMS / "experiment_a.yaml", timout=3)
 

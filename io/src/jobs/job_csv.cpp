@@ -30,8 +30,12 @@ const Schema& job_trajectory_schema() {
 }
 
 bool any_rolls(const JobResult& result) {
-  return std::any_of(result.parts.begin(), result.parts.end(),
-                     [](const JobPart& part) { return part.run && swivel::any_rolls(part.rows); });
+  const auto any = [](const std::vector<JobPart>& parts) {
+    return std::any_of(parts.begin(), parts.end(), [](const JobPart& part) {
+      return part.run && swivel::any_rolls(part.rows);
+    });
+  };
+  return any(result.parts) || any(result.partial);
 }
 
 std::string placeless_fields(const TrajectoryRow& row, bool roll) {

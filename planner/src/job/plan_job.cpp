@@ -686,8 +686,8 @@ class OrderSearch {
                            [&](int parts, const auto& body) { executor.for_each(parts, body); }};
     costs_ = estimate_order_costs(robot_, job_, work, budget_);
   }
-  /// Plans in an order of strokes and keeps the job if it is the cheapest so far. Estimates, if there
-  /// are some, then know which runs have no path by themselves.
+  /// Plans in an order of strokes and keeps the job if it is the cheapest so far. Estimates, if
+  /// there are some, then know which runs have no path by themselves.
   void take(const std::vector<StrokeRun>& order) {
     const auto plan = std::make_shared<JobPlan>(robot_, job_, options_, budget_, runs_,
                                                 strokes_of(order), one_branch_);

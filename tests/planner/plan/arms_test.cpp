@@ -453,8 +453,9 @@ void expect_cost_of_roll(const PreparedRobot& robot, const Problem& problem,
   const CheckResult check = check_trajectory(robot, problem, found.trajectory);
   ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
   Problem unturned = problem;
-  unturned.cost.roll = 0;
-  const double moves = check_trajectory(robot, unturned, found.trajectory).cost;
+  unturned.cost.roll = 1e-6;  // with none at all the waypoints' own turn would not matter
+  const double moves = check_trajectory(robot, unturned, found.trajectory).cost -
+                       plain_roll_cost(unturned, found.trajectory);
   const double rounding =
       1e-9 * (1 + check.cost) + 2e-12 * unit * static_cast<double>(found.trajectory.size());
   ASSERT_NEAR(check.cost, moves + plain_roll_cost(problem, found.trajectory),

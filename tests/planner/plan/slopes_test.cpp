@@ -113,6 +113,9 @@ TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
     Problem line = random_line(robots[trial % 2], random.coin(0.7) ? Roll{} : Roll{-1, 1}, random);
     line.limits.roll_slope = std::exp(random.uniform(std::log(0.5), std::log(20)));
     line.limits.joint_step = random.uniform(0.2, 1);
+    // Where the roll is free the axis moves on its least turn, and so must the waypoints between.
+    line.waypoints = waypoints_in_base(line);
+    line.path_frame = line.base_link;
     PlanResult result;
     plan_in_parts(line, what, tally, result);
     if (HasFatalFailure()) return;

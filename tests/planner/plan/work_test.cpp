@@ -110,6 +110,7 @@ Work measured(const Work& expected) {
     problem.resolution.ds = 0.02;  // tests are to be quick
   const PreparedRobot robot(problem);
   PlanOptions options;
+  options.check = false;  // the work of planning is counted
   options.planner = expected.planner;
   options.threads = 1;
   static_cast<void>(plan(robot, problem, options));

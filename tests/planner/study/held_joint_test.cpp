@@ -104,6 +104,7 @@ PlacementRow row_alone(const PlacementCell& cell, const Problem& problem,
     return row;
   }
   row.cost = result.cost;
+  row.checked = result.checked;
   if (result.min_margin) {
     row.clearance = result.min_margin->clearance;
     row.clearance_margin = result.min_margin->margin;

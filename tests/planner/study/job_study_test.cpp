@@ -143,6 +143,7 @@ PlacementRow row_alone(const DoorJob& door, const Movable& thing, const Placemen
     return row;
   }
   row.cost = result.cost;
+  row.checked = result.checked;
   for (const RunResult& run : result.runs) {
     const Measures& m = run.measures;
     if (!row.clearance_margin || m.min_margin->margin < *row.clearance_margin)

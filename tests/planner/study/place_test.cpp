@@ -97,6 +97,7 @@ PlacementRow row_of(const PlacementCell& cell, const PlanResult& result, const P
   row.status = result.status;
   if (row.status == PlanStatus::kSolved) {
     row.cost = result.cost;
+    row.checked = result.checked;
     if (result.min_margin) {
       row.clearance = result.min_margin->clearance;
       row.clearance_margin = result.min_margin->margin;
