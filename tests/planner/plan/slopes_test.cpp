@@ -86,7 +86,9 @@ void plan_in_parts(const Problem& line, const std::string& what, Tally& tally, P
     ASSERT_EQ(result.status, first.status) << what << " parts " << parts;
     ASSERT_EQ(result.lattice.layers, first.lattice.layers) << what << " parts " << parts;
     if (first.status != PlanStatus::kSolved) {
-      ASSERT_EQ(result.diagnosis.cause, first.diagnosis.cause) << what << " parts " << parts;
+      // Frames that are carried over more waypoints are rounded otherwise.
+      ASSERT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause))
+          << what << " parts " << parts;
       ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer)
           << what << " parts " << parts;
       // The rows about the end of the paths are those of the longer list.
@@ -94,7 +96,7 @@ void plan_in_parts(const Problem& line, const std::string& what, Tally& tally, P
       ASSERT_LE(result.diagnosis.waypoints[1], parts * first.diagnosis.waypoints[1]) << what;
       continue;
     }
-    ASSERT_EQ(result.cost, first.cost) << what << " parts " << parts;
+    ASSERT_NEAR(result.cost, first.cost, 1e-9) << what << " parts " << parts;
     ASSERT_TRUE(check_trajectory(same, result.trajectory).passed) << what << " parts " << parts;
   }
 }

@@ -656,17 +656,21 @@ int ArcLattice::next_on_arc(int layer, int slot) const {
              : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
 }
 
+std::optional<Config> ArcLattice::given(int layer) const {
+  if (layer == 0 && problem_.start) return joints_given(PathEnd::kFirst, problem_, *chain_, *path_);
+  return layer == layers() - 1 ? end_ : std::nullopt;
+}
+
 std::vector<Config> ArcLattice::followed(const std::vector<int>& slots) const {
   std::vector<Config> rows;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const Config& q = point(static_cast<int>(i), slots[i]).q;
     rows.push_back(i == 0 ? q : Config(rows.back() + delta(rows.back(), q)));
   }
-  if (problem_.start) {
-    const Config start = joints_given(PathEnd::kFirst, problem_, *chain_, *path_),
-                 turns = start - rows.front();
+  if (const auto start = given(0)) {
+    const Config turns = *start - rows.front();
     for (Config& q : rows) q += turns;
-    rows.front() = start;
+    rows.front() = *start;
   }
   if (static_cast<int>(rows.size()) == layers()) turn_to_end(rows);
   return rows;

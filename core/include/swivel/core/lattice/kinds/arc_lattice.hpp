@@ -100,11 +100,7 @@ class ArcLattice final : public ExplicitLattice {
   /// given start if there is one, else in that of the given end if they lead there.
   [[nodiscard]] std::vector<Config> followed(const std::vector<int>& slots) const;
   /// Returns the posture that the problem gives for a layer; nothing if it gives none.
-  [[nodiscard]] const std::optional<Config>& given(int layer) const {
-    static const std::optional<Config> kNone;
-    if (layer == 0 && problem_.start) return problem_.start;
-    return layer == layers() - 1 ? end_ : kNone;
-  }
+  [[nodiscard]] std::optional<Config> given(int layer) const;
   /// Returns how rows of followed() fit into the limits of the circles.
   [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
   /// A node in one turn of each joint that is told apart, and a number that orders these turns.
