@@ -76,7 +76,7 @@ constexpr Work kTable[] = {
     {"experiment_b", kParallel, kNodes, 3477, 100, 2, 3475, 303, 3, 108096, 107893, 8013},
     {"experiment_b", kParallel, kContinuous, 3477, 100, 2, 3575, 303, 3, 108096, 107893, 8200},
     {"experiment_c", kEager, kNodes, 11000, 136596, 11144, 0, 11000, 0, 37296, 659664, 1096},
-    {"experiment_c", kEagerDp, kNodes, 11000, 8084, 11144, 0, 0, 0, 37296, 659664, 9508},
+    {"experiment_c", kEagerDp, kNodes, 11000, 8096, 11144, 0, 0, 0, 37296, 659664, 9508},
     {"experiment_c", kLazy, kNodes, 109, 108, 0, 109, 109, 1, 39592, 26800, 1250},
     {"experiment_c", kLazy, kContinuous, 109, 108, 0, 217, 109, 1, 39592, 26800, 1494},
     {"experiment_c", kParallel, kNodes, 109, 108, 0, 109, 109, 1, 39592, 26800, 1036},
