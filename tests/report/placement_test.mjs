@@ -90,7 +90,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     assert.equal(result.cost ?? '', wanted[cost] === '' ? '' : Number(wanted[cost]));
     assert.ok(statSync(join(folder, `placement_${wanted[cell]}.html`)).size > 1e5);
     if (wanted === failed)
-      assert.ok((await page.textContent('#facts')).includes(wanted.at(-1).replaceAll('"', '')));
+      assert.ok((await page.textContent('#facts')).includes(wanted.at(-2).replaceAll('"', '')));
   }
   await page.locator('#best tbody tr').nth(3).click();
   assert.match(
@@ -153,7 +153,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     if (own) partial.set(row, shown.joints);
   }
   assert.ok(partial.size >= 10, `${partial.size} of ${unsolved.length} show how far paths go`);
-  const [ended] = [...partial.keys()].filter((row) => row.at(-1).includes(' - post'));
+  const [ended] = [...partial.keys()].filter((row) => row.at(-2).includes(' - post'));
   await page.locator('.cells rect').nth(rows.indexOf(ended)).dispatchEvent('click');
   assert.equal(
     await page.evaluate(() => {
