@@ -590,8 +590,7 @@ std::vector<Schema::Key> job_answer_keys() {
           "as of results; a job that ran out of time may have a motion nevertheless"),
       key("cost", or_null(number()),
           "of strokes, transitions and lift-offs; like all that describes the motion, `null` where "
-          "there is "
-          "none"),
+          "there is none"),
       key("bound", or_null(number()),
           "no job in this order and with these lift-offs costs less, in whatever directions of "
           "`reversible` strokes, if its transitions are those that Swivel finds"),

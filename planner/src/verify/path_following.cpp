@@ -229,7 +229,8 @@ PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, d
     double least = std::numeric_limits<double>::infinity();
     for (const Stretch& stretch : stretches)
       least = std::min(least, stretch.distance(tool.translation()));
-    // Of the places as near as any, the one nearest in travel to what the motion has made by then.
+    // Where several places of the path are equally near, the one is taken whose travel is closest
+    // to what the motion has covered by then.
     const double travel =
         first + way * static_cast<double>(m) / static_cast<double>(motion.poses.size() - 1);
     double gap = std::numeric_limits<double>::infinity(), angle = 0;

@@ -212,7 +212,7 @@ class JobPage {
   const Budget& budget_;
   Json json_;                     ///< the result
   std::vector<StrokeRun> order_;  ///< in which the strokes are shown
-  /// Of each part, where there is a motion: the places of samples_of() it in its rows.
+  /// For each part, the places of its samples (samples_of()) in its rows. Empty without a motion.
   std::vector<std::vector<double>> places_;
   std::string maps_;
 };

@@ -45,8 +45,8 @@ struct LatticeMap {
     kRoll,   ///< of the tool: of arms of six joints
   };
   Coordinate coordinate = Coordinate::kArmAngle;
-  /// Of kJoint, 0-based: the joint that slides, that of a turntable, or the one that the closed
-  /// form locks.
+  /// The joint that a map of kJoint shows, 0-based: the one that slides, that of a turntable, or
+  /// the one that the closed form locks.
   int joint = -1;
   bool slides = false;  ///< that joint slides: m stands for rad in `low`, `step` and values
   int layers = 0, angles = 0, windings = 1;

@@ -45,8 +45,8 @@ struct Cause {
   std::string object;
   /// The value at the node or edge that misses least, and the limit: rad for joints and angles, m
   /// for lengths and joints that slide, no unit for manipulability. None where it was not measured.
-  /// Of a joint that leaves its range where the path ends: the value furthest outside that it would
-  /// reach before it came back.
+  /// `value` is, where a joint leaves its range as the path ends, the furthest outside that the
+  /// joint would reach before it came back.
   std::optional<double> value, limit;
   /// For kRollSlope: the travel for which `limit` is allowed, m. For kPair where a depth is
   /// allowed: that depth, m; `limit` is less by what the motions between layers need.

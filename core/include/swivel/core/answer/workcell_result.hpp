@@ -50,7 +50,7 @@ struct WorkcellResult {
   /// Where each arm has a path by itself and both together have none: the first conflict that was
   /// met.
   std::optional<ArmConflict> conflict;
-  /// Of the trajectories: the row and the bodies of both arms with the least margin. None where no
+  /// The row of the trajectories and the bodies of both arms with the least margin. None where no
   /// pair is near, and unless measured.
   std::optional<LeastMargin> between_arms;
   bool between_arms_measured = false;  ///< asked for by Evidence::postures, and known

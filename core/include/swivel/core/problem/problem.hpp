@@ -150,8 +150,8 @@ struct Resolution {
 /// What a path costs.
 struct Cost {
   CostMetric metric = CostMetric::kL2;
-  /// Of the joints, base to tip: 0, or 1e-6 to 1e6. Unset: 1 each, and 0 of the roll of a six-joint
-  /// arm (joint_weights()).
+  /// Weights of the joints from base to tip: each 0, or 1e-6 to 1e6. If they are not set, each
+  /// joint has 1, and the roll of a six-joint arm has 0 (joint_weights()).
   std::optional<std::array<double, kDof>> weights;
   double roll = 0;  ///< per metre of path and rad of roll: 0, or 1e-6 to 1e6
   bool operator==(const Cost&) const = default;

@@ -94,7 +94,7 @@ struct JobOutcome {
   double bound = 0;
   /// No job costs less whatever its transitions: 0 until all runs are known to be valid.
   double bound_any = 0;
-  /// Of each run of each stroke by itself; kUnreachable: it has no path.
+  /// Least cost of each run of each stroke by itself; kUnreachable for a run without a path.
   std::vector<std::vector<double>> least_costs;
   std::vector<double> run_costs, transition_costs;  ///< of the job found
   std::int64_t rounds = 0, pairs = 0, searches = 0;

@@ -71,8 +71,8 @@ struct CheckOptions {
   /// min_clearance, min_margin and deepest_contact stay unset.
   bool margins = true;
   Budget budget = {};  ///< Stopped is thrown once it is spent
-  /// Of check_job_motion(): speed of the tool along all strokes, m/s, instead of those of the job,
-  /// as JobTimingOptions::speed.
+  /// Speed of the tool along all strokes, m/s, that check_job_motion() asks for instead of those of
+  /// the job, like JobTimingOptions::speed. Other checks do not read it.
   std::optional<double> speed = {};
 };
 
