@@ -211,12 +211,13 @@ void bind_measures(py::module_& m) {
       m, "DeepestContact", "The deepest contact of bodies that a scene object allows to touch it.")
       .def(pickling<DeepestContact>())
       .def_readonly("depth", &DeepestContact::depth,
-                    "m, found at a row or between two: the bodies are at least so deep.")
+                    "m, found at a row: the bodies are at least so deep.")
       .def_readonly("at_most", &DeepestContact::at_most,
-                    "m, proved for all rows and moves between them, or None.")
+                    "m: the bodies are nowhere deeper at rows; None where that is not known "
+                    "within 0.5 mm.")
       .def_readonly("allowed", &DeepestContact::allowed, "m, or None: however deep.")
       .def_property_readonly("bodies", [](const DeepestContact& x) { return bodies_of(x.bodies); })
-      .def_readonly("row", &DeepestContact::row, "At it, or on the way from it to the next.")
+      .def_readonly("row", &DeepestContact::row, "Index of the row.")
       .def("__repr__", [](const DeepestContact& x) {
         return formatted("<DeepestContact %.3f mm", 1e3 * x.depth) +
                (x.at_most ? formatted(", at most %.3f", 1e3 * *x.at_most) : "") +

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "exact/pair_test.hpp"
@@ -187,7 +188,122 @@ TEST(Depth, OfATipInAPanelIsHowFarItIsBeneathTheSurface) {
   }
 }
 
-TEST(Depth, IsNotKnownWhereAMeshIsOpenAndNotBoundedBetweenMeshes) {
+/// Returns a closed block, 0.2 m wide and 0.1 m high below z = 0, whose upper side is a grid of
+/// bumps and hollows of up to `rough`, m.
+TriangleMesh bumpy_block(Random& random, double rough) {
+  constexpr int kCells = 8;
+  TriangleMesh mesh;
+  const auto at = [](int i, int j, int side) { return 2 * (i * (kCells + 1) + j) + side; };
+  for (int i = 0; i <= kCells; ++i)
+    for (int j = 0; j <= kCells; ++j) {
+      const double x = 0.2 * i / kCells - 0.1, y = 0.2 * j / kCells - 0.1;
+      mesh.vertices.emplace_back(x, y, random.uniform(-rough, rough));
+      mesh.vertices.emplace_back(x, y, -0.1);
+    }
+  const auto quad = [&](int a, int b, int c, int d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j) {
+      quad(at(i, j, 0), at(i + 1, j, 0), at(i + 1, j + 1, 0), at(i, j + 1, 0));
+      quad(at(i, j, 1), at(i, j + 1, 1), at(i + 1, j + 1, 1), at(i + 1, j, 1));
+    }
+  for (int i = 0; i < kCells; ++i) {
+    quad(at(i, 0, 1), at(i + 1, 0, 1), at(i + 1, 0, 0), at(i, 0, 0));
+    quad(at(i, kCells, 0), at(i + 1, kCells, 0), at(i + 1, kCells, 1), at(i, kCells, 1));
+    quad(at(0, i, 0), at(0, i + 1, 0), at(0, i + 1, 1), at(0, i, 1));
+    quad(at(kCells, i, 1), at(kCells, i + 1, 1), at(kCells, i + 1, 0), at(kCells, i, 0));
+  }
+  return mesh;
+}
+
+/// Returns a pad that lies flat or tilted on a block, up to 8 mm deep.
+Body pad_on(const Body& block, Random& random) {
+  Body pad = random_body(1 + random.index(3), random, 0);
+  pad.pose = Pose::Identity();
+  if (random.index(2))
+    pad.pose.linear() = Eigen::AngleAxisd(random.uniform(0, 0.2), random.vector(-1, 1).normalized())
+                            .toRotationMatrix();
+  const double lowest = reach(pad, -Vector3d::UnitZ());
+  pad.pose.translation() += Vector3d(random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08),
+                                     lowest - random.uniform(-0.002, 0.008));
+  pad.pose = block.pose * pad.pose;
+  return pad;
+}
+
+/// Returns the greatest sum of depths found at points of the block's upper side and at points about
+/// the best of them, m. How deep a point lies in the block is told by its tree of triangles.
+double deepest_sample(const Body& pad, const PlacedShapeRef& block, Random& random) {
+  const MeshModel& mesh = *block.shape->mesh;
+  const Pose back = block.pose->inverse();
+  const auto in_block = [&](const Vector3d& point) {
+    const Vector3d p = back * point;
+    int first = 0;
+    const double far = mesh.triangles().distance({p, Vector3d::Zero()}, 0, 1e3, first);
+    return mesh.solid().contains(p) ? far : -far;
+  };
+  double sampled = -1e9;
+  Vector3d best = Vector3d::Zero();
+  for (int k = 0; k < 6000; ++k) {
+    const Vector3d p =
+        k < 3000
+            ? Vector3d(*block.pose * Vector3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),
+                                              random.uniform(-0.01, 0.01)))
+            : Vector3d(best + random.vector(-1, 1) * 0.02 * std::pow(0.997, k - 3000));
+    if (const double sum = beneath(pad, p) + in_block(p); sum > sampled) sampled = sum, best = p;
+  }
+  return sampled;
+}
+
+/// The depth of pads in blocks with bumps and hollows is that of the deepest of many points; a
+/// question about one depth has the answer that the bounds give; a pad that is a mesh of a box has
+/// the box's bounds.
+TEST(Depth, OfAPadOnARoughSurfaceIsThatOfTheDeepestPoint) {
+  Random random(44);
+  int deep = 0, tight = 0, kept = 0, meshes = 0;
+  for (int trial = 0; trial < test::trials(120); ++trial) {
+    SCOPED_TRACE(trial);
+    const Body block{as_mesh(bumpy_block(random, random.uniform(0, 0.004)), "block.stl"),
+                     random.pose(0.5)};
+    const Body pad = pad_on(block, random);
+    MeshStore store;
+    const Placed at_pad(pad, store), at_block(block, store);
+    const Depth found = depth(at_pad.ref(), at_block.ref());
+    const double sampled = deepest_sample(pad, at_block.ref(), random);
+    const auto* cylinder = std::get_if<Cylinder>(&pad.shape);
+    EXPECT_LE(sampled, found.at_most + 1e-9);
+    EXPECT_LE(found.at_most - found.at_least, 0.02e-3 + (cylinder ? 0.005 * cylinder->radius : 0));
+    deep += sampled > 0.001;
+    tight += sampled > found.at_least - 0.2e-3;
+
+    const double asked = found.at_most + random.uniform(-0.004, 0.004);
+    const Depth answer = depth(at_pad.ref(), at_block.ref(), asked, asked + 0.1e-3);
+    EXPECT_GE(answer.at_most, found.at_least - 1e-9);
+    EXPECT_LE(answer.at_least, found.at_most + 1e-9);
+    if (found.at_most <= asked) {
+      EXPECT_LE(answer.at_most, asked + 1e-12);
+      ++kept;
+    } else if (found.at_least > asked + 0.2e-3) {
+      EXPECT_GT(answer.at_least, asked);
+    }
+    if (const auto* box = std::get_if<Box>(&pad.shape); box && box->size.norm() < 0.29) {
+      const Placed as_triangles({as_mesh(box_mesh(box->size, 3), "box.stl"), pad.pose}, store);
+      const Depth of_meshes = depth(as_triangles.ref(), at_block.ref());
+      EXPECT_NEAR(of_meshes.at_most, found.at_most, 0.03e-3);
+      EXPECT_LE(of_meshes.at_least, found.at_most + 1e-9);
+      ++meshes;
+    }
+  }
+  std::printf("%d deep, %d tight, %d no deeper than asked, %d of meshes\n", deep, tight, kept,
+              meshes);
+  EXPECT_GE(deep, test::at_least(40));
+  EXPECT_GE(tight, test::at_least(60));
+  EXPECT_GE(kept, test::at_least(30));
+  EXPECT_GE(meshes, test::at_least(15));
+}
+
+TEST(Depth, IsNotKnownWhereAMeshIsOpenAndBoundedBetweenClosedMeshes) {
   const Body open{as_mesh(testing::tube_mesh(0.05, 0.1, 12), "tube.stl"), Pose::Identity()};
   const Body closed{as_mesh(box_mesh({0.1, 0.1, 0.1}, 2), "box.stl"), Pose::Identity()};
   Body beside = closed;
@@ -197,8 +313,9 @@ TEST(Depth, IsNotKnownWhereAMeshIsOpenAndNotBoundedBetweenMeshes) {
               meshes = depth_of(closed, beside);
   EXPECT_EQ(unknown.at_most, std::numeric_limits<double>::infinity());
   EXPECT_EQ(unknown.at_least, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(meshes.at_most, std::numeric_limits<double>::infinity());
   EXPECT_GT(meshes.at_least, 0.005);
+  EXPECT_GE(meshes.at_most, meshes.at_least);
+  EXPECT_LE(meshes.at_most, 0.02);
 }
 
 }  // namespace

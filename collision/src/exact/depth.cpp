@@ -5,8 +5,11 @@
 #include <cmath>
 #include <optional>
 #include <queue>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "exact/medial_set.hpp"
 
 namespace swivel::detail {
 
@@ -16,138 +19,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDepthTolerance = 0.02e-3;  // m
 constexpr int kMostPatches = 20'000;         // looked at before the search is cut short
 constexpr int kMostCorners = 2'000;          // of a mesh, looked for in another mesh
-
-/// A point, a segment or a triangle (1, 2 or 3 `corners`) of a body's medial set. `depth` is how
-/// deep each corner lies beneath the body's surface, m, and is linear in between.
-struct Patch {
-  int corners = 0;
-  std::array<Vector3d, 3> at{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-  std::array<double, 3> depth{};
-
-  void add(const Vector3d& corner, double beneath) {
-    at[static_cast<std::size_t>(corners)] = corner;
-    depth[static_cast<std::size_t>(corners++)] = beneath;
-  }
-  /// Returns the two halves of the patch, which is divided across its longest edge.
-  [[nodiscard]] std::pair<Patch, Patch> halves() const {
-    const auto edge = [&](std::size_t k) { return (at[(k + 1) % 3] - at[k]).squaredNorm(); };
-    std::size_t from = 0;
-    if (corners == 3)
-      for (std::size_t k = 1; k < 3; ++k)
-        if (edge(k) > edge(from)) from = k;
-    const std::size_t to = corners == 3 ? (from + 1) % 3 : 1;
-    std::pair<Patch, Patch> halves{*this, *this};
-    halves.first.at[to] = halves.second.at[from] = (at[from] + at[to]) / 2;
-    halves.first.depth[to] = halves.second.depth[from] = (depth[from] + depth[to]) / 2;
-    return halves;
-  }
-};
-
-Patch point(const Vector3d& at, double depth) {
-  Patch patch;
-  patch.add(at, depth);
-  return patch;
-}
-Patch triangle(const Vector3d& a, double of_a, const Vector3d& b, double of_b, const Vector3d& c,
-               double of_c) {
-  Patch patch;
-  patch.add(a, of_a);
-  patch.add(b, of_b);
-  patch.add(c, of_c);
-  return patch;
-}
-
-/// The medial set of a body, in its own frame: the points that are locally deepest beneath its
-/// surface. For every point in the body there is a point of this set at which the sum of the depths
-/// in both bodies is at least as large.
-struct Medial {
-  std::vector<Patch> patches;
-  double off = 0;  ///< no point of the set is further from the patches than this, m
-};
-
-Medial axis_of(double radius, double length) {
-  Patch axis;
-  axis.add(Vector3d(0, 0, -length / 2), radius);
-  axis.add(Vector3d(0, 0, length / 2), radius);
-  return {{axis}};
-}
-
-/// Returns the medial set of a box: quadrilaterals from each edge inwards at 45 degrees, and the
-/// rectangle in the middle of the shortest side, in which they end.
-Medial medial_of(const Box& box) {
-  const Vector3d half = box.size / 2;
-  Eigen::Index least = 0;
-  const double deepest = half.minCoeff(&least);
-  const Vector3d inner = half - Vector3d::Constant(deepest);
-  Medial medial;
-  const auto add_quad = [&](const std::array<Vector3d, 4>& c, const std::array<double, 4>& d) {
-    medial.patches.push_back(triangle(c[0], d[0], c[1], d[1], c[2], d[2]));
-    medial.patches.push_back(triangle(c[0], d[0], c[2], d[2], c[3], d[3]));
-  };
-  for (Eigen::Index along = 0; along < 3; ++along)
-    for (const double first : {-1.0, 1.0})
-      for (const double second : {-1.0, 1.0}) {
-        Vector3d sign;
-        sign[(along + 1) % 3] = first;
-        sign[(along + 2) % 3] = second;
-        const auto corner = [&](const Vector3d& size, double side) {
-          sign[along] = side;
-          return Vector3d(size.cwiseProduct(sign));
-        };
-        add_quad({corner(half, -1), corner(half, 1), corner(inner, 1), corner(inner, -1)},
-                 {0, 0, deepest, deepest});
-      }
-  const Eigen::Index u = (least + 1) % 3, v = (least + 2) % 3;
-  const auto middle = [&](double side_u, double side_v) {
-    Vector3d p = Vector3d::Zero();
-    p[u] = side_u * inner[u];
-    p[v] = side_v * inner[v];
-    return p;
-  };
-  add_quad({middle(-1, -1), middle(1, -1), middle(1, 1), middle(-1, 1)},
-           {deepest, deepest, deepest, deepest});
-  return medial;
-}
-
-/// Returns the medial set of a cylinder: cones from both rims inwards at 45 degrees, and what lies
-/// between their inner ends, which is a part of the axis or, in a flat cylinder, a disc. Circles
-/// are replaced by polygons.
-Medial medial_of(const Cylinder& cylinder) {
-  const double radius = cylinder.radius, half = cylinder.length / 2,
-               deepest = std::min(radius, half);
-  const double inner = radius - deepest, height = half - deepest;
-  const int sides = std::clamp(
-      static_cast<int>(std::ceil(kPi / std::sqrt(2 * kDepthTolerance / (4 * radius)))), 8, 64);
-  Medial medial;
-  medial.off = radius * (1 - std::cos(kPi / sides));
-  const auto on_circle = [&](int k, double r, double z) {
-    const double angle = kTwoPi * k / sides;
-    return Vector3d(r * std::cos(angle), r * std::sin(angle), z);
-  };
-  for (int k = 0; k < sides; ++k) {
-    for (const double side : {-1.0, 1.0}) {
-      const Vector3d a = on_circle(k, radius, side * half),
-                     b = on_circle(k + 1, radius, side * half);
-      const Vector3d c = on_circle(k + 1, inner, side * height),
-                     d = on_circle(k, inner, side * height);
-      medial.patches.push_back(triangle(a, 0, b, 0, c, deepest));
-      if (inner > 0) medial.patches.push_back(triangle(a, 0, c, deepest, d, deepest));
-    }
-    if (inner > 0)
-      medial.patches.push_back(triangle(Vector3d::Zero(), deepest, on_circle(k, inner, 0), deepest,
-                                        on_circle(k + 1, inner, 0), deepest));
-  }
-  if (height > 0) medial.patches.push_back(axis_of(deepest, 2 * height).patches[0]);
-  return medial;
-}
-
-struct MedialOf {
-  Medial operator()(const Sphere& s) const { return {{point(Vector3d::Zero(), s.radius)}}; }
-  Medial operator()(const Capsule& c) const { return axis_of(c.radius, c.length); }
-  Medial operator()(const Box& b) const { return medial_of(b); }
-  Medial operator()(const Cylinder& c) const { return medial_of(c); }
-  Medial operator()(const MeshPtr&) const { return {}; }
-};
 
 /// How deep a point lies beneath the surface of a convex solid, m, less than 0 outside, and the
 /// gradient of that depth. The depth is a concave function, so it nowhere exceeds its tangent.
@@ -190,71 +61,193 @@ struct TangentAt {
   Tangent operator()(const MeshPtr&) const { return {}; }
 };
 
-/// Computes how deep points, in the body's frame, lie beneath the surface of one body, m, less than
-/// 0 outside.
-class Solid {
- public:
-  explicit Solid(const FclShape& shape) : shape_(&shape) {}
-  double depth(const Vector3d& p) {
-    point_ = p;
-    if (const auto& mesh = shape_->mesh) {
-      constexpr double kFarAway = 1e6;  // m
-      const double surface =
-          mesh->triangles().distance({p, Vector3d::Zero()}, 0, kFarAway, nearest_);
-      tangent_.depth = mesh->solid().contains(p) ? surface : -surface;
-    } else {
-      tangent_ = std::visit(TangentAt{p}, shape_->shape);
-    }
-    return tangent_.depth;
+/// Returns an upper bound, m, of the sum of a patch's depth and the depth in a convex solid, over
+/// all points of the patch. `tangent` is that of the solid's depth at the point `at`.
+double most_on(const Patch& patch, const Vector3d& at, const Tangent& tangent) {
+  double most = -kInfinity;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k)
+    most = std::max(most, patch.depth[k] + tangent.depth + tangent.slope.dot(patch.at[k] - at));
+  return most;
+}
+
+/// Returns the distance from a point of the corner of a patch that is furthest from it, m.
+double radius_about(const Patch& patch, const Vector3d& point) {
+  double radius = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k)
+    radius = std::max(radius, (patch.at[k] - point).norm());
+  return radius;
+}
+
+/// Returns the middle of a patch and its depth there.
+std::pair<Vector3d, double> middle_of(const Patch& patch) {
+  Vector3d at = Vector3d::Zero();
+  double depth = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k) {
+    at += patch.at[k] / patch.corners;
+    depth += patch.depth[k] / patch.corners;
   }
-  /// Returns an upper bound, m, of the sum of a patch's depth and the depth in this body, over all
-  /// points of the patch. depth() must have been called last with a point of the patch.
-  [[nodiscard]] double most_on(const Patch& patch) const {
-    if (!shape_->mesh) return most_on(patch, tangent_.slope);
-    double by_tangent = -kInfinity, by_triangle = -kInfinity;
-    if (shape_->mesh && tangent_.depth < -kApart) {
-      double radius = 0;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k)
-        radius = std::max(radius, (patch.at[k] - point_).norm());
-      if (const auto slope = slope_outside(radius)) return most_on(patch, *slope) + kApart;
-    }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k) {
-      const Vector3d way = patch.at[k] - point_;
-      by_tangent = std::max(by_tangent, patch.depth[k] + tangent_.depth + way.norm());
-      // No point lies deeper than its distance from any one triangle, and that distance is convex.
-      by_triangle = std::max(by_triangle, patch.depth[k] + shape_->mesh->triangles().distance_at(
-                                                               patch.at[k], nearest_));
-    }
-    return std::min(by_tangent, by_triangle);
+  return {at, depth};
+}
+
+/// Returns the centre and radius, m, of a ball about patches.
+std::pair<Vector3d, double> ball_about(std::span<const Patch> patches) {
+  Vector3d middle = Vector3d::Zero();
+  for (const Patch& patch : patches)
+    middle += middle_of(patch).first / static_cast<double>(patches.size());
+  double radius = 0;
+  for (const Patch& patch : patches) radius = std::max(radius, radius_about(patch, middle));
+  return {middle, radius};
+}
+
+/// A convex solid that is placed in another frame, in which points and slopes are given.
+class PlacedSolid {
+ public:
+  PlacedSolid(const Shape& shape, const Pose& pose)
+      : shape_(shape), pose_(pose), back_(pose.inverse(Eigen::Isometry)) {}
+  [[nodiscard]] Tangent tangent_at(const Vector3d& p) const {
+    Tangent tangent = std::visit(TangentAt{back_ * p}, shape_);
+    tangent.slope = pose_.linear() * tangent.slope;
+    return tangent;
   }
 
  private:
-  static constexpr double kApart = 1e-9;  // m
+  const Shape& shape_;
+  Pose pose_, back_;
+};
 
-  [[nodiscard]] double most_on(const Patch& patch, const Vector3d& slope) const {
-    double most = -kInfinity;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k)
-      most = std::max(most, patch.depth[k] + tangent_.depth + slope.dot(patch.at[k] - point_));
-    return most;
+/// Bounds how deep the points of patches, in a closed mesh's frame, lie beneath its surface, m,
+/// less than 0 outside.
+class MeshDepth {
+ public:
+  explicit MeshDepth(const MeshModel& mesh) : tree_(mesh.triangles()), solid_(mesh.solid()) {}
+  /// Returns true if the whole ball of this radius, m, lies outside of the mesh.
+  bool is_outside(const Vector3d& middle, double radius) {
+    return tree_.distance({middle, Vector3d::Zero()}, 0, radius, nearest_) >= radius &&
+           !solid_.contains(middle);
   }
-  /// Looks for a plane such that no point within `radius` of the last point asked about, which lies
-  /// outside of the mesh, is deeper in the mesh than in the half-space behind the plane. Returns
-  /// the gradient of the depth in that half-space; none if a triangle that may be the nearest to
-  /// one of these points reaches beyond the plane.
-  [[nodiscard]] std::optional<Vector3d> slope_outside(double radius) const {
-    const TriangleTree& tree = shape_->mesh->triangles();
-    const Vector3d nearest = tree.nearest_on(point_, nearest_),
-                   normal = (nearest - point_) / tangent_.depth;
-    if (tree.reaches_beyond(point_, 3 * radius - tangent_.depth, normal,
-                            normal.dot(nearest) + kApart))
-      return std::nullopt;
-    return Vector3d(-normal);
+  double depth(const Vector3d& p) {
+    constexpr double kFarAway = 1e6;  // m
+    point_ = p;
+    const double surface = tree_.distance({p, Vector3d::Zero()}, 0, kFarAway, nearest_);
+    inside_ = solid_.contains(p);
+    return depth_ = inside_ ? surface : -surface;
+  }
+  /// Returns the gradient of the depth at the last point asked about; zero on the surface.
+  [[nodiscard]] Vector3d slope() const {
+    return depth_ != 0 ? Vector3d((tree_.nearest_on(point_, nearest_) - point_) / -depth_)
+                       : Vector3d::Zero();
+  }
+  /// Returns an upper bound, m, of the sum of a patch's depth and the depth in the mesh, over all
+  /// points of the patch. depth() must have been called last with a point of the patch.
+  [[nodiscard]] double most_on(const Patch& patch) const {
+    const auto half_space = half_space_about(radius_about(patch, point_));
+    double by_distance = -kInfinity, by_triangle = -kInfinity;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k) {
+      const double way = (patch.at[k] - point_).norm();
+      by_distance = std::max(by_distance, patch.depth[k] + depth_ + way);
+      // No point lies deeper than its distance from any one triangle, and that distance is convex.
+      by_triangle =
+          std::max(by_triangle, patch.depth[k] + tree_.distance_at(patch.at[k], nearest_));
+    }
+    return std::min({by_distance, by_triangle,
+                     half_space ? detail::most_on(patch, point_, *half_space) : kInfinity});
+  }
+  /// Returns an upper bound, m, of the sum of the patches' depth and the depth in the mesh, over
+  /// all points of the patches that lie in the mesh, or minus infinity if none does. The bound is
+  /// that of the half-space that touches the mesh where it is nearest to the middle of the patches;
+  /// infinity if there is no such half-space.
+  double most_in_half_space(std::span<const Patch> patches) {
+    const auto [middle, radius] = ball_about(patches);
+    depth(middle);
+    const auto half_space = half_space_about(radius);
+    if (!half_space) return kInfinity;
+    double most = -kInfinity, deepest = -kInfinity;
+    for (const Patch& patch : patches)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k) {
+        const double here = half_space->depth + half_space->slope.dot(patch.at[k] - middle);
+        deepest = std::max(deepest, here);
+        most = std::max(most, patch.depth[k] + here);
+      }
+    return deepest < 0 ? -kInfinity : most;
   }
 
-  const FclShape* shape_;
+ private:
+  /// Looks for a half-space such that no point within `radius` of the last point asked about is
+  /// deeper in the mesh than in the half-space, whose border is square to the way from that point
+  /// to the nearest one of the mesh. All triangles that may be the nearest to one of the points lie
+  /// in it. Returns the depth of the last point in the half-space and its gradient; none if the
+  /// triangles reach further along that way than `radius`, or there is mesh beyond the border.
+  [[nodiscard]] std::optional<Tangent> half_space_about(double radius) const {
+    constexpr double kApart = 1e-6;  // m
+    const double far = std::abs(depth_);
+    if (far < kApart) return std::nullopt;
+    const Vector3d nearest = tree_.nearest_on(point_, nearest_), normal = -slope();
+    const double border = normal.dot(nearest),
+                 reach = tree_.reach_near(point_, 3 * radius + far + 2 * kApart, normal, border,
+                                          border + radius) -
+                         border;
+    if (reach > radius || solid_.contains(nearest + (reach + kApart) * normal)) return std::nullopt;
+    return Tangent{depth_ + reach + kApart, -normal};
+  }
+
+  const TriangleTree& tree_;
+  const ClosedMesh& solid_;
   Vector3d point_ = Vector3d::Zero();
-  Tangent tangent_;
+  double depth_ = 0;
+  bool inside_ = false;
   int nearest_ = 0;
+};
+
+/// Bounds the greatest value of a function over patches, by branch and bound.
+class Greatest {
+ public:
+  /// The search ends once the value is known within `tolerance`, is proved to be at most `from`, or
+  /// is found to be more than `enough`, m.
+  Greatest(double from, double enough) : from_(from), enough_(enough) {}
+  void find(double value) { found_ = std::max(found_, value); }
+  /// Returns a value such that patches with no more need not be looked at.
+  [[nodiscard]] double of_interest() const { return std::max(found_ + kDepthTolerance / 2, from_); }
+  [[nodiscard]] bool is_enough() const { return found_ > enough_; }
+  /// Takes note that a part that is not looked at has no value above `most`.
+  void leave(double most) { left_ = std::max(left_, most); }
+  /// Adds a patch with a bound of its values, m. `slope` is the gradient of the function, but for
+  /// the patch's own depth, near the middle of the patch.
+  void add(const Patch& patch, double most, const Vector3d& slope) {
+    ++asked_;
+    if (most <= of_interest())
+      leave(most);
+    else
+      open_.push({most, asked_, patch, slope});
+  }
+  /// Halves the patches that were added. `look_at(patch)` is called with each half; it finds a
+  /// value, and adds or leaves the half.
+  template <class LookAt>
+  void search(const LookAt& look_at) {
+    while (!open_.empty() && asked_ < kMostPatches && open_.top().most > of_interest() &&
+           !is_enough()) {
+      const auto [first, second] = open_.top().patch.halves(open_.top().slope);
+      open_.pop();
+      look_at(first);
+      look_at(second);
+    }
+    if (!open_.empty()) leave(open_.top().most);
+    open_ = {};
+  }
+  [[nodiscard]] Depth bounds() const { return {found_, std::max(found_, left_)}; }
+
+ private:
+  struct Open {
+    double most;
+    int asked;
+    Patch patch;
+    Vector3d slope;
+    bool operator<(const Open& other) const {
+      return std::pair(most, -asked) < std::pair(other.most, -other.asked);
+    }
+  };
+  double from_, enough_, found_ = -kInfinity, left_ = -kInfinity;
+  int asked_ = 0;
+  std::priority_queue<Open> open_;
 };
 
 /// Returns the dimension of a body's medial set (0 a point or axis, 1 a box, 2 a cylinder, 3 none
@@ -275,12 +268,105 @@ double deepest_corner(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   const Pose in_b = b.pose->inverse(Eigen::Isometry) * *a.pose;
   const auto& corners = std::get<MeshPtr>(a.shape->shape)->vertices;
   const std::size_t stride = corners.size() / kMostCorners + 1;
-  Solid solid(*b.shape);
+  MeshDepth mesh(*b.shape->mesh);
   double found = -kInfinity;
   for (std::size_t k = 0; k < corners.size(); k += stride)
     if (const Vector3d p = in_b * corners[k]; b.shape->mesh->solid().contains(p))
-      found = std::max(found, solid.depth(p));
+      found = std::max(found, mesh.depth(p));
   return found;
+}
+
+/// Bounds the greatest depth of the surface of a mesh in a convex solid.
+Depth depth_of_surface(const TriangleTree& surface, const PlacedSolid& solid, double from,
+                       double enough) {
+  Greatest greatest(from, enough);
+  const auto look_at = [&](const Patch& patch) {
+    const Vector3d at = middle_of(patch).first;
+    const Tangent tangent = solid.tangent_at(at);
+    greatest.find(tangent.depth);
+    greatest.add(patch, most_on(patch, at, tangent), tangent.slope);
+  };
+  const auto most_in_box = [&](const Vector3d& center, const Vector3d& half) {
+    const Tangent tangent = solid.tangent_at(center);
+    return tangent.depth + tangent.slope.cwiseAbs().dot(half);
+  };
+  const auto look_at_triangle = [&](const Triangle& t) {
+    for (const Vector3d& corner : {t.a, Vector3d(t.a + t.ab), Vector3d(t.a + t.ac)})
+      greatest.find(solid.tangent_at(corner).depth);
+    look_at(triangle(t.a, 0, t.a + t.ab, 0, t.a + t.ac, 0));
+    greatest.search(look_at);
+    return greatest.is_enough() ? kInfinity : greatest.of_interest();
+  };
+  greatest.leave(surface.visit_best_first(most_in_box, greatest.of_interest(), look_at_triangle));
+  return greatest.bounds();
+}
+
+/// Bounds the depth of a body with a known medial set, which lies at `in_b` in the other's frame.
+Depth depth_by_medial_set(const Shape& a, const Pose& in_b, const FclShape& b, double from,
+                          double enough) {
+  Medial medial = medial_of(a, kDepthTolerance);
+  for (Patch& patch : medial.patches)
+    for (Vector3d& corner : patch.at) corner = in_b * corner;
+  std::optional<MeshDepth> mesh;
+  if (b.mesh) mesh.emplace(*b.mesh);
+  const bool by_surface = mesh && medial.patches.size() > 1;
+  Depth of_surface{-kInfinity, -kInfinity};
+  if (by_surface) {
+    const double most = mesh->most_in_half_space(medial.patches) + medial.off;
+    if (std::isfinite(most) && most <= from) return {-kInfinity, most};
+    of_surface = depth_of_surface(b.mesh->triangles(), PlacedSolid(a, in_b), from, enough);
+    if (of_surface.at_least > enough) return {of_surface.at_least, kInfinity};
+    // The body's points that are deeper in it than any point of the mesh's surface lie all in the
+    // mesh, if its centre does, or all outside.
+    if (!b.mesh->solid().contains(in_b.translation()))
+      std::erase_if(medial.patches, [&](const Patch& patch) {
+        return patch.least_depth() > of_surface.at_most + medial.off;
+      });
+  }
+
+  Greatest greatest(std::max(from - medial.off, of_surface.at_least + kDepthTolerance / 2),
+                    enough + medial.off);
+  const auto look_at = [&](const Patch& patch) {
+    const auto [middle, beneath] = middle_of(patch);
+    if (!mesh) {
+      const Tangent tangent = std::visit(TangentAt{middle}, b.shape);
+      greatest.find(beneath + tangent.depth);
+      return greatest.add(patch, most_on(patch, middle, tangent), tangent.slope);
+    }
+    // No point outside of the mesh is deeper than some point of its surface.
+    if (by_surface && mesh->is_outside(middle, radius_about(patch, middle))) return;
+    const double here = beneath + mesh->depth(middle);
+    greatest.find(here);
+    greatest.add(patch, patch.corners == 1 ? here : mesh->most_on(patch), mesh->slope());
+  };
+  const auto look_at_all = [&](const auto& self, std::span<const Patch> patches) -> void {
+    if (patches.size() <= 1) {
+      for (const Patch& patch : patches) look_at(patch);
+      return;
+    }
+    if (by_surface) {
+      const double most = mesh->most_in_half_space(patches);
+      if (most <= greatest.of_interest()) return greatest.leave(most);
+    }
+    const std::size_t half = patches.size() / 2;
+    self(self, patches.first(half));
+    self(self, patches.subspan(half));
+  };
+  look_at_all(look_at_all, medial.patches);
+  greatest.search(look_at);
+  const Depth inside = greatest.bounds();
+  return {std::max(of_surface.at_least, inside.at_least - medial.off),
+          std::max(of_surface.at_most, inside.at_most + medial.off)};
+}
+
+/// Returns an upper bound of the depth of two meshes, m: that of the box about the smaller one,
+/// along the axes of its frame.
+double most_of_meshes(const PlacedShapeRef& a, const PlacedShapeRef& b, double from) {
+  const Eigen::AlignedBox3d box = a.shape->mesh->triangles().box(),
+                            other = b.shape->mesh->triangles().box();
+  if (other.diagonal().norm() < box.diagonal().norm()) return most_of_meshes(b, a, from);
+  const Pose in_b = b.pose->inverse(Eigen::Isometry) * *a.pose * Eigen::Translation3d(box.center());
+  return depth_by_medial_set(Box{box.sizes()}, in_b, *b.shape, from, kInfinity).at_most;
 }
 
 }  // namespace
@@ -288,54 +374,10 @@ double deepest_corner(const PlacedShapeRef& a, const PlacedShapeRef& b) {
 Depth depth(const PlacedShapeRef& a, const PlacedShapeRef& b, double from, double enough) {
   if (!has_inside(*a.shape) || !has_inside(*b.shape)) return {-kInfinity, kInfinity};
   if (a.shape->mesh && b.shape->mesh)
-    return {std::max(deepest_corner(a, b), deepest_corner(b, a)), kInfinity};
+    return {std::max(deepest_corner(a, b), deepest_corner(b, a)), most_of_meshes(a, b, from)};
   if (patches_of(*b.shape) < patches_of(*a.shape)) return depth(b, a, from, enough);
-
-  const Medial medial = std::visit(MedialOf{}, a.shape->shape);
-  const Pose in_b = b.pose->inverse(Eigen::Isometry) * *a.pose;
-  struct Open {
-    double most;
-    int asked;
-    Patch patch;
-    bool operator<(const Open& other) const {
-      return std::pair(most, -asked) < std::pair(other.most, -other.asked);
-    }
-  };
-  std::priority_queue<Open> open;
-  Solid solid(*b.shape);
-  double found = -kInfinity, closed = -kInfinity;
-  int asked = 0;
-  const auto look_at = [&](const Patch& patch) {
-    Vector3d middle = Vector3d::Zero();
-    double beneath = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k) {
-      middle += patch.at[k] / patch.corners;
-      beneath += patch.depth[k] / patch.corners;
-    }
-    const double here = beneath + solid.depth(middle);
-    found = std::max(found, here);
-    const double most = patch.corners == 1 ? here : solid.most_on(patch);
-    ++asked;
-    if (most <= std::max(found + kDepthTolerance / 2, from - medial.off))
-      closed = std::max(closed, most);
-    else
-      open.push({most, asked, patch});
-  };
-  for (Patch patch : medial.patches) {
-    for (Vector3d& corner : patch.at) corner = in_b * corner;
-    look_at(patch);
-  }
-  const double sought = from - medial.off;
-  while (!open.empty() && asked < kMostPatches &&
-         open.top().most > std::max(found + kDepthTolerance / 2, sought) &&
-         found - medial.off <= enough) {
-    const auto [first, second] = open.top().patch.halves();
-    open.pop();
-    look_at(first);
-    look_at(second);
-  }
-  const double most = std::max({found, closed, open.empty() ? -kInfinity : open.top().most});
-  return {found - medial.off, most + medial.off};
+  return depth_by_medial_set(a.shape->shape, b.pose->inverse(Eigen::Isometry) * *a.pose, *b.shape,
+                             from, enough);
 }
 
 }  // namespace swivel::detail

@@ -52,7 +52,7 @@ ClosedMesh::ClosedMesh(const TriangleMesh& mesh) {
   }
 
   const Vector3d size = box_.sizes().cwiseMax(1e-12);
-  // about one triangle a cell, of each IK solution
+  // About one triangle of each of the two sides of the body lies in a cell.
   const double cells = static_cast<double>(corners_.size());
   columns_ = static_cast<int>(std::clamp(std::sqrt(cells * size.x() / size.y()), 1.0, 4096.0));
   rows_ = std::clamp(static_cast<int>(cells / columns_), 1, 4096);

@@ -418,17 +418,18 @@ Vector3d TriangleTree::nearest_on(const Vector3d& point, int triangle) const {
   return nearest;
 }
 
-bool TriangleTree::reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal,
-                                  double offset) const {
+double TriangleTree::reach_near(const Vector3d& point, double radius, const Vector3d& normal,
+                                double least, double most) const {
   const Segment at{point, Vector3d::Zero()};
   const double limit = radius * radius;
+  double reach = least;
   std::array<int, kDeepest> stack;
   std::size_t open = 0;
   stack[open++] = 0;
-  while (open > 0) {
+  while (open > 0 && reach <= most) {
     const int index = stack[--open];
     const Node& node = nodes_[index];
-    if (normal.dot(node.center) + normal.cwiseAbs().dot(node.half) <= offset) continue;
+    if (normal.dot(node.center) + normal.cwiseAbs().dot(node.half) <= reach) continue;
     if (((node.center - point).cwiseAbs() - node.half).cwiseMax(0).squaredNorm() >= limit) continue;
     if (node.right != 0) {
       stack[open++] = node.right;
@@ -437,12 +438,11 @@ bool TriangleTree::reaches_beyond(const Vector3d& point, double radius, const Ve
     }
     for (int k = node.begin; k < node.end; ++k) {
       const Triangle& t = triangles_[k];
-      if (normal.dot(t.a) + std::max({0.0, normal.dot(t.ab), normal.dot(t.ac)}) > offset &&
-          squared_distance(at, t, 2 * limit) < limit)
-        return true;
+      const double found = normal.dot(t.a) + std::max({0.0, normal.dot(t.ab), normal.dot(t.ac)});
+      if (found > reach && squared_distance(at, t, 2 * limit) < limit) reach = found;
     }
   }
-  return false;
+  return reach;
 }
 
 double TriangleTree::distance_at(const TriangleTree& other, const Pose& pose,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <algorithm>
 #include <array>
+#include <limits>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -32,14 +35,19 @@ class TriangleTree {
   /// begins with this pair and stores the nearest one that it meets.
   [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough,
                                 double limit, TrianglePair& first) const;
+  /// Returns the box about all triangles, along the axes of their frame.
+  [[nodiscard]] Eigen::AlignedBox3d box() const {
+    return {nodes_[0].center - nodes_[0].half, nodes_[0].center + nodes_[0].half};
+  }
   /// Returns the distance of a point from one of the triangles, m.
   [[nodiscard]] double distance_at(const Vector3d& point, int triangle) const;
   /// Returns the point of one of the triangles that is nearest to `point`.
   [[nodiscard]] Vector3d nearest_on(const Vector3d& point, int triangle) const;
-  /// Returns true if a triangle that is nearer than `radius`, m, to the point reaches beyond the
-  /// plane of the points x with normal . x = offset.
-  [[nodiscard]] bool reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal,
-                                    double offset) const;
+  /// Returns how far the triangles that are nearer than `radius`, m, to the point reach along a
+  /// direction: the greatest normal . x of their points x, m, if it lies in [least, most]; if it is
+  /// less, `least`; if it is more, the first value found that is above `most`.
+  [[nodiscard]] double reach_near(const Vector3d& point, double radius, const Vector3d& normal,
+                                  double least, double most) const;
   /// Returns the distance of triangle pair.a of this tree from triangle pair.b of `other`, m, whose
   /// frame lies at `pose` in this tree's frame.
   [[nodiscard]] double distance_at(const TriangleTree& other, const Pose& pose,
@@ -56,6 +64,12 @@ class TriangleTree {
   /// whose gap is at least `enough`: if the result is false, there may still be such a triangle.
   template <class Gap, class Proves>
   [[nodiscard]] bool seek(double enough, const Gap& gap, const Proves& proves, int& first) const;
+  /// Calls look_at(triangle) with triangles in the order of a bound of theirs. `most(center, half)`
+  /// is an upper bound, for a box, of some value of the triangles in it. look_at() returns the
+  /// value below which boxes are of no interest, which is `of_interest` at the beginning. Returns
+  /// the greatest bound of the boxes that were not looked into; minus infinity if all were.
+  template <class Most, class LookAt>
+  double visit_best_first(const Most& most, double of_interest, const LookAt& look_at) const;
 
  private:
   struct Node {
@@ -132,6 +146,33 @@ bool TriangleTree::seek(double enough, const Gap& gap, const Proves& proves, int
     stack[open++] = near;
   }
   return false;
+}
+
+template <class Most, class LookAt>
+double TriangleTree::visit_best_first(const Most& most, double of_interest,
+                                      const LookAt& look_at) const {
+  double left = -std::numeric_limits<double>::infinity();
+  std::priority_queue<std::pair<double, int>> open;
+  const auto add = [&](int node) {
+    const double bound = most(nodes_[node].center, nodes_[node].half);
+    if (bound <= of_interest)
+      left = std::max(left, bound);
+    else
+      open.emplace(bound, node);
+  };
+  add(0);
+  while (!open.empty() && open.top().first > of_interest) {
+    const int index = open.top().second;
+    const Node& node = nodes_[index];
+    open.pop();
+    if (node.right != 0) {
+      add(index + 1);
+      add(node.right);
+      continue;
+    }
+    for (int k = node.begin; k < node.end; ++k) of_interest = look_at(triangles_[k]);
+  }
+  return open.empty() ? left : std::max(left, open.top().first);
 }
 
 }  // namespace swivel::detail

@@ -422,15 +422,15 @@ Schema min_margin() {
 Schema deepest_contact() {
   return or_null(section(
       "",
-      {key("depth", number(), "found at a row or between two: the bodies are at least so deep",
+      {key("depth", number(), "found at a row: the bodies are at least so deep",
            "m"),
        key("at_most", or_null(number()),
-           "proved for all rows and moves between them; `null` where a pair is of "
-           "a mesh that is not closed",
+           "the bodies are nowhere deeper at rows; `null` where that is not known within 0.5 mm, "
+           "as of a mesh that is not closed",
            "m"),
        key("allowed", or_null(number()), "the depth that `allow` gives; `null`: however deep", "m"),
        key("bodies", bodies(), "their names"),
-       key("row", integer(), "of the trajectory, from 0: at it, or on the way to the next")}));
+       key("row", integer(), "of the trajectory, from 0")}));
 }
 
 /// Returns the keys that say what the answer is, and what finding it took.

@@ -9,13 +9,10 @@
 
 namespace swivel {
 
-/// Returns the deepest contact of the world's allowed pairs at these postures and on the straight
-/// joint motions from each to the next; none if no pair was found to touch. Motions are searched
-/// until no contact on them can be deeper than the one found by more than 0.5 mm, nor deeper than
-/// its pair may be, unless the one found is within 0.05 mm of that. For two meshes only the
-/// postures are searched. Throws Stopped.
+/// Returns the deepest contact of the world's allowed pairs at these postures; none if no pair was
+/// found to touch. Motions between them are not looked at: of a pair that keeps a depth, the edges
+/// prove it. Throws Stopped.
 [[nodiscard]] std::optional<DeepestContact> deepest_contact(const World& world,
-                                                            const EdgeRule& rule,
                                                             const std::vector<Config>& rows,
                                                             const Budget& budget);
 

@@ -72,12 +72,11 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
   result.evidence.postures = true;
 }
 
-void measure_contact(const PreparedRobot& robot, const World& world,
-                     const std::vector<TrajectoryRow>& trajectory, const Budget& budget,
-                     Measures& result) {
+void measure_contact(const World& world, const std::vector<TrajectoryRow>& trajectory,
+                     const Budget& budget, Measures& result) {
   std::vector<Config> joints;
   for (const TrajectoryRow& row : trajectory) joints.push_back(row.q);
-  result.deepest_contact = deepest_contact(world, world.edge_rule(robot.radii()), joints, budget);
+  result.deepest_contact = deepest_contact(world, joints, budget);
   result.evidence.contact = true;
 }
 
@@ -147,8 +146,7 @@ void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World&
   if (wanted.tool_path_error)
     measure_tool_path_error(robot.arm().chain, path, rows, budget, measures);
   if (wanted.postures) measure_postures(robot, path, world, rows, budget, measures);
-  if (wanted.contact && !measures.evidence.contact)
-    measure_contact(robot, world, rows, budget, measures);
+  if (wanted.contact && !measures.evidence.contact) measure_contact(world, rows, budget, measures);
 }
 
 Measures measure(const PreparedRobot& robot, const Problem& problem,

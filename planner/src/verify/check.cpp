@@ -107,7 +107,7 @@ class Contacts {
   }
   [[nodiscard]] bool may_touch() const { return !world_.allowed().empty(); }
   [[nodiscard]] std::optional<DeepestContact> deepest(const std::vector<Config>& rows) const {
-    return deepest_contact(world_, rule_, rows, *budget_);
+    return deepest_contact(world_, rows, *budget_);
   }
   std::optional<BodyPair> on_the_way(const Config& from, const Config& to) {
     return edge_blocked(query_, rule_, from, to, *budget_);

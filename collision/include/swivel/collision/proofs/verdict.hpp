@@ -18,8 +18,8 @@ inline constexpr double kVerdictBand = 0.05e-3;
 /// another is at least as deep as that one. A mesh that is not closed has no inside.
 struct Depth {
   double at_least = 0;  ///< minus infinity where nothing is known
-  /// Infinity where nothing is known: for meshes that are not closed, and for two meshes that no
-  /// translation tried takes apart.
+  /// Infinity where nothing is known: for meshes that are not closed, and where a search ends as
+  /// soon as the bodies are found to be deeper than asked.
   double at_most = 0;
 };
 

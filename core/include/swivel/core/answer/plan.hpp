@@ -172,13 +172,15 @@ struct LeastMargin {
 
 /// The deepest contact of two bodies that may touch (SceneObject::allow). docs/model.md, "Contact".
 struct DeepestContact {
-  /// Depth found at a row or a posture between two rows, m: the depth is at least this.
+  /// Depth found at a row, m: the depth is at least this.
   double depth = 0;
-  /// Depth proved for all rows and all moves between them, m; none where the shapes leave it open.
+  /// Depth that the bodies do not exceed at any row, m; none where it is not known within 0.5 mm.
+  /// Between rows, edges prove that a pair with an allowed depth keeps it; of others nothing is
+  /// known.
   std::optional<double> at_most;
   std::array<std::string, 2> bodies;
   std::optional<double> allowed;  ///< Allowed::depth, m
-  int row = 0;                    ///< index of the row, at it or on the way to the next
+  int row = 0;                    ///< index of the row
 };
 
 /// A pair of the robot's own bodies that is not kept apart as others are, though no SRDF disables
