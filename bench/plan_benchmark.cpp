@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures whole plans on a prepared robot, by scene / planner / resolution / edge mode / threads.
 // Scenes are the paper's experiments, an arm without an arm angle (`arcs`), an arm that also
-// chooses the roll of its tool (`roll`), and an arm whose links are meshes (`meshes`). The planner
-// lazy_fcl_alone is lazy without Swivel's own proofs (PlanOptions::fcl_alone). Report stages are
-// not timed. Rows have counters eager_ms, eager_dp_ms and the speed-ups over both: the eager
-// planners run on the same problem before and after each repetition, in the same process; a plan of
-// more than a second runs once for all rows of its problem.
+// chooses the roll of its tool (`roll`), and an arm whose links are meshes (`meshes`). Rows
+// contact/PAD/TRIANGLES lead a pad across a dome that it may touch, with the measures of the
+// answer (report_ms). The planner lazy_fcl_alone is lazy without Swivel's own proofs
+// (PlanOptions::fcl_alone). Report stages are not timed. Rows have counters eager_ms, eager_dp_ms
+// and the speed-ups over both: the eager planners run on the same problem before and after each
+// repetition, in the same process; a plan of more than a second runs once for all rows of its
+// problem.
 //
 //   plan_benchmark [--benchmark_filter=^c/lazy] [--plan_limit=60]
 //       --plan_limit=S    do not run rows of which a plan takes longer than S seconds; they say so
@@ -28,6 +30,7 @@
 
 #include "context.hpp"
 #include "mesh_bodies.hpp"
+#include "pads.hpp"
 #include "settings.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -296,6 +299,39 @@ std::vector<Case> cases(const Scene& scene, int setting) {
   return all;
 }
 
+/// Plans a pad's stroke across a dome with everything that is told of it.
+void run_pad(benchmark::State& state, const char* pad, int triangles, double depth) {
+  const Problem problem = bench::pad_on_dome(
+      io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" / "iiwa14_bench.yaml"),
+      pad, triangles, depth);
+  const PreparedRobot robot(problem);
+  PlanOptions options = options_for(PlannerKind::kLazy, 1);
+  options.evidence = Evidence::all();
+  PlanResult result;
+  for (auto _ : state) {
+    result = plan(robot, problem, options);
+    benchmark::DoNotOptimize(result.trajectory.data());
+    if (!in_time(result)) return state.SkipWithError("not run: longer than the limit");
+  }
+  count_work(state, result);
+  state.counters["report_ms"] = result.time_ms["report"];
+  if (result.deepest_contact) state.counters["depth_mm"] = 1e3 * result.deepest_contact->depth;
+}
+
+void register_pads() {
+  for (const char* const pad : bench::kPads)
+    for (const int triangles : {200, 4400, 100'000})
+      for (const double depth : {0.0, 0.003}) {
+        if (depth > 0 && std::string_view(pad) == "mesh") continue;  // refused of two meshes
+        const std::string label =
+            formatted("contact/%s/%d%s", pad, triangles, depth > 0 ? "/at most 3 mm deep" : "");
+        benchmark::RegisterBenchmark(
+            label.c_str(), [=](benchmark::State& state) { run_pad(state, pad, triangles, depth); })
+            ->Unit(benchmark::kMillisecond)
+            ->UseRealTime();
+      }
+}
+
 /// Removes --plan_limit=S from the arguments. Returns false if S is no number of seconds.
 bool take_plan_limit(int& argc, char** argv) {
   constexpr std::string_view kFlag = "--plan_limit=";
@@ -334,6 +370,7 @@ int main(int argc, char** argv) {
             ->UseRealTime();
       }
     }
+  register_pads();
   for (const auto& [key, value] : bench::context()) benchmark::AddCustomContext(key, value);
   benchmark::Initialize(&argc, argv, print_help);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
