@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the experiments and benchmarks, then writes tables and figures; see bench/reproduce."""
 import argparse
+import json
 import os
 import pathlib
 import shutil
@@ -68,6 +69,22 @@ def plans(data, quick):
     print(tables.machine(data), planner_table.as_text(data), sep="\n\n", end="\n\n", flush=True)
 
 
+def first_plans(data, quick):
+    """Processes that plan one problem, each several times."""
+    rows = []
+    for problem in tables.FIRST_PLANS:
+        runs = [
+            subprocess.run(
+                [BENCH / "first_plan", ROOT / f"data/problems/{problem}.yaml"],
+                capture_output=True, text=True, check=True
+            ).stdout.split() for _ in range(3 if quick else 15)
+        ]
+        rows.append(
+            {"problem": problem, "runs": [dict(word.split("=") for word in run) for run in runs]}
+        )
+    (data / "first_plans.json").write_text(json.dumps(rows, indent=1))
+
+
 def pieces(data, quick):
     repetitions, min_time = (1, 0.005) if quick else (5, 0.05)
     benchmark(
@@ -102,7 +119,10 @@ def trace(data, quick):
         )
 
 
-STEPS = {step.__name__: step for step in (experiments, table1, plans, pieces, trace)}
+STEPS = {
+    step.__name__: step
+    for step in (experiments, table1, plans, first_plans, pieces, trace)
+}
 
 
 def main():
@@ -135,6 +155,8 @@ def main():
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
     if (data / "trace.png").exists():
         shutil.copy(data / "trace.png", figures)
+    if not arguments.only:
+        (data / "minutes.txt").write_text(f"{(time.monotonic() - begin) / 60:.0f}")
     written = plots.draw(data, figures, ROOT) + tables.fill(
         data, [documents / "README.md", documents / "docs/performance.md"]
     )

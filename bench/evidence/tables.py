@@ -20,6 +20,8 @@ PAPER = {
 
 
 def machine(data):
+    minutes = data / "minutes.txt"
+    took = f" All of it took {minutes.read_text()} minutes." if minutes.exists() else ""
     for name in ("plans.json", "table1.json", "pieces.json"):
         context = (load(data / name) or {}).get("context")
         if context:
@@ -27,7 +29,7 @@ def machine(data):
                 f"Machine: {context['processor']}, {context['hardware_threads']} threads, vector "
                 f"unit {context['vector_unit']}; "
                 f"{context['compiler']}, `{' '.join(context['flags'].split())}`; commit "
-                f"{context['commit']}."
+                f"{context['commit']}.{took}"
             )
     return None
 
@@ -279,6 +281,32 @@ def scenes(data):
     return markdown(["speed-up of `lazy` over `eager` / over `eager_dp`", *PAPER_SETTINGS], rows)
 
 
+FIRST_PLANS = ("experiment_a", "experiment_b", "experiment_c", "iiwa14_bench", "panda_weld_seam")
+
+
+def first_plans(data):
+    every = load(data / "first_plans.json")
+    if not every:
+        return None
+    rows = []
+    for one in every:
+        of = lambda key: statistics.median(float(run[key]) for run in one["runs"])
+        rows.append(
+            [
+                f"`{one['problem']}`", number(of("load")), number(of("prepare")),
+                number(of("first")), number(of("next")), number(of("first") / of("next"), 2),
+                f"{of('faults'):,.0f}"
+            ]
+        )
+    return markdown(
+        [
+            "problem, `lazy`, one thread", "load, ms", "prepare, ms", "first plan, ms",
+            "next plans, ms", "first / next", "page faults of the first"
+        ],
+        rows,
+    )
+
+
 def pieces(data):
     every = Benchmarks(data / "pieces.json")
     if not every:
@@ -368,7 +396,10 @@ def headline(data):
 
 BLOCKS = {
     block.__name__: block
-    for block in (machine, experiments, table1, findings, planners, plans, scenes, pieces, headline)
+    for block in (
+        machine, experiments, table1, findings, planners, plans, scenes, first_plans, pieces,
+        headline
+    )
 }
 
 

@@ -68,6 +68,32 @@ class PlannerTable(unittest.TestCase):
         )
         self.assertEqual(work.splitlines()[0].count("|"), times.splitlines()[0].count("|"))
 
+    def test_times_of_a_row_are_those_beside_one_eager(self):
+        self.write(
+            row("a/eager/#1/nodes", 50.0),  # when the machine was busy
+            *(row("a/lazy/#1/nodes", 2.0, up, eager_ms=20.0) for up in (9.0, 10.0, 11.0)),
+            row("a/parallel/#1/nodes/threads:2", 3.0, 8.0, eager_ms=24.0)
+        )
+        times = planner_table.planners(self.data).split("\n\n")[0]
+        self.assertEqual(
+            times.splitlines()[2],
+            "| A | #1 | 9,472 | 20.0 | – | – | 2.00: 10 (9.5–10) | 2.50: 8.0 (8.0–8.0) |",
+        )
+
+    def test_first_plans_beside_the_next(self):
+        self.assertIsNone(tables.first_plans(self.data))
+        runs = [
+            {"load": "1.0", "prepare": "2.0", "first": first, "next": "0.5", "faults": "473"}
+            for first in ("4.0", "5.0", "30.0")
+        ]
+        self.data.joinpath("first_plans.json").write_text(
+            json.dumps([{"problem": "experiment_c", "runs": runs}])
+        )
+        self.assertEqual(
+            tables.first_plans(self.data).splitlines()[2],
+            "| `experiment_c` | 1.00 | 2.00 | 5.00 | 0.500 | 10 | 473 |",
+        )
+
     def test_text_is_aligned(self):
         self.write(row("a/eager/#1/nodes", 17.0), row("c_20k/eager/#2/nodes", 1700.0))
         lines = planner_table.as_text(self.data).split("\n\n")[0].splitlines()
