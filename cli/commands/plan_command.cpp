@@ -44,7 +44,8 @@ namespace {
 
 /// The command line of `swivel plan`.
 struct PlanArguments {
-  std::string problem, out, json, trace, map_svg, report, certificate;
+  std::string problem, json, trace, map_svg, report, certificate;
+  std::vector<std::string> out;
   std::optional<double> timeout;
   std::optional<double> advise;
   bool quiet = false, map = false, full_map = false, refine = false;
@@ -141,11 +142,11 @@ void read_motion(PlanRequest& request) {
   const PlanArguments& arguments = request.arguments;
   request.timing = arguments.motion.asked_timing(request.problem.limits);
   if (request.timing) {
-    require_motion_format(arguments.out);
+    require_motion_formats(arguments.out);
     request.problem = with_motion_defaults(std::move(request.problem));
   } else {
-    require_table_name("--out", arguments.out, "a path without times",
-                       "--speed, with which motions are written in other formats");
+    require_table_names(arguments.out, "a path without times",
+                        "--speed, with which motions are written in other formats");
     if (arguments.refine) keep_clearance_between_layers(request.problem.limits);
   }
 }
@@ -183,7 +184,7 @@ void require_options_agree(const PlanRequest& request) {
 
 /// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
 void add_outputs(const PlanArguments& arguments, io::OutputFiles& outputs) {
-  outputs.add("--out", arguments.out);
+  for (const std::string& file : arguments.out) outputs.add("--out", file);
   outputs.add("--report", arguments.report);
   outputs.add("--map-svg", arguments.map_svg);
   outputs.add("--certificate", arguments.certificate);
@@ -266,9 +267,11 @@ void write_path(const PlanRequest& request, const PlanAnswer& answer, io::Output
     outputs.remove("--out");
   else if (!request.timing)
     outputs.write("--out", io::to_csv(plan.result));
-  else if (outputs.wants("--out"))
-    outputs.write("--out", io::motion_text(*plan.motion->motion, plan.result.joint_names,
-                                           request.problem.base_link, request.arguments.out));
+  else
+    outputs.write_each("--out", [&](const std::filesystem::path& file) {
+      return io::motion_text(*plan.motion->motion, plan.result.joint_names,
+                             request.problem.base_link, file);
+    });
 }
 
 /// Gives all outputs their texts, or marks earlier files for removal. Moves certificate and page
@@ -346,18 +349,17 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
   JobRequest request{
       .job = chosen_job(std::get<Job>(std::move(file.what)), arguments.search, arguments.episode),
       .options = arguments.search.plan_options(),
-      .out = arguments.out,
       .which = arguments.episode.words(),
       .report = !arguments.report.empty(),
       .quiet = arguments.quiet,
       .load_ms = file.load_ms};
   if (arguments.motion.ask_for_job_motion()) {
-    require_motion_format(arguments.out);
+    require_motion_formats(arguments.out);
     request.timing = arguments.motion.job_timing();
     require_speeds(request.job, *request.timing);
   } else {
-    require_table_name("--out", arguments.out, "a job without times",
-                       "--speed or --rate, with which motions are written in other formats");
+    require_table_names(arguments.out, "a job without times",
+                        "--speed or --rate, with which motions are written in other formats");
   }
   if (!arguments.certificate.empty() && request.job.lift)
     throw InputError(
@@ -393,18 +395,17 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                                                   arguments.search, arguments.episode),
                           .options = arguments.search.plan_options(),
                           .refine = arguments.refine,
-                          .out = arguments.out,
                           .which = arguments.episode.words(),
                           .report = !arguments.report.empty(),
                           .quiet = arguments.quiet,
                           .load_ms = file.load_ms};
   request.timing = arguments.motion.asked_timing({});
   if (request.timing) {
-    require_motion_format(arguments.out);
+    require_motion_formats(arguments.out);
     request.cell = with_motion_defaults(std::move(request.cell));
   } else {
-    require_table_name("--out", arguments.out, "the trajectory of a workcell without times",
-                       "--speed, with which motions are written in other formats");
+    require_table_names(arguments.out, "the trajectory of a workcell without times",
+                        "--speed, with which motions are written in other formats");
     for (WorkcellArm& arm : request.cell.arms)
       if (arguments.refine) keep_clearance_between_layers(arm.limits);
   }
@@ -539,10 +540,9 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option(
       "--advise", arguments->advise,
       "where there is no path: what would help, found by planning it for so many seconds");
-  command->add_option(
-      "--out", arguments->out,
-      "trajectory file (CSV); with --speed, of jobs also with --rate, the motion: .csv, "
-      ".json or .yaml (JointTrajectory), .mcap (JointState)");
+  add_out_option(*command, arguments->out,
+                 "trajectory file (CSV); with --speed, of jobs also with --rate, the motion: .csv, "
+                 ".json or .yaml (JointTrajectory), .mcap (JointState)");
   command->add_option(
       "--certificate", arguments->certificate,
       "where there is no path: a proof of it, which `check --certificate` verifies (JSON)");

@@ -157,9 +157,11 @@ void write_rows(const JobRequest& request, const JobMotionPlan& plan, const Job&
     outputs.remove("--out");
   else if (!request.timing)
     outputs.write("--out", io::to_job_csv(plan.result, job));
-  else if (outputs.wants("--out"))
-    outputs.write("--out", io::job_motion_text(*plan.timing->motion, job, plan.result.joint_names,
-                                               job.base_link, request.out));
+  else
+    outputs.write_each("--out", [&](const std::filesystem::path& file) {
+      return io::job_motion_text(*plan.timing->motion, job, plan.result.joint_names, job.base_link,
+                                 file);
+    });
 }
 
 /// Returns the reason for which earlier files are removed.

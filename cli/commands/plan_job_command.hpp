@@ -15,7 +15,6 @@ struct JobRequest {
   Job job{};
   PlanOptions options{};
   std::optional<JobTimingOptions> timing{};  ///< set: the job is timed
-  std::string out{};                         ///< name of --out, whose ending tells the format
   std::optional<double> advise_s{};          ///< s, time for all trials of --advise
   std::string which{};                       ///< of the jobs that one file describes, for the page
   bool report = false;                       ///< --report asks for a page

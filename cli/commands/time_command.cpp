@@ -23,7 +23,8 @@ namespace swivel::cli {
 namespace {
 
 struct TimeArguments {
-  std::string problem, trajectory, out;
+  std::string problem, trajectory;
+  std::vector<std::string> out;
   MotionOptions motion;
   LatticeOptions lattice;
   EpisodeChoice episode;
@@ -71,7 +72,7 @@ int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
 }
 
 int run(const TimeArguments& arguments) {
-  require_motion_format(arguments.out);
+  require_motion_formats(arguments.out);
   std::optional<io::InputFiles> noted(std::in_place);
   const std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
   if (const Job* job = std::get_if<Job>(&read)) return run_on_job(arguments, *job, noted);
@@ -86,7 +87,7 @@ int run(const TimeArguments& arguments) {
   const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, names);
   io::OutputFiles outputs(noted->files());
   noted.reset();
-  outputs.add("--out", arguments.out);
+  for (const std::string& out : arguments.out) outputs.add("--out", out);
   catch_interrupts();
   std::optional<MotionResult> timed;
   try {
@@ -113,9 +114,9 @@ int run(const TimeArguments& arguments) {
     throw;
   }
   if (timed && timed->motion) {
-    if (outputs.wants("--out"))
-      outputs.write("--out",
-                    io::motion_text(*timed->motion, names, problem.base_link, arguments.out));
+    outputs.write_each("--out", [&](const std::filesystem::path& out) {
+      return io::motion_text(*timed->motion, names, problem.base_link, out);
+    });
   } else {
     outputs.remove("--out");
   }
@@ -144,8 +145,8 @@ void add_time(CLI::App& app, int& exit_code) {
   command->add_flag(
       "--refine", arguments->refine,
       "move the rows off the lattice's nodes first: cheaper and smoother, never dearer");
-  command->add_option("--out", arguments->out,
-                      "motion file: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
+  add_out_option(*command, arguments->out,
+                 "motion file: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
   command->add_flag("--no-check", arguments->no_check,

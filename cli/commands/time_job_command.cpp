@@ -86,7 +86,7 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
   const io::JobTrajectory& rows = read.rows;
   io::OutputFiles outputs(noted->files());
   noted.reset();
-  outputs.add("--out", request.out);
+  for (const std::string& file : request.out) outputs.add("--out", file);
   catch_interrupts();
   std::optional<Timed> made;
   try {
@@ -97,9 +97,10 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
   const bool executable = made && made->timing.motion && made->fault.empty();
   if (!executable)
     outputs.remove("--out");
-  else if (outputs.wants("--out"))
-    outputs.write(
-        "--out", io::job_motion_text(*made->timing.motion, job, names, job.base_link, request.out));
+  else
+    outputs.write_each("--out", [&](const std::filesystem::path& file) {
+      return io::job_motion_text(*made->timing.motion, job, names, job.base_link, file);
+    });
   deliver(outputs, made ? "there is no motion now" : "the work was stopped", [&] {
     if (!made) return say("stopped\n");
     if (!made->fault.empty()) return say("not executable: %s\n", made->fault.c_str());

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swivel/core/problem/job.hpp"
 #include "swivel/io/files/files.hpp"
@@ -13,7 +14,8 @@ namespace swivel::cli {
 struct JobTimeRequest {
   Job job{};
   JobTimingOptions timing{};
-  std::string trajectory{}, out{};  ///< names of files; `out` may be empty
+  std::string trajectory{};
+  std::vector<std::string> out{};  ///< names of files; maybe none
   bool quiet = false, check = true;
 };
 

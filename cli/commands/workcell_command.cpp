@@ -73,13 +73,13 @@ void write_rows(const WorkcellRequest& request, const WorkcellMotionPlan& plan,
     outputs.remove("--out");
     return;
   }
-  if (!outputs.wants("--out")) return;
-  outputs.write("--out",
-                motion ? io::workcell_motion_text(
-                             *plan.timing->motion,
-                             {plan.result.arms[0].joint_names, plan.result.arms[1].joint_names},
-                             request.cell.arms[0].base_link, request.out)
-                       : io::to_workcell_csv(plan.result));
+  outputs.write_each("--out", [&](const std::filesystem::path& file) {
+    return motion ? io::workcell_motion_text(
+                        *plan.timing->motion,
+                        {plan.result.arms[0].joint_names, plan.result.arms[1].joint_names},
+                        request.cell.arms[0].base_link, file)
+                  : io::to_workcell_csv(plan.result);
+  });
 }
 
 /// What was found.
@@ -254,7 +254,7 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
                      "has times: allowed is the trajectory of a workcell without them");
   io::OutputFiles outputs(noted->files());
   noted.reset();
-  outputs.add("--out", request.out);
+  for (const std::string& file : request.out) outputs.add("--out", file);
   catch_interrupts();
   std::optional<WorkcellTiming> timed;
   std::optional<RefinedWorkcell> refined;
@@ -280,9 +280,11 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
   const bool executable = timed && timed->motion;
   if (!executable)
     outputs.remove("--out");
-  else if (outputs.wants("--out"))
-    outputs.write("--out", io::workcell_motion_text(*timed->motion, joint_names_of(prepared),
-                                                    prepared.problem(0).base_link, request.out));
+  else
+    outputs.write_each("--out", [&](const std::filesystem::path& file) {
+      return io::workcell_motion_text(*timed->motion, joint_names_of(prepared),
+                                      prepared.problem(0).base_link, file);
+    });
   deliver(outputs, timed ? "there is no motion now" : "the work was stopped", [&] {
     if (!timed) return say("stopped\n");
     if (executable && (request.quiet || outputs.takes_standard_output())) return;

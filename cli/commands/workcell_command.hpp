@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/workcell.hpp"
@@ -17,7 +18,6 @@ struct WorkcellRequest {
   std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
   std::optional<double> advise_s{};       ///< s, time for all trials of --advise
   bool refine = false;                    ///< --refine
-  std::string out{};                      ///< --out; its ending tells the format of a motion
   std::string which{};                    ///< episode in words, for the page; "" if none is chosen
   bool report = false;                    ///< whether the page of --report is made
   bool quiet = false;
@@ -33,8 +33,9 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs);
 struct WorkcellTimeRequest {
   TimingOptions timing{};
   Workcell cell{};
-  std::string trajectory{}, out{};
-  bool refine = false;  ///< --refine
+  std::string trajectory{};
+  std::vector<std::string> out{};  ///< names of files; maybe none
+  bool refine = false;             ///< --refine
   bool quiet = false, check = true;
 };
 

@@ -55,8 +55,20 @@ double MotionOptions::checked_rate() const {
   return asked;
 }
 
-void require_motion_format(const std::string& file) {
-  if (!file.empty()) in_the_name_of("--out", [&] { io::require_motion_format(file); });
+void add_out_option(CLI::App& command, std::vector<std::string>& files, const std::string& help) {
+  command.add_option("--out", files, help + "; may be given several times")
+      ->allow_extra_args(false);
+}
+
+void require_motion_formats(const std::vector<std::string>& files) {
+  in_the_name_of("--out", [&] {
+    for (const std::string& file : files) io::require_motion_format(file);
+  });
+}
+
+void require_table_names(const std::vector<std::string>& files, const std::string& what,
+                         const std::string& instead) {
+  for (const std::string& file : files) require_table_name("--out", file, what, instead);
 }
 
 void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint_names) {

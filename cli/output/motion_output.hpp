@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/io/motions/motion.hpp"
@@ -33,9 +34,15 @@ struct MotionOptions {
   [[nodiscard]] double checked_rate() const;
 };
 
-/// Throws InputError if the name of a file has no extension that io::motion_text() knows. An empty
-/// name is accepted.
-void require_motion_format(const std::string& file);
+/// Adds the option --out, which may be given several times, each with one name.
+void add_out_option(CLI::App& command, std::vector<std::string>& files, const std::string& help);
+
+/// Throws InputError if the name of a file of --out has no extension that io::motion_text() knows.
+void require_motion_formats(const std::vector<std::string>& files);
+
+/// Throws InputError as require_table_name() does for a file of --out.
+void require_table_names(const std::vector<std::string>& files, const std::string& what,
+                         const std::string& instead);
 
 /// Prints what became of a plan's path, one line for each extra, on standard output, and warnings
 /// on standard error.

@@ -190,31 +190,32 @@ bool OutputFiles::takes_standard_output() const {
                      [](const Output& output) { return output.descriptor == STDOUT_FILENO; });
 }
 
-OutputFiles::Output* OutputFiles::find(const std::string& option) {
-  const auto found = std::find_if(outputs_.begin(), outputs_.end(),
-                                  [&](const Output& output) { return output.option == option; });
-  return found == outputs_.end() ? nullptr : &*found;
-}
-
 bool OutputFiles::wants(const std::string& option) const {
   return std::any_of(outputs_.begin(), outputs_.end(),
                      [&](const Output& output) { return output.option == option; });
 }
 
-void OutputFiles::write(const std::string& option, std::string text) {
-  Output* const output = find(option);
-  if (output == nullptr) return;
-  unstage(*output);
-  output->text = std::move(text);
-  output->remove = false;
+void OutputFiles::write(const std::string& option, const std::string& text) {
+  write_each(option, [&](const fs::path&) { return text; });
+}
+
+void OutputFiles::write_each(const std::string& option,
+                             const std::function<std::string(const fs::path&)>& text_of) {
+  for (Output& output : outputs_) {
+    if (output.option != option) continue;
+    unstage(output);
+    output.text = text_of(output.name);
+    output.remove = false;
+  }
 }
 
 void OutputFiles::remove(const std::string& option) {
-  Output* const output = find(option);
-  if (output == nullptr) return;
-  unstage(*output);
-  output->text.reset();
-  output->remove = !output->stream;
+  for (Output& output : outputs_) {
+    if (output.option != option) continue;
+    unstage(output);
+    output.text.reset();
+    output.remove = !output.stream;
+  }
 }
 
 void OutputFiles::stage() {

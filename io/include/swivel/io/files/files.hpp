@@ -81,9 +81,9 @@ class OutputFiles {
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// Adds an output. `option` names it here and in messages; an empty file name means no output.
-  /// Throws InputError if the file cannot be written, is one of the inputs, or is an output
-  /// already.
+  /// Adds an output. `option` names it here and in messages, and may have several outputs; an empty
+  /// file name means no output. Throws InputError if the file cannot be written, is one of the
+  /// inputs, or is an output already.
   void add(const std::string& option, const std::filesystem::path& file);
   /// Tests a folder, which need not exist, for files that are written outside of this class while
   /// the work goes on. `is_one` tells by name which files these are. Call it after every add().
@@ -96,11 +96,14 @@ class OutputFiles {
   /// Returns true if an output goes to standard output, by whatever name, so that nothing else
   /// should be printed there.
   [[nodiscard]] bool takes_standard_output() const;
-  /// Sets the text of an output; does nothing if the option has none. A file without a text stays
-  /// as it is.
-  void write(const std::string& option, std::string text);
-  /// Marks an earlier file of that name for removal, because it would be mistaken for the answer.
-  /// Pipes and devices stay.
+  /// Sets the text of an option's outputs; does nothing if the option has none. A file without a
+  /// text stays as it is.
+  void write(const std::string& option, const std::string& text);
+  /// Sets the text of each of an option's outputs: what `text_of` returns for the name of its file.
+  void write_each(const std::string& option,
+                  const std::function<std::string(const std::filesystem::path&)>& text_of);
+  /// Marks earlier files of an option's names for removal, because they would be mistaken for the
+  /// answer. Pipes and devices stay.
   void remove(const std::string& option);
 
   /// Writes the texts: those of files beside their targets, then those of pipes and devices. Throws
@@ -120,7 +123,6 @@ class OutputFiles {
     std::optional<std::string> text;
     bool remove = false;
   };
-  [[nodiscard]] Output* find(const std::string& option);
   static void unstage(Output& output);
 
   std::vector<InputFiles::File> inputs_;
