@@ -47,6 +47,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/certificate/infeasibility_certificate.hpp
   swivel/planner/measure/measure.hpp
   swivel/planner/job/check_job.hpp
+  swivel/planner/job/complete_job.hpp
   swivel/planner/job/job_view.hpp
   swivel/planner/job/plan_job.hpp
   swivel/planner/job/time_job.hpp
@@ -65,6 +66,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/verify/check.hpp
   swivel/planner/verify/complete_rows.hpp
   swivel/planner/workcell/check_workcell.hpp
+  swivel/planner/workcell/complete_workcell.hpp
   swivel/planner/workcell/plan_workcell.hpp
   swivel/planner/workcell/prepared/prepared_workcell.hpp
   swivel/planner/workcell/refine_workcell.hpp

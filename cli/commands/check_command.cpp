@@ -244,7 +244,7 @@ void add_check(CLI::App& app, int& exit_code) {
       "check", "Verify a trajectory, or that there is none, independently of the planners");
   // shared, so that it lives as long as the callback that reads it
   auto arguments = std::make_shared<CheckArguments>();
-  command->add_option("problem", arguments->problem, "problem file, or job")->required();
+  command->add_option("problem", arguments->problem, "problem file, job or workcell")->required();
   command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile);
   command->add_option(
       "--certificate", arguments->certificate,

@@ -14,6 +14,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/complete_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "terminal/terminal.hpp"
 
@@ -104,8 +105,9 @@ int check_job_file(const Job& given, const std::string& trajectory, std::optiona
   if (const auto* read = std::get_if<io::JobTrajectory>(&file)) {
     if (speed)
       throw InputError(trajectory, "has no times: allowed with --speed are motions of jobs");
-    const std::vector<JobPart> parts =
-        in_the_name_of(trajectory, [&] { return parts_of(robot, job, *read); });
+    const std::vector<JobPart> parts = in_the_name_of(trajectory, [&] {
+      return complete_parts(robot, job, parts_of(robot, job, *read), read->stated);
+    });
     result = check_job(robot, job, parts);
     check_process(job, parts, process_of(*read), result);
     std::size_t runs = 0, rows = 0;
@@ -118,7 +120,10 @@ int check_job_file(const Job& given, const std::string& trajectory, std::optiona
   } else {
     const auto& timed = std::get<io::JobMotionFile>(file);
     const auto order = runs_of_motion(robot, job, timed.strokes, timed.motion);
-    result = check_job_motion(robot, job, order, timed.motion, {.speed = speed});
+    const JobMotion motion = in_the_name_of(trajectory, [&] {
+      return complete_job_motion(robot, job, order, timed.motion, timed.stated);
+    });
+    result = check_job_motion(robot, job, order, motion, {.speed = speed});
     print_verdict(result, job, held, timed.strokes.size(), timed.motion.rows.size(),
                   timed.motion.duration);
   }

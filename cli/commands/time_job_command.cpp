@@ -11,6 +11,8 @@
 #include "swivel/core/motion/job_text.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/complete_job.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 #include "terminal/terminal.hpp"
 
@@ -18,28 +20,29 @@ namespace swivel::cli {
 
 namespace {
 
-/// A job, with its lift-offs if it has any, and its rows.
-struct Untimed {
-  Job job;
-  io::JobTrajectory rows;
-};
-
-Untimed untimed(const JobTimeRequest& request, const io::JointNames& joint_names) {
-  auto read = io::load_executed_rows(request.trajectory, request.job, joint_names);
-  if (std::holds_alternative<io::JobMotionFile>(read.rows))
-    throw InputError(request.trajectory,
-                     "has times: allowed is the trajectory of a job without them");
-  return {std::move(read.job), std::get<io::JobTrajectory>(std::move(read.rows))};
-}
-
-/// Returns the parts of a job in a file, with rows at the layers of each run. Throws InputError
-/// unless they are proved to be the job's.
-std::vector<JobPart> proved_parts(const PreparedRobot& robot, const Job& job,
-                                  const io::JobTrajectory& read, const Budget& budget) {
-  std::vector<JobPart> parts = parts_of(robot, job, read);
-  const JobCheckResult check = check_job(robot, job, parts, {.margins = false, .budget = budget});
-  if (!check.passed)
-    throw InputError(check.failures.front() + ": allowed is a job that passes `swivel check`");
+/// Returns the parts of a job in a file, with rows at the layers of each run. `job` has its
+/// lift-offs, if it has any. Throws InputError unless they are proved to be the job's.
+std::vector<JobPart> proved_parts(const PreparedRobot& robot, const io::ExecutedJobRows& read,
+                                  const Budget& budget) {
+  const Job& job = read.job;
+  const auto require_check = [&](const Job& of, const std::vector<JobPart>& parts) {
+    const JobCheckResult check = check_job(robot, of, parts, {.margins = false, .budget = budget});
+    if (!check.passed)
+      throw InputError(check.failures.front() + ": allowed is a job that passes `swivel check`");
+  };
+  if (const auto* file = std::get_if<io::JobMotionFile>(&read.rows)) {
+    const auto order = runs_of_motion(robot, job, file->strokes, file->motion);
+    const JobMotion motion =
+        complete_job_motion(robot, job, order, file->motion, file->stated, budget);
+    std::vector<JobPart> parts = parts_of_motion(robot, job, order, motion, budget);
+    // The rows are on the paths as motions follow them.
+    require_check(with_motion_defaults(job), parts);
+    return parts;
+  }
+  const auto& file = std::get<io::JobTrajectory>(read.rows);
+  std::vector<JobPart> parts =
+      complete_parts(robot, job, parts_of(robot, job, file), file.stated, budget);
+  require_check(job, parts);
   for (JobPart& part : parts)
     if (part.run)
       part.rows = rows_at_layers(robot, problem_of_run(job, *part.run), part.rows, {}, budget);
@@ -61,10 +64,11 @@ struct Timed {
   std::string fault = {};  ///< what the check of the motion found; empty: it is proved
 };
 
-Timed timed(const PreparedRobot& robot, const JobTimeRequest& request, const Job& job,
-            const io::JobTrajectory& read) {
+Timed timed(const PreparedRobot& robot, const JobTimeRequest& request,
+            const io::ExecutedJobRows& read) {
   const Budget budget(std::nullopt, &interrupted);
-  Timed made{proved_parts(robot, job, read, budget), {}};
+  const Job& job = read.job;
+  Timed made{proved_parts(robot, read, budget), {}};
   made.timing = time_job(robot, job, made.parts, request.timing, budget);
   if (!made.timing.motion || !request.check) return made;
   // Motions keep more clearance between rows than trajectories do: transitions may lack it.
@@ -81,16 +85,15 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
   const PreparedRobot robot(problem_of_run(request.job, {0, false}));
   if (!request.quiet) warn_of_held(robot.arm().held);
   const io::JointNames& names = robot.arm().chain.joint_names;
-  const Untimed read = untimed(request, names);
+  const io::ExecutedJobRows read = io::load_executed_rows(request.trajectory, request.job, names);
   const Job& job = read.job;
-  const io::JobTrajectory& rows = read.rows;
   io::OutputFiles outputs(noted->files());
   noted.reset();
   for (const std::string& file : request.out) outputs.add("--out", file);
   catch_interrupts();
   std::optional<Timed> made;
   try {
-    made = in_the_name_of(request.trajectory, [&] { return timed(robot, request, job, rows); });
+    made = in_the_name_of(request.trajectory, [&] { return timed(robot, request, read); });
   } catch (const Stopped&) {
     outputs.remove("--out");
   }

@@ -19,9 +19,9 @@ struct JobTimeRequest {
   bool quiet = false, check = true;
 };
 
-/// Makes the trajectory of a job a motion in time, writes it, and prints its main figures. `noted`
-/// has the files that were read before, which the motion may not replace; it ends once all are
-/// read. Returns the exit code. Throws InputError.
+/// Makes the trajectory of a job, or its motion, a motion in time, writes it, and prints its main
+/// figures. `noted` has the files that were read before, which the motion may not replace; it ends
+/// once all are read. Returns the exit code. Throws InputError.
 int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& noted);
 
 }  // namespace swivel::cli

@@ -24,6 +24,7 @@
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/complete_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
 #include "swivel/planner/workcell/workcell_view.hpp"
@@ -42,6 +43,16 @@ std::array<io::JointNames, 2> joint_names_of(const PreparedWorkcell& prepared) {
 io::WorkcellRows rows_of_file(const PreparedWorkcell& prepared, const std::string& file) {
   return io::load_workcell_rows(file, {prepared.name(0), prepared.name(1)},
                                 joint_names_of(prepared));
+}
+
+/// Returns rows at the layers of both arms' paths, from a trajectory or a motion, whose times are
+/// left aside. `prepared` is that of the workcell with_motion_defaults(). Throws InputError.
+std::array<std::vector<TrajectoryRow>, 2> rows_to_time(const PreparedWorkcell& prepared,
+                                                       const Workcell& cell, io::WorkcellRows read,
+                                                       const Budget& budget) {
+  if (!read.timed[0].empty()) return rows_at_layers(prepared, read.timed, read.stated, budget);
+  if (read.stated[0].rows() && read.stated[1].rows()) return std::move(read.rows);
+  return complete_rows(PreparedWorkcell(cell, budget), std::move(read.rows), read.stated, budget);
 }
 
 /// Prints the warnings of a motion on standard error.
@@ -249,9 +260,6 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
   if (!request.quiet)
     for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared.robot(k).arm().held);
   const io::WorkcellRows read = rows_of_file(prepared, request.trajectory);
-  if (!read.timed[0].empty())
-    throw InputError(request.trajectory,
-                     "has times: allowed is the trajectory of a workcell without them");
   io::OutputFiles outputs(noted->files());
   noted.reset();
   for (const std::string& file : request.out) outputs.add("--out", file);
@@ -262,12 +270,13 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
     timed = in_the_name_of(request.trajectory, [&] {
       const Budget budget(std::nullopt, &interrupted);
       WorkcellTiming made;
+      const auto rows = rows_to_time(prepared, request.cell, read, budget);
       if (request.refine) {
-        auto found = refine_and_time_workcell(prepared, read.rows, request.timing, budget);
+        auto found = refine_and_time_workcell(prepared, rows, request.timing, budget);
         refined = std::move(found.refinement);
         made = std::move(found.timing);
       } else {
-        made = time_workcell(prepared, read.rows, request.timing, budget);
+        made = time_workcell(prepared, rows, request.timing, budget);
       }
       if (made.motion && request.check)
         require_passed(check_workcell_motion(prepared,
@@ -299,9 +308,15 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
 int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
   std::optional<PreparedWorkcell> prepared(cell);
   for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared->robot(k).arm().held);
-  const io::WorkcellRows read = rows_of_file(*prepared, trajectory);
+  io::WorkcellRows read = rows_of_file(*prepared, trajectory);
   const bool timed = !read.timed[0].empty();
   if (timed) prepared.emplace(with_motion_defaults(cell));
+  in_the_name_of(trajectory, [&] {
+    if (timed)
+      read.timed = complete_motion(*prepared, std::move(read.timed), read.stated);
+    else
+      read.rows = complete_rows(*prepared, std::move(read.rows), read.stated);
+  });
   const WorkcellCheckResult result =
       timed ? check_workcell_motion(*prepared, read.timed) : check_workcell(*prepared, read.rows);
   std::int64_t failures = result.failure_count;

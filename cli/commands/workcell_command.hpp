@@ -39,15 +39,15 @@ struct WorkcellTimeRequest {
   bool quiet = false, check = true;
 };
 
-/// Times the trajectories of a workcell that a CSV file has, writes the motion and prints its
-/// figures. `noted`: the files that were read. Returns the exit code. Throws InputError.
+/// Times the trajectories or the motion of a workcell that a file has, writes the motion and prints
+/// its figures. `noted`: the files that were read. Returns the exit code. Throws InputError.
 int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::InputFiles>& noted);
 
 /// Returns limits whose tool speed is the lowest that an arm of a workcell has, for motions whose
 /// speed the command line does not give.
 [[nodiscard]] Limits limits_of_speeds(const Workcell& cell);
 
-/// Checks the trajectories or the motion of a workcell that a CSV file has, and prints the verdict.
+/// Checks the trajectories or the motion of a workcell that a file has, and prints the verdict.
 /// Returns the exit code. Throws InputError.
 int check_workcell_file(const Workcell& cell, const std::string& trajectory);
 

@@ -11,7 +11,9 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/job/complete_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 
@@ -127,48 +129,63 @@ std::vector<swivel::JobPart> to_core(const swivel::Job& job, const Parts& parts)
 }
 
 /// Returns the parts of a file. A stroke is run backwards if the tool begins at its last waypoint.
-/// Throws InputError for a stroke that the job does not have.
+/// Throws InputError, also for a stroke that the job does not have.
 Parts from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobTrajectory read,
-                const std::filesystem::path& file) {
-  Parts parts;
+                const Budget& budget) {
+  std::vector<swivel::JobPart> rows;
   for (io::JobTrajectoryPart& one : read.parts) {
+    swivel::JobPart& made = rows.emplace_back();
+    made.rows = std::move(one.rows);
+    if (one.stroke.empty()) continue;
+    const auto stroke = find_stroke(job, one.stroke);
+    if (!stroke)
+      throw InputError(formatted("data row %zu: stroke: ", one.first_row + 1) + "'" + one.stroke +
+                       "' is no stroke of the job: allowed are the names of its strokes");
+    made.run = StrokeRun{*stroke, begins_at_last_waypoint(robot, job, *stroke, made.rows)};
+  }
+  rows = complete_parts(robot, job, std::move(rows), read.stated, budget);
+  Parts parts;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const io::JobTrajectoryPart& one = read.parts[k];
     JobPart& part = parts.emplace_back();
     part.joint_names = robot.arm().chain.joint_names;
-    part.process.resize(one.rows.size());
-    if (!one.stroke.empty()) {
-      const auto stroke = find_stroke(job, one.stroke);
-      if (!stroke)
-        throw InputError(file.string(),
-                         formatted("data row %zu: stroke: ", one.first_row + 1) + "'" + one.stroke +
-                             "' is no stroke of the job: allowed are the names of its strokes");
+    part.process.resize(rows[k].rows.size());
+    if (rows[k].run) {
       part.stroke = one.stroke;
-      part.reversed = begins_at_last_waypoint(robot, job, *stroke, one.rows);
-      for (std::size_t k = one.first_process; k <= one.last_process; ++k) part.process[k] = true;
+      part.reversed = rows[k].run->reversed;
+      part.begin = s_of_piece(job.strokes[rows[k].run->stroke]);
+      for (std::size_t i = one.first_process; i <= one.last_process; ++i) part.process[i] = true;
     }
-    if (part.stroke) part.begin = s_of_piece(job.strokes[*find_stroke(job, *part.stroke)]);
-    part.rows = std::make_shared<const std::vector<TrajectoryRow>>(std::move(one.rows));
+    part.rows = std::make_shared<const std::vector<TrajectoryRow>>(std::move(rows[k].rows));
   }
   return parts;
 }
 
 /// Returns the motion of a file. A stroke is run backwards if the tool begins at its last waypoint.
-JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobMotionFile read) {
+/// Throws InputError.
+JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobMotionFile read,
+                    const Budget& budget) {
   JobMotion motion;
   motion.joint_names = robot.arm().chain.joint_names;
   motion.job = without_surroundings(job);
   motion.order = runs_of_motion(robot, job, read.strokes, read.motion);
   auto timing = std::make_shared<JobTimingResult>();
-  timing->motion = std::move(read.motion);
+  timing->motion =
+      complete_job_motion(robot, job, motion.order, std::move(read.motion), read.stated, budget);
   motion.timing = std::move(timing);
   return motion;
 }
 
 std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swivel::Job& job,
-                                         const std::filesystem::path& file) {
+                                         const std::filesystem::path& file, const Budget& budget) {
   auto read = io::load_executed_rows(file, job, robot.arm().chain.joint_names);
-  if (auto* motion = std::get_if<io::JobMotionFile>(&read.rows))
-    return from_file(robot, read.job, std::move(*motion));
-  return from_file(robot, read.job, std::get<io::JobTrajectory>(std::move(read.rows)), file);
+  try {
+    if (auto* motion = std::get_if<io::JobMotionFile>(&read.rows))
+      return from_file(robot, read.job, std::move(*motion), budget);
+    return from_file(robot, read.job, std::get<io::JobTrajectory>(std::move(read.rows)), budget);
+  } catch (const InputError& error) {
+    throw InputError(file.string(), error.what());
+  }
 }
 
 /// `job`: with the lift-offs of the parts.
@@ -206,7 +223,7 @@ JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> s
     options.speed = speed;
     std::variant<Parts, JobMotion> given;
     if (const auto* file = std::get_if<std::filesystem::path>(&rows))
-      given = load_rows(robot, job, *file);
+      given = load_rows(robot, job, *file, options.budget);
     else if (const auto* plan = std::get_if<JobPlan>(&rows))
       given = parts_of(*plan, plan->result().parts);
     else if (const auto* motion = std::get_if<JobMotion>(&rows))
@@ -249,24 +266,32 @@ struct ProvedParts {
 /// InputError unless they are proved to be the job's.
 ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Job& of, const Timeable& rows,
                          const Budget& budget) {
-  Parts given;
-  std::string source;
-  if (const auto* file = std::get_if<std::filesystem::path>(&rows)) {
-    source = file->string();
-    auto read = load_rows(robot, of, *file);
-    if (std::holds_alternative<JobMotion>(read))
-      throw InputError(source, "has times: allowed is the trajectory of a job without them");
-    given = std::get<Parts>(std::move(read));
-  } else {
-    given = std::get<Parts>(rows);
-  }
-  ProvedParts proved{executed_by(of, given), {}};
-  const swivel::Job& job = proved.job;
   CheckOptions options;
   options.margins = false, options.budget = budget;
-  const JobCheckResult check = check_parts(robot, job, given, options);
-  if (!check.passed)
-    throw InputError(source, check.failures.front() + ": allowed is a job that passes check_job()");
+  std::string source;
+  const auto require = [&](const JobCheckResult& check) {
+    if (!check.passed)
+      throw InputError(source,
+                       check.failures.front() + ": allowed is a job that passes check_job()");
+  };
+  std::variant<Parts, JobMotion> read;
+  if (const auto* file = std::get_if<std::filesystem::path>(&rows)) {
+    source = file->string();
+    read = load_rows(robot, of, *file, budget);
+  } else {
+    read = std::get<Parts>(rows);
+  }
+  if (const auto* motion = std::get_if<JobMotion>(&read)) {
+    ProvedParts proved{executed_by(of, *motion), {}};
+    proved.parts = parts_of_motion(robot, proved.job, motion->order, *motion->motion(), budget);
+    // The rows are on the paths as motions follow them.
+    require(swivel::check_job(robot, with_motion_defaults(proved.job), proved.parts, options));
+    return proved;
+  }
+  const Parts& given = std::get<Parts>(read);
+  ProvedParts proved{executed_by(of, given), {}};
+  const swivel::Job& job = proved.job;
+  require(check_parts(robot, job, given, options));
   proved.parts = to_core(job, given);
   for (swivel::JobPart& part : proved.parts)
     if (part.run)
@@ -354,8 +379,9 @@ void bind_job_functions(py::module_& m) {
         "Proves the rows of a job from the job alone, or says what is wrong with them: JobCheck.\n"
         "\n"
         "job: a Job, or the name of its file. rows: a JobPlan (its parts), a JobMotion, a list of "
-        "JobParts, or the name of a CSV file of a trajectory or a motion. speed: m/s along all "
-        "strokes, instead of the speeds and feeds of the job, where a motion was made with it. "
+        "JobParts, or the name of a file of a trajectory or a motion, of any format. speed: m/s "
+        "along "
+        "all strokes, instead of the speeds and feeds of the job, where a motion was made with it. "
         "Raises InputError and InvalidArgument.");
   m.def(
       "time_job",
@@ -369,19 +395,22 @@ void bind_job_functions(py::module_& m) {
       (std::string("Makes the rows of a job a motion in time, and proves it: JobMotion. plan_job() "
                    "with a speed or a rate plans rows that are sure to keep what motions keep.\n\n"
                    "job: a Job, or the name of its file. rows: a JobPlan, a list of JobParts, or "
-                   "the name of a CSV file of a trajectory. ") +
+                   "the name of a file of a trajectory or a motion, whose times are left aside. ") +
        kSpeeds + " Raises InputError, InvalidArgument and TimeoutError.")
           .c_str());
   m.def(
       "load_job_trajectory",
       [](const std::filesystem::path& file, const JobOrFile& of) {
         const swivel::Job job = to_core(of);
-        return interruptible(
-            [&](const std::stop_token& stop) { return load_rows(prepared(job, stop), job, file); });
+        return interruptible([&](const std::stop_token& stop) {
+          return load_rows(prepared(job, stop), job, file, Budget({}, nullptr, stop));
+        });
       },
       py::arg("file"), py::arg("job").none(false),
-      "The trajectory of a job as a list of JobParts, or a JobMotion where the file has times: CSV "
-      "as JobPlan.save() and JobMotion.save() write it. Raises InputError.");
+      "The trajectory of a job as a list of JobParts, or a JobMotion where the file has times: any "
+      "file that the program, JobPlan.save() and JobMotion.save() write, and CSV of other "
+      "programs; "
+      "what the file does not state is worked out. Raises InputError.");
 }
 
 }  // namespace swivel::python

@@ -379,8 +379,12 @@ Reader job_reader(const TempFolder& folder) {
   }
   return {
       "job_rows",
-      {io::to_job_csv(result, job), io::to_job_motion_csv(motion, job, joints)},
-      {",", "\"", "\n", "1e9,", ",left,1\n", ",right,0\n", ",left/1,1\n", ",left/2,1\n", ",,0\n"},
+      {io::to_job_csv(result, job), io::to_job_motion_csv(motion, job, joints),
+       io::job_motion_text(motion, job, joints, "base", "m.json"),
+       io::job_motion_text(motion, job, joints, "base", "m.yaml"),
+       io::job_motion_text(motion, job, joints, "base", "m.mcap")},
+      {",", "\"", "\n", "1e9,", ",left,1\n", ",right,0\n", ",left/1,1\n", ",left/2,1\n", ",,0\n",
+       "\"run\": {", "\"left/1\"", "\"events\": [", "{", "}", "[", "]", "null", "\"off\""},
       at(folder, "job.csv",
          [joints, job](const fs::path& path) { (void)io::load_job_rows(path, job, joints); })};
 }
@@ -403,7 +407,10 @@ Reader workcell_reader(const TempFolder& folder) {
     }
   }
   return {"workcell_rows",
-          {io::to_workcell_csv(result), io::to_workcell_motion_csv(motion, joints)},
+          {io::to_workcell_csv(result), io::to_workcell_motion_csv(motion, joints),
+           io::workcell_motion_text(motion, joints, "base", "m.json"),
+           io::workcell_motion_text(motion, joints, "base", "m.yaml"),
+           io::workcell_motion_text(motion, joints, "base", "m.mcap")},
           {",", "\"", "\n", "1e9,", ",8,", ",0.5,", "branch_left", "t,", "0.004,"},
           at(folder, "cell.csv", [names, joints](const fs::path& path) {
             (void)io::load_workcell_rows(path, names, joints);

@@ -138,6 +138,45 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
                  {"m.bag", ".mcap"});
 }
 
+/// Messages and logs hold joints, times to the nanosecond and events; the log no accelerations.
+TEST(JobMotion, OtherFormatsAreReadAgain) {
+  const TempFolder folder;
+  Random random(swivel::test::seed("JobMotionMessages"));
+  int files = 0;
+  for (int trial = 0; trial < swivel::test::trials(100); ++trial) {
+    const Job job = two_strokes(random.coin());
+    const JobMotion motion = random_motion(random, job, random.coin(), false);
+    for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
+      SCOPED_TRACE(std::string(name) + ", trial " + std::to_string(trial));
+      const std::string text = job_motion_text(motion, job, kNames, "base", name);
+      const JobMotionFile read = load_job_motion(folder.write(name, text), job, kNames);
+      const bool log = name == std::string("m.mcap");
+      EXPECT_FALSE(read.stated.s || read.stated.phi || read.stated.branch || read.stated.roll);
+      EXPECT_EQ(read.stated.a, !log);
+      EXPECT_EQ(read.strokes, (std::vector<std::size_t>{1, 0}));
+      EXPECT_EQ(read.motion.part, motion.part);
+      ASSERT_EQ(read.motion.rows.size(), motion.rows.size());
+      for (std::size_t k = 0; k < motion.rows.size(); ++k) {
+        const TimedRow &is = read.motion.rows[k], &was = motion.rows[k];
+        EXPECT_NEAR(is.t, was.t, 1e-9);
+        EXPECT_EQ(is.row.q, was.row.q);
+        EXPECT_EQ(is.v, was.v);
+        if (!log) EXPECT_EQ(is.a, was.a);
+      }
+      ASSERT_EQ(read.motion.events.size(), motion.events.size());
+      for (std::size_t k = 0; k < motion.events.size(); ++k) {
+        const ProcessEvent &is = read.motion.events[k], &was = motion.events[k];
+        EXPECT_NEAR(is.t, was.t, 1e-9);
+        EXPECT_EQ(is.s, was.s);
+        EXPECT_EQ(is.stroke, was.stroke);
+        EXPECT_EQ(is.on, was.on);
+      }
+      ++files;
+    }
+  }
+  EXPECT_GE(files, swivel::test::at_least(300));
+}
+
 TEST(JobMotion, TrajectoryFilesRefuseRowsOfJobs) {
   const TempFolder folder;
   Random random(6);
@@ -160,8 +199,9 @@ TEST(JobMotion, StrokesBetweenTwoSamplesHaveNoRows) {
   const Job job = two_strokes(true);
   JobMotion motion = random_motion(random, job, true, false);
   motion.events[1].t = motion.events[0].t;
-  expect_message(input_error([&] { (void)to_job_motion_csv(motion, job, kNames); }),
-                 {"job.yaml", "stroke 'right' begins and ends between two samples"});
+  for (const char* const name : {"m.csv", "m.json", "m.mcap"})
+    expect_message(input_error([&] { (void)job_motion_text(motion, job, kNames, "base", name); }),
+                   {"job.yaml", "stroke 'right' begins and ends between two samples"});
 }
 
 /// Fields of rows, to be changed.
@@ -237,8 +277,8 @@ TEST(JobMotion, BadFields) {
   expect_refused(
       true,
       {
-          {"another column", put(0, 4, "x"), {"m.csv:1", "is not the header of a job's motion"}},
-          {"begins late", put(1, 0, "0.5"), {"data row 1", "t: is 0.5", "0 in the first row"}},
+          {"another column", put(0, 4, "x"), {"m.csv:1", "column 'x' is unknown"}},
+          {"no times", put(0, 0, "phi"), {"m.csv:1", "column 'phi' is there twice"}},
           {"times go back", put(5, 0, "3"), {"data row 5", "t: is 3", "ascend"}},
           {"no time", put(5, 0, ""), {"data row 5", "t: '' is not a number"}},
           {"no speed", put(5, 12, ""), {"data row 5", "b_v: '' is not a number"}},

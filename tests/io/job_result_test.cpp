@@ -118,7 +118,7 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
       }
     const JobTrajectory read =
         load_job_trajectory(folder.write("t.csv", to_job_csv(plan, two_strokes())), kNames);
-    EXPECT_EQ(read.rolls, round % 2 == 1);
+    EXPECT_TRUE(read.stated.rows());
     ASSERT_EQ(read.parts.size(), plan.parts.size());
     std::size_t row = 0;
     for (std::size_t k = 0; k < plan.parts.size(); ++k) {
@@ -139,6 +139,23 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
     }
   }
   EXPECT_EQ(rows, 200 * 16);
+}
+
+/// Columns come in any order, and those that follow from the joints may be missing.
+TEST(JobTrajectory, ColumnsAreReadByName) {
+  const TempFolder folder;
+  const JobTrajectory read =
+      load_job_trajectory(folder.write("t.csv",
+                                       "process,g,f,e,d,c,b,stroke,a,s\n"
+                                       "0,7,6,5,4,3,2,,1,\n0,7,6,5,4,3,2,,1,\n"
+                                       "1,7,6,5,4,3,2,left,1,0\n1,7,6,5,4,3,2,left,1,0.5\n"),
+                          kNames);
+  ASSERT_EQ(read.parts.size(), 2u);
+  EXPECT_EQ(read.parts[1].stroke, "left");
+  EXPECT_EQ(read.parts[1].rows[1].s, 0.5);
+  EXPECT_EQ(read.parts[1].rows[1].q, (Config() << 1, 2, 3, 4, 5, 6, 7).finished());
+  EXPECT_TRUE(read.stated.s && read.stated.last_joint);
+  EXPECT_FALSE(read.stated.phi || read.stated.branch || read.stated.roll);
 }
 
 const std::string kHeader = "s,phi,branch,a,b,c,d,e,f,g,stroke,process\n",
@@ -164,10 +181,16 @@ TEST(JobTrajectory, BadFields) {
   expect_refused({
       {"a trajectory",
        "s,phi,branch,a,b,c,d,e,f,g\n0,0,0,0,0,0,0,0,0,0\n",
-       {"t.csv:1", "is not the header", "stroke,process"}},
+       {"t.csv:1", "column 'stroke' is missing", "g, stroke, process"}},
+      {"no process",
+       "s,phi,branch,a,b,c,d,e,f,g,stroke\n0,0,0,0,0,0,0,0,0,0,left\n",
+       {"t.csv:1", "column 'process' is missing"}},
+      {"times",
+       "t,a,b,c,d,e,f,g,stroke,process\n0,0,0,0,0,0,0,0,left,1\n1,0,0,0,0,0,0,0,left,0\n",
+       {"t.csv: has times"}},
       {"other joints",
        "s,phi,branch,a,b,c,d,e,f,x,stroke,process\n" + kLeft + kLeft,
-       {"t.csv:1", "is not the header", "a,b,c,d,e,f,g"}},
+       {"t.csv:1", "column 'x' is unknown, or no joint of the arm", "a, b, c, d, e, f, g"}},
       {"one row", kHeader + kLeft, {"1 data row"}},
       {"process of words",
        kHeader + kLeft + "0,0,0,0,0,0,0,0,0,0,left,on\n",
@@ -188,7 +211,7 @@ TEST(JobTrajectory, BadFields) {
        kHeader + kLeft + "0,0,8,0,0,0,0,0,0,0,left,1\n",
        {"t.csv:3: data row 2", "branch: is 8", "0 to 7"}},
       {"columns", kHeader + kLeft + "0,0\n", {"t.csv:3: data row 2", "2 columns"}},
-      {"empty", "", {"is empty", "header of a job's trajectory"}},
+      {"empty", "", {"is empty", "the arm's joints, stroke and process"}},
   });
 }
 

@@ -291,8 +291,18 @@ class JobMotions(unittest.TestCase):
                 [(e.t, e.stroke, e.on) for e in motion.events],
             )
             self.assertTrue(swivel.check_job(self.job, Path(folder) / "m.csv", speed=0.1))
-            with self.assertRaisesRegex(swivel.InputError, "m.csv: has times"):
-                swivel.time_job(self.job, Path(folder) / "m.csv", speed=0.1)
+            again = swivel.time_job(self.job, Path(folder) / "m.csv", speed=0.1)
+            for ending in ("json", "yaml", "mcap"):  # what they do not state is worked out
+                file = Path(folder) / f"m.{ending}"
+                other = swivel.load_job_trajectory(file, self.job)
+                for member in ("t", "joints", "velocities", "part", "process"):
+                    np.testing.assert_allclose(
+                        getattr(other, member), getattr(motion, member), atol=1e-9
+                    )
+                self.assertTrue(swivel.check_job(self.job, other, speed=0.1))
+                self.assertTrue(swivel.check_job(self.job, file, speed=0.1))
+                timed = swivel.time_job(self.job, file, speed=0.1)
+                np.testing.assert_allclose(timed.joints, again.joints, atol=1e-6)
             with self.assertRaisesRegex(swivel.InputError, "unknown format"):
                 motion.save(Path(folder) / "m.txt")
         # A job with its strokes in another list is another order.

@@ -398,8 +398,17 @@ class Workcells(unittest.TestCase):
             again.save(own)
             self.assertEqual(own.read_bytes(), theirs.read_bytes())
             self.assertEqual(repr(again), repr(motion))
-        with self.assertRaisesRegex(swivel.InputError, "has times"):
-            swivel.time_workcell(cell, own, speed=0.05)
+        again = swivel.time_workcell(cell, own, speed=0.05)  # its times are left aside
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("json", "yaml", "mcap"):
+                file = Path(folder) / f"m.{ending}"
+                motion.save(file)
+                self.assertTrue(swivel.check_workcell(cell, file))
+                timed = swivel.time_workcell(cell, file, speed=0.05)
+                for arm in ("left", "right"):
+                    np.testing.assert_allclose(
+                        timed.motions[arm].joints, again.motions[arm].joints, atol=1e-6
+                    )
         with self.assertRaisesRegex(ValueError, "allowed are Trajectories"):
             swivel.time_workcell(cell, motion.motions, speed=0.05)
         with self.assertRaisesRegex(ValueError, "speed: is not given"):

@@ -1,27 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nlohmann/json.hpp>
-
-#include "files/files.hpp"
+#include "jobs/job_rows.hpp"
 #include "motions/messages.hpp"
 #include "swivel/io/jobs/job_trajectory.hpp"
 
 namespace swivel::io {
-
-namespace {
-
-/// Returns the events of a job's motion as JSON, which YAML reads too.
-std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job) {
-  std::vector<EventMessage> messages;
-  for (const ProcessEvent& event : motion.events)
-    messages.push_back(
-        {event.t, "{\"t\": " + format_double(event.t) +
-                      ", \"stroke\": " + nlohmann::json(job.strokes[event.stroke].name).dump() +
-                      ", \"s\": " + format_double(event.s + s_of_piece(job.strokes[event.stroke])) +
-                      ", \"process\": \"" + (event.on ? "on" : "off") + "\"}"});
-  return messages;
-}
-
-}  // namespace
 
 std::string job_motion_text(const JobMotion& motion, const Job& job, const JointNames& joint_names,
                             const std::string& frame_id, const std::filesystem::path& file) {

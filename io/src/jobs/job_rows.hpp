@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields of the rows of jobs, with and without times.
+// What is common to trajectories and motions of jobs, in files of all formats.
 #pragma once
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "files/csv.hpp"
+#include "motions/messages.hpp"
+#include "motions/trajectory_formats.hpp"
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/io/jobs/job_trajectory.hpp"
 
@@ -17,24 +18,25 @@ namespace swivel::io {
 /// Returns the fields of a row without a place on a stroke: those before the joints are empty.
 [[nodiscard]] std::string placeless_fields(const TrajectoryRow& row, bool roll);
 
-/// Returns a field as a finite number. Throws InputError with place and column.
-[[nodiscard]] double number_field(const CsvPlace& place, const std::string& column,
-                                  const std::string& field);
-/// Returns a field as a branch, 0 to 7. Throws InputError with the place.
-[[nodiscard]] int branch_field(const CsvPlace& place, const std::string& field);
-/// Returns the field `process`, 0 or 1. Throws InputError with the place.
-[[nodiscard]] bool process_field(const CsvPlace& place, const std::string& field);
+/// Returns for each part of a job's motion the index of its stroke; none for transitions.
+[[nodiscard]] std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion,
+                                                                       const Job& job);
+/// Throws InputError if a stroke begins and ends between two samples of a motion.
+void require_samples_of_strokes(const JobMotion& motion, const Job& job);
+/// Returns the events of a job's motion as messages. Throws as require_samples_of_strokes() does.
+[[nodiscard]] std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job);
 
-/// Throws InputError: the line at `where` is not this header of seven joints, which may have the
-/// column roll behind phi as well. `what` is whose header is due.
-[[noreturn]] void bad_header(const std::string& where, const std::string& what,
-                             const std::vector<std::string>& header);
+/// Reads the rows of a job from a file of any format. Rows of messages get from their events what
+/// those of a table state by themselves: stroke and process, and s where a run begins, where its
+/// process is switched, and where it ends. Throws InputError.
+[[nodiscard]] FileRows read_rows_of_job(const std::filesystem::path& file,
+                                        const JointNames& joint_names);
 
-/// Reads the text of a file that to_job_csv() wrote; see load_job_trajectory().
-[[nodiscard]] JobTrajectory read_job_trajectory(const std::string& file, std::string_view text,
-                                                const JointNames& joint_names);
-/// Reads the text of a file that to_job_motion_csv() wrote; see load_job_motion().
-[[nodiscard]] JobMotionFile read_job_motion(const std::string& file, std::string_view text,
-                                            const Job& job, const JointNames& joint_names);
+/// Returns the parts of a trajectory without times. Throws InputError as load_job_trajectory()
+/// does.
+[[nodiscard]] JobTrajectory trajectory_of(const FileRows& read);
+/// Returns the motion that rows with times are. Throws InputError as load_job_motion() does.
+[[nodiscard]] JobMotionFile motion_of(const FileRows& read, const Job& job,
+                                      const JointNames& joint_names);
 
 }  // namespace swivel::io

@@ -6,22 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "motions/trajectory_formats.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 
-/// How the roll of an arm of six joints is named in a table of two arms.
-enum class RollColumns {
-  kOfArms,  ///< after its arm, such as roll_left
-  kPlain,   ///< roll, even twice, as Swivel 1.0 wrote it
-};
-/// Returns the columns of the trajectories of a workcell: for each arm s, phi and branch, named
-/// after it, then the joints of both. `names` and `joint_names` are those of both arms.
-[[nodiscard]] std::vector<std::string> workcell_columns(const std::array<std::string, 2>& names,
-                                                        const std::array<JointNames, 2>& joints,
-                                                        RollColumns rolls = RollColumns::kOfArms);
-/// Returns true if an arm has a roll, whose column earlier files name otherwise.
-[[nodiscard]] bool have_roll(const std::array<JointNames, 2>& joints);
+/// Returns both arms of a workcell as files of their trajectories name their columns: joints by
+/// their own names, what else there is after its arm, such as s_left. `names` and `joints` are
+/// those of both arms.
+[[nodiscard]] std::vector<ArmColumns> arms_of_workcell(const std::array<std::string, 2>& names,
+                                                       const std::array<JointNames, 2>& joints);
+/// Returns the columns of the trajectories of a workcell as they are written: for each arm s, phi
+/// and branch, then the joints of both.
+[[nodiscard]] std::vector<std::string> workcell_columns(const std::vector<ArmColumns>& arms);
 /// Loads the rows of a motion that is given for arm `arm` of a workcell: its joints, rad, from a
 /// trajectory without times that load_trajectory_file() reads, or from the trajectories of both
 /// arms. What else the file says of a row follows from the joints, and is not read. `six_joints`:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -25,8 +26,8 @@ namespace {
 /// stand there.
 class Message {
  public:
-  Message(const JointNames& joint_names, const std::string& file)
-      : rows_(joint_names, file), file_(file) {}
+  Message(const Sought& sought, const std::string& file)
+      : rows_(sought.arms, file), file_(file), of_job_(sought.job) {}
 
   void begin(bool map, int line) {
     line_ = line;
@@ -34,6 +35,7 @@ class Message {
     if (aside_ > 0) {
       constexpr int kMostDepth = 16;
       if (++aside_ > kMostDepth) fail("is nested too deep", "at most 16 levels");
+      if (!open_.empty()) record(map ? Json::object() : Json::array());
       return;
     }
     if (levels_.empty()) return push(map, Level::kRoot);
@@ -45,6 +47,7 @@ class Message {
           const bool as_it_should_be = map == (here.key == "header");
           if (!as_it_should_be) fail_kind(!map);
           aside_ = 1;
+          if (!map && of_job_) record(Json::array());
           return;
         }
         return here.key == "joint_names" ? push(!map, Level::kNames) : push(!map, Level::kPoints);
@@ -67,6 +70,7 @@ class Message {
 
   void end() {
     if (aside_ > 0) {
+      if (!open_.empty()) open_.pop_back();
       if (--aside_ == 0) levels_.back().key.clear();
       return;
     }
@@ -96,12 +100,16 @@ class Message {
   void scalar(const std::string& text, int line, Scalar kind) {
     line_ = line;
     if (done_) fail("holds more than one message", "one");
-    if (aside_ > 0) return;
+    if (aside_ > 0) {
+      if (!open_.empty()) record_scalar(text, kind);
+      return;
+    }
     if (levels_.empty()) fail("is no map", kKeys);
     Here& here = levels_.back();
     switch (here.level) {
       case Level::kNames:
-        if (names_.size() == kDof) fail("has more than 7 names", allowed());
+        if (names_.size() == rows_.joint_count())
+          fail("has more than " + std::to_string(rows_.joint_count()) + " names", allowed());
         if (kind == Scalar::kNumber) fail("is " + text, "the name of a joint, in quotes");
         names_.push_back(text);
         return;
@@ -128,6 +136,7 @@ class Message {
 
   void null(int line) {
     line_ = line;
+    if (!open_.empty()) return record(nullptr);
     if (aside_ > 0 || done_) return;  // of the empty document behind the last line "---"
     fail("is null", kKeys);
   }
@@ -146,7 +155,7 @@ class Message {
     bad_input(where, what, allowed);
   }
 
-  [[nodiscard]] TrajectoryFile finish() {
+  [[nodiscard]] FileRows finish() {
     if (!done_) fail("holds no message", kKeys);
     rows_.joints(names_, file_ + ": joint_names");
     std::size_t at = 0;
@@ -164,10 +173,13 @@ class Message {
       rows_.add(nanoseconds_[k], values[0], values[1], values[2],
                 at_line(file_, lines_[k]) + ": points[" + std::to_string(k) + "]");
     }
-    return rows_.finish();
+    FileRows read{file_, rows_.finish()};
+    if (events_) read.events = events_->get<std::vector<Json>>();
+    return read;
   }
 
  private:
+  using Json = nlohmann::json;
   static constexpr const char* kKeys =
       "trajectory_msgs/msg/JointTrajectory: header, joint_names, points of positions, velocities, "
       "accelerations, effort and "
@@ -185,7 +197,43 @@ class Message {
     std::array<std::int8_t, 3> order{-1, -1, -1};
   };
 
-  [[nodiscard]] std::string allowed() const { return "one for each of the arm's joints"; }
+  [[nodiscard]] std::string allowed() const {
+    return rows_.joint_count() == kDof ? "one for each of the arm's joints"
+                                       : "one for each joint of both arms";
+  }
+
+  /// Adds a value to the innermost list or map of the events that is not ended, and enters it if it
+  /// is one itself. The first one is the list of all events.
+  void record(Json value) {
+    constexpr int kMostValues = 1'000'000;  // each takes many times its bytes
+    if (++values_ > kMostValues) fail("has too many values", std::to_string(kMostValues));
+    const bool enter = value.is_structured();
+    Json* added = nullptr;
+    if (open_.empty()) {
+      added = &events_.emplace(std::move(value));
+    } else if (open_.back()->is_array()) {
+      added = &open_.back()->emplace_back(std::move(value));
+    } else {
+      if (!event_key_) fail("a key is no word", "words for keys of events");
+      const auto [place, is_new] = open_.back()->emplace(*event_key_, std::move(value));
+      if (!is_new) fail("key '" + *event_key_ + "' is there twice", "each key once");
+      event_key_.reset();
+      added = &*place;
+    }
+    if (enter) open_.push_back(added);
+  }
+  /// Adds a number, a text or a key to the events.
+  void record_scalar(const std::string& text, Scalar kind) {
+    if (open_.back()->is_object() && !event_key_) {
+      event_key_ = text;
+      return;
+    }
+    const auto number = to_number<double>(text);
+    if (kind == Scalar::kText || !number || !std::isfinite(*number))
+      record(text);
+    else
+      record(*number);
+  }
   [[noreturn]] void fail_kind(bool map) const { fail(map ? "is no map" : "is no list", kKeys); }
   void push(bool as_it_should_be, Level level) {
     if (!as_it_should_be)
@@ -221,7 +269,8 @@ class Message {
     if (which_ < 0) return;
     Sizes& sizes = sizes_.back();
     std::uint8_t& count = sizes.count[static_cast<std::size_t>(which_)];
-    if (count == kDof) fail("has more than 7 numbers", allowed());
+    if (count == rows_.joint_count())
+      fail("has more than " + std::to_string(rows_.joint_count()) + " numbers", allowed());
     if (count++ == 0)
       *std::find(sizes.order.begin(), sizes.order.end(), -1) = static_cast<std::int8_t>(which_);
     numbers_.push_back(*value);
@@ -240,6 +289,11 @@ class Message {
   std::vector<Sizes> sizes_;
   std::vector<std::int64_t> nanoseconds_;
   std::vector<int> lines_;
+  bool of_job_;                           // events are wanted
+  std::optional<Json> events_;            // the list of all, once it has begun
+  std::vector<Json*> open_;               // lists and maps of events that are not ended
+  std::optional<std::string> event_key_;  // whose value is due
+  int values_ = 0;                        // of events
 };
 
 class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
@@ -305,21 +359,21 @@ class YamlEvents final : public YAML::EventHandler {
 
 }  // namespace
 
-TrajectoryFile read_joint_trajectory_json(const std::string& file, std::string_view text,
-                                          const JointNames& joint_names) {
-  Message message(joint_names, file);
+FileRows read_joint_trajectory_json(const std::string& file, std::string_view text,
+                                    const Sought& sought) {
+  Message message(sought, file);
   JsonEvents events(message, file);
   (void)nlohmann::json::sax_parse(text, &events);
   return message.finish();
 }
 
-TrajectoryFile read_joint_trajectory_yaml(const std::string& file, const std::string& text,
-                                          const JointNames& joint_names) {
+FileRows read_joint_trajectory_yaml(const std::string& file, const std::string& text,
+                                    const Sought& sought) {
   if (text.size() > kMostYamlMotionBytes)
     bad_input(file, "is too large",
               "YAML of at most " + std::to_string(kMostYamlMotionBytes >> 20) +
                   " MiB; JSON may be larger");
-  Message message(joint_names, file);
+  Message message(sought, file);
   YamlEvents events(message);
   std::istringstream stream(text);
   try {

@@ -121,8 +121,12 @@ constexpr const char* kProcessEvent =
     R"("t": {"type": "number", "description": "s since the motion began"}, )"
     R"("stroke": {"type": "string", "description": "name of the stroke"}, )"
     R"("s": {"type": "number", "description": "m along its path, the approach included"}, )"
-    R"("process": {"type": "string", "enum": ["on", "off"]}}, )"
-    R"("required": ["t", "stroke", "s", "process"]})";
+    R"("process": {"type": "string", "enum": ["on", "off"]}, )"
+    R"("run": {"type": "object", "description": "Where the stroke's rows begin and end, approach )"
+    R"(and retract included.", "properties": {)"
+    R"("t": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}, )"
+    R"("s": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}}}, )"
+    R"("required": ["t", "stroke", "s", "process", "run"]})";
 
 std::uint64_t nanoseconds(double t) {
   const Stamp stamp = stamp_of(t);
@@ -137,8 +141,7 @@ struct Topic {
 };
 constexpr Topic kJointStates{
     1, 0, "sensor_msgs/msg/JointState", "ros2msg", kJointState, "/joint_states", "cdr"};
-constexpr Topic kProcess{2,          1,     "swivel.ProcessEvent", "jsonschema", kProcessEvent,
-                         "/process", "json"};
+constexpr Topic kProcess{2, 1, kProcessSchema, "jsonschema", kProcessEvent, "/process", "json"};
 
 std::string schema_record(const Topic& topic) {
   return record(kSchema, Bytes()

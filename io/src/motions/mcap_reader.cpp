@@ -2,6 +2,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -87,10 +88,10 @@ std::uint32_t crc32(std::string_view bytes) {
 
 class Log {
  public:
-  Log(const std::string& file, const JointNames& joint_names)
-      : file_(file), rows_(joint_names, file) {}
+  Log(const std::string& file, const Sought& sought)
+      : file_(file), of_job_(sought.job), rows_(sought.arms, file) {}
 
-  TrajectoryFile read(std::string_view bytes) {
+  FileRows read(std::string_view bytes) {
     Cursor cursor(bytes, file_);
     if (cursor.raw(kMcapMagic.size()) != kMcapMagic)
       bad_input(file_, "is no MCAP file of version 0", "one that begins with its mark");
@@ -98,13 +99,13 @@ class Log {
     while (!whole) whole = record(cursor, false) == kDataEnd;
     if (!topic_)
       bad_input(file_, "has no joint states", "one topic of sensor_msgs/msg/JointState in CDR");
-    return rows_.finish();
+    return {.file = file_, .arms = rows_.finish(), .events = std::move(events_)};
   }
 
  private:
   struct Channel {
     std::string topic;
-    bool joint_states = false;
+    bool joint_states = false, events = false;
   };
 
   /// Reads a record and returns its opcode.
@@ -117,30 +118,35 @@ class Log {
         const std::string_view name = content.counted(), encoding = content.counted();
         if (name == "sensor_msgs/msg/JointState" && encoding == "ros2msg")
           joint_state_schemas_.insert(id);
+        if (name == kProcessSchema) event_schemas_.insert(id);
         break;
       }
       case kChannel: {
         const auto id = content.number<std::uint16_t>();
-        const bool joint_states = joint_state_schemas_.contains(content.number<std::uint16_t>());
+        const auto schema = content.number<std::uint16_t>();
+        const bool joint_states = joint_state_schemas_.contains(schema),
+                   events = of_job_ && event_schemas_.contains(schema);
         const std::string topic(content.counted());
         if (joint_states && content.counted() != "cdr")
           bad_input(file_ + ": topic '" + topic + "'", "is not in CDR", "CDR");
-        channels_.insert_or_assign(id, Channel{topic, joint_states});
+        channels_.insert_or_assign(id, Channel{topic, joint_states, events});
+        if (events && !events_) events_.emplace();
         break;
       }
       case kMessage: {
         const auto channel = channels_.find(content.number<std::uint16_t>());
         if (channel == channels_.end())
           bad_input(file_, "has a message of an unknown channel", "channels before their messages");
-        if (!channel->second.joint_states) break;
         const std::string& topic = channel->second.topic;
+        if (!channel->second.joint_states) {
+          if (channel->second.events) event(content, topic);
+          break;
+        }
         if (topic_ && *topic_ != topic)
           bad_input(file_, "has joint states on '" + *topic_ + "' and '" + topic + "'",
                     "one topic with joint states");
         topic_ = topic;
-        // sequence, log time, publish time
-        content.raw(sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t));
-        message(content.raw(content.left()));
+        message(body_of(content));
         break;
       }
       case kChunk:
@@ -170,6 +176,25 @@ class Log {
     for (Cursor cursor(records, file_); !cursor.at_end();) record(cursor, true);
   }
 
+  /// Returns the text of a message, behind its sequence, log time and publish time.
+  static std::string_view body_of(Cursor& content) {
+    content.raw(sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t));
+    return content.raw(content.left());
+  }
+
+  /// Reads an event of a job's process.
+  void event(Cursor& content, const std::string& topic) {
+    constexpr std::size_t kMostBytes = 16 << 20;  // a value takes many times its bytes
+    const std::string where =
+        file_ + ": message " + std::to_string(events_->size()) + " of '" + topic + "'";
+    const std::string_view text = body_of(content);
+    event_bytes_ += text.size();
+    if (event_bytes_ > kMostBytes) bad_input(where, "is too much", "events of at most 16 MiB");
+    nlohmann::json read = nlohmann::json::parse(text, nullptr, false);
+    if (read.is_discarded()) bad_input(where, "is not JSON", "messages in JSON");
+    events_->push_back(std::move(read));
+  }
+
   void message(std::string_view bytes) {
     where_ = file_ + ": message " + std::to_string(messages_++) + " of '" + *topic_ + "'";
     if (!bytes.starts_with(kLittleEndianCdr))
@@ -183,7 +208,7 @@ class Log {
     std::vector<std::string> names;
     for (std::uint32_t k = 0; k < count; ++k) {
       names.emplace_back(cursor.aligned_text());
-      if (names.size() > kDof + 1) break;  // refused below, whatever follows
+      if (names.size() > rows_.joint_count()) break;  // refused below, whatever follows
     }
     rows_.joints(names, where_);
     const std::vector<double> q = cursor.aligned_numbers(), v = cursor.aligned_numbers();
@@ -193,8 +218,11 @@ class Log {
   }
 
   const std::string& file_;
+  bool of_job_;  // events are wanted
   JointRows rows_;
-  std::set<std::uint16_t> joint_state_schemas_;
+  std::optional<std::vector<nlohmann::json>> events_;
+  std::size_t event_bytes_ = 0;  // of their texts
+  std::set<std::uint16_t> joint_state_schemas_, event_schemas_;
   std::map<std::uint16_t, Channel> channels_;
   std::optional<std::string> topic_;
   std::string where_;
@@ -204,9 +232,8 @@ class Log {
 
 }  // namespace
 
-TrajectoryFile read_mcap(const std::string& file, std::string_view text,
-                         const JointNames& joint_names) {
-  return Log(file, joint_names).read(text);
+FileRows read_mcap(const std::string& file, std::string_view text, const Sought& sought) {
+  return Log(file, sought).read(text);
 }
 
 }  // namespace swivel::io

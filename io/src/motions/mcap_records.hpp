@@ -9,6 +9,8 @@ namespace swivel::io {
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 /// The four bytes before a message in Common Data Representation: little-endian, no options.
 inline constexpr std::string_view kLittleEndianCdr{"\0\1\0\0", 4};
+/// The schema of the messages that say when the process of a job is switched.
+inline constexpr const char* kProcessSchema = "swivel.ProcessEvent";
 
 /// The first byte of a record, which tells its kind.
 enum Opcode : std::uint8_t {

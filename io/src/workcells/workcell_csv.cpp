@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
+#include <utility>
 
-#include "files/bad_input.hpp"
 #include "files/csv.hpp"
-#include "files/files.hpp"
 #include "motions/given_rows.hpp"
 #include "motions/messages.hpp"
 #include "swivel/io/workcells/workcell_csv.hpp"
@@ -12,16 +10,12 @@ namespace swivel::io {
 
 namespace {
 
-constexpr std::size_t kBeforeJoints = 6;  // s, phi and branch of both arms
-
-std::vector<std::string> workcell_motion_header(const std::array<std::string, 2>& names,
-                                                const std::array<JointNames, 2>& joint_names,
-                                                RollColumns rolls = RollColumns::kOfArms) {
-  std::vector<std::string> columns = workcell_columns(names, joint_names, rolls);
-  const std::vector<std::string> joints(columns.begin() + kBeforeJoints, columns.end());
+std::vector<std::string> workcell_motion_header(const std::vector<ArmColumns>& arms) {
+  std::vector<std::string> columns = workcell_columns(arms);
   columns.insert(columns.begin(), "t");
   for (const char* const what : {"_v", "_a"})
-    for (const std::string& joint : joints) columns.push_back(joint + what);
+    for (const ArmColumns& arm : arms)
+      for (std::size_t j = 0; j < kDof; ++j) columns.push_back(arm.name(j) + what);
   return columns;
 }
 
@@ -41,67 +35,20 @@ std::string fields_of(const std::array<const TrajectoryRow*, 2>& rows) {
   return text;
 }
 
-/// Returns the row of an arm from the values of a line, without those of times.
-TrajectoryRow row_of(const std::span<const double>& values, std::size_t arm,
-                     const std::string& where, const std::string& name) {
-  TrajectoryRow row;
-  row.s = values[arm];
-  row.phi = values[2 + arm];
-  const double branch = values[4 + arm];
-  if (!(branch >= 0 && branch <= 7) || branch != std::floor(branch))
-    bad_input(where + ": branch_" + name, "is " + csv_number(branch), "a whole number from 0 to 7");
-  row.branch = static_cast<int>(branch);
-  for (std::size_t j = 0; j < kDof; ++j)
-    row.q[static_cast<Eigen::Index>(j)] = values[kBeforeJoints + kDof * arm + j];
-  return row;
-}
-
-/// Returns the rows of a table of either form.
-WorkcellRows rows_of(const CsvTable& table, bool timed, const std::array<std::string, 2>& names) {
-  WorkcellRows read;
-  for (std::size_t k = 0; k < table.rows(); ++k)
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-      const std::span<const double> all = table.row(k), values = all.subspan(timed ? 1 : 0);
-      read.rows[arm].push_back(row_of(values, arm, table.where(k), names[arm]));
-      if (!timed) continue;
-      TimedRow row;
-      row.t = all[0];
-      row.row = read.rows[arm].back();
-      if (k > 0 && !(row.t > read.timed[arm].back().t))
-        bad_input(table.where(k) + ": t", "is " + csv_number(row.t),
-                  "times that ascend from row to row");
-      for (std::size_t j = 0; j < kDof; ++j) {
-        const auto joint = static_cast<Eigen::Index>(j);
-        row.v[joint] = values[kBeforeJoints + kDof * (2 + arm) + j];
-        row.a[joint] = values[kBeforeJoints + kDof * (4 + arm) + j];
-      }
-      read.timed[arm].push_back(row);
-    }
-  return read;
-}
-
 }  // namespace
 
 std::string to_workcell_csv(const WorkcellResult& result) {
-  std::string text = header_line(
-      workcell_columns(result.names, {result.arms[0].joint_names, result.arms[1].joint_names}));
+  std::string text = header_line(workcell_columns(
+      arms_of_workcell(result.names, {result.arms[0].joint_names, result.arms[1].joint_names})));
   const auto &first = result.arms[0].trajectory, &second = result.arms[1].trajectory;
   for (std::size_t k = 0; k < first.size(); ++k) text += fields_of({&first[k], &second[k]}) + '\n';
   return text;
 }
 
-std::array<std::vector<TrajectoryRow>, 2> load_workcell_csv(
-    const std::filesystem::path& csv, const std::array<std::string, 2>& names,
-    const std::array<JointNames, 2>& joint_names) {
-  std::vector<std::vector<std::string>> headers{workcell_columns(names, joint_names)};
-  if (have_roll(joint_names))
-    headers.push_back(workcell_columns(names, joint_names, RollColumns::kPlain));
-  return rows_of(CsvTable(csv, headers), false, names).rows;
-}
-
 std::string to_workcell_motion_csv(const WorkcellMotion& motion,
                                    const std::array<JointNames, 2>& joint_names) {
-  std::string text = header_line(workcell_motion_header(motion.names, joint_names));
+  std::string text =
+      header_line(workcell_motion_header(arms_of_workcell(motion.names, joint_names)));
   const auto &first = motion.arms[0].rows, &second = motion.arms[1].rows;
   for (std::size_t k = 0; k < first.size(); ++k) {
     text += csv_number(first[k].t) + ',' + fields_of({&first[k].row, &second[k].row});
@@ -126,17 +73,17 @@ std::string workcell_motion_text(const WorkcellMotion& motion,
   return mcap_log(both);
 }
 
-WorkcellRows load_workcell_rows(const std::filesystem::path& csv,
+WorkcellRows load_workcell_rows(const std::filesystem::path& file,
                                 const std::array<std::string, 2>& names,
                                 const std::array<JointNames, 2>& joint_names) {
-  std::vector<std::vector<std::string>> headers;
-  for (const RollColumns rolls : {RollColumns::kOfArms, RollColumns::kPlain}) {
-    if (rolls == RollColumns::kPlain && !have_roll(joint_names)) break;
-    headers.push_back(workcell_columns(names, joint_names, rolls));
-    headers.push_back(workcell_motion_header(names, joint_names, rolls));
+  FileRows all = read_rows(file, {.arms = arms_of_workcell(names, joint_names)});
+  WorkcellRows read;
+  for (std::size_t arm = 0; arm < 2; ++arm) {
+    read.rows[arm] = std::move(all.arms[arm].rows);
+    read.timed[arm] = std::move(all.arms[arm].timed);
+    read.stated[arm] = all.arms[arm].stated;
   }
-  const CsvTable table(csv, headers);
-  return rows_of(table, table.header() % 2 == 1, names);
+  return read;
 }
 
 }  // namespace swivel::io

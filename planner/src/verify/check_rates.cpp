@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/timing/time_path.hpp"
@@ -224,12 +225,18 @@ std::optional<CheckResult::Motion> examine_rates(
   return check.motion();
 }
 
-std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows) {
+void complete_rates(std::vector<TimedRow>& rows, const Stated& stated) {
+  if (rows.size() < 2 || (stated.v && stated.a && stated.last_joint)) return;
   const Samples samples(rows);
-  std::vector<RowRates> rates;
+  std::vector<std::pair<Config, Config>> rates;
   for (std::ptrdiff_t k = 0; k < samples.size(); ++k)
-    rates.push_back({samples.mean_speed(k), samples.acceleration(k)});
-  return rates;
+    rates.emplace_back(samples.mean_speed(k), samples.acceleration(k));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (Eigen::Index j = 0; j < kDof; ++j) {
+      const bool joint = stated.last_joint || j + 1 < kDof;
+      if (!stated.v || !joint) rows[k].v[j] = rates[k].first[j];
+      if (!stated.a || !joint) rows[k].a[j] = rates[k].second[j];
+    }
 }
 
 }  // namespace swivel

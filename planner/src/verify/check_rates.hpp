@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/stated.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/planner/verify/check.hpp"
 
@@ -19,12 +20,9 @@ namespace swivel {
     const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
     const std::function<void(const std::string&)>& fail);
 
-/// The speed and acceleration of the joints at one row, rad/s and rad/s^2.
-struct RowRates {
-  Config v, a;
-};
-/// Returns speed and acceleration at each row of a motion of at least two rows, by its joints and
-/// times. examine_rates() compares the stated ones with these. Times must ascend.
-[[nodiscard]] std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows);
+/// Computes what the file of a motion does not state of the speeds and accelerations of its rows,
+/// rad/s and rad/s^2: those of the joints over the times, at rest before the first row and after
+/// the last. examine_rates() compares stated ones with these. Times must ascend.
+void complete_rates(std::vector<TimedRow>& rows, const Stated& stated);
 
 }  // namespace swivel

@@ -384,16 +384,7 @@ std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem&
     places =
         completion_of(robot, with_motion_defaults(problem), places, stated, true, budget)->rows();
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k].row = places[k];
-  if (rows.size() < 2 || (stated.v && stated.a && stated.last_joint)) return rows;
-  const std::vector<RowRates> rates = rates_of_joints(rows);
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    TimedRow& row = rows[k];
-    for (Eigen::Index j = 0; j < kDof; ++j) {
-      const bool joint = stated.last_joint || j + 1 < kDof;
-      if (!stated.v || !joint) row.v[j] = rates[k].v[j];
-      if (!stated.a || !joint) row.a[j] = rates[k].a[j];
-    }
-  }
+  complete_rates(rows, stated);
   return rows;
 }
 

@@ -20,6 +20,7 @@
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
+#include "swivel/planner/workcell/complete_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
 #include "workcells/workcell_archive.hpp"
@@ -175,6 +176,19 @@ std::optional<TimingOptions> timing_of(std::optional<double> speed,
   return timing;
 }
 
+/// Computes what a file does not state of the rows of both arms. Throws InputError.
+void complete(const PreparedWorkcell& prepared, io::WorkcellRows& read,
+              const std::filesystem::path& file, const Budget& budget) {
+  try {
+    if (read.timed[0].empty())
+      read.rows = complete_rows(prepared, std::move(read.rows), read.stated, budget);
+    else
+      read.timed = complete_motion(prepared, std::move(read.timed), read.stated, budget);
+  } catch (const InputError& error) {
+    throw InputError(file.string(), error.what());
+  }
+}
+
 using Checked = std::variant<WorkcellPlan, WorkcellMotion, py::dict, std::filesystem::path>;
 WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
   const auto cell = to_core(of);
@@ -194,8 +208,10 @@ WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
       given = io::load_workcell_rows(
           *file, names,
           {prepared->robot(0).arm().chain.joint_names, prepared->robot(1).arm().chain.joint_names});
-    if (given.timed[0].empty()) return {check_workcell(*prepared, given.rows, options)};
-    prepared.emplace(with_motion_defaults(*cell), options.budget);
+    const bool timed = !given.timed[0].empty();
+    if (timed) prepared.emplace(with_motion_defaults(*cell), options.budget);
+    if (file != nullptr) complete(*prepared, given, *file, options.budget);
+    if (!timed) return {check_workcell(*prepared, given.rows, options)};
     return {check_workcell_motion(*prepared, given.timed, options)};
   });
 }
@@ -543,7 +559,8 @@ void bind_workcell(py::module_& m) {
         "Proves the trajectories of two arms from the workcell alone, or says what is wrong with "
         "them: WorkcellCheck.\n\n"
         "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, a WorkcellMotion, "
-        "name -> Trajectory or Motion, or the name of a CSV file. Raises InputError and "
+        "name -> Trajectory or Motion, or the name of a file of either, of any format. Raises "
+        "InputError and "
         "InvalidArgument.");
 }
 

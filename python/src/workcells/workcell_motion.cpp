@@ -10,6 +10,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/workcell/complete_workcell.hpp"
 #include "workcells/workcell_archive.hpp"
 
 namespace swivel::python {
@@ -38,17 +39,23 @@ TimingOptions timing_of(const swivel::Workcell& cell, std::optional<double> spee
   return timing;
 }
 
-/// Returns trajectories of both arms. Throws InputError for a file with times, and ValueError for
-/// motions and for a plan without trajectories.
+/// Returns trajectories of both arms, those of a motion in a file at the layers of their paths.
+/// `prepared` is that of the workcell with_motion_defaults(). Throws InputError, and ValueError for
+/// motions that are no files and for a plan without trajectories.
 std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const PreparedWorkcell& prepared,
-                                                       const std::filesystem::path& file) {
+                                                       const swivel::Workcell& cell,
+                                                       const std::filesystem::path& file,
+                                                       const Budget& budget) {
   io::WorkcellRows read = io::load_workcell_rows(
       file, {prepared.name(0), prepared.name(1)},
       {prepared.robot(0).arm().chain.joint_names, prepared.robot(1).arm().chain.joint_names});
-  if (!read.timed[0].empty())
-    throw InputError(file.string(),
-                     "has times: allowed is the trajectory of a workcell without them");
-  return std::move(read.rows);
+  try {
+    if (!read.timed[0].empty()) return rows_at_layers(prepared, read.timed, read.stated, budget);
+    if (read.stated[0].rows() && read.stated[1].rows()) return std::move(read.rows);
+    return complete_rows(PreparedWorkcell(cell, budget), std::move(read.rows), read.stated, budget);
+  } catch (const InputError& error) {
+    throw InputError(file.string(), error.what());
+  }
 }
 std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const WorkcellPlan& plan) {
   std::array<std::vector<TrajectoryRow>, 2> rows;
@@ -83,7 +90,7 @@ WorkcellMotion time(const WorkcellOrFile& of, const WorkcellTrajectories& rows,
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
     const PreparedWorkcell prepared(with_motion_defaults(*cell), budget);
-    if (file != nullptr) given = untimed_rows(prepared, *file);
+    if (file != nullptr) given = untimed_rows(prepared, *cell, *file, budget);
     for (std::size_t k = 0; k < 2; ++k)
       made.joint_names[k] = prepared.robot(k).arm().chain.joint_names;
     if (refine) {
@@ -180,7 +187,8 @@ void bind_workcell_motion(py::module_& m) {
         "Makes trajectories of two arms one motion in time, and proves it, as `swivel time "
         "WORKCELL` does: WorkcellMotion.\n\n"
         "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, name -> Trajectory, "
-        "or the name of a CSV file. speed: m/s of the faster tool; without it that of the "
+        "or the name of a file of a trajectory or a motion, whose times are left aside. speed: m/s "
+        "of the faster tool; without it that of the "
         "workcell's limits holds. turn_speed: rad/s. rate: samples a second. refine: refine both "
         "trajectories first. timeout: s, or None. Raises InputError, InvalidArgument and "
         "TimeoutError.");

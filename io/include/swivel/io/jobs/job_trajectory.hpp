@@ -28,15 +28,16 @@ struct JobTrajectoryPart {
   std::size_t first_process = 0, last_process = 0;
 };
 
-/// A job's trajectory as read from a file.
+/// A job's trajectory as read from a file. Values that the file does not state are 0.
 struct JobTrajectory {
   std::vector<JobTrajectoryPart> parts;
-  bool rolls = false;  ///< whether the file has the column `roll`
+  Stated stated;  ///< complete_parts() works out the rest
 };
 
-/// Loads what to_job_csv() writes, for the joints of an arm. Throws InputError, by row, for columns
-/// other than these in this order, for strokes that come twice, for transitions that follow each
-/// other, for parts of one row, and for strokes whose `process` is nowhere 1 or at two places.
+/// Loads the trajectory of a job, for the joints of an arm: CSV with columns by name, as of one
+/// path, and `stroke` and `process`. Throws InputError, by row, for strokes that come twice, for
+/// transitions that follow each other, for parts of one row, for strokes whose `process` is nowhere
+/// 1 or at two places, and for a file with times.
 [[nodiscard]] JobTrajectory load_job_trajectory(const std::filesystem::path& csv,
                                                 const JointNames& joint_names);
 
@@ -50,23 +51,26 @@ struct JobTrajectory {
 /// Returns the motion of a job in the format of the file name's ending: .csv as
 /// to_job_motion_csv(), .json or .yaml as to_trajectory_json() and to_trajectory_yaml(), with the
 /// events of the process as the key `events`, .mcap as to_mcap(), with the events as messages in
-/// JSON on the topic /process. Throws InputError for any other ending, and as to_job_motion_csv().
+/// JSON on the topic /process. Each event says from when to when, and from where to where, the run
+/// of its stroke goes. Throws InputError for any other ending, and as to_job_motion_csv().
 [[nodiscard]] std::string job_motion_text(const JobMotion& motion, const Job& job,
                                           const JointNames& joint_names,
                                           const std::string& frame_id,
                                           const std::filesystem::path& file);
 
-/// The motion of a job as read from a file.
+/// The motion of a job as read from a file. Values of rows that the file does not state are 0; s of
+/// an event that it does not state is not a number.
 struct JobMotionFile {
   JobMotion motion;                  ///< its rows, parts, rate, duration, events and roll
   std::vector<std::size_t> strokes;  ///< of its runs, in their order: indices in Job::strokes
+  Stated stated;                     ///< complete_job_motion() works out the rest
 };
-/// Loads what to_job_motion_csv() writes, for a job and the joints of its arm. Throws InputError,
-/// by row, for columns other than these in this order, for times that do not begin at 0 or do not
-/// ascend, for strokes that the job does not have or that come twice, for strokes without a
-/// transition between them or, if the job has a home, from it or to it, and for strokes whose
-/// `process` is nowhere 1 or at two places.
-[[nodiscard]] JobMotionFile load_job_motion(const std::filesystem::path& csv, const Job& job,
+/// Loads the motion of a job, for the joints of its arm: all formats of job_motion_text(), CSV with
+/// columns by name, as of one path, and `stroke` and `process`. Throws InputError, by row, for
+/// times that do not ascend, for strokes that the job does not have or that come twice, for strokes
+/// without a transition between them or, if the job has a home, from it or to it, for strokes whose
+/// `process` is nowhere 1 or at two places, and for a file without times.
+[[nodiscard]] JobMotionFile load_job_motion(const std::filesystem::path& file, const Job& job,
                                             const JointNames& joint_names);
 
 /// Rows of a job as read from a file, with the job of which they are: where the file has lift-offs,
@@ -79,12 +83,12 @@ struct ExecutedJobRows {
 /// "<stroke>/1", "<stroke>/2", ..., whose s is that of the whole stroke. Throws InputError, by row,
 /// for runs that are not in this order, that leave some of the stroke out, or that overlap by less
 /// than LiftOffs::overlap.
-[[nodiscard]] ExecutedJobRows load_executed_rows(const std::filesystem::path& csv, const Job& job,
+[[nodiscard]] ExecutedJobRows load_executed_rows(const std::filesystem::path& file, const Job& job,
                                                  const JointNames& joint_names);
 
-/// Loads a job's motion by load_job_motion() if the file's first column is `t`, else its trajectory
-/// by load_job_trajectory(). It reads the file once, which may be a pipe. Throws InputError.
+/// Loads a job's motion as load_job_motion() does if the file has times, else its trajectory as
+/// load_job_trajectory() does. It reads the file once, which may be a pipe. Throws InputError.
 [[nodiscard]] std::variant<JobTrajectory, JobMotionFile> load_job_rows(
-    const std::filesystem::path& csv, const Job& job, const JointNames& joint_names);
+    const std::filesystem::path& file, const Job& job, const JointNames& joint_names);
 
 }  // namespace swivel::io

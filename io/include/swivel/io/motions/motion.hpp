@@ -48,11 +48,9 @@ struct TrajectoryFile {
 };
 /// Describes the files that load_trajectory_file() reads, for the help of commands.
 inline constexpr const char* kTrajectoryFile =
-    "any trajectory or motion of the arm: CSV with columns by name (the joints are enough; t, s, "
-    "phi, roll, branch, and joints "
-    "with "
-    "_v and _a may be there), JSON or YAML (JointTrajectory), MCAP (JointState); the contents tell "
-    "which";
+    "any trajectory or motion of the arm or of both: CSV with columns by name (the joints are "
+    "enough, of jobs with stroke and process; t, s, phi, roll, branch, and joints with _v and _a "
+    "may be there), JSON or YAML (JointTrajectory), MCAP (JointState); the contents tell which";
 /// Loads a trajectory of the arm, docs/formats.md "Trajectories that are read": all that Swivel
 /// writes, and CSV files, JointTrajectory messages and JointState logs of other programs. The
 /// file's contents tell the format. Throws InputError unless every joint of the arm is there and no

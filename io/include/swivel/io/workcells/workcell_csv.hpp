@@ -15,13 +15,6 @@ namespace swivel::io {
 /// Returns the trajectories of both arms as CSV, one row for each layer: for each arm s, phi and
 /// branch, named after it, then the joints of both by name. Rolls are not in it.
 [[nodiscard]] std::string to_workcell_csv(const WorkcellResult& result);
-/// Loads what to_workcell_csv() writes. `names` and `joint_names` are those of both arms. Throws
-/// InputError, by row, for other columns, numbers that are not finite and branches other than 0 to
-/// 7.
-[[nodiscard]] std::array<std::vector<TrajectoryRow>, 2> load_workcell_csv(
-    const std::filesystem::path& csv, const std::array<std::string, 2>& names,
-    const std::array<JointNames, 2>& joint_names);
-
 /// Returns a timed motion of both arms as CSV, one row for each sample: the column t, those of
 /// to_workcell_csv(), then the joints of both with _v (rad/s) and _a (rad/s^2).
 [[nodiscard]] std::string to_workcell_motion_csv(const WorkcellMotion& motion,
@@ -34,14 +27,17 @@ namespace swivel::io {
                                                const std::string& frame_id,
                                                const std::filesystem::path& file);
 
-/// The rows of a workcell as read from a file.
+/// The rows of a workcell as read from a file, by arm. Values that the file does not state are 0.
 struct WorkcellRows {
   std::array<std::vector<TrajectoryRow>, 2> rows;
   std::array<std::vector<TimedRow>, 2> timed;  ///< these rows with times, if the file has times
+  std::array<Stated, 2> stated;                ///< complete_rows() works out the rest
 };
-/// Loads what to_workcell_csv() or to_workcell_motion_csv() writes. Throws InputError as
-/// load_workcell_csv() does, and for times that do not ascend.
-[[nodiscard]] WorkcellRows load_workcell_rows(const std::filesystem::path& csv,
+/// Loads trajectories or a motion of both arms: all that is written of workcells, and files of
+/// other programs. As load_trajectory_file() does of one arm, it takes CSV with columns by name,
+/// those of an arm (s, phi, branch, a roll) with "_" and its name, JSON or YAML (JointTrajectory)
+/// and MCAP (JointState). `names` and `joint_names` are those of both arms. Throws InputError.
+[[nodiscard]] WorkcellRows load_workcell_rows(const std::filesystem::path& file,
                                               const std::array<std::string, 2>& names,
                                               const std::array<JointNames, 2>& joint_names);
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <vector>
+
+#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/stated.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/motion/job_motion.hpp"
+#include "swivel/core/problem/job.hpp"
+
+namespace swivel {
+
+class PreparedRobot;
+
+/// Computes what the file of a job's trajectory does not state about the rows of its runs, as
+/// complete_rows() does of one path, and returns the parts. The roll of a six-joint arm, where the
+/// file has none, turns in transitions as the other joints move, from run to run. Throws as
+/// complete_rows() does, with the name of the stroke.
+[[nodiscard]] std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Job& job,
+                                                  std::vector<JobPart> parts, const Stated& stated,
+                                                  const Budget& budget = {});
+
+/// Computes what the file of a job's motion does not state about its rows, as complete_motion()
+/// does of one path, for check_job_motion(), and returns the motion. `order` has its runs. The s of
+/// an event becomes that of its row, if it is not a number or differs by at most 1e-6 m. Throws as
+/// complete_motion() does, with the name of the stroke.
+[[nodiscard]] JobMotion complete_job_motion(const PreparedRobot& robot, const Job& job,
+                                            const std::vector<StrokeRun>& order, JobMotion motion,
+                                            const Stated& stated, const Budget& budget = {});
+
+/// Returns the parts of a job's motion, whose times are left aside, for time_job(): the rows of
+/// runs at the layers of with_motion_defaults(job), as rows_at_layers() finds them, and of
+/// transitions the corners alone, between which the joints of all samples move straight (1e-6 rad).
+/// `order` has the runs of the motion, whose rows state everything. Throws as rows_at_layers()
+/// does, with the name of the stroke.
+[[nodiscard]] std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Job& job,
+                                                   const std::vector<StrokeRun>& order,
+                                                   const JobMotion& motion,
+                                                   const Budget& budget = {});
+
+}  // namespace swivel
