@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/graph/verdicts/verdicts.hpp"
 
-#include <stdexcept>
-
 namespace swivel {
 
 Verdicts::Verdicts(const Lattice& lattice) : lattice_(&lattice) {
@@ -32,6 +30,7 @@ void Verdicts::clear() {
   known_.clear();
   begin_costs();
   cost_known_.clear();
+  set_last_.clear();
   exit_costs_.clear();
   edge_.clear();
   removed_edges_.clear();
@@ -91,7 +90,10 @@ std::vector<double>& Verdicts::costs_of(int layer) {
 void Verdicts::set_cost(int layer, int slot, double cost) {
   if (cost_known_.empty()) cost_known_.resize(node_.size());
   cost_known_[index(layer, slot)] = 1;
-  if (static_cast<std::size_t>(layer) + 1 == first_.size()) cost += exit_cost(slot);
+  if (static_cast<std::size_t>(layer) + 1 == first_.size()) {
+    set_last_[slot] = cost;
+    cost += exit_cost(slot);
+  }
   const double before = this->cost(layer, slot);
   if (cost == before) return;
   costs_of(layer)[static_cast<std::size_t>(slot)] = cost;
@@ -115,13 +117,12 @@ void Verdicts::raise_exit_costs(std::span<const double> costs) {
 
 void Verdicts::forget_exit_costs() {
   if (exit_costs_.empty()) return;
-  if (!cost_known_.empty())
-    throw std::logic_error("exit costs cannot be told from what nodes of the last layer cost");
   const int last = static_cast<int>(first_.size()) - 1;
   std::vector<double>& costs = costs_of(last);
   for (std::size_t slot = 0; slot < costs.size(); ++slot)
     costs[slot] =
         lattice_->has_node_costs() ? lattice_->node_cost(last, static_cast<int>(slot)) : 0.0;
+  for (const auto& [slot, cost] : set_last_) costs[static_cast<std::size_t>(slot)] = cost;
   exit_costs_.clear();
   pending.erase(last);
 }

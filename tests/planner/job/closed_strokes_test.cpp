@@ -247,8 +247,8 @@ void expect_plain_job(const RingArm& arm, const Job& job, bool any_order, const 
   Job ordered = job;
   ordered.order = StrokeOrder::kBest;
   const JobResult in_best = plan_job(robot, ordered);
-  ASSERT_LE(in_best.cost, found.cost + rounding) << what;
-  ASSERT_GE(in_best.cost, best - rounding) << what;
+  ASSERT_LE(in_best.lattice_cost, found.lattice_cost + rounding) << what;
+  ASSERT_GE(in_best.lattice_cost, best - rounding) << what;
 }
 
 TEST(ClosedStrokes, CostWhatAPlainProgramOverAllStartsSays) {

@@ -258,6 +258,27 @@ TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
   EXPECT_GE(solved, at_least(6));
 }
 
+TEST(PlanJob, TriesOrdersWhereTheRollCosts) {
+  Job job = load("ur5e_deburr_plate_job.yaml");
+  for (Stroke& stroke : job.strokes) {
+    stroke.cost.roll = 2;
+    stroke.resolution.ds = 0.03;
+    stroke.resolution.arc = 0.35;
+    stroke.limits.tool_path_error = 0.02;
+  }
+  job.order = StrokeOrder::kGiven;
+  const JobResult given = plan_job(job);
+  job.order = StrokeOrder::kBest;
+  const JobResult best = plan_job(job);
+  ASSERT_EQ(given.status, PlanStatus::kSolved);
+  ASSERT_EQ(best.status, PlanStatus::kSolved);
+  EXPECT_LE(best.cost, given.cost * (1 + 1e-12));
+  const PreparedRobot robot(problem_of_run(job, {0, false}));
+  const JobCheckResult check = check_job(robot, job, best.parts);
+  ASSERT_TRUE(check.passed) << check.failures.front();
+  EXPECT_NEAR(check.cost, best.cost, 1e-9);
+}
+
 /// Returns a problem's path cut in two strokes at its middle waypoint, without a start.
 Job halves(const char* name) {
   Problem whole = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);

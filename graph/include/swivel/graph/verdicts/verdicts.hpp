@@ -81,8 +81,8 @@ class Verdicts {
   /// slot, a multiple of 2^-40 Lattice::cost_unit() or infinite, not less than before. Values
   /// follow at the next CostToGo::repair() or sweep().
   void raise_exit_costs(std::span<const double> costs);
-  /// Sets all exit costs to 0 again; other verdicts stay. CostToGo::sweep() must follow. Throws
-  /// std::logic_error if set_cost() has been called.
+  /// Sets all exit costs to 0 again; other verdicts, and what set_cost() has set, stay.
+  /// CostToGo::sweep() must follow.
   void forget_exit_costs();
 
   /// A removed edge as one of its nodes sees it.
@@ -137,9 +137,10 @@ class Verdicts {
   ZeroedArray<Verdict> node_;
   // indices of nodes, in the order in which they became known
   std::vector<std::size_t> known_;
-  std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
-  std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is
-  std::vector<double> exit_costs_;          // by slot of the last layer; empty where all are 0
+  std::vector<std::vector<double>> costs_;    // [layer][slot], empty where all are 0
+  std::vector<std::uint8_t> cost_known_;      // of every node; empty where none is
+  std::unordered_map<int, double> set_last_;  // what set_cost() has set in the last layer, by slot
+  std::vector<double> exit_costs_;            // by slot of the last layer; empty where all are 0
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
   std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
   std::int64_t removed_ = 0;
