@@ -297,11 +297,12 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "bound",
           [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().bound); },
-          "No job in this order costs less, if its transitions are those that are found.")
+          "No job of the lattices' nodes in this order costs less, if its transitions are those "
+          "that are found.")
       .def_property_readonly(
           "bound_any",
           [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().bound_any); },
-          "No job in this order costs less, whatever its transitions.")
+          "No job of the lattices' nodes in this order costs less, whatever its transitions.")
       .def_property_readonly(
           "gap", [](const JobPlan& p) { return gap_of(p.result()); },
           "What the search minimised over bound, less 1: 0 where the job is optimal. None where "

@@ -53,7 +53,8 @@ std::string less_than(double cost, double bound) {
 /// Returns how near a job's cost is to the least.
 std::string bounds_text(const JobResult& result, const Job& job) {
   const bool other_orders = job.order == StrokeOrder::kBest && job.strokes.size() > 1;
-  const std::string none = std::string("none costs less") + (other_orders ? " in this order" : "");
+  const std::string none =
+      std::string("none costs less at this resolution") + (other_orders ? " in this order" : "");
   if (result.lattice_cost <= result.bound_any) return none + ", whatever the transitions";
   const std::string any =
       "whatever the transitions, " + less_than(result.lattice_cost, result.bound_any);

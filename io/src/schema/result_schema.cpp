@@ -592,14 +592,15 @@ std::vector<Schema::Key> job_answer_keys() {
           "of strokes, transitions and lift-offs; like all that describes the motion, `null` where "
           "there is none"),
       key("bound", or_null(number()),
-          "no job in this order and with these lift-offs costs less, in whatever directions of "
-          "`reversible` strokes, if its transitions are those that Swivel finds"),
+          "no job of the lattices' nodes, in this order and with these lift-offs, has a smaller "
+          "`lattice_cost`, in whatever directions of `reversible` strokes, if its transitions are "
+          "those that Swivel finds"),
       key("bound_any", or_null(number()),
-          "no job in this order and with these lift-offs costs less, whatever its directions and "
-          "transitions"),
+          "no job of the lattices' nodes, in this order and with these lift-offs, has a smaller "
+          "`lattice_cost`, whatever its directions and transitions; finer lattices may have one"),
       key("lattice_cost", or_null(number()),
           "as `cost`, but of the nodes of the lattices, which the search minimised; rows of arms "
-          "that are not exactly S-R-S may miss them by a little"),
+          "that are not exactly S-R-S, and rows between knots, may cost a little more or less"),
       key("gap", or_null(number()),
           "`lattice_cost` over `bound`, less 1: 0 where the job is optimal"),
       key("checked", or_null(boolean()), "whether the motion passed what `check` asks"),

@@ -82,10 +82,11 @@ struct JobResult {
   /// Cost that the search minimised, to which the bounds compare: as `cost`, but of the nodes of
   /// runs in their lattices, which their rows may miss by a little.
   double lattice_cost = 0;
-  /// No job in this order costs less, if its transitions are those that the planner finds.
+  /// No job of the lattices' nodes in this order has a smaller lattice_cost, if its transitions are
+  /// those that the planner finds.
   double bound = 0;
-  /// No job in this order costs less, whatever its transitions. Both bounds are of jobs with the
-  /// same lift-offs.
+  /// No job of the lattices' nodes in this order has a smaller lattice_cost, whatever its
+  /// transitions. Both bounds are of jobs with the same lift-offs.
   double bound_any = 0;
   /// Where the tool lifts off within strokes: with_lift_offs() makes of these the job of which
   /// `parts` and `runs` are.
