@@ -127,7 +127,8 @@ std::string plan_text(const WorkcellAnswer& answer) {
 io::WorkcellExtras extras_of(const WorkcellRequest& request, const WorkcellAnswer& answer) {
   const WorkcellMotionPlan& plan = answer.plan;
   return {plan.refinement ? &*plan.refinement : nullptr, plan.timing ? &*plan.timing : nullptr,
-          request.timing.value_or(TimingOptions{}), answer.advice ? &*answer.advice : nullptr};
+          request.timing.value_or(TimingOptions{}), answer.advice ? &*answer.advice : nullptr,
+          plan.stopped && request.timing};
 }
 
 /// Prints the answer, times and work counts of a workcell; warnings go to standard error.
@@ -231,11 +232,11 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   else
     outputs.remove("--certificate");
   const bool no_motion = plan.timing && !plan.timing->motion;
-  const bool solved = result.status == PlanStatus::kSolved;
+  const bool whole = result.status == PlanStatus::kSolved && !(plan.stopped && request.timing);
   deliver(outputs,
           infeasible  ? "there is no plan now"
           : no_motion ? "there is no motion now"
-          : solved    ? "there is a plan now"
+          : whole     ? "there is a plan now"
                       : "the search was stopped",
           [&] {
             if (request.quiet || outputs.takes_standard_output()) return;
@@ -243,7 +244,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
             if (bytes > 0) say("certificate: %zu bytes\n", bytes);
           });
   if (infeasible || no_motion) return kNo;
-  return solved && !plan.stopped ? kOk : kStopped;
+  return whole ? kOk : kStopped;
 }
 
 Limits limits_of_speeds(const Workcell& cell) {

@@ -13,6 +13,7 @@ import tempfile
 import unittest
 
 from pages import data_of
+from trials import trials
 
 SWIVEL = os.environ["SWIVEL"]
 DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
@@ -545,6 +546,29 @@ class Workcells(WithWorkcells):
         done = self.plan(self.given(), "--refine")
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn("beside which nothing is refined yet", done.stderr)
+
+    def test_time_is_up(self):
+        """What is known stays: the plan, with the reason why it is not refined or timed."""
+        file, seen, count = self.file(cell()), set(), max(6, trials(40))
+        for k in range(count):
+            asked = (("--refine",), ("--speed", "0.05"), ("--speed", "0.05", "--refine"))[k % 3]
+            self.out.unlink(missing_ok=True)
+            done = run(
+                "plan", file, *asked, "--timeout", 2e-3 * 1.25 ** (30 * k / (count - 1)),
+                "--json", self.result, "--out", self.out
+            )
+            told = json.loads(self.result.read_text())
+            motion, planned = told["motion"], told["status"] == "solved"
+            if planned and "--speed" in asked and not motion["executable"]:
+                self.assertEqual((motion["reason"], motion["arm"]), ("stopped", None))
+                self.assertEqual(done.returncode, 3)
+                seen.add("plan alone")
+            else:
+                self.assertEqual(motion is not None, planned and "--speed" in asked)
+                self.assertEqual(done.returncode, 0 if planned else 3)
+                seen.add("answer" if planned else "nothing")
+            self.assertEqual(self.out.exists(), done.returncode == 0)
+        self.assertIn("answer", seen)
 
     def test_time_refines(self):
         """Rows of a plan without rounded corners are refined and timed as `plan` does it."""

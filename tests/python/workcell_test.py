@@ -264,6 +264,21 @@ class Workcells(unittest.TestCase):
         timed = swivel.plan_workcell(cell, refine=True, speed=0.1)
         self.assertTrue(swivel.check_workcell(cell, timed.motions))
 
+    def test_time_is_up_before_the_motion(self):
+        cell = swivel.Workcell(self.arms(0.5))
+        for k in range(60):
+            plan = swivel.plan_workcell(cell, speed=0.05, refine=k % 2 == 1, timeout=2e-3 * 1.2**k)
+            told = json.loads(plan.to_json())["motion"]
+            if not plan.solved:
+                self.assertEqual((told, plan.not_executable), (None, None))
+            elif plan.stopped:
+                self.assertEqual((told["executable"], told["reason"]), (False, "stopped"))
+                self.assertEqual((plan.not_executable, plan.motions), ("stopped", {}))
+            else:
+                break
+        self.assertTrue(told["executable"])
+        self.assertIsNone(plan.not_executable)
+
     def barred(self):
         """A workcell file whose tools would move up at one place."""
         robot = {

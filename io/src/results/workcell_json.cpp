@@ -52,19 +52,25 @@ Json refinement_of_both(const RefinedWorkcell& refined, const std::array<std::st
 }
 
 /// Returns the motion of both arms: what they have together, and the measures of each.
-Json workcell_motion_json(const WorkcellTiming& timed, const TimingOptions& asked,
-                          const WorkcellResult& result) {
-  const auto& failure = timed.failure;
-  Json json = {{"executable", timed.motion.has_value()},
-               {"reason", failure ? Json(failure->reason) : Json(nullptr)},
-               {"arm", failure ? Json(result.names[timed.failed_arm]) : Json(nullptr)},
-               {"at_s", failure ? Json(failure->s) : Json(nullptr)},
+Json workcell_motion_json(const WorkcellExtras& extras, const WorkcellResult& result) {
+  const WorkcellTiming* timed = extras.motion;
+  if (timed == nullptr && !extras.stopped) return nullptr;
+  const TimingOptions& asked = extras.timing;
+  Json json = {{"executable", timed != nullptr && timed->motion.has_value()},
+               {"reason", timed == nullptr ? Json("stopped") : Json(nullptr)},
+               {"arm", nullptr},
+               {"at_s", nullptr},
                {"speed", asked.speed},
                {"turn_speed", or_null(asked.turn_speed)},
                {"rate", asked.rate},
                {"chord", or_null(asked.chord)}};
-  if (!timed.motion) return json;
-  const WorkcellMotion& motion = *timed.motion;
+  if (timed != nullptr && timed->failure) {
+    json["reason"] = timed->failure->reason;
+    json["arm"] = result.names[timed->failed_arm];
+    json["at_s"] = timed->failure->s;
+  }
+  if (timed == nullptr || !timed->motion) return json;
+  const WorkcellMotion& motion = *timed->motion;
   json["samples"] = motion.arms[0].rows.size();
   json["duration"] = motion.duration;
   json["ideal"] = motion.ideal;
@@ -114,8 +120,7 @@ std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras&
   json["arms"] = {arm_json(result, 0), arm_json(result, 1)};
   json["refinement"] =
       extras.refinement ? refinement_of_both(*extras.refinement, result.names) : Json(nullptr);
-  json["motion"] =
-      extras.motion ? workcell_motion_json(*extras.motion, extras.timing, result) : Json(nullptr);
+  json["motion"] = workcell_motion_json(extras, result);
   json["conflict"] = nullptr;
   if (const auto& conflict = result.conflict)
     json["conflict"] = {{"layer", conflict->layer},

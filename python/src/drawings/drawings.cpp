@@ -125,9 +125,9 @@ std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
     if (again.result.status != known.status || !same_rows(again.result, known))
       throw py::value_error("workcell: has another answer than the plan: allowed is its own");
     const auto& timing = again.timing;
-    const io::WorkcellExtras extras{again.refinement ? &*again.refinement : nullptr,
-                                    timing ? &*timing : nullptr,
-                                    plan.timing.value_or(TimingOptions{}), nullptr};
+    const io::WorkcellExtras extras{
+        again.refinement ? &*again.refinement : nullptr, timing ? &*timing : nullptr,
+        plan.timing.value_or(TimingOptions{}), nullptr, again.stopped && plan.timing};
     const swivel::WorkcellMotion* const motion =
         timing && timing->motion ? &*timing->motion : nullptr;
     const io::VisualRobot visual = io::load_visuals(*cell.arms[0].model);

@@ -347,7 +347,7 @@ void bind_plan(py::module_& m) {
             const auto& [result, refinement, timing, stopped] = *p.plan;
             return io::to_workcell_json(
                 result, {refinement ? &*refinement : nullptr, timing ? &*timing : nullptr,
-                         p.timing.value_or(TimingOptions{})});
+                         p.timing.value_or(TimingOptions{}), nullptr, stopped && p.timing});
           },
           "As `swivel plan --json` writes it.")
       .def(
@@ -372,6 +372,7 @@ void bind_plan(py::module_& m) {
           "not_executable",
           [](const WorkcellPlan& p) -> std::optional<std::string> {
             const auto& timing = p.plan->timing;
+            if (!timing && p.timing && p.plan->stopped) return "stopped";
             if (!timing || !timing->failure) return {};
             return timing->failure->reason;
           },

@@ -48,6 +48,7 @@ struct WorkcellExtras {
   const WorkcellTiming* motion = nullptr;    ///< null if it was not asked for or does not exist
   TimingOptions timing{};                    ///< the options that the motion was timed with
   const AdviceOnWorkcell* advice = nullptr;  ///< for a workcell that has no plan
+  bool stopped = false;                      ///< time ran out before the motion that was asked for
 };
 /// Returns RESULT.json of a workcell as text, docs/formats.md "Result of a workcell".
 [[nodiscard]] std::string to_workcell_json(const WorkcellResult& result,
