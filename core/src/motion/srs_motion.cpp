@@ -82,8 +82,12 @@ TrajectoryRow SrsMotion::row(double travel, const Config& q) const {
   const auto [s, t, i] = place(travel);
   const auto layer = static_cast<std::size_t>(i);
   const ToolPath& unturned = path_->unturned() ? *path_->unturned() : *path_;
+  // Planes of a closed path are not carried into the last one, which is the first.
+  constexpr double kRounding = 1e-9;  // m
+  const bool ends = t == 1 || (path_->closed() && i + 2 == path_->size() &&
+                               path_->layer(i + 1).travel - travel <= kRounding);
   ArmPlane plane =
-      t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
+      ends ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
   if (path_->unturned()) plane = carry_plane(*arm_, plane, path_->at_travel(travel));
   return counted_from_waypoints(
       *chain_, *path_, travel,

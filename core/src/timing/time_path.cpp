@@ -1073,7 +1073,8 @@ std::vector<RestToRest> plan_pieces(Arms arms, const std::vector<int>& rests, co
                                     std::vector<TimedPath>& out,
                                     std::optional<ArmFailure>& failure) {
   const TimedArm& first = arms.front();
-  std::vector<double> stops{0};
+  // A path that goes on from `start_at` keeps the travel of the whole one.
+  std::vector<double> stops{parameter_at(first, first.motion->path().layer(0).travel)};
   for (const int layer : rests)
     stops.push_back(parameter_at(first, first.motion->path().layer(layer).travel));
   stops.push_back(parameter_at(first, first.motion->length()));
