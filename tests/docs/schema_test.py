@@ -105,7 +105,7 @@ class Problems(unittest.TestCase):
             "a path besides": lambda p: p.update(path=stroke["path"]),
             "neither": lambda p: p.pop("strokes"),
             "a start": lambda p: p.update(start=p["home"]),
-            "a home of six joints": lambda p: p["home"]["joints"].pop(),
+            "a home of five joints": lambda p: p["home"].update(joints=[0] * 5),
             "another order": lambda p: p.update(order="fastest"),
             "no speed": lambda p: p.update(process_speed=0),
             "more than all of the speed": lambda p: p.update(rapid=1.5),

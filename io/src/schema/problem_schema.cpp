@@ -105,6 +105,14 @@ Schema configuration() {
                        "base to tip; of six joints the roll of the tool is the seventh"}});
 }
 
+/// Returns the schema of `joints` where an arm of six joints may leave out the roll of its tool.
+Schema configuration_without_roll() {
+  return section(
+      "", {{"joints", either(numbers(kDof, kFinite), numbers(kDof - 1, kFinite)), "rad", required(),
+            "base to tip; of six joints the roll of the tool is the seventh, which may "
+            "be left out"}});
+}
+
 Schema path() {
   constexpr Range kCut{"a whole number from 1 to 1000000", 1, 1'000'000};
   const PathSmoothing smooth;
@@ -144,7 +152,7 @@ Schema path() {
            "of arms of six joints and of "
            "S-R-S arms "
            "of seven"},
-          {"end", configuration(), "", in_words("Swivel chooses"),
+          {"end", configuration_without_roll(), "", in_words("Swivel chooses"),
            "`{joints: [...]}`, seven numbers (rad), or six of an arm of six joints: the "
            "configuration at the [end](#start-and-end) of the path"},
           {"closed", boolean(), "", otherwise("false"),
@@ -422,15 +430,16 @@ Schema arms() {
 
 /// Returns the keys that only jobs have.
 Keys job_keys() {
-  Keys keys =
-      join({{"home", configuration(), "", in_words("the job begins and ends at its strokes"),
-             "`{joints: [...]}`, seven numbers (rad): where the arm starts and where it "
-             "returns to"},
-            {"order", one_of({"given", "best"}), "", otherwise("given"),
-             "of the strokes: as listed, or the cheapest that is found"},
-            {"rapid", number(kShare), "", otherwise(Job().rapid),
-             "share of the joints' speeds in transitions"}},
-           keys_of_strokes(nullptr));
+  Keys keys = join(
+      {{"home", configuration_without_roll(), "",
+        in_words("the job begins and ends at its strokes"),
+        "`{joints: [...]}`, seven numbers (rad), or six of an arm of six joints: where the arm "
+        "starts and where it returns to"},
+       {"order", one_of({"given", "best"}), "", otherwise("given"),
+        "of the strokes: as listed, or the cheapest that is found"},
+       {"rapid", number(kShare), "", otherwise(Job().rapid),
+        "share of the joints' speeds in transitions"}},
+      keys_of_strokes(nullptr));
   for (Schema::Key& key : keys) key.beside = "strokes";
   const LiftOffs lift;
   keys.push_back(
@@ -480,9 +489,12 @@ const Schema& problem_schema() {
          "uniform random offsets of objects, for [campaigns](#vary)"}};
     return refusing(section("problem", join(join(join(what, start_keys()), how), job_keys()),
                             {{{"path", "strokes", "arms"}, true},
-                             {{"start", "strokes", "arms"}},
-                             {{"start_at", "strokes", "arms"}},
-                             {{"start_tolerance", "strokes", "arms"}},
+                             {{"start", "strokes"}},
+                             {{"start", "arms"}},
+                             {{"start_at", "strokes"}},
+                             {{"start_at", "arms"}},
+                             {{"start_tolerance", "strokes"}},
+                             {{"start_tolerance", "arms"}},
                              {{"lift", "arms"}}}),
                     {});
   }();
