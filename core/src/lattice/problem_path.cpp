@@ -80,6 +80,13 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
                    t = length > 0 ? std::clamp((s - path.layer(i).s) / length, 0.0, 1.0) : 0;
       const Pose there = path.at(i, t);
       tool = rolled(tool, -roll_between(there, tool));
+      if (chain.roll) {  // which the start states, from the waypoint's own frame at its place
+        ToolPath rest = path;
+        rest.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
+        TrajectoryRow row;
+        row.q = *problem.start;
+        tool = chain.tool(counted_from_path(chain, rest, rest.layer(0).travel, row).q);
+      }
     }
     path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
   }

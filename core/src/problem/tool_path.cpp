@@ -22,6 +22,9 @@ constexpr double kSame = 1e-9;  // m and rad: two poses nearer than that are one
 /// which meets all waypoints passes.
 constexpr PathSmoothing kCollinear{5e-7, 5e-7};
 constexpr double kOnLayer = 1e-6;  // m and rad: a place this near to a layer is that layer
+/// Share of the step from a start beside the path over which the tool bends into the path, on both
+/// sides of where the straight line to the path meets it.
+constexpr double kJoining = 1. / 8;
 
 /// Returns axis times angle, rad, of the short arc from a to b, in a's frame.
 Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
@@ -355,6 +358,25 @@ PlaceOnPath start_on(const ToolPath& path, std::optional<double> start_at, const
   return nearest;
 }
 
+/// Returns the least travel, m, of a step between two poses: as much as the tool's way, and enough
+/// for its turn.
+double travel_between(const Pose& from, const Pose& to) {
+  constexpr double kPerTurn = 0.05;  // m per rad, as of the default resolution
+  return std::max((to.translation() - from.translation()).norm(),
+                  kPerTurn * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle());
+}
+
+/// Returns which part of its distance from the path a tool that began beside it still has at a
+/// share t of the first step: from 1 it falls in a straight line, is rounded over the last 2
+/// kJoining of the step as corners are, and ends at 0.
+double part_beside(double t) {
+  constexpr double kSlope = 1 / (1 - kJoining);
+  const double y = (t - (1 - 2 * kJoining)) / (2 * kJoining);
+  if (y <= 0) return 1 - kSlope * t;
+  if (y >= 1) return 0;
+  return 2 * kJoining * kSlope * (0.5 - y + y * y * y * (1 - y / 2));
+}
+
 /// Returns a layer at s (m) and a share t of the step between two layers, where the tool stands at
 /// the pose `tool`. For t = 0 that is the first of the two layers, with another pose.
 PathLayer layer_within_step(const PathLayer& from, const PathLayer& to, double s, double t,
@@ -477,12 +499,15 @@ std::size_t ToolPath::segment_of(int step) const {
 std::array<int, 2> ToolPath::waypoints_along(double from, double to) const {
   const double first = std::max(from, layers_.front().travel) - kSame, last = to + kSame;
   std::array<int, 2> rows{-1, -1};
-  const auto begin =
+  auto begin =
       std::lower_bound(waypoints_.begin(), waypoints_.end(), first,
                        [](const Place& place, double travel) { return place.travel < travel; });
-  const auto end =
-      std::upper_bound(begin, waypoints_.end(), last,
-                       [](double travel, const Place& place) { return travel < place.travel; });
+  auto end = std::upper_bound(begin, waypoints_.end(), last, [](double travel, const Place& place) {
+    return travel < place.travel;
+  });
+  const auto given = [](const Place& place) { return place.row >= 0; };
+  begin = std::find_if(begin, end, given);
+  while (end != begin && !given(*(end - 1))) --end;
   if (begin != end) rows = {begin->row, (end - 1)->row};
   return rows;
 }
@@ -528,6 +553,8 @@ double ToolPath::roll_at(double travel) const {
 
 Pose ToolPath::at_travel(double travel) const {
   if (unturned_) return rolled(unturned_->at_travel(travel), roll_at(travel));
+  if (const double begin = layer(0).travel, end = layer(1).travel; begins_aside_ && travel < end)
+    return at(0, (travel - begin) / (end - begin));
   return twisted(on_curve(segment_of(step_at(travel)), travel), travel);
 }
 
@@ -606,21 +633,34 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
   const auto [first, t, gap] = start_on(*this, start_at, tool);
   if (first + 1 >= size()) refuse();
 
-  const bool aside = gap > kOnLayer && gap <= tolerance;
+  // A motion begins in the start's own joints, however near to the path its tool is.
+  const bool aside = gap > (rounding_ > 0 ? kSame : kOnLayer) && gap <= tolerance;
   for (int i = 0; i < first; ++i) before_.push_back(layer(i).tool);
   if (t > 0 || aside) {
     before_.push_back(layer(first).tool);
     begins_on_layer_ = false;
     PathLayer to = layer(first + 1);
-    to.tool = twisted(to.tool, (1 - t) * (layer(first).travel - to.travel));
-    layers_[static_cast<std::size_t>(first)] =
-        layer_within_step(layer(first), to, s, t, aside ? tool : at(first, t));
+    const double rest = (1 - t) * (to.travel - layer(first).travel),
+                 way = aside ? std::max(rest, travel_between(tool, to.tool)) : rest;
+    if (turned_waypoints_ && way > rest) {  // the turns stay where they are along s
+      const Place turns[] = {{to.travel - way, -1, waypoint_turn(to.travel - rest)},
+                             {to.travel, to.waypoint, waypoint_turn(to.travel)}};
+      std::erase_if(waypoints_, [&](const Place& place) { return place.travel <= to.travel; });
+      waypoints_.insert(waypoints_.begin(), std::begin(turns), std::end(turns));
+    }
+    to.tool = twisted(to.tool, -way);
+    PathLayer& from = layers_[static_cast<std::size_t>(first)];
+    from = layer_within_step(from, to, s, t, aside ? tool : at(first, t));
+    if (way > rest) from.travel = to.travel - way;
     begins_aside_ = aside;
   }
   layers_.erase(layers_.begin(), layers_.begin() + first);
   for (Segment& segment : segments_) segment.layer -= first;
   for (Corner& corner : corners_) corner.layer -= first;
   std::erase_if(corners_, [](const Corner& corner) { return corner.layer <= 0; });
+  if (begins_aside_ && rounding_ > 0 && gap > kOnLayer)
+    corners_.insert(corners_.begin(), {1, 2 * kJoining * (layer(1).travel - layer(0).travel),
+                                       kJoining * gap, kJoining * gap});
 }
 
 ToolPath ToolPath::with_layers(const std::vector<int>& kept) const {
@@ -670,8 +710,22 @@ Pose ToolPath::at(int i, double t) const {
   const PathLayer& from = layer(i);
   const PathLayer& to = layer(i + 1);
   const double way = t * (to.travel - from.travel);
-  if (rounded_ && !(begins_aside_ && i == 0))
-    return twisted(on_curve(segment_of(i), from.travel + way), from.travel + way);
+  const bool joins = begins_aside_ && i == 0;
+  const auto curve = [&](double travel) {
+    return twisted(on_curve(segment_of(i), travel), travel);
+  };
+  if (joins && rounding_ > 0) {
+    const Pose begin = curve(from.travel);
+    const double part = part_beside(t);
+    Pose X = curve(from.travel + way);
+    X.translation() += part * (from.tool.translation() - begin.translation());
+    X.linear() *=
+        turned(Quaterniond::Identity(),
+               short_arc(Quaterniond(begin.linear()), Quaterniond(from.tool.linear())), part)
+            .toRotationMatrix();
+    return X;
+  }
+  if (rounded_ && !joins) return curve(from.travel + way);
   Pose X;
   X.translation() = from.tool.translation() + t * (to.tool.translation() - from.tool.translation());
   X.linear() = from.tool.linear();

@@ -534,10 +534,11 @@ std::vector<double> places_between(Arms arms, double from, double to) {
 
 /// Returns how far along its path, m, the tool is at a travel.
 double s_at(const ToolPath& path, double travel) {
-  const PathLayer& layer = path.layer(path.step_at(travel));
-  const double way = path.layer(path.step_at(travel) + 1).travel - layer.travel;
-  const double share = way > 0 ? std::clamp((travel - layer.travel) / way, 0.0, 1.0) : 0;
-  return layer.s + share * layer.step_length;
+  const PathLayer &from = path.layer(path.step_at(travel)),
+                  &to = path.layer(path.step_at(travel) + 1);
+  const double way = to.travel - from.travel;
+  const double share = way > 0 ? std::clamp((travel - from.travel) / way, 0.0, 1.0) : 0;
+  return from.s + share * (to.s - from.s);
 }
 
 /// An arm's joints and tool at places.

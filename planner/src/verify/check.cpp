@@ -331,9 +331,11 @@ class Check {
       double t = ((tool.translation() - step.tool.translation()).dot(along) +
                   turn.angle() * turn.axis().dot(step.step_rotation)) /
                  (along.squaredNorm() + step.step_rotation.squaredNorm());
-      if (step.step_length > 0)
-        t = std::clamp(t, (s - kSame - step.s) / step.step_length,
-                       (s + kSame - step.s) / step.step_length);
+      const double length = path_.layer(i + 1).s - step.s;
+      if (problem_.smooth && i == 0 && problem_.start)  // may lead to the path from beside it
+        t = nearest_on_curve(i, length > 0 ? std::clamp((s - step.s) / length, 0.0, 1.0) : t, tool);
+      if (length > 0)
+        t = std::clamp(t, (s - kSame - step.s) / length, (s + kSame - step.s) / length);
       t = std::clamp(t, 0.0, 1.0);
       if (problem_.smooth && step.step_length == 0) t = nearest_on_curve(i, t, tool);
       try_place(i + t);
@@ -357,12 +359,15 @@ class Check {
       return d;
     };
     constexpr double kStep = 1e-4;
-    for (int round = 0; round < 8; ++round) {
+    constexpr int kMost = 40;  // a bend into the path ends at rest across it
+    for (int round = 0; round < kMost; ++round) {
       const Pose here = path_.at(i, t);
       const Eigen::Matrix<double, 6, 1> slope =
           (off(here, path_.at(i, t + kStep)) - off(here, path_.at(i, t - kStep))) / (2 * kStep);
       if (slope.squaredNorm() == 0) break;
+      const double before = t;
       t = std::clamp(t + off(here, tool).dot(slope) / slope.squaredNorm(), 0.0, 1.0);
+      if (std::abs(t - before) < 1e-13) break;
     }
     return t;
   }

@@ -230,7 +230,8 @@ class Completion {
     const bool alone =
         !of_motion_ && (k == 0 || !is_near(k - 1)) && (k + 1 == rows_.size() || !is_near(k + 1));
     if (at_end || alone ||
-        std::abs(place_[k] - layer) * path_.layer(static_cast<int>(layer)).step_length <= kSameS)
+        std::abs(place_[k] - layer) * path_.layer(static_cast<int>(place_[k])).step_length <=
+            kSameS)
       place_[k] = layer;
   }
 

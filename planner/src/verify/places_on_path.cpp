@@ -23,17 +23,24 @@ PlacesOnPath::PlacesOnPath(const ToolPath& path, bool curved, double rounding, b
   boxes_.assign(2 * leaves_, {Vector3d::Constant(infinity), Vector3d::Constant(-infinity)});
   // Layers lie on the curve, which leaves the polyline by up to `rounding`, and so does the curve
   // between them.
-  const Vector3d aside = Vector3d::Constant(aside_);
-  for (std::size_t i = 0; i < steps; ++i)
+  for (std::size_t i = 0; i < steps; ++i) {
+    const Vector3d aside = Vector3d::Constant(aside_of(static_cast<int>(i)));
     for (const std::size_t layer : {i, i + 1}) {
       Box& box = boxes_[leaves_ + i / kLeaf];
       const Vector3d point = path.layer(static_cast<int>(layer)).tool.translation();
       box.low = box.low.cwiseMin(point - aside);
       box.high = box.high.cwiseMax(point + aside);
     }
+  }
   for (std::size_t node = leaves_; --node > 0;)
     boxes_[node] = {boxes_[2 * node].low.cwiseMin(boxes_[2 * node + 1].low),
                     boxes_[2 * node].high.cwiseMax(boxes_[2 * node + 1].high)};
+}
+
+/// Returns by how much a step of the path may leave the straight line between its ends, m. The
+/// first may lead in a bend to the path from a start beside it.
+double PlacesOnPath::aside_of(int step) const {
+  return aside_ + (curved_ && step == 0 ? path_->layer(0).step_length : 0);
 }
 
 /// Returns a lower bound of the distance of a point from a step of the path, m.
@@ -42,7 +49,7 @@ double PlacesOnPath::least_distance(int step, const Vector3d& point) const {
                  along = path_->layer(step + 1).tool.translation() - from;
   const double length2 = along.squaredNorm();
   const double t = length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0;
-  return (point - from - t * along).norm() - aside_;
+  return (point - from - t * along).norm() - aside_of(step);
 }
 
 /// Returns the displacement from a pose to the tool: translation, m, and rotation vector, rad.
@@ -73,7 +80,8 @@ double PlacesOnPath::share_of(int step, const Pose& tool, double low, double hig
   t = std::clamp(t, low, high);
   if (!curved_ && !any_turn_ && (from.step_angle == 0 || from.step_length == 0)) return t;
   constexpr double kStep = 1e-4;
-  for (int round = 0; round < 8; ++round) {
+  constexpr int kMost = 40;  // a bend into the path ends at rest across it
+  for (int round = 0; round < kMost; ++round) {
     const Vector6 here = off(path_->at(step, t), tool);
     const Vector6 slope =
         (off(path_->at(step, t + kStep), tool) - off(path_->at(step, t - kStep), tool)) /
@@ -112,9 +120,9 @@ std::vector<double> PlacesOnPath::fits(const Pose& tool, double s) const {
     if (given) {
       const double end = path_->layer(step + 1).s;
       if (layer.s > s + kSameS || end < s - kSameS) return;
-      if (layer.step_length > 0) {
-        low = std::clamp((s - kSameS - layer.s) / layer.step_length, 0.0, 1.0);
-        high = std::clamp((s + kSameS - layer.s) / layer.step_length, 0.0, 1.0);
+      if (const double length = end - layer.s; length > 0) {
+        low = std::clamp((s - kSameS - layer.s) / length, 0.0, 1.0);
+        high = std::clamp((s + kSameS - layer.s) / length, 0.0, 1.0);
       }
     }
     const double t = share_of(step, tool, low, high), place = t == 1 ? step + 1 : step + t;
@@ -165,8 +173,8 @@ double PlacesOnPath::place_at(double s) const {
     else
       low = middle + 1;
   }
-  const PathLayer& step = path_->layer(low);
-  return step.step_length > 0 ? low + std::clamp((s - step.s) / step.step_length, 0.0, 1.0) : low;
+  const double begin = path_->layer(low).s, length = path_->layer(low + 1).s - begin;
+  return length > 0 ? low + std::clamp((s - begin) / length, 0.0, 1.0) : low;
 }
 
 }  // namespace swivel

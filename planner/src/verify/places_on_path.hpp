@@ -45,6 +45,7 @@ class PlacesOnPath {
   };
   [[nodiscard]] Vector6 off(const Pose& there, const Pose& tool) const;
   [[nodiscard]] double share_of(int step, const Pose& tool, double low, double high) const;
+  [[nodiscard]] double aside_of(int step) const;
   [[nodiscard]] double least_distance(int step, const Vector3d& point) const;
   template <class Reaches, class Visit>
   void search(std::size_t node, const Vector3d& point, const Reaches& reaches,
