@@ -119,7 +119,9 @@ class RowTimer {
         options_(within_limits(asked, problem.limits, lowered_)),
         path_(problem_path(problem, robot.arm().chain, budget, PathSmoothing{})),
         rates_(joint_rates(robot.arm().chain, problem.limits, problem.source)),
-        of_samples_(problem_of_samples(problem)) {}
+        of_samples_(problem_of_samples(problem)) {
+    if (problem.start) require_start_on_path();
+  }
 
   /// Returns the motion, or the fault of the last that was tried. `between_layers`: where the
   /// motion is at fault between the rows, it may be led through other postures there.
@@ -144,6 +146,26 @@ class RowTimer {
 
  private:
   static constexpr double kApart = 0.005, kOffLimits = 1e-3;  // m, rad
+
+  /// Throws InputError where the start is not on the motion's path: beside a corner it may be on
+  /// the path of the rows and off the rounded one.
+  void require_start_on_path() const {
+    const Chain& chain = robot_.arm().chain;
+    TrajectoryRow row;
+    row.q = *problem_.start;
+    const Pose& there = path_.layer(0).tool;
+    const Pose tool = chain.tool(counted_from_path(chain, path_, path_.layer(0).travel, row).q);
+    const double distance = (tool.translation() - there.translation()).norm(),
+                 angle = Eigen::AngleAxisd(there.linear().transpose() * tool.linear()).angle();
+    constexpr double kRounding = 1e-6;  // rad, of a roll as rows have it
+    if (distance <= problem_.start_tolerance && angle <= problem_.start_tolerance + kRounding)
+      return;
+    const std::string text = formatted(
+        "start.joints: the tool is %.3g m and %.3g rad from the path of a motion, whose corners "
+        "are rounded: allowed are %g m and rad (start_tolerance)",
+        distance, angle, problem_.start_tolerance);
+    throw InputError(problem_.source, text);
+  }
 
   /// A motion that was tried.
   struct Tried {

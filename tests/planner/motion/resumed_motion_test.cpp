@@ -157,6 +157,22 @@ TEST(ResumedMotion, GoesOnFromJointsBesideThePath) {
   EXPECT_LE(refused, count);
 }
 
+TEST(ResumedMotion, RefusesAStartThatIsOnlyOnTheCornerThatItRounds) {
+  Problem problem = coarse("experiment_a");
+  const Waypoint first = problem.waypoints[0];
+  problem.waypoints.assign(3, first);
+  problem.waypoints[1].position += Vector3d(0, 0.1, 0);
+  problem.waypoints[2].position += Vector3d(0, 0.1, 0.1);
+  const PlanResult whole = solve(problem);
+  ASSERT_EQ(whole.status, PlanStatus::kSolved);
+  problem.start = whole.trajectory[5].q;
+  problem.start_at = whole.trajectory[5].s;
+  const PlanResult rest = solve(problem);
+  ASSERT_EQ(rest.status, PlanStatus::kSolved);
+  EXPECT_THROW((void)time_trajectory(PreparedRobot(problem), problem, rest.trajectory, kTiming),
+               InputError);
+}
+
 TEST(ClosedMotion, EndsAtTheArmAngleOfItsBeginning) {
   for (int k = 0; k < 8; ++k) {
     SCOPED_TRACE(k);
