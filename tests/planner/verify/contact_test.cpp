@@ -294,13 +294,17 @@ TEST(Contact, ThatWasNotMeasuredIsToldFromContactThatIsNone) {
   EXPECT_EQ(unasked.deepest_contact_status(), Known::kNotMeasured);
   EXPECT_FALSE(says(answer_text(unasked), "not measured"));
 
-  int without_either = 0, without_contact = 0;
+  int without_either = 0, without_contact = 0, too_late = 0;
   for (int call = 0;; ++call) {
     const auto stopped = stopped_while_measuring(
         [&](const PlanOptions& options) { return plan(touching, options); }, call);
     if (!stopped) break;
     SCOPED_TRACE(call);
     ASSERT_EQ(stopped->status, PlanStatus::kSolved);
+    if (stopped->deepest_contact_status() == Known::kMeasured) {  // asked at the last row
+      ++too_late;
+      continue;
+    }
     const bool clearance = stopped->min_clearance_status() != Known::kNotMeasured;
     const std::string json = io::to_json(*stopped);
     EXPECT_EQ(stopped->deepest_contact_status(), Known::kNotMeasured);
@@ -312,6 +316,7 @@ TEST(Contact, ThatWasNotMeasuredIsToldFromContactThatIsNone) {
     EXPECT_TRUE(stopped->min_clearance.has_value() == clearance && !stopped->deepest_contact);
     ++(clearance ? without_contact : without_either);
   }
+  EXPECT_LE(too_late, 1);
   EXPECT_GE(without_either, 2);
   EXPECT_GE(without_contact, 2);
 
