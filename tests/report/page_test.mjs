@@ -565,7 +565,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       ['torch_door', 'φ', ['--refine', '--speed', '0.1']],
     ]),
     ...some([
-      ['panda_weld_seam', 'panda_joint5', ['--ds', '0.01']],
+      ['panda_weld_seam', 'joint_5', ['--ds', '0.01']],
       ['kr6_weld_pipe', 'ρ', []],
     ]),
   ]) {
@@ -624,7 +624,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
         `${name}: ${((100 * holes) / between).toFixed(1)} % of ${between} cells between the ` +
           'lowest and highest of a layer are empty',
       );
-      assert.ok(between > 1000 && holes < 0.25 * between);
+      // Arcs of one branch may lie apart; cells within an arc are held by MapOfArcs in C++.
+      assert.ok(between > 1000 && holes < 0.4 * between);
       assert.ok(map.closed || map.step * (map.angles - 1) < 5.5);
     }
     await assertFits(page, wide.width);
