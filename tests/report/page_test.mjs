@@ -624,8 +624,9 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
         `${name}: ${((100 * holes) / between).toFixed(1)} % of ${between} cells between the ` +
           'lowest and highest of a layer are empty',
       );
-      // Arcs of one branch may lie apart; cells within an arc are held by MapOfArcs in C++.
-      assert.ok(between > 1000 && holes < 0.4 * between);
+      // Arcs of one branch lie apart on the weld seam; MapOfArcs in C++ tests cells within an arc.
+      const most = name === 'panda_weld_seam' ? 0.31 : 0.25;
+      assert.ok(between > 1000 && holes < most * between);
       assert.ok(map.closed || map.step * (map.angles - 1) < 5.5);
     }
     await assertFits(page, wide.width);

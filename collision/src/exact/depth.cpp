@@ -125,6 +125,7 @@ class MeshDepth {
     return tree_.distance({middle, Vector3d::Zero()}, 0, radius, nearest_) >= radius &&
            !solid_.contains(middle);
   }
+  /// Returns how deep a point lies beneath the surface of the mesh, m.
   double depth(const Vector3d& p) {
     constexpr double kFarAway = 1e6;  // m
     point_ = p;
@@ -201,8 +202,8 @@ class MeshDepth {
 /// Bounds the greatest value of a function over patches, by branch and bound.
 class Greatest {
  public:
-  /// The search ends once the value is known within `tolerance`, is proved to be at most `from`, or
-  /// is found to be more than `enough`, m.
+  /// The search ends once the value is known within half of kDepthTolerance, is proved to be at
+  /// most `from`, or is found to be more than `enough`, m.
   Greatest(double from, double enough) : from_(from), enough_(enough) {}
   void find(double value) { found_ = std::max(found_, value); }
   /// Returns a value such that patches with no more need not be looked at.

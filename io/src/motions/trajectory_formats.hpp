@@ -42,8 +42,8 @@ struct FileRows {
                                      ///< moment
   std::vector<int> lines = {};       ///< of the rows of a table, from 1; empty for other formats
   std::vector<RowOfJob> job = {};    ///< of each row of a job's table; empty for other formats
-  /// Of messages and logs that are to be a job's: the events of its process, as they are written;
-  /// unset where there are none.
+  /// Events that switch the process of a job, as a JointTrajectory message or an MCAP log states
+  /// them; unset if the file states none or is not of a job.
   std::optional<std::vector<nlohmann::json>> events = {};
   /// Returns the place of a row for messages: the file with the line and the number of the row.
   [[nodiscard]] std::string where(std::size_t row) const;
