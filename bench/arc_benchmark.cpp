@@ -54,8 +54,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-Problem random_problem(const Problem& base, const Chain& chain, Random& random) {
-  Problem problem = base;
+PathProblem random_problem(const PathProblem& base, const Chain& chain, Random& random) {
+  PathProblem problem = base;
   problem.scene.clear();
   problem.vary.clear();
   problem.start.reset();
@@ -81,7 +81,7 @@ struct Times {
   [[nodiscard]] double whole() const { return ms.at("whole"); }
 };
 
-Times timed(const PreparedRobot& robot, const Problem& problem, PlanResult& result) {
+Times timed(const PreparedRobot& robot, const PathProblem& problem, PlanResult& result) {
   PlanOptions options;
   options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
@@ -126,7 +126,7 @@ struct Options {
 
 void run(const Options& options, const std::string& file) {
   constexpr std::uint64_t kMostTries = 1000;  // for each path asked for
-  const Problem base = io::load_problem(file);
+  const PathProblem base = io::load_problem(file);
   const PreparedRobot robot(base);
   Random random(options.seed);
   std::map<std::string, std::vector<double>> parts;
@@ -134,7 +134,7 @@ void run(const Options& options, const std::string& file) {
   std::uint64_t hash = 14695981039346656037u;  // FNV-1a
   std::uint64_t solved = 0, tries = 0;
   for (; solved < options.count && tries < kMostTries * options.count; ++tries) {
-    const Problem problem = random_problem(base, robot.arm().chain, random);
+    const PathProblem problem = random_problem(base, robot.arm().chain, random);
     PlanResult result;
     Times best = timed(robot, problem, result);
     if (result.status != PlanStatus::kSolved) continue;

@@ -46,13 +46,13 @@ double percentile(std::vector<double> values, double share) {
 }
 
 void run(const Options& options) {
-  Problem base = with_motion_defaults(io::load_problem(options.file));
+  PathProblem base = with_motion_defaults(io::load_problem(options.file));
   if (options.metric) base.cost.metric = *options.metric;
   const PreparedRobot robot(base);
   std::vector<double> ratios;
   for (std::uint64_t episode = options.first;
        episode < options.first + (base.vary.empty() ? 1 : options.episodes); ++episode) {
-    const Problem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
+    const PathProblem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
     PlanOptions lazy;
     lazy.planner = PlannerKind::kLazy;
     const PlanResult found = plan(robot, problem, lazy);

@@ -23,7 +23,7 @@ void BasinLattice::for_edges(std::size_t stride, int layer, const Each& each) co
       each(Edge{stride, layer, a, b});
 }
 
-BasinLattice::BasinLattice(const PreparedRobot& robot, const Problem& problem,
+BasinLattice::BasinLattice(const PreparedRobot& robot, const PathProblem& problem,
                            const Redundancy& redundancy, std::vector<TrajectoryRow> rows,
                            const Rules& rules)
     : problem_(&problem),

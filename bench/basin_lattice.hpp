@@ -32,7 +32,7 @@ class BasinLattice {
     bool margins = false;
   };
   /// Builds the lattice about `rows`, the refined path. The other arguments must outlive it.
-  BasinLattice(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy,
+  BasinLattice(const PreparedRobot& robot, const PathProblem& problem, const Redundancy& redundancy,
                std::vector<TrajectoryRow> rows, const Rules& rules);
 
   struct Optimum {
@@ -102,7 +102,7 @@ class BasinLattice {
   bool edge_good(const Edge& edge);
   void close(int layer);
 
-  const Problem* problem_;
+  const PathProblem* problem_;
   const Redundancy* redundancy_;
   const Lattice* lattice_;
   std::vector<TrajectoryRow> rows_;

@@ -92,8 +92,8 @@ Shape random_shape(Random& random) {
   }
 }
 
-Problem random_problem(const Problem& robot, const Chain& chain, Random& random) {
-  Problem problem = robot;
+PathProblem random_problem(const PathProblem& robot, const Chain& chain, Random& random) {
+  PathProblem problem = robot;
   problem.scene.clear();
   problem.vary.clear();
   problem.waypoints.clear();
@@ -143,7 +143,7 @@ Problem random_problem(const Problem& robot, const Chain& chain, Random& random)
 struct Times {
   std::vector<double> verdict, whole;  // ms
 };
-PlanResult timed(const PreparedRobot& robot, const Problem& problem, PlannerKind planner,
+PlanResult timed(const PreparedRobot& robot, const PathProblem& problem, PlannerKind planner,
                  Times& times) {
   PlanOptions options;
   options.check = false;  // the time of planning is measured
@@ -176,7 +176,7 @@ struct Options {
 };
 
 void run(const Options& options) {
-  std::vector<Problem> problems;
+  std::vector<PathProblem> problems;
   std::vector<PreparedRobot> robots;
   for (const std::string& file : options.files) {
     problems.push_back(io::load_problem(file));
@@ -187,7 +187,7 @@ void run(const Options& options) {
   for (std::uint64_t k = options.first; k < options.first + options.count; ++k) {
     const std::size_t which = k % robots.size();
     Random random(options.seed * 1'000'003 + k);
-    const Problem problem = random_problem(problems[which], robots[which].arm().chain, random);
+    const PathProblem problem = random_problem(problems[which], robots[which].arm().chain, random);
     Times lazy, eager;
     bool equal = true, found = false;
     for (std::uint64_t round = 0; round < options.rounds; ++round) {

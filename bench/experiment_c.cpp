@@ -48,7 +48,7 @@ struct Method {
   json episodes = json::array();
 };
 
-json to_json(const PlanResult& result, const Problem& problem) {
+json to_json(const PlanResult& result, const PathProblem& problem) {
   const EpisodeRow row(0, result, problem);
   json answer{{"status", to_string(result.status)}, {"ms", row.plan_ms},
               {"nodes", result.lattice.nodes},      {"reason", row.reason},
@@ -58,7 +58,7 @@ json to_json(const PlanResult& result, const Problem& problem) {
   return answer;
 }
 
-PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind planner,
+PlanResult plan_at(const PreparedRobot& robot, PathProblem problem, PlannerKind planner,
                    const bench::Setting& setting, EdgeMode edges, int threads) {
   bench::set_resolution(problem, setting);
   problem.limits.edges = edges;
@@ -71,7 +71,7 @@ PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind plan
 }
 
 /// The first valid node of layer 0 in (branch, j) order at #4; none where there is none.
-std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
+std::optional<Config> first_start(const PreparedRobot& robot, PathProblem problem) {
   bench::set_resolution(problem, bench::kSettings[3]);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
@@ -87,7 +87,7 @@ std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
 
 /// What a local method did; `possible`: a path from its start exists at #4.
 json to_json(const baselines::TrackResult& result, double ms, const PreparedRobot& robot,
-             const Problem& problem, bool possible) {
+             const PathProblem& problem, bool possible) {
   json answer{{"status", result.finished ? "solved" : "failed"},
               {"ms", ms},
               {"s", result.s},
@@ -113,7 +113,7 @@ json to_json(const baselines::TrackResult& result, double ms, const PreparedRobo
 }
 
 template <class Track>
-json track(const PreparedRobot& robot, const Problem& problem, bool possible,
+json track(const PreparedRobot& robot, const PathProblem& problem, bool possible,
            const Track& tracker) {
   if (!problem.start)
     return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
@@ -123,7 +123,7 @@ json track(const PreparedRobot& robot, const Problem& problem, bool possible,
 }
 
 #ifdef SWIVEL_OMPL
-json sample(const PreparedRobot& robot, const Problem& problem, bool possible,
+json sample(const PreparedRobot& robot, const PathProblem& problem, bool possible,
             baselines::Manifold manifold) {
   if (!problem.start)
     return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
@@ -168,7 +168,8 @@ struct StartedMethods {
 };
 
 /// Plans an episode by each method and appends what it found.
-void run_planned(const PreparedRobot& robot, const Problem& problem, std::vector<Method>& planned) {
+void run_planned(const PreparedRobot& robot, const PathProblem& problem,
+                 std::vector<Method>& planned) {
   for (Method& method : planned) {
     const auto* const setting =
         std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
@@ -180,9 +181,9 @@ void run_planned(const PreparedRobot& robot, const Problem& problem, std::vector
 }
 
 /// Runs episode k by each method that begins at a start, and appends what it did.
-void run_started(const PreparedRobot& robot, const Problem& problem,
+void run_started(const PreparedRobot& robot, const PathProblem& problem,
                  [[maybe_unused]] std::uint64_t k, StartedMethods& methods) {
-  Problem started = problem;
+  PathProblem started = problem;
   started.start = first_start(robot, problem);
   const bool possible = started.start && plan_at(robot, started, PlannerKind::kLazy,
                                                  bench::kSettings[3], EdgeMode::kNodes, 1)
@@ -203,12 +204,12 @@ void run_started(const PreparedRobot& robot, const Problem& problem,
 #endif
 }
 
-json run(const Problem& base, std::uint64_t episodes) {
+json run(const PathProblem& base, std::uint64_t episodes) {
   const PreparedRobot robot(base);
   std::vector<Method> planned = planned_methods();
   StartedMethods started;
   for (std::uint64_t k = 0; k < episodes; ++k) {
-    const Problem problem = episode_problem(base, kSeed, k);
+    const PathProblem problem = episode_problem(base, kSeed, k);
     run_planned(robot, problem, planned);
     run_started(robot, problem, k, started);
     std::fprintf(stderr, "\repisode %llu of %llu", static_cast<unsigned long long>(k + 1),

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   CLI::App app("The first plan of a process beside the next ones.", "first_plan");
   app.add_option("problem", file, "problem file with one path")->required();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
-  Problem problem;
+  PathProblem problem;
   const double load = ms_of([&] { problem = io::load_problem(file); });
   PlanOptions options;
   options.planner = PlannerKind::kLazy;

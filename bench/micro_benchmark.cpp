@@ -92,7 +92,7 @@ struct Fixture {
     Config q;
   };
   Random random;
-  Problem problem;
+  PathProblem problem;
   PreparedRobot robot;
   ToolPath path;
   SrsLattice lattice;
@@ -222,7 +222,7 @@ void add_search(Fixture& c) {
 
 /// Adds the distance tests of a capsule and each other shape.
 void add_pairs(const Fixture& c, const std::filesystem::path& problems) {
-  const auto door = [](const Problem& problem) { return problem.scene.front().shape; };
+  const auto door = [](const PathProblem& problem) { return problem.scene.front().shape; };
   const std::pair<const char*, Shape> shapes[] = {
       {"sphere", Sphere{0.1}},
       {"capsule", Capsule{0.05, 0.3}},

@@ -45,7 +45,7 @@ struct Tally {
 };
 
 /// Refines a lattice's path with one seed and with two, prints both and returns the second's.
-Refined measure_refinement(const PreparedRobot& robot, const Problem& problem,
+Refined measure_refinement(const PreparedRobot& robot, const PathProblem& problem,
                            const MotionPlan& whole, std::uint64_t episode, Tally& tally) {
   const std::vector<TrajectoryRow>& path = whole.lattice_path;
   auto start = std::chrono::steady_clock::now();
@@ -73,7 +73,7 @@ Refined measure_refinement(const PreparedRobot& robot, const Problem& problem,
 }
 
 /// Times rows at a tool speed, m/s, checks the motion and prints what came out.
-void measure_timing(const PreparedRobot& robot, const Problem& problem,
+void measure_timing(const PreparedRobot& robot, const PathProblem& problem,
                     const std::vector<TrajectoryRow>& rows, double speed, Tally& tally) {
   const MotionResult timed =
       time_trajectory(robot, problem, rows, {.speed = speed, .turn_speed = {}, .rate = 250});
@@ -102,7 +102,7 @@ void measure_timing(const PreparedRobot& robot, const Problem& problem,
 }
 
 int run(const std::string& file, std::uint64_t episodes) {
-  Problem base = io::load_problem(file);
+  PathProblem base = io::load_problem(file);
   base = with_motion_defaults(base);
   base.limits.joint_acceleration.emplace().fill(10);
   base.limits.joint_jerk.emplace().fill(100);
@@ -110,7 +110,7 @@ int run(const std::string& file, std::uint64_t episodes) {
   Tally tally;
   if (base.vary.empty()) episodes = 1;
   for (std::uint64_t episode = 0; episode < episodes; ++episode) {
-    const Problem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
+    const PathProblem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
     PlanOptions options;
     options.check = false;  // the time of planning is measured
     options.planner = PlannerKind::kLazy;

@@ -67,9 +67,9 @@ constexpr Scene kScenes[] = {{"a", "experiment_a", true, bench::kPaperSettings},
 
 /// A problem, and its robot prepared with everything that questions about meshes need.
 struct Prepared {
-  Problem problem;
+  PathProblem problem;
   PreparedRobot robot;
-  explicit Prepared(Problem of) : problem(std::move(of)), robot(problem) {
+  explicit Prepared(PathProblem of) : problem(std::move(of)), robot(problem) {
     // m, so that bounds prove nothing and FCL's trees are built as well
     constexpr double kFar = 100;
     const World& world = robot.world();
@@ -84,8 +84,8 @@ const Prepared& prepared(const Scene& scene) {
   static std::map<std::string, std::unique_ptr<const Prepared>> all;
   auto& entry = all[scene.name];
   if (!entry) {
-    Problem problem = io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" /
-                                       (std::string(scene.file) + ".yaml"));
+    PathProblem problem = io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" /
+                                           (std::string(scene.file) + ".yaml"));
     entry = std::make_unique<const Prepared>(
         scene.mesh_bodies ? bench::with_mesh_bodies(std::move(problem)) : std::move(problem));
   }
@@ -146,7 +146,7 @@ void note_time(const std::string& label, const PlanResult& result, bool for_its_
 /// Plans; returns nothing, and notes it, where the eager planner refuses a graph that does not fit
 /// in memory.
 std::optional<PlanResult> plan_if_it_fits(const std::string& label, const Scene& scene,
-                                          const Problem& problem, const PlanOptions& options) {
+                                          const PathProblem& problem, const PlanOptions& options) {
   try {
     return plan(prepared(scene).robot, problem, options);
   } catch (const InputError&) {
@@ -158,8 +158,8 @@ std::optional<PlanResult> plan_if_it_fits(const std::string& label, const Scene&
 
 /// Returns the time of one eager plan, ms; nothing if it takes more than the limit, or does not fit
 /// in memory.
-std::optional<double> eager_ms(const std::string& label, const Scene& scene, const Problem& problem,
-                               PlannerKind planner) {
+std::optional<double> eager_ms(const std::string& label, const Scene& scene,
+                               const PathProblem& problem, PlannerKind planner) {
   if (const SlowPlan slow = slow_plan(label); slow.s > 0)
     return slow.s < plan_limit ? std::optional(1e3 * slow.s) : std::nullopt;
   const auto result = plan_if_it_fits(label, scene, problem, options_for(planner, 1));
@@ -171,7 +171,7 @@ std::optional<double> eager_ms(const std::string& label, const Scene& scene, con
 /// Times of an eager plan before and after the row that is compared with it.
 struct EagerTimes {
   const Scene& scene;
-  const Problem& problem;
+  const PathProblem& problem;
   PlannerKind planner;
   std::string label;  ///< label of the eager planner's row
   bool asked;
@@ -220,7 +220,7 @@ void run(benchmark::State& state, const Scene& scene, const Case& what,
     return not_run();
   else if (slow.has_row && slow.s > kOnce)
     return state.SkipWithError("not repeated: a plan takes seconds");
-  Problem problem = prepared(scene).problem;
+  PathProblem problem = prepared(scene).problem;
   bench::set_resolution(problem, setting);
   problem.limits.edges = what.edges;
   const auto eager_times = [&](PlannerKind planner, bool asked) {
@@ -301,7 +301,7 @@ std::vector<Case> cases(const Scene& scene, int setting) {
 
 /// Plans a pad's stroke across a dome with everything that is told of it.
 void run_pad(benchmark::State& state, const char* pad, int triangles, double depth) {
-  const Problem problem = bench::pad_on_dome(
+  const PathProblem problem = bench::pad_on_dome(
       io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" / "iiwa14_bench.yaml"),
       pad, triangles, depth);
   const PreparedRobot robot(problem);

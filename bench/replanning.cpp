@@ -29,7 +29,7 @@ double at(std::vector<double> sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-void walk(const Problem& problem, const char* setting, const std::string& object, int steps) {
+void walk(const PathProblem& problem, const char* setting, const std::string& object, int steps) {
   PlanOptions options;
   options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
@@ -40,7 +40,7 @@ void walk(const Problem& problem, const char* setting, const std::string& object
       static_cast<std::size_t>(std::find_if(problem.scene.begin(), problem.scene.end(),
                                             [&](const auto& o) { return o.name == object; }) -
                                problem.scene.begin());
-  Problem moved = problem;
+  PathProblem moved = problem;
   std::mt19937_64 random(7);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53 * 2 - 1; };
   std::vector<double> remembered, fresh;
@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
-  Problem problem = io::load_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
+  PathProblem problem = io::load_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
   for (const bench::Setting& setting : bench::kSettings) {
     if (setting.name[1] != '1' && setting.name[1] != '4') continue;
     bench::set_resolution(problem, setting);

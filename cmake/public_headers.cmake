@@ -11,7 +11,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/problem/held_joint.hpp
   swivel/core/problem/hooks.hpp
   swivel/core/problem/job.hpp
-  swivel/core/problem/problem.hpp
+  swivel/core/problem/path_problem.hpp
   swivel/core/problem/robot_model.hpp
   swivel/core/problem/shape.hpp
   swivel/core/problem/tool_path.hpp

@@ -5,7 +5,7 @@
 #include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
-  const swivel::Problem problem =
+  const swivel::PathProblem problem =
       swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   const swivel::PlanResult result = swivel::plan(problem);
   if (result.status != swivel::PlanStatus::kSolved)

@@ -8,7 +8,7 @@
 #include <thread>
 
 int main(int argc, char** argv) {
-  swivel::Problem problem =
+  swivel::PathProblem problem =
       swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.0002, .dphi = 0.0002};  // so fine that an answer takes minutes
   swivel::Planner planner(problem);

@@ -5,7 +5,7 @@
 #include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
-  swivel::Problem problem =
+  swivel::PathProblem problem =
       swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   swivel::SceneObject& wall = problem.scene.emplace_back();
   wall.name = "wall";

@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : "data/robots";
-  swivel::Problem problem;
+  swivel::PathProblem problem;
   problem.model = swivel::io::load_robot(folder / "iiwa14.urdf", folder / "iiwa14.srdf");
   problem.base_link = "base_link", problem.tip_link = "tool0";
   problem.tool.translation().z() = 0.1;  // the tool's point lies 0.1 m past tool0

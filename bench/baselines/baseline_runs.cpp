@@ -37,7 +37,7 @@ void print(const char* name, const baselines::TrackResult& result, double length
 
 /// s, the clearance (m, empty when nothing is near) and the joints of each row.
 void write_rows(const std::filesystem::path& file, const PreparedRobot& robot,
-                const Problem& problem, const std::vector<std::pair<double, Config>>& rows) {
+                const PathProblem& problem, const std::vector<std::pair<double, Config>>& rows) {
   const World world(robot.world(), problem);
   World::Query query(world);
   std::ostringstream text;
@@ -61,8 +61,8 @@ std::vector<std::pair<double, Config>> rows_of(const baselines::TrackResult& res
   return rows;
 }
 
-void run_swivel(const char* name, const PreparedRobot& robot, const Problem& problem, double length,
-                const std::filesystem::path& rows) {
+void run_swivel(const char* name, const PreparedRobot& robot, const PathProblem& problem,
+                double length, const std::filesystem::path& rows) {
   PlanOptions options;
   options.check = false;  // the time of planning is measured
   options.planner = PlannerKind::kLazy;
@@ -84,7 +84,7 @@ void run_swivel(const char* name, const PreparedRobot& robot, const Problem& pro
 }
 
 void run(const char* title, const std::filesystem::path& file, const std::filesystem::path& rows) {
-  const Problem problem = io::load_problem(file);
+  const PathProblem problem = io::load_problem(file);
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const double length = path.layer(path.size() - 1).s;
@@ -102,7 +102,7 @@ void run(const char* title, const std::filesystem::path& file, const std::filesy
     return rows.empty() ? rows : rows / (file.stem().string() + who);
   };
   run_swivel("Swivel, same start", robot, problem, length, file_of("_swivel.csv"));
-  Problem free = problem;
+  PathProblem free = problem;
   free.start.reset();
   run_swivel("Swivel, free start", robot, free, length, file_of("_swivel_free.csv"));
 }

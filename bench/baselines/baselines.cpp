@@ -34,7 +34,7 @@ Twist tool_error(const Pose& from, const Pose& to) {
 
 class Tracker {
  public:
-  Tracker(const PreparedRobot& robot, const Problem& problem, const TrackOptions& options)
+  Tracker(const PreparedRobot& robot, const PathProblem& problem, const TrackOptions& options)
       : chain_(robot.arm().chain),
         options_(options),
         margin_(problem.limits.joint_margin),
@@ -193,12 +193,12 @@ const char* to_string(StopReason reason) {
   return "?";
 }
 
-TrackResult track_jacobian(const PreparedRobot& robot, const Problem& problem,
+TrackResult track_jacobian(const PreparedRobot& robot, const PathProblem& problem,
                            const TrackOptions& options) {
   return Tracker(robot, problem, options).run(false);
 }
 
-TrackResult track_null_space(const PreparedRobot& robot, const Problem& problem,
+TrackResult track_null_space(const PreparedRobot& robot, const PathProblem& problem,
                              const TrackOptions& options) {
   return Tracker(robot, problem, options).run(true);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's two local methods, for comparison. Both follow the path from Problem::start in small
-// steps and know only the arm's present posture.
+// The paper's two local methods, for comparison. Both follow the path from PathProblem::start in
+// small steps and know only the arm's present posture.
 #pragma once
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -62,14 +62,14 @@ struct TrackResult {
 
 /// Follows the path by dq = J^+ dx, which is least joint motion, without regard to limits and
 /// obstacles. Throws InputError without a start or with one off the path.
-[[nodiscard]] TrackResult track_jacobian(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] TrackResult track_jacobian(const PreparedRobot& robot, const PathProblem& problem,
                                          const TrackOptions& options = {});
 
 /// Follows the path by dq = J^+ dx + gain (I - J^+ J) grad(clearance). The arm is pushed until the
 /// clearance reaches `influence`, the pushes of a row are used up, or the projected gradient
 /// vanishes. A push never lowers the clearance nor leaves the limits. Throws as track_jacobian()
 /// does.
-[[nodiscard]] TrackResult track_null_space(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] TrackResult track_null_space(const PreparedRobot& robot, const PathProblem& problem,
                                            const TrackOptions& options = {});
 
 }  // namespace swivel::baselines

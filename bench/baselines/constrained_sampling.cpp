@@ -110,7 +110,7 @@ double distance_to_segment(const Vector3d& x, const Vector3d& a, const Vector3d&
 
 /// Fills what only the finished path tells.
 void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const OnPath& on_path,
-             const Problem& problem, const std::function<bool(const Eigen::VectorXd&)>& valid,
+             const PathProblem& problem, const std::function<bool(const Eigen::VectorXd&)>& valid,
              ConstrainedResult& result) {
   double sum = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -148,7 +148,7 @@ void examine(const std::vector<Eigen::VectorXd>& rows, const Chain& chain, const
 
 /// Returns true if the joints keep their limits, the place is on the path, and no pair of bodies
 /// violates its clearance.
-bool is_valid(const Eigen::VectorXd& x, const Chain& chain, const Problem& problem,
+bool is_valid(const Eigen::VectorXd& x, const Chain& chain, const PathProblem& problem,
               World::Query& query) {
   constexpr double kSlack = 1e-9;
   for (int j = 0; j < kDof; ++j) {
@@ -229,7 +229,7 @@ std::vector<Eigen::VectorXd> rows_of_solution(const ob::ProblemDefinition& defin
 
 }  // namespace
 
-ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& problem,
+ConstrainedResult plan_constrained(const PreparedRobot& robot, const PathProblem& problem,
                                    Manifold manifold, double seconds) {
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   ConstrainedResult result;

@@ -7,7 +7,7 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -27,9 +27,10 @@ struct ConstrainedResult {
   double error_mm = 0, error_max_mm = 0;  ///< when finished; mean and largest, as for the planners
 };
 
-/// Plans with a bidirectional RRT (OMPL's RRTConnect) for at most `seconds`. Problem::start must be
-/// set and valid.
-[[nodiscard]] ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& problem,
-                                                 Manifold manifold, double seconds);
+/// Plans with a bidirectional RRT (OMPL's RRTConnect) for at most `seconds`. PathProblem::start
+/// must be set and valid.
+[[nodiscard]] ConstrainedResult plan_constrained(const PreparedRobot& robot,
+                                                 const PathProblem& problem, Manifold manifold,
+                                                 double seconds);
 
 }  // namespace swivel::baselines

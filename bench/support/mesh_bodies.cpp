@@ -40,7 +40,7 @@ MeshPtr mesh_of(const Capsule& capsule) {
 
 }  // namespace
 
-Problem with_mesh_bodies(Problem problem) {
+PathProblem with_mesh_bodies(PathProblem problem) {
   auto model = std::make_shared<RobotModel>(*problem.model);
   for (Link& link : model->links)
     for (PlacedShape& placed : link.collision)

@@ -2,12 +2,12 @@
 #pragma once
 #include <memory>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::bench {
 
 /// Returns the problem with a robot whose capsules are meshes: each is replaced by a closed mesh of
 /// some 800 triangles with corners on its surface, similar to link meshes in vendors' files.
-[[nodiscard]] Problem with_mesh_bodies(Problem problem);
+[[nodiscard]] PathProblem with_mesh_bodies(PathProblem problem);
 
 }  // namespace swivel::bench

@@ -75,7 +75,7 @@ double reach_of(const std::string& pad) {
 
 }  // namespace
 
-Problem pad_on_dome(Problem problem, const std::string& pad, int triangles, double depth) {
+PathProblem pad_on_dome(PathProblem problem, const std::string& pad, int triangles, double depth) {
   constexpr double kAhead = 0.12, kDeep = 0.001;
   problem.tool = Pose::Identity();
   problem.tool.translation().z() = kAhead;

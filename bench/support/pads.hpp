@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::bench {
 
@@ -12,7 +12,7 @@ inline constexpr const char* kPads[] = {"sphere", "capsule", "box", "cylinder", 
 /// Returns `problem` with another path and scene: a pad of a shape of kPads, 80 mm wide, is led
 /// across a dome of about so many triangles, which it touches in a patch 1 mm deep. `triangles` is
 /// at least 100. The pad may touch the dome, to `depth`, m, if that is not 0.
-[[nodiscard]] Problem pad_on_dome(Problem problem, const std::string& pad, int triangles,
-                                  double depth);
+[[nodiscard]] PathProblem pad_on_dome(PathProblem problem, const std::string& pad, int triangles,
+                                      double depth);
 
 }  // namespace swivel::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::bench {
 
@@ -16,7 +16,7 @@ inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},     {"#2", 0.005, 0.2
                                         {"fine", 0.002, 0.02}, {"finest", 0.001, 0.01}};
 inline constexpr int kPaperSettings = 4;
 
-inline void set_resolution(Problem& problem, const Setting& setting) {
+inline void set_resolution(PathProblem& problem, const Setting& setting) {
   problem.resolution.ds = setting.ds;
   problem.resolution.dphi = problem.resolution.arc = problem.resolution.droll = setting.dphi;
 }

@@ -130,7 +130,7 @@ CampaignOptions campaign_options(const CampaignArguments& arguments) {
 struct Drawn {
   std::optional<Job> job;        ///< set for a job
   std::optional<Workcell> cell;  ///< set for a workcell
-  Problem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
+  PathProblem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
   std::vector<io::InputFiles::File> inputs;
 };
 
@@ -138,10 +138,10 @@ struct Drawn {
 /// there is a results file, which says what it was computed from. Throws InputError.
 Drawn load_drawn(const CampaignArguments& arguments) {
   Drawn drawn;
-  std::variant<Problem, Job, Workcell> loaded = [&] {
+  std::variant<PathProblem, Job, Workcell> loaded = [&] {
     const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
                                                      : io::InputFiles::Contents::kHash);
-    std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
+    std::variant<PathProblem, Job, Workcell> read = io::load_problem_file(arguments.problem);
     drawn.inputs = noted.files();
     return read;
   }();
@@ -154,7 +154,7 @@ Drawn load_drawn(const CampaignArguments& arguments) {
     drawn.cell = chosen_workcell(std::move(*cell), arguments.search, {});
     drawn.problem = problem_of_arm(*drawn.cell, 0);
   } else {
-    drawn.problem = std::get<Problem>(std::move(loaded));
+    drawn.problem = std::get<PathProblem>(std::move(loaded));
     arguments.search.apply(drawn.problem);
   }
   return drawn;
@@ -172,7 +172,7 @@ void add_outputs(const CampaignArguments& arguments, io::OutputFiles& outputs) {
 
 /// Returns the record of this run, which a shard's results begin with.
 io::ShardRecord record_of(const CampaignArguments& arguments, const CampaignOptions& options,
-                          const Problem& problem, const std::vector<HeldJoint>& held,
+                          const PathProblem& problem, const std::vector<HeldJoint>& held,
                           const std::vector<io::InputFiles::File>& inputs) {
   io::ShardRecord record{"campaign",
                          run_settings(arguments.problem, problem, arguments.search, inputs),
@@ -253,7 +253,7 @@ int run(const CampaignArguments& arguments) {
   if (!arguments.report.empty()) require_pages();
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
   const Drawn drawn = load_drawn(arguments);
-  const Problem& problem = drawn.problem;
+  const PathProblem& problem = drawn.problem;
   std::optional<PreparedRobot> robot;
   if (!drawn.cell) robot.emplace(problem);
   const std::vector<HeldJoint> held = drawn.cell ? held_joints(*drawn.cell) : robot->arm().held;

@@ -41,7 +41,7 @@ struct CheckArguments {
 };
 
 /// Prints what was proved, and how near it is to failing.
-void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
+void print_margins(const PathProblem& problem, const Chain& chain, const CheckResult& result) {
   say("tool within %.2g m and %.2g rad of the path at rows", result.worst_position,
       result.worst_angle);
   // Where no row and the next could both be measured, nothing is known of what lies between.
@@ -98,7 +98,7 @@ bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& row
 
 /// Verifies a certificate and prints the verdict behind `prefix`. Prints nothing where it
 /// throws.
-int run_on_certificate(const Problem& problem, const InfeasibilityCertificate& certificate,
+int run_on_certificate(const PathProblem& problem, const InfeasibilityCertificate& certificate,
                        const std::string& prefix = {}) {
   catch_interrupts();
   CertificateCheck result;
@@ -156,7 +156,7 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
     throw InputError(arguments.certificate, "reversed: stroke '" + certificate.stroke +
                                                 "' is not `reversible`: allowed is a certificate "
                                                 "of it forwards");
-  const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
+  const PathProblem problem = problem_of_run(job, {*stroke, certificate.reversed});
   return run_on_certificate(
       problem, certificate,
       "stroke '" + certificate.stroke + (certificate.reversed ? "' backwards: " : "': "));
@@ -182,12 +182,12 @@ void require_speed_of_job(const CheckArguments& arguments, bool is_job) {
 }
 
 int run(const CheckArguments& arguments) {
-  const std::variant<Problem, Job, Workcell> file = io::load_problem_file(arguments.problem);
+  const std::variant<PathProblem, Job, Workcell> file = io::load_problem_file(arguments.problem);
   const Job* const job = std::get_if<Job>(&file);
   require_speed_of_job(arguments, job != nullptr);
   if (job) return run_on_job(arguments, *job);
   if (const Workcell* cell = std::get_if<Workcell>(&file)) return run_on_workcell(arguments, *cell);
-  Problem problem = arguments.episode.apply(std::get<Problem>(file));
+  PathProblem problem = arguments.episode.apply(std::get<PathProblem>(file));
   arguments.lattice.apply(problem);
   require_one_file(arguments);
   if (!arguments.certificate.empty()) {

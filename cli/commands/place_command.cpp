@@ -122,7 +122,7 @@ struct PlacedProblem {
   std::vector<io::InputFiles::File> inputs;
   std::optional<Job> job;        ///< set for a job
   std::optional<Workcell> cell;  ///< set for a workcell
-  Problem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
+  PathProblem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
   Movable thing;
   [[nodiscard]] bool has_one_path() const { return !job && !cell; }
 };
@@ -132,10 +132,10 @@ struct PlacedProblem {
 PlacedProblem load_problem(const PlaceArguments& arguments) {
   PlacedProblem placed;
   if (!arguments.write.empty()) placed.text = problem_text(arguments);
-  std::variant<Problem, Job, Workcell> loaded = [&] {
+  std::variant<PathProblem, Job, Workcell> loaded = [&] {
     const io::InputFiles noted(arguments.shard.empty() ? io::InputFiles::Contents::kIgnore
                                                        : io::InputFiles::Contents::kHash);
-    std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
+    std::variant<PathProblem, Job, Workcell> read = io::load_problem_file(arguments.problem);
     placed.inputs = noted.files();
     return read;
   }();
@@ -151,7 +151,7 @@ PlacedProblem load_problem(const PlaceArguments& arguments) {
     placed.cell = chosen_workcell(std::move(*cell), arguments.search, {});
     placed.problem = problem_of_arm(*placed.cell, 0);
   } else {
-    placed.problem = std::get<Problem>(std::move(loaded));
+    placed.problem = std::get<PathProblem>(std::move(loaded));
     source = placed.problem.source;
     arguments.search.apply(placed.problem);
   }
@@ -196,7 +196,7 @@ std::string text_with_cell(const std::string& text, const Workcell& cell, const 
 std::string text_with(const PlacedProblem& placed, const Placement& at) {
   if (placed.cell) return text_with_cell(placed.text, *placed.cell, placed.thing, at);
   if (placed.job) return text_with_job(placed.text, *placed.job, placed.thing, at);
-  Problem moved = placed_problem(placed.problem, placed.thing, at.offset);
+  PathProblem moved = placed_problem(placed.problem, placed.thing, at.offset);
   hold_joints(moved, at.hold);
   return io::with_poses(placed.text, placed.problem, moved);
 }
@@ -219,7 +219,7 @@ void require_placeable(const PlacedProblem& placed, const PlacementGrid& grid, b
   for (const PlacementAxis& axis : grid.axes())
     if (!axis.joint.empty())
       for (const double position : {axis.from, sample ? axis.to : axis.at(axis.count - 1)}) {
-        std::variant<Problem, Workcell> copy = placed.problem;
+        std::variant<PathProblem, Workcell> copy = placed.problem;
         if (placed.cell) copy = *placed.cell;
         in_the_name_of_option("--hold: ", [&] {
           std::visit([&](auto& what) { hold_joints(what, {{axis.joint, position}}); }, copy);

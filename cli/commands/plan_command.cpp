@@ -60,7 +60,7 @@ struct PlanArguments {
 /// What is to be planned, as problem file and command line say it.
 struct PlanRequest {
   const PlanArguments& arguments;
-  Problem problem{};
+  PathProblem problem{};
   /// The files that were read, which no output may replace.
   std::vector<io::InputFiles::File> inputs{};
   std::optional<TimingOptions> timing{};  ///< set with --speed: the path is timed
@@ -120,7 +120,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 /// A problem file as it was read.
 struct LoadedFile {
-  std::variant<Problem, Job, Workcell> what{};
+  std::variant<PathProblem, Job, Workcell> what{};
   std::vector<io::InputFiles::File> inputs{};  ///< the files that were read
   double load_ms = 0;                          ///< time that loading took
 };
@@ -155,7 +155,7 @@ void read_motion(PlanRequest& request) {
 /// the chosen episode and placement say. Throws InputError.
 PlanRequest request_of(const PlanArguments& arguments, LoadedFile file) {
   PlanRequest request{.arguments = arguments,
-                      .problem = arguments.episode.apply(std::get<Problem>(file.what)),
+                      .problem = arguments.episode.apply(std::get<PathProblem>(file.what)),
                       .inputs = std::move(file.inputs),
                       .options = arguments.search.plan_options(),
                       .load_ms = file.load_ms};
@@ -521,7 +521,7 @@ Workcell EpisodeChoice::apply(const Workcell& cell) const {
   return placement.apply(seed ? episode_workcell(cell, *seed, *episode) : cell);
 }
 
-Problem EpisodeChoice::apply(const Problem& problem) const {
+PathProblem EpisodeChoice::apply(const PathProblem& problem) const {
   require_episodes(problem.vary);
   return placement.apply(seed ? episode_problem(problem, *seed, *episode) : problem);
 }

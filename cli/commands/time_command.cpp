@@ -33,9 +33,9 @@ struct TimeArguments {
 
 /// Returns a path's rows after refinement, which moves them off the nodes of the lattice, on the
 /// path that the motion follows.
-std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem,
+std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const PathProblem& problem,
                                    const std::vector<TrajectoryRow>& rows, bool quiet) {
-  const Problem smoothed = with_motion_defaults(problem);
+  const PathProblem smoothed = with_motion_defaults(problem);
   const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {},
                                 Budget(std::nullopt, &interrupted));
   if (!quiet)
@@ -74,11 +74,11 @@ int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
 int run(const TimeArguments& arguments) {
   require_motion_formats(arguments.out);
   std::optional<io::InputFiles> noted(std::in_place);
-  const std::variant<Problem, Job, Workcell> read = io::load_problem_file(arguments.problem);
+  const std::variant<PathProblem, Job, Workcell> read = io::load_problem_file(arguments.problem);
   if (const Job* job = std::get_if<Job>(&read)) return run_on_job(arguments, *job, noted);
   if (const Workcell* cell = std::get_if<Workcell>(&read))
     return run_on_workcell(arguments, *cell, noted);
-  Problem problem = arguments.episode.apply(std::get<Problem>(read));
+  PathProblem problem = arguments.episode.apply(std::get<PathProblem>(read));
   arguments.lattice.apply(problem);
   const TimingOptions options = arguments.motion.timing(problem.limits);
   const PreparedRobot robot(problem);
@@ -94,7 +94,7 @@ int run(const TimeArguments& arguments) {
     timed = in_the_name_of(arguments.trajectory, [&] {
       const Budget budget(std::nullopt, &interrupted);
       // The rows of a motion are at points of the path with rounded corners.
-      const Problem of_rows = file.timed.empty() ? problem : with_motion_defaults(problem);
+      const PathProblem of_rows = file.timed.empty() ? problem : with_motion_defaults(problem);
       std::vector<TrajectoryRow> rows =
           rows_at_layers(robot, of_rows, file.rows, file.stated, budget);
       if (arguments.refine)

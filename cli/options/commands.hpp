@@ -12,7 +12,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/held_joint.hpp"
 #include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/workcell.hpp"
 #include "swivel/io/files/files.hpp"
 
@@ -40,7 +40,7 @@ struct EpisodeChoice {
   void add_to(CLI::App& command);
   /// Returns the problem, job or workcell with its objects as the episode and the placement say.
   /// Throws InputError.
-  [[nodiscard]] Problem apply(const Problem& problem) const;
+  [[nodiscard]] PathProblem apply(const PathProblem& problem) const;
   [[nodiscard]] Job apply(const Job& job) const;
   [[nodiscard]] Workcell apply(const Workcell& cell) const;
   /// Returns words such as "episode 33 of seed 1"; "" if no episode is chosen.

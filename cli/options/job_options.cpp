@@ -40,8 +40,8 @@ Workcell chosen_workcell(Workcell cell, const LatticeOptions& lattice,
   return cell;
 }
 
-Problem problem_of_arm(const Workcell& cell, std::size_t arm) {
-  Problem problem;
+PathProblem problem_of_arm(const Workcell& cell, std::size_t arm) {
+  PathProblem problem;
   static_cast<Robot&>(problem) = cell.arms[arm];
   static_cast<Task&>(problem) = cell.arms[arm];
   problem.scene = cell.scene;

@@ -29,7 +29,7 @@ void require_planner_of(const std::string& kind, const SearchOptions& search);
 
 /// Returns the task and the scene that an arm of a workcell has, as a problem for records and
 /// messages: its path may be on the tool of the other arm, so that it cannot be planned.
-[[nodiscard]] Problem problem_of_arm(const Workcell& cell, std::size_t arm);
+[[nodiscard]] PathProblem problem_of_arm(const Workcell& cell, std::size_t arm);
 
 /// Returns the joints between the base and the tips of a workcell's arms that are held. Throws
 /// InputError.

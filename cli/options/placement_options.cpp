@@ -165,7 +165,7 @@ bool PlacementOptions::any() const {
   return !axes().empty() || !object.empty() || !arm.empty() || path || base;
 }
 
-Problem PlacementOptions::apply(const Problem& problem) const {
+PathProblem PlacementOptions::apply(const PathProblem& problem) const {
   if (!any()) return problem;
   const Movable what = thing(problem, problem.scene, problem.source);
   const Placement at = one_placement();

@@ -31,7 +31,7 @@ struct PlacementOptions {
   [[nodiscard]] std::vector<PlacementAxis> axes() const;
   /// Returns the problem, job or workcell with joints held, and one thing moved, by one number for
   /// each joint and coordinate that is given; itself if nothing is named. Throws InputError.
-  [[nodiscard]] Problem apply(const Problem& problem) const;
+  [[nodiscard]] PathProblem apply(const PathProblem& problem) const;
   [[nodiscard]] Job apply(const Job& job) const;
   [[nodiscard]] Workcell apply(const Workcell& cell) const;
   /// Returns true if a thing or a coordinate is named.

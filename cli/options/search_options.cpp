@@ -66,7 +66,7 @@ void LatticeOptions::apply(Task& task) const {
   }
 }
 
-void LatticeOptions::apply(Problem& problem) const {
+void LatticeOptions::apply(PathProblem& problem) const {
   apply(static_cast<Task&>(problem));
   if (dphi || arcs.value_or(false)) require_used(unused_keys_of(problem, problem.source));
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swivel/core/lattice/kinds/unused_keys.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 
 namespace swivel::cli {
@@ -21,7 +21,7 @@ struct LatticeOptions {
   /// Replaces values of the problem file by those that the command line gives.
   void apply(Task& task) const;
   /// Does so for a problem of one path. Throws InputError for options that its arm does not use.
-  void apply(Problem& problem) const;
+  void apply(PathProblem& problem) const;
   /// Throws InputError for options that are given and of which no lattice makes use.
   void require_used(const std::vector<UnusedKey>& unused) const;
 };

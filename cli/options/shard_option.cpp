@@ -55,7 +55,7 @@ Shard shard_from_string(const std::string& text) {
   return shard;
 }
 
-io::RunSettings run_settings(const std::string& problem_file, const Problem& problem,
+io::RunSettings run_settings(const std::string& problem_file, const PathProblem& problem,
                              const SearchOptions& search,
                              const std::vector<io::InputFiles::File>& inputs) {
   namespace fs = std::filesystem;

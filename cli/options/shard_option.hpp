@@ -17,8 +17,8 @@ namespace swivel::cli {
 /// Returns what the rows of every command depend on: the version, how paths are planned, and the
 /// contents of all files that were read. Threads and names of outputs are left out, since rows do
 /// not depend on them.
-[[nodiscard]] io::RunSettings run_settings(const std::string& problem_file, const Problem& problem,
-                                           const SearchOptions& search,
+[[nodiscard]] io::RunSettings run_settings(const std::string& problem_file,
+                                           const PathProblem& problem, const SearchOptions& search,
                                            const std::vector<io::InputFiles::File>& inputs);
 
 }  // namespace swivel::cli

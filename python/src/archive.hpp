@@ -181,16 +181,16 @@ void serialize(A& archive, Task& x) {
   archive(path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at,
           start_tolerance, end, closed, cost, refinement, steps);
 }
-/// Lists the members of a Problem and of its two bases, which no structured binding takes apart
+/// Lists the members of a PathProblem and of its two bases, which no structured binding takes apart
 /// together.
 template <class A>
-void serialize(A& archive, Problem& x) {
+void serialize(A& archive, PathProblem& x) {
   struct Listed : Robot, Task {
     std::string source;
     std::vector<SceneObject> scene;
     std::vector<Variation> vary;
   };
-  static_assert(sizeof(Listed) == sizeof(Problem));
+  static_assert(sizeof(Listed) == sizeof(PathProblem));
   archive(static_cast<Robot&>(x), static_cast<Task&>(x), x.source, x.scene, x.vary);
 }
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "swivel/core/messages/nearest_name.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 // Python changes a scene in place, so it must never be copied into a list.
 PYBIND11_MAKE_OPAQUE(std::vector<swivel::SceneObject>)

@@ -145,7 +145,7 @@ struct PlanKeywords {
   }
 };
 
-TimingOptions timing_of(const Problem& problem, std::optional<double> speed,
+TimingOptions timing_of(const PathProblem& problem, std::optional<double> speed,
                         std::optional<double> turn_speed, double rate,
                         std::optional<double> chord) {
   TimingOptions options;
@@ -167,8 +167,9 @@ TimingOptions timing_of(const Problem& problem, std::optional<double> speed,
   return options;
 }
 
-Problem problem_of(const Robot& robot, const std::optional<Task>& task, const py::iterable& scene) {
-  Problem problem;
+PathProblem problem_of(const Robot& robot, const std::optional<Task>& task,
+                       const py::iterable& scene) {
+  PathProblem problem;
   static_cast<Robot&>(problem) = robot;
   if (task) static_cast<Task&>(problem) = *task;
   pass_half_turns(problem, problem.waypoints);
@@ -211,9 +212,9 @@ class SharedPlanner {
   explicit SharedPlanner(Planner planner)
       : planner_(std::move(planner)), task_(planner_.problem()) {}
 
-  [[nodiscard]] Problem problem() {
+  [[nodiscard]] PathProblem problem() {
     const Use use(*this);
-    Problem problem = planner_.problem();
+    PathProblem problem = planner_.problem();
     static_cast<Task&>(problem) = task_;
     return problem;
   }
@@ -237,9 +238,10 @@ class SharedPlanner {
   }
   /// Returns the number of rows that a trajectory of the whole path has.
   int rows_of_path() {
-    return prepared([](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
-      return problem_path(problem, robot.arm().chain, budget).size();
-    });
+    return prepared(
+        [](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
+          return problem_path(problem, robot.arm().chain, budget).size();
+        });
   }
   Plan plan(const PlanKeywords& keywords, bool refined, std::optional<double> speed,
             std::optional<double> turn_speed, std::optional<double> rate,
@@ -267,7 +269,7 @@ class SharedPlanner {
     plan.refined = refined;
     plan.own_functions =
         !keywords.check.is_none() || !keywords.check_motions.is_none() || !keywords.cost.is_none();
-    plan.problem = std::make_shared<const Problem>(planner_.problem());
+    plan.problem = std::make_shared<const PathProblem>(planner_.problem());
     plan.plan = std::make_shared<const MotionPlan>(interruptible([&](const std::stop_token& stop) {
       options.stop = stop;
       return plan_motion(planner_, options, refined, plan.timing);
@@ -275,33 +277,34 @@ class SharedPlanner {
     return plan;
   }
   Check check(const Trajectory& trajectory) {
-    return prepared([&](const PreparedRobot& robot, const Problem& problem, const Budget&) {
+    return prepared([&](const PreparedRobot& robot, const PathProblem& problem, const Budget&) {
       return Check{check_trajectory(robot, problem, *trajectory.rows), trajectory.joint_names};
     });
   }
   Check check(const Motion& motion) {
     const auto rows = motion.rows();
     static_cast<void>(motion.path());
-    return prepared([&](const PreparedRobot& robot, const Problem& problem, const Budget&) {
+    return prepared([&](const PreparedRobot& robot, const PathProblem& problem, const Budget&) {
       return Check{check_motion(robot, problem, *rows), motion.joint_names};
     });
   }
   Measures measure(const Trajectory& trajectory) {
-    return prepared([&](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
-      return swivel::measure(robot, problem, *trajectory.rows, Evidence::all(), budget);
-    });
+    return prepared(
+        [&](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
+          return swivel::measure(robot, problem, *trajectory.rows, Evidence::all(), budget);
+        });
   }
   Clearances clearance(const py::handle& joints, std::optional<double> timeout) {
     const std::vector<Config> states = to_states(joints);
     return {std::make_shared<const StateClearances>(prepared(
-        [&](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
+        [&](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
           return state_clearances(robot, problem, states, budget);
         },
         timeout))};
   }
   RefinedPath refine(const Trajectory& trajectory, std::optional<double> timeout) {
     Refined refined = prepared(
-        [&](const PreparedRobot& robot, const Problem& problem, const Budget& budget) {
+        [&](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
           return swivel::refine(robot, problem, *trajectory.rows, {}, budget);
         },
         timeout);
@@ -310,10 +313,10 @@ class SharedPlanner {
   python::Motion time(const Trajectory& trajectory, std::optional<double> speed,
                       std::optional<double> turn_speed, double rate, std::optional<double> chord,
                       std::optional<double> timeout) {
-    const Problem held = problem();
+    const PathProblem held = problem();
     const TimingOptions options = timing_of(held, speed, turn_speed, rate, chord);
     TimingResult timing = prepared(
-        [&](const PreparedRobot& robot, const Problem& problem,
+        [&](const PreparedRobot& robot, const PathProblem& problem,
             const Budget& budget) -> TimingResult {
           return time_trajectory(robot, problem, *trajectory.rows, options, budget);
         },
@@ -383,7 +386,7 @@ void bind_planner(py::module_& m) {
                             "change between plans, and re-uses what did\n"
                             "not change; answers never depend on the plans before. For one thread "
                             "at a time: others take a clone().")
-      .def(py::init([](const Problem& problem) {
+      .def(py::init([](const PathProblem& problem) {
              return std::make_unique<SharedPlanner>(Planner(problem));
            }),
            py::arg("problem"), "Raises InvalidArgument and InputError.")
@@ -536,7 +539,7 @@ void bind_planner(py::module_& m) {
            "first.")
       .def("__repr__", [](SharedPlanner& self) {
         if (self.in_use()) return std::string("<Planner, at work>");
-        const Problem problem = self.problem();
+        const PathProblem problem = self.problem();
         return "<Planner of " + py::repr(py::cast(problem)).cast<std::string>() + ">";
       });
 }

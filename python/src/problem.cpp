@@ -823,13 +823,13 @@ void bind_problem(py::module_& m) {
   bind_scene(m);
   bind_task(m);
 
-  py::class_<Problem, Robot, Task> type(
+  py::class_<PathProblem, Robot, Task> type(
       m, "Problem", "A robot, its task and the scene: what a problem file says.");
   make_copyable(type);
-  type.def(pickling<Problem>());
+  type.def(pickling<PathProblem>());
   type.def(
           py::init([](const Robot& robot, const Task& task, const py::iterable& scene) {
-            Problem problem;
+            PathProblem problem;
             static_cast<Robot&>(problem) = robot;
             static_cast<Task&>(problem) = task;
             problem.scene = to_scene(scene);
@@ -840,25 +840,26 @@ void bind_problem(py::module_& m) {
           "A tool that may turn freely about its z axis passes half turns between waypoints: those "
           "behind a half turn about another axis are turned by 180 deg about z.")
       .def_property(
-          "waypoints", [](const Problem& problem) { return problem.waypoints; },
-          [](Problem& problem, std::vector<Waypoint> waypoints) {
+          "waypoints", [](const PathProblem& problem) { return problem.waypoints; },
+          [](PathProblem& problem, std::vector<Waypoint> waypoints) {
             pass_half_turns(problem, waypoints);
             problem.waypoints = std::move(waypoints);
           },
           "As of a Task. A copy; assign to change it.")
-      .def_readonly("source", &Problem::source, "The file; empty of problems made in memory.")
-      .def_readwrite("scene", &Problem::scene, "Scene, changed in place.")
+      .def_readonly("source", &PathProblem::source, "The file; empty of problems made in memory.")
+      .def_readwrite("scene", &PathProblem::scene, "Scene, changed in place.")
       .def_property_readonly(
-          "robot", [](const Problem& problem) { return Robot(problem); }, "A copy.")
+          "robot", [](const PathProblem& problem) { return Robot(problem); }, "A copy.")
       .def_property_readonly(
-          "task", [](const Problem& problem) { return Task(problem); }, "A copy.")
+          "task", [](const PathProblem& problem) { return Task(problem); }, "A copy.")
       .def(
-          "validate", [](const Problem& problem) { validate(problem); },
+          "validate", [](const PathProblem& problem) { validate(problem); },
           "Raises InvalidArgument, which names the member, for what no problem may have.")
       .def(
           "placed",
-          [](const Problem& problem, const Offset& offset, const std::optional<std::string>& object,
-             bool path, bool base, const HeldPositions& hold) {
+          [](const PathProblem& problem, const Offset& offset,
+             const std::optional<std::string>& object, bool path, bool base,
+             const HeldPositions& hold) {
             return placed_problem(held_as(problem, hold),
                                   to_movable(object, path, base, !hold.empty()), offset);
           },
@@ -872,7 +873,7 @@ void bind_problem(py::module_& m) {
            "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
       .def(
           "save",
-          [](Problem problem, const std::filesystem::path& file) {
+          [](PathProblem problem, const std::filesystem::path& file) {
             interruptible([&](const std::stop_token&) {
               io::save_problem(problem, file);
               return true;
@@ -886,7 +887,7 @@ void bind_problem(py::module_& m) {
           "for what no file can say, and InvalidArgument.")
       .def(
           "stretch",
-          [](const Problem& problem, double begin, std::optional<double> end) {
+          [](const PathProblem& problem, double begin, std::optional<double> end) {
             PathRange range{begin};
             if (end) range.to = *end;
             return problem_of_range(problem, range);
@@ -894,7 +895,7 @@ void bind_problem(py::module_& m) {
           py::arg("begin"), py::arg("end") = py::none(),
           "The problem of a stretch of the path alone, between two arc lengths, m, which the arm "
           "begins and ends in any posture. end: None for the path's end. Raises InvalidArgument.")
-      .def("__repr__", [](const Problem& problem) {
+      .def("__repr__", [](const PathProblem& problem) {
         return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " +
                robot_words(problem) + "; " + std::to_string(problem.waypoints.size()) +
                " waypoints, " + std::to_string(problem.scene.size()) + " objects>";

@@ -98,7 +98,7 @@ void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& 
 }
 
 py::object load_trajectory(const std::filesystem::path& name, const std::vector<std::string>& names,
-                           const Problem* problem) {
+                           const PathProblem* problem) {
   const io::JointNames joint_names = to_joint_names(names);
   io::TrajectoryFile file = io::load_trajectory_file(name, joint_names);
   const bool timed = !file.timed.empty();

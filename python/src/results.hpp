@@ -40,7 +40,7 @@ struct Plan {
   bool refined = false;        ///< a refinement was asked for
   bool own_functions = false;  ///< it depends on checks or costs that are functions of Python
   /// The problem as it was planned, of which reports are made. Null after unpickling.
-  std::shared_ptr<const Problem> problem = nullptr;
+  std::shared_ptr<const PathProblem> problem = nullptr;
   [[nodiscard]] const PlanResult& result() const { return plan->result; }
 };
 

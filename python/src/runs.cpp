@@ -418,9 +418,9 @@ class Cells {
 };
 
 /// What is planned many times: a problem, a job or a workcell.
-using Planned = std::variant<Problem, swivel::Job, swivel::Workcell>;
+using Planned = std::variant<PathProblem, swivel::Job, swivel::Workcell>;
 
-Planned to_planned(const Problem& problem) {
+Planned to_planned(const PathProblem& problem) {
   return problem;
 }
 /// Throws as to_core() does.
@@ -439,7 +439,7 @@ std::shared_ptr<const PreparedRobot> prepare(const Planned& planned, const std::
   if (const auto* const job = std::get_if<swivel::Job>(&planned))
     return std::make_shared<const PreparedRobot>(problem_of_run(*job, {0, false}), budget);
   if (std::holds_alternative<swivel::Workcell>(planned)) return nullptr;
-  return std::make_shared<const PreparedRobot>(std::get<Problem>(planned), budget);
+  return std::make_shared<const PreparedRobot>(std::get<PathProblem>(planned), budget);
 }
 
 /// Plans placements of one thing; of a problem with a planner that remembers earlier plans.
@@ -456,7 +456,7 @@ class Placer {
     else if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
       static_cast<void>(placed_workcell(*cell, thing_, {}));
     else
-      static_cast<void>(placed_problem(std::get<Problem>(planned_), thing_, {}));
+      static_cast<void>(placed_problem(std::get<PathProblem>(planned_), thing_, {}));
     for (const auto& [joint, low, high] : joints_)
       for (const double position : {low, high})
         std::visit(
@@ -494,7 +494,7 @@ class Placer {
         else if (const auto* const job = std::get_if<swivel::Job>(&planned_))
           planner_.emplace(robot, *job, thing_, options);
         else
-          planner_.emplace(robot, std::get<Problem>(planned_), thing_, options);
+          planner_.emplace(robot, std::get<PathProblem>(planned_), thing_, options);
       }
       const std::stop_callback pass_on(stop, [&] { stop_.request_stop(); });
       return planner_->plan(wanted, done);
@@ -546,7 +546,7 @@ class Campaigner {
                       else if (const auto* const job = std::get_if<swivel::Job>(&planned_))
                         run_campaign(*robot_, *job, options, row_done);
                       else
-                        run_campaign(*robot_, std::get<Problem>(planned_), options, row_done);
+                        run_campaign(*robot_, std::get<PathProblem>(planned_), options, row_done);
                       return rows;
                     }),
                     coordinates);
@@ -591,13 +591,13 @@ void bind_parts(py::module_& m) {
       .def("offsets", &Cells::offsets)
       .def("refinement", &Cells::refinement);
   py::class_<Placer>(m, "_Placer")
-      .def(placer_of<Problem>())
+      .def(placer_of<PathProblem>())
       .def(placer_of<Job>())
       .def(placer_of<Workcell>())
       .def("plan", &Placer::plan)
       .def_property_readonly("stopped", &Placer::stopped);
   py::class_<Campaigner>(m, "_Campaigner")
-      .def(campaigner_of<Problem>())
+      .def(campaigner_of<PathProblem>())
       .def(campaigner_of<Job>())
       .def(campaigner_of<Workcell>())
       .def("plan",
@@ -610,7 +610,7 @@ void bind_parts(py::module_& m) {
       return py::cast(Workcell{std::make_shared<const swivel::Workcell>(std::move(*cell))});
     if (auto* const job = std::get_if<swivel::Job>(&read))
       return py::cast(from_core(std::move(*job)));
-    return py::cast(std::get<Problem>(std::move(read)));
+    return py::cast(std::get<PathProblem>(std::move(read)));
   });
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLength = 0.5;  // m, the line of A and B
 
-Problem experiment(const std::string& name) {
+PathProblem experiment(const std::string& name) {
   return io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name + ".yaml");
 }
 
@@ -30,7 +30,8 @@ PlanOptions lazy() {
 
 /// Every row is what a tracker promises: on the path, in the limits, clear, and near the row
 /// before.
-void expect_valid(const TrackResult& result, const PreparedRobot& robot, const Problem& problem) {
+void expect_valid(const TrackResult& result, const PreparedRobot& robot,
+                  const PathProblem& problem) {
   const Chain& chain = robot.arm().chain;
   const std::vector<Waypoint> line = waypoints_in_base(problem);
   const Vector3d along = (line[1].position - line[0].position).normalized();
@@ -55,7 +56,7 @@ void expect_valid(const TrackResult& result, const PreparedRobot& robot, const P
 }
 
 TEST(Baselines, JacobianMeetsTheLimitOfJoint5InExperimentA) {
-  const Problem problem = experiment("experiment_a_start");
+  const PathProblem problem = experiment("experiment_a_start");
   const PreparedRobot robot(problem);
   const TrackResult result = track_jacobian(robot, problem);
   EXPECT_EQ(result.reason, StopReason::kJointLimit);
@@ -67,7 +68,7 @@ TEST(Baselines, JacobianMeetsTheLimitOfJoint5InExperimentA) {
 }
 
 TEST(Baselines, JacobianHitsTheFirstBallInExperimentB) {
-  const Problem problem = experiment("experiment_b");
+  const PathProblem problem = experiment("experiment_b");
   const PreparedRobot robot(problem);
   const TrackResult result = track_jacobian(robot, problem);
   EXPECT_EQ(result.reason, StopReason::kCollision);
@@ -78,7 +79,7 @@ TEST(Baselines, JacobianHitsTheFirstBallInExperimentB) {
 }
 
 TEST(Baselines, NullSpaceEscapesTheFirstBallAndSticksBetweenBothInExperimentB) {
-  Problem problem = experiment("experiment_b");
+  PathProblem problem = experiment("experiment_b");
   const PreparedRobot robot(problem);
   const TrackResult jacobian = track_jacobian(robot, problem);
   const TrackResult result = track_null_space(robot, problem);
@@ -117,7 +118,7 @@ TEST(Baselines, NullSpaceEscapesTheFirstBallAndSticksBetweenBothInExperimentB) {
 }
 
 TEST(Baselines, TheTrapOfExperimentBDoesNotHangOnTheOptions) {
-  const Problem problem = experiment("experiment_b");
+  const PathProblem problem = experiment("experiment_b");
   const PreparedRobot robot(problem);
   const double s = track_null_space(robot, problem).s;
   TrackOptions fine, weak, strong, wide, single;
@@ -134,7 +135,7 @@ TEST(Baselines, TheTrapOfExperimentBDoesNotHangOnTheOptions) {
 }
 
 TEST(Baselines, PlannerSolvesExperimentBFromTheSameStart) {
-  const Problem problem = experiment("experiment_b");
+  const PathProblem problem = experiment("experiment_b");
   const PreparedRobot robot(problem);
   ASSERT_TRUE(problem.start);
   const PlanResult result = plan(robot, problem, lazy());
@@ -145,7 +146,7 @@ TEST(Baselines, PlannerSolvesExperimentBFromTheSameStart) {
 }
 
 TEST(Baselines, FinishWhereNothingIsInTheWay) {
-  Problem problem = experiment("experiment_b");
+  PathProblem problem = experiment("experiment_b");
   problem.scene.clear();
   const PreparedRobot robot(problem);
   for (const TrackResult& result :
@@ -158,7 +159,7 @@ TEST(Baselines, FinishWhereNothingIsInTheWay) {
 }
 
 TEST(Baselines, RefuseAMissingOrMisplacedStart) {
-  Problem problem = experiment("experiment_b");
+  PathProblem problem = experiment("experiment_b");
   const PreparedRobot robot(problem);
   (*problem.start)[0] += 1e-3;
   EXPECT_THROW((void)track_jacobian(robot, problem), InputError);

@@ -78,7 +78,7 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
   tip.translation().z() = 0.17;
   robot.links[7].collision.push_back({Box{Vector3d(0.05, 0.05, 0.06)}, tip});
   const ArmModel arm = arm_of(robot);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   const World base(robot, arm, problem);
   const EdgeRule rule = base.edge_rule(motion_radii(arm.chain, base.bodies()));
   int blocked = 0, free = 0, in_band = 0, blocked_by = 0, free_of = 0;
@@ -133,7 +133,7 @@ TEST(EdgeBlocked, ProvesTheWholeMotion) {
   // A ball too thin to be met by a few samples: the arm sweeps over it between two free ends.
   const RobotModel robot = capsule_arm();
   const ArmModel arm = arm_of(robot);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   Config q0 = Config::Zero(), q1 = Config::Zero();
   q0[1] = q1[1] = 1.2;
   q0[0] = -0.25;

@@ -100,7 +100,7 @@ struct OtherArmAsObjects {
     std::iota(objects.begin(), objects.end(), 0);
     world.emplace(whole, objects);
   }
-  Problem problem;
+  PathProblem problem;
   std::optional<World> world;  ///< of the pairs with an object
 };
 

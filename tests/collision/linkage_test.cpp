@@ -89,7 +89,7 @@ TEST(LinkageWorld, MotionsAreProved) {
   for (int trial = 0; trial < test::trials(150); ++trial) {
     test::Random random(base + static_cast<std::uint64_t>(trial));
     const Linked linked = linked_arm(random);
-    Problem problem = problem_for(linked.robot);
+    PathProblem problem = problem_for(linked.robot);
     problem.limits.edge_tolerance = 0.002;
     std::vector<SceneObject> scene;
     for (int k = 0; k < 3; ++k) {

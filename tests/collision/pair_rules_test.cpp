@@ -26,7 +26,7 @@ Names names_of(const World& world) {
   return names;
 }
 
-Names pairs_of(const RobotModel& robot, const Problem& problem) {
+Names pairs_of(const RobotModel& robot, const PathProblem& problem) {
   return names_of(
       World(robot, build_arm(robot, "l0", "l7", problem.hold, Pose::Identity()), problem));
 }
@@ -131,7 +131,7 @@ TEST(PairRules, APairThatIsNearByDesignStillMayNotMeet) {
   Config apart = Config::Zero(), meeting = Config::Zero();
   meeting[5] = kPi / 2;
   for (const double clearance : {0.0, 0.001, 0.005, 0.05}) {
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     problem.limits.clearance = clearance;
     const World world(robot, arm_of(robot), problem);
     const auto pairs = world.robot_pairs_with_medians();
@@ -163,7 +163,7 @@ TEST(PairRules, WhatPairsKeepGrowsWithTheLimits) {
   Random random(51);
   int pairs = 0, reduced = 0, plain = 0;
   for (const RobotModel& robot : robots) {
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     const World first(robot, arm_of(robot), problem);
     for (int trial = 0; trial < test::trials(20); ++trial) {
       problem.limits = {};
@@ -196,7 +196,7 @@ TEST(PairRules, WhatPairsKeepGrowsWithTheLimits) {
 TEST(PairRules, AnSrdfLeavesNothingToSamples) {
   RobotModel robot = near_wrist_arm(0.002);
   robot.has_srdf = true;
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.limits.self_clearance = 0.003;
   const World world(robot, arm_of(robot), problem);
   for (const RobotPair& p : world.robot_pairs()) {
@@ -212,7 +212,7 @@ TEST(PairRules, AnSrdfLeavesNothingToSamples) {
 TEST(PairRules, ForgivenNearnessIsNoContact) {
   RobotModel robot = near_wrist_arm(0.002);
   robot.has_srdf = true;
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   Config touching = Config::Zero();
   touching[5] = kPi / 2;
   for (const auto& [clearance, apart_is_forgiven] :
@@ -265,7 +265,7 @@ TEST(PairRules, LinksWithoutAShapeAreTold) {
 TEST(PairRules, AttachedBodies) {
   RobotModel robot = capsule_arm();
   robot.has_srdf = true;
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   Pose tip = Pose::Identity();
   tip.translation().z() = 0.15;
   problem.attached.push_back({"tool", Sphere{0.03}, tip, "l7"});
@@ -284,7 +284,7 @@ TEST(PairRules, AttachedBodies) {
 TEST(PairRules, SceneObjects) {
   RobotModel robot = capsule_arm();
   robot.has_srdf = true;
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.attached.push_back({"tool", Sphere{0.03}, Pose::Identity(), "l7"});
   problem.scene.push_back({"table", Box{Vector3d(2, 2, 0.02)}, Pose::Identity(), {"l1", "tool"}});
   problem.scene.push_back({"ball", Sphere{0.1}, Pose::Identity(), {}});
@@ -300,7 +300,7 @@ TEST(PairRules, SceneObjects) {
 
 TEST(PairRules, EnvironmentComesFirstAndTheToolFirstOfAll) {
   RobotModel robot = capsule_arm();
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene.push_back({"ball", Sphere{0.1}, Pose::Identity(), {}});
   const World world(robot, arm_of(robot), problem);
   ASSERT_GT(world.pairs().size(), 7u);

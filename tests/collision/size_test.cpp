@@ -41,7 +41,7 @@ double to_point(const Segment& c, const Vector3d& p) {
 /// A body of kMostMetres a little off the arm: a ball, and bodies whose flat end faces it.
 TEST(Size, ClearanceFromTheLargestBodiesIsRight) {
   const TestRobot robot = continuous_robot();
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   const ArmModel arm = arm_of(robot);
   const std::vector<RobotBody> bodies = robot_bodies(*robot.model, arm, {});
   Random random(seed("ClearanceFromTheLargestBodiesIsRight"));

@@ -75,7 +75,7 @@ TEST(SlideMotion, BoundsHoldAtEveryTime) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
-    Problem problem = random_problem(robot, random);
+    PathProblem problem = random_problem(robot, random);
     problem.limits.clearance = 0.01;
     problem.limits.edges = EdgeMode::kContinuous;
     const ArmModel arm = arm_of(robot);

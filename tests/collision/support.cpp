@@ -212,8 +212,8 @@ RobotModel near_wrist_arm(double gap) {
   return robot;
 }
 
-Problem problem_for(const RobotModel& robot) {
-  Problem problem;
+PathProblem problem_for(const RobotModel& robot) {
+  PathProblem problem;
   problem.source = "test";
   problem.model = std::shared_ptr<const RobotModel>(std::shared_ptr<void>(), &robot);
   problem.base_link = "l0";

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::testing {
 
@@ -56,7 +56,7 @@ RobotModel capsule_arm();
 RobotModel near_wrist_arm(double gap);
 /// Returns a problem with base l0, tip l7 and no scene; the caller fills in the rest. `robot` must
 /// outlive it.
-Problem problem_for(const RobotModel& robot);
+PathProblem problem_for(const RobotModel& robot);
 ArmModel arm_of(const RobotModel& robot);
 
 }  // namespace swivel::testing

@@ -168,7 +168,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
   // With its SRDF, and without one at a clearance that many pairs cannot keep.
   const World with_srdf(*robot.model, arm, test::problem_for(robot));
   const test::TestRobot bare = test::without_srdf(robot);
-  Problem wide = test::problem_for(bare);
+  PathProblem wide = test::problem_for(bare);
   wide.limits.clearance = 0.04;
   const World without(*bare.model, arm, wide);
   const MeshPtr panel = testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel");
@@ -220,7 +220,7 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
   Random random(base);
   const test::TestRobot robot = test::all_robots()[0];
   const ArmModel arm = test::arm_of(robot);
-  Problem problem = test::problem_for(robot);
+  PathProblem problem = test::problem_for(robot);
   problem.attached.push_back({"block", Box{Vector3d(0.08, 0.06, 0.1)},
                               Pose(Eigen::Translation3d(0, 0, 0.1)), robot.tip_link});
   problem.attached.push_back(

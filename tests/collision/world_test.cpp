@@ -60,7 +60,7 @@ const Shape& shape_of(const World& world, const std::vector<SceneObject>& scene,
 TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
   const RobotModel robot = mixed_arm();
   const ArmModel arm = arm_of(robot);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene = mixed_scene();
   problem.scene[0].shape =
       as_mesh(panel_mesh(1.0, 0.8, 0.04, 2), "panel");  // the reference is slow
@@ -102,7 +102,7 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
 /// A likely pair changes who is named, not whether.
 TEST(World, TheLikelyPairIsAskedFirst) {
   const RobotModel robot = mixed_arm();
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene = mixed_scene();
   const World world(robot, arm_of(robot), problem);
   World::Query query(world, DistanceProofs::kOn);
@@ -143,7 +143,7 @@ TEST(World, NothingToTouch) {
 
 TEST(World, FarAwayCostsNoFclCall) {
   const RobotModel robot = capsule_arm();
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene.push_back({"far", Box{Vector3d(1, 1, 1)}, at(9, 0, 0), {}});
   const World world(robot, arm_of(robot), problem);
   World::Query query(world);
@@ -154,7 +154,7 @@ TEST(World, FarAwayCostsNoFclCall) {
 
 TEST(World, WarnsOfOpenMeshes) {
   const RobotModel robot = mixed_arm();
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene = mixed_scene();
   const World world(robot, arm_of(robot), problem);
   ASSERT_EQ(world.warnings().size(), 1u);
@@ -165,7 +165,7 @@ TEST(World, WarnsOfOpenMeshes) {
 TEST(World, AnEpisodeIsTheSameAsAFreshWorld) {
   const RobotModel robot = mixed_arm();
   const ArmModel arm = arm_of(robot);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene = mixed_scene();
   const World base(robot, arm, problem);
   problem.scene[0].pose.translation().y() += 0.1;
@@ -185,7 +185,7 @@ TEST(World, AnEpisodeIsTheSameAsAFreshWorld) {
 
 TEST(World, ThreadsAndHistoryChangeNothing) {
   const RobotModel robot = mixed_arm();
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.scene = mixed_scene();
   const World world(robot, arm_of(robot), problem);
   struct Question {

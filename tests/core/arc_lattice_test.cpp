@@ -31,8 +31,8 @@ Waypoint waypoint_of(const Pose& pose) {
 }
 
 /// Straight, curved or turning, from a random configuration.
-Problem random_path(const Chain& chain, double length, double ds, Random& random) {
-  Problem problem;
+PathProblem random_path(const Chain& chain, double length, double ds, Random& random) {
+  PathProblem problem;
   problem.source = "random path";
   problem.resolution.ds = ds;
   problem.limits.tool_path_error.reset();
@@ -162,8 +162,8 @@ bool check_limits(const ArcLattice& lattice, const Config& joints, double margin
 }
 
 /// Checks the nodes of layer i: `again` is the lattice of the problem built once more.
-void check_nodes(const ArcLattice& lattice, const ArcLattice& again, const Problem& problem, int i,
-                 NodeCounts& counts) {
+void check_nodes(const ArcLattice& lattice, const ArcLattice& again, const PathProblem& problem,
+                 int i, NodeCounts& counts) {
   const Pose& tool = lattice.path().layer(i).tool;
   for (int slot = 0; slot < lattice.slots(i); ++slot) {
     const auto& point = lattice.point(i, slot);
@@ -223,7 +223,7 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
     const Chain chain = chain_of(table);
     const LockMethod method = lock_method(chain);
     for (int trial = 0; trial < trials(2); ++trial) {
-      Problem problem = random_path(chain, 0.2, 0.02, random);
+      PathProblem problem = random_path(chain, 0.2, 0.02, random);
       problem.limits.joint_margin = random.coin() ? 0.05 : 0;
       problem.resolution.arc = random.uniform(0.1, 0.3);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -260,14 +260,14 @@ TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
     int unsolved = 0;
     double nodes = 0;
     for (int trial = 0; trial < trials(4); ++trial) {
-      Problem problem = random_path(chain, 0.3, 0.02, random);
+      PathProblem problem = random_path(chain, 0.3, 0.02, random);
       if (trial % 2 == 1) problem.cost.metric = CostMetric::kMax;
       if (trial % 4 == 3)
         for (double& weight : problem.cost.weights.emplace()) weight = random.uniform(0.2, 3);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const ArcLattice lattice(chain, method, path, problem);
       nodes += static_cast<double>(lattice.nodes()) / lattice.layers();
-      Problem fine = problem;
+      PathProblem fine = problem;
       fine.resolution.arc = 0.08;
       const ArcLattice reference(chain, method, path, fine);
       const Found found = cheapest(lattice), best = cheapest(reference);
@@ -305,7 +305,7 @@ TEST(ArcLattice, WithoutAClosedFormArcsAreFollowedFromLayerToLayer) {
   for (const ArmTable& table : {arms_7r()[0], arms_7r()[3]}) {
     const Chain chain = chain_of(table);
     for (int trial = 0; trial < trials(4); ++trial) {
-      const Problem problem = random_path(chain, 0.2, 0.02, random);
+      const PathProblem problem = random_path(chain, 0.2, 0.02, random);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const ArcLattice whole(chain, lock_method(chain), path, problem),
           sampled(chain, LockMethod{}, path, problem);
@@ -413,7 +413,7 @@ TEST(ArcLattice, UnwrapsOrNamesTheJointFurthestOver) {
   int unwrapped = 0, wound = 0;
   for (int trial = 0; trial < trials(12); ++trial) {
     const Chain chain = chain_of(arm_with_tight_circles(trial % 2 == 0, random));
-    Problem problem = random_path(chain, 0.4, 0.02, random);
+    PathProblem problem = random_path(chain, 0.4, 0.02, random);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
     const ArcLattice lattice(chain, lock_method(chain), path, problem);
     // Any path serves: it follows a random node along its images.
@@ -444,7 +444,7 @@ TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
     const Chain chain = chain_of(table);
     const LockMethod method = lock_method(chain);
     for (int trial = 0; trial < trials(2); ++trial) {
-      Problem problem = random_path(chain, 0.1, 0.02, random);
+      PathProblem problem = random_path(chain, 0.1, 0.02, random);
       const Config start = random_configuration(chain, random);
       Pose tool = chain.tool(start);
       problem.waypoints = {waypoint_of(tool)};

@@ -360,7 +360,7 @@ TEST(Scale, SpeedsOfMillimetresAreRefused) {
 TEST(Scale, LimitsOfMillimetresAreSuspected) {
   const TestRobot robot = data_robot("iiwa14");
   const Chain chain = arm_of(robot).chain;
-  Problem problem;
+  PathProblem problem;
   EXPECT_TRUE(limit_scale_warnings(chain, problem).empty());
   problem.limits.clearance = 0.5;
   problem.limits.tool_path_error = 0.05;

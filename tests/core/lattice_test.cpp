@@ -24,7 +24,7 @@ Config nearby(Config q, double most, Random& random) {
 
 /// A problem whose path joins the poses of two nearby random configurations.
 struct Small {
-  Problem problem;
+  PathProblem problem;
   ArmModel arm;
   SrsArm srs;
   std::unique_ptr<ToolPath> path;

@@ -35,7 +35,7 @@ TestRobot narrowed(const TestRobot& robot, Random& random) {
 
 /// A pose of the robot and one nearby, and the lattice between them.
 struct Small {
-  Problem problem;
+  PathProblem problem;
   ArmModel arm;
   SrsArm srs;
   std::unique_ptr<ToolPath> path;
@@ -51,7 +51,7 @@ struct Small {
     path = std::make_unique<ToolPath>(waypoints_in_base(problem), problem.resolution, "test");
   }
   [[nodiscard]] SrsLattice lattice(bool arcs) const {
-    Problem asked = problem;
+    PathProblem asked = problem;
     asked.resolution.arcs = arcs;
     return SrsLattice(arm.chain, srs, *path, asked);
   }

@@ -167,8 +167,8 @@ double cheapest(const ArcLattice& lattice, std::vector<int>& slots) {
 
 /// Draws a path of three waypoints for a tool that may turn freely or within `roll`, with narrower
 /// windows at the waypoints now and then.
-Problem random_roll_problem(const Chain& chain, bool free, const Roll& roll, Random& random) {
-  Problem problem;
+PathProblem random_roll_problem(const Chain& chain, bool free, const Roll& roll, Random& random) {
+  PathProblem problem;
   problem.source = "random path";
   problem.resolution.ds = 0.02;
   problem.limits.roll_slope = random.uniform(3, 12);
@@ -195,7 +195,7 @@ Problem random_roll_problem(const Chain& chain, bool free, const Roll& roll, Ran
 }
 
 /// Returns the rolls that each layer allows, and checks that the ends of windows are inside them.
-std::vector<Roll> allowed_rolls(const Problem& problem, const ToolPath& path, bool windowed,
+std::vector<Roll> allowed_rolls(const PathProblem& problem, const ToolPath& path, bool windowed,
                                 const Roll& roll) {
   std::vector<Roll> allowed(static_cast<std::size_t>(path.size()), roll);
   for (int i = 0; windowed && i < path.size(); ++i) {
@@ -207,8 +207,8 @@ std::vector<Roll> allowed_rolls(const Problem& problem, const ToolPath& path, bo
 }
 
 /// Checks the rolls of a path's nodes against their ranges and the slope allowed.
-void check_rolls(const ArcLattice& lattice, const Problem& problem, const std::vector<int>& slots,
-                 bool free, bool windowed) {
+void check_rolls(const ArcLattice& lattice, const PathProblem& problem,
+                 const std::vector<int>& slots, bool free, bool windowed) {
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const Config& row = lattice.point(static_cast<int>(i), slots[i]).q;
     if (!free) {
@@ -233,7 +233,7 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
       const bool free = random.coin();
       const Roll roll = free ? Roll{} : Roll{-random.uniform(0.1, 0.8), random.uniform(0.1, 0.8)};
       const Chain chain = arm_with_roll(arms_6r()[which], roll).chain;
-      const Problem problem = random_roll_problem(chain, free, roll, random);
+      const PathProblem problem = random_roll_problem(chain, free, roll, random);
       const bool windowed = problem.waypoints[0].roll.has_value();
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const ArcLattice lattice(chain, lock_method(chain), path, problem);
@@ -275,7 +275,7 @@ TEST(Roll, ToolAngleErrorIsThatOfTheAxis) {
   Config q = Config::Zero();
   q << 0.2, -0.8, 1.1, 0.3, 0.7, -0.4, 0.1;
   const Pose tool = chain.tool(q);
-  Problem problem;
+  PathProblem problem;
   problem.source = "two poses";
   Pose far = tool;
   far.translation().x() += 0.01;

@@ -12,7 +12,7 @@
 namespace swivel::test {
 namespace {
 
-void plan_coarsely(Problem problem) {
+void plan_coarsely(PathProblem problem) {
   double length = 0;
   for (std::size_t k = 1; k < problem.waypoints.size(); ++k)
     length += (problem.waypoints[k].position - problem.waypoints[k - 1].position).norm();
@@ -30,7 +30,7 @@ TEST(Fuzz, WhatIsReadCanBePlanned) {
     plan_coarsely(io::load_problem(folder.write("problems/p.yaml", text)));
   };
   const auto plan_robot = [&](const std::string& text) {
-    Problem problem = io::load_problem(folder.path() / "problems" / "good.yaml");
+    PathProblem problem = io::load_problem(folder.path() / "problems" / "good.yaml");
     problem.model = io::load_robot(folder.write("robot.urdf", text));
     plan_coarsely(problem);
   };

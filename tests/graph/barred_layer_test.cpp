@@ -57,8 +57,8 @@ class Table final : public Validity {
 };
 
 /// Returns a problem of 70 to 99 steps between two random poses near one another.
-Problem random_problem(const TestRobot& robot, const Chain& chain, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem random_problem(const TestRobot& robot, const Chain& chain, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Config q0 = random_config(chain, random);
   Config q1 = q0;
   for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
@@ -147,7 +147,7 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(20); ++trial) {
       Random random(base + static_cast<std::uint64_t>(trial));
-      const Problem problem = random_problem(robot, arm.chain, random);
+      const PathProblem problem = random_problem(robot, arm.chain, random);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
       Table table(lattice);
@@ -195,7 +195,7 @@ TEST(PathFirst, ForgetsTheLayerThatWasBarredBefore) {
     TestRobot robot = data_robot(trial % 2 == 0 ? "sda5f" : "xarm7_like");
     if (trial % 2 == 1) robot.tip_link = "flange";
     const Chain chain = arm_of(robot).chain;
-    Problem problem = random_problem(robot, chain, random);
+    PathProblem problem = random_problem(robot, chain, random);
     problem.resolution.ds *= 4;
     problem.resolution.arc = 0.6;
     const ArmClass arm = classify(chain, robot.name);

@@ -83,11 +83,11 @@ struct PlainLattice {
 };
 
 /// Returns a problem of some four steps between two random poses near one another.
-Problem random_problem(const TestRobot& robot, const Chain& chain, Random& random) {
+PathProblem random_problem(const TestRobot& robot, const Chain& chain, Random& random) {
   const Config q0 = random_config(chain, random);
   Config q1 = q0;
   for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.25, 0.25);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
   const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
   problem.resolution = {.ds = length / 4,
@@ -153,7 +153,7 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     const TestRobot& robot = robots[trial % robots.size()];
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
-    Problem problem = random_problem(robot, arm.chain, random);
+    PathProblem problem = random_problem(robot, arm.chain, random);
     problem.resolution.arcs = trial % 2 == 1;
     const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
     const SrsLattice lattice(arm.chain, srs, path, problem);
@@ -185,7 +185,7 @@ TEST(BestPath, FollowsNoEarlierOneWhereSumsAreRounded) {
   const SrsArm srs = fit_srs(arm.chain, robot.name);
   Random random(seed("BestPath.Rounded"));
   const Config q0 = random_config(arm.chain, random);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q0))};
   problem.waypoints[1].position.x() += 0.02;
   problem.resolution = {.ds = 0.001, .dphi = 0.2, .dalpha = 10};

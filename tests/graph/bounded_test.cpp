@@ -21,8 +21,8 @@ namespace {
 
 using namespace test;
 
-Problem random_problem(const TestRobot& robot, const Chain& chain, Random& random, int layers) {
-  Problem problem = problem_for(robot);
+PathProblem random_problem(const TestRobot& robot, const Chain& chain, Random& random, int layers) {
+  PathProblem problem = problem_for(robot);
   const Config q0 = random_config(chain, random);
   Config q1 = q0;
   for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.5, 0.5);
@@ -318,7 +318,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
     for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
       // Some of more layers than elbow sides go through at once.
       const int waypoints = counts.problems % 8 == 0 ? 66 + random.below(80) : 2 + random.below(30);
-      const Problem problem = random_problem(robot, arm.chain, random, waypoints);
+      const PathProblem problem = random_problem(robot, arm.chain, random, waypoints);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
       const std::string what = robot.name + " trial " + std::to_string(trial);

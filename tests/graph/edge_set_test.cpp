@@ -104,9 +104,9 @@ std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const
 }
 
 /// Returns a problem of two layers: from the pose q0 to q1.
-Problem two_layers(const TestRobot& robot, const Chain& chain, const std::pair<Config, Config>& q,
-                   Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem two_layers(const TestRobot& robot, const Chain& chain,
+                       const std::pair<Config, Config>& q, Random& random) {
+  PathProblem problem = problem_for(robot);
   problem.waypoints = {waypoint_of(chain.tool(q.first)), waypoint_of(chain.tool(q.second))};
   problem.resolution = {.ds = 10, .dphi = random.uniform(0.08, 0.3), .dalpha = 10};
   problem.limits.arm_slope = random.uniform(0.0, 0.1);
@@ -172,7 +172,7 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (const auto& [place, name] : places)
       for (int trial = 0; trial < trials(6); ++trial) {
-        Problem problem =
+        PathProblem problem =
             two_layers(robot, arm.chain, ends(robot, arm.chain, srs, place, random), random);
         problem.resolution.arcs = trial % 2 == 1;
         const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
@@ -226,11 +226,11 @@ std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice,
 }
 
 /// Returns a problem of some five steps between two random poses near one another.
-Problem five_steps(const TestRobot& robot, const Chain& chain, Random& random) {
+PathProblem five_steps(const TestRobot& robot, const Chain& chain, Random& random) {
   const Config q0 = random_config(chain, random);
   Config q1 = q0;
   for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
   const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
   problem.resolution = {.ds = length / 5,
@@ -306,7 +306,7 @@ TEST(CostToGo, StaysExactUnderRemovals) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(6); ++trial) {
-      Problem problem = five_steps(robot, arm.chain, random);
+      PathProblem problem = five_steps(robot, arm.chain, random);
       problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
@@ -339,7 +339,7 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(8); ++trial) {
-      Problem problem = problem_for(robot);
+      PathProblem problem = problem_for(robot);
       const Config q0 = random_config(arm.chain, random),
                    q1 = random_config(arm.chain, random);  // far apart: often no way through
       problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};

@@ -62,8 +62,8 @@ struct Met {
 
 /// Draws a path that begins in given joints of a random turn, and of which the wide joints turn by
 /// up to two turns.
-Problem winding_problem(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem winding_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   Config q = random_config(chain, random);
   for (const int j : {1, 3, 5}) q[j] *= 0.6;
@@ -142,7 +142,7 @@ bool keeps_limits(const Lattice& lattice, const std::vector<Config>& rows) {
   return !rows.empty();
 }
 
-void compare(const Problem& problem, const TestRobot& robot, std::uint64_t seed,
+void compare(const PathProblem& problem, const TestRobot& robot, std::uint64_t seed,
              const std::string& what, Met& met) {
   const Chain chain = arm_of(robot).chain;
   const ArmClass arm = classify(chain, problem.source);
@@ -174,7 +174,7 @@ void compare(const Problem& problem, const TestRobot& robot, std::uint64_t seed,
     ASSERT_NEAR(loose.cost, truth.cost, 1e-9) << what;
   }
   if (problem.end || seed % 3 == 0) return;
-  Problem ended = problem;
+  PathProblem ended = problem;
   ended.end = wound.path_joints(truth.path).back();
   for (int j = 0; j < kDof; ++j) {  // another turn of the end by chance
     double& x = (*ended.end)[j];
@@ -205,7 +205,7 @@ TEST(GivenStart, BoundedValuesGiveTheAnswersOfWholeOnes) {
             joint.lower = -joint.upper;
           }
         });
-    Problem problem = winding_problem(robot, random);
+    PathProblem problem = winding_problem(robot, random);
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     compare(problem, robot, base + static_cast<std::uint64_t>(trial), what, met);
@@ -242,7 +242,7 @@ TEST(GivenStart, BoundedValuesGiveTheAnswersOfWholeOnesOnArcs) {
           joint.upper = kTwoPi;
           joint.lower = -joint.upper;
         });
-    Problem problem = winding_problem(robot, random);
+    PathProblem problem = winding_problem(robot, random);
     problem.resolution = {.ds = 0.05, .dalpha = 0.5, .arc = 0.6};
     problem.limits.arm_slope = Limits().arm_slope;
     const Chain chain = arm_of(robot).chain;

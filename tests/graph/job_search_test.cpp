@@ -101,7 +101,7 @@ struct RandomJob {
 };
 
 std::unique_ptr<Lattice> random_list(const Chain& chain, const ToolPath& path,
-                                     const Problem& problem, const Config& q0, Random& random) {
+                                     const PathProblem& problem, const Config& q0, Random& random) {
   std::vector<std::vector<ExplicitLattice::Point>> points(static_cast<std::size_t>(path.size()));
   for (auto& layer : points)
     for (int k = 1 + random.below(9); k > 0; --k) {
@@ -129,7 +129,7 @@ RandomJob random_job(const TestRobot& robot, const ArmModel& arm, const SrsArm& 
                cost = !closed && random.coin(0.3) ? random.uniform(0, 0.5) : 0;
   const Config q0 = random_config(arm.chain, random);
   for (std::size_t k = 0; k < runs; ++k) {
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     Config q = q0;
     for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.5, 0.5);
     q = q.cwiseMax(q0.array().matrix() - Config::Constant(0.5));

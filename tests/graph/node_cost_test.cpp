@@ -104,14 +104,14 @@ struct RandomProblem {
     if (!open && random.coin()) problem.start = q0;
   }
 
-  Problem problem;
+  PathProblem problem;
   bool open = false;
 };
 
 /// The nodes of an open lattice as a list, and their costs-to-go.
 struct Listed {
   Listed(const SrsLattice& lattice, const Chain& chain, const ToolPath& path,
-         const Problem& problem)
+         const PathProblem& problem)
       : place(static_cast<std::size_t>(lattice.layers())) {
     std::vector<std::vector<ExplicitLattice::Point>> points(place.size());
     std::vector<Lattice::Node> nodes;

@@ -212,7 +212,7 @@ struct Task {
 };
 
 std::unique_ptr<Lattice> random_list(const Chain& chain, const ToolPath& path,
-                                     const Problem& problem, const Config& q0, Random& random) {
+                                     const PathProblem& problem, const Config& q0, Random& random) {
   std::vector<std::vector<ExplicitLattice::Point>> points(at(path.size()));
   for (auto& layer : points)
     for (int k = 1 + random.below(6); k > 0; --k) {
@@ -232,7 +232,7 @@ std::unique_ptr<Task> random_task(const TestRobot& robot, const ArmModel& arm, c
   const bool free_of_charge = random.coin(0.15);  // all paths are equal, the first one wins
   const double cost = random.coin(0.3) ? random.uniform(0, 0.5) : 0;
   for (std::size_t k = 0; k < 2; ++k) {
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     const Config q = random_config(arm.chain, random);
     Config end = q;
     for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.3, 0.3);
@@ -695,7 +695,7 @@ TEST(PairSearch, TellsMisuse) {
   const ArmModel arm = arm_of(robot);
   Random random(seed("PairSearch misuse"));
   const Config q = random_config(arm.chain, random);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.waypoints = {waypoint_of(arm.chain.tool(q)), waypoint_of(arm.chain.tool(q))};
   problem.waypoints[1].position.x() += 0.1;
   std::array<std::unique_ptr<ToolPath>, 2> paths;

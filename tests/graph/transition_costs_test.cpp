@@ -110,7 +110,7 @@ TEST(TransitionCosts, TheCheapestWayOnIsThatOfAllPairs) {
   Met met;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     const Config q0 = random_config(arm.chain, random);
     problem.waypoints = {waypoint_of(arm.chain.tool(q0)),
                          waypoint_of(arm.chain.tool(q0 + Config::Constant(0.05)))};

@@ -371,7 +371,8 @@ std::string quoted(const std::string& name) {
 TEST(Names, OfProblemFiles) {
   const ProblemFolder folder;
   for (const char* name : kGoodNames) {
-    const Problem problem = folder.load({{"scene", "[{name: " + quoted(name) + ", sphere: 1}]"}});
+    const PathProblem problem =
+        folder.load({{"scene", "[{name: " + quoted(name) + ", sphere: 1}]"}});
     EXPECT_EQ(problem.scene[0].name, name);
   }
   for (const char* name : kBadNames) {

@@ -15,8 +15,8 @@ using swivel::test::Random;
 class CamFolder {
  public:
   /// Loads the problem with `keys` of the path beside `file`, whose text is given.
-  [[nodiscard]] Problem load(const std::string& name, const std::string& text,
-                             const std::string& keys = "") const {
+  [[nodiscard]] PathProblem load(const std::string& name, const std::string& text,
+                                 const std::string& keys = "") const {
     folder_.folder().write("problems/" + name, text);
     return folder_.load({{"path", "{file: " + name + keys + "}"}});
   }
@@ -54,7 +54,7 @@ void expect_near(const Vector3d& a, const Vector3d& b, double tolerance = 1e-12)
   EXPECT_LE((a - b).norm(), tolerance) << a.transpose() << " | " << b.transpose();
 }
 
-bool said(const Problem& problem, const std::string& words) {
+bool said(const PathProblem& problem, const std::string& words) {
   return std::any_of(
       problem.model->warnings.begin(), problem.model->warnings.end(),
       [&](const std::string& line) { return line.find(words) != std::string::npos; });
@@ -80,7 +80,7 @@ TEST(PathTable, OneTableInManyDialects) {
   };
   for (const char* const table : tables) {
     SCOPED_TRACE(table);
-    const Problem problem = folder.load("p.csv", table);
+    const PathProblem problem = folder.load("p.csv", table);
     ASSERT_EQ(problem.waypoints.size(), 2u);
     EXPECT_EQ(problem.waypoints[0].position, Vector3d(0.5, -0.25, 0.3));
     EXPECT_EQ(problem.waypoints[1].position, Vector3d(0.5, 0.25, 0.3));
@@ -157,9 +157,10 @@ TEST(PathTable, UnitsOfPositionsAndFeeds) {
 
 TEST(PathTable, WhatIsNotReadIsSaid) {
   const CamFolder folder;
-  const Problem problem = folder.load("p.csv",
-                                      "time,x,y,z,qw,qx,qy,qz,feed,id\n0,0,0,0,1,0,0,0,1,first\n"
-                                      "1,1,0,0,1,0,0,0,1,last\n");
+  const PathProblem problem =
+      folder.load("p.csv",
+                  "time,x,y,z,qw,qx,qy,qz,feed,id\n0,0,0,0,1,0,0,0,1,first\n"
+                  "1,1,0,0,1,0,0,0,1,last\n");
   EXPECT_TRUE(said(problem, "p.csv:1: not read: time, id"));
   EXPECT_TRUE(said(problem, "p.csv:1: column feed is not used"));
   EXPECT_EQ(problem.waypoints.size(), 2u);
@@ -167,7 +168,7 @@ TEST(PathTable, WhatIsNotReadIsSaid) {
 
 TEST(PathTable, RollInDegrees) {
   const CamFolder folder;
-  const Problem problem =
+  const PathProblem problem =
       folder.load("p.csv",
                   "x,y,z,qw,qx,qy,qz,roll_min [deg],roll_max [deg]\n0,0,0,1,0,0,0,-90,45\n"
                   "1,0,0,1,0,0,0,-45,90\n",
@@ -180,7 +181,7 @@ TEST(PathTable, RollInDegrees) {
 TEST(PathNormals, FreeTheRoll) {
   const CamFolder folder;
   const std::string text = "x,y,z,nx,ny,nz\n0,0,0,0,0,2\n0,1,0,0,0,0.5\n0,1,1,0,1,0\n";
-  const Problem problem = folder.load("p.csv", text);
+  const PathProblem problem = folder.load("p.csv", text);
   ASSERT_TRUE(problem.roll.has_value());
   EXPECT_TRUE(problem.roll->circle());
   EXPECT_FALSE(problem.cost.weights);
@@ -193,7 +194,7 @@ TEST(PathNormals, FreeTheRoll) {
   EXPECT_FALSE(said(folder.load("p.csv", text, ", roll: free"), "axis alone"));
   expect_message(folder.refusal("p.csv", text, ", roll: [-1, 1]"), {"path.roll", "is a range"});
   // Columns i,j,k are the axis from tip to holder, which is outward as well.
-  const Problem axis = folder.load("p.csv", "x y z i j k\n0 0 0 0 0 1\n0 1 0 0 0 1\n");
+  const PathProblem axis = folder.load("p.csv", "x y z i j k\n0 0 0 0 0 1\n0 1 0 0 0 1\n");
   EXPECT_EQ(axis.waypoints[0].orientation.coeffs(), problem.waypoints[0].orientation.coeffs());
 }
 
@@ -226,7 +227,7 @@ TEST(PathNormals, AreCarriedByTheSmallestTurns) {
       normals.push_back(normal);
       text += row_of({random_direction(random), 3 * normal});
     }
-    const Problem problem = folder.load("p.csv", text);
+    const PathProblem problem = folder.load("p.csv", text);
     for (std::size_t k = 0; k < normals.size(); ++k) {
       const Waypoint& waypoint = problem.waypoints[k];
       expect_near(z_of(waypoint), -normals[k], 2e-6);  // six digits
@@ -258,8 +259,8 @@ TEST(PathNormals, TangentsAndTheirSides) {
       tangents.push_back((tangent - tangent.dot(normal) * normal).normalized());
       text += row_of({0.1 * k * Vector3d::UnitX(), normal, tangent});
     }
-    const Problem kept = folder.load("p.csv", text),
-                  free = folder.load("p.csv", text, ", roll: free");
+    const PathProblem kept = folder.load("p.csv", text),
+                      free = folder.load("p.csv", text, ", roll: free");
     EXPECT_FALSE(kept.roll.has_value());
     for (std::size_t k = 0; k < tangents.size(); ++k) {
       expect_near(x_of(kept.waypoints[k]), tangents[k], 1e-5);
@@ -281,8 +282,8 @@ TEST(PathNormals, HalfTurnsOfQuaternionsWithAFreeRoll) {
                     tilted =
                         "1,0,0,0,0,0.19866933079506122,0.98006657784124163\n"
                         "2,0,0,0,0,0.19866933079506122,0.98006657784124163\n";
-  const Problem given = folder.load("p.csv", flat + tilted),
-                free = folder.load("p.csv", flat + tilted, ", roll: free");
+  const PathProblem given = folder.load("p.csv", flat + tilted),
+                    free = folder.load("p.csv", flat + tilted, ", roll: free");
   for (std::size_t k = 1; k < 3; ++k) {
     const Quaterniond &a = given.waypoints[k].orientation, &b = free.waypoints[k].orientation;
     expect_near(a * Vector3d::UnitZ(), b * Vector3d::UnitZ());
@@ -302,7 +303,7 @@ TEST(Apt, StatementsThatAreRead) {
       "FROM/0,0,500\nRAPID\nGOTO/1,2,300\nRAPID\nGOTO/10,20,30 $$ here\nFEDRAT/ 600.,MMPM\n"
       "  goto / 1.5E+02 , $ aside\n +20.0,.5\nFEDRAT/MMPM,1200\nGOTO/150,20,40,1,0,1\n"
       "GOTO/150,30,40\nMULTAX/OFF\nGOTO/150,30,50\nRAPID\nGOTO/0,0,500\nFINI\n";
-  const Problem problem = folder.load("p.apt", text);
+  const PathProblem problem = folder.load("p.apt", text);
   ASSERT_EQ(problem.waypoints.size(), 5u);
   EXPECT_EQ(problem.waypoints[0].position, Vector3d(0.01, 0.02, 0.03));
   EXPECT_EQ(problem.waypoints[1].position, Vector3d(0.15, 0.02, 0.0005));
@@ -315,7 +316,7 @@ TEST(Apt, StatementsThatAreRead) {
   // the feed of a move is that of the GOTO to which it leads
   EXPECT_EQ(folder.load_job("p.apt", text).strokes[0].feed,
             (std::vector<double>{0.01, 0.02, 0.02, 0.02, 0.02}));
-  const Problem skipping = folder.load(
+  const PathProblem skipping = folder.load(
       "p.CLS", "UNITS/MM\nCOOLNT/ON\nSPINDL/1\nSPINDL/2\nGOTO/1,2,3\nGOTO/2,2,3\nEND\n");
   EXPECT_TRUE(said(skipping, "p.CLS:2: 4 statements are not read: COOLNT, SPINDL (2), END"));
 }
@@ -358,7 +359,7 @@ TEST(Apt, CutsBetweenRapidMoves) {
   const std::size_t sizes[] = {2, 3, 2};
   const double begins[] = {0.001, 0.005, 0.008};
   for (std::size_t k = 0; k < 3; ++k) {
-    const Problem problem = folder.load("p.apt", text, ", cut: " + std::to_string(k + 1));
+    const PathProblem problem = folder.load("p.apt", text, ", cut: " + std::to_string(k + 1));
     EXPECT_EQ(problem.waypoints.size(), sizes[k]);
     EXPECT_EQ(problem.waypoints[0].position.x(), begins[k]);
   }

@@ -22,7 +22,7 @@ TEST(Data, EveryProblemLoads) {
     ++count;
     try {
       const auto file = load_problem_file(entry.path());
-      if (const auto* problem = std::get_if<Problem>(&file))
+      if (const auto* problem = std::get_if<PathProblem>(&file))
         EXPECT_GE(problem->waypoints.size(), 2u);
       else if (const auto* job = std::get_if<Job>(&file))
         EXPECT_NO_THROW(validate(*job));

@@ -160,7 +160,7 @@ TEST(JobFile, OnePathIsAJobOfOneStroke) {
   const Job job = load_job(file);
   ASSERT_EQ(job.strokes.size(), 1u);
   EXPECT_EQ(job.strokes[0].name, "path");
-  const Problem problem = load_problem(file);
+  const PathProblem problem = load_problem(file);
   EXPECT_EQ(static_cast<const Task&>(job.strokes[0]), static_cast<const Task&>(problem));
   for (const char* const key : {"start: {joints: [0, 0, 0, 0, 0, 0, 0]}", "start_at: 0.1"}) {
     const std::string text = key;
@@ -223,7 +223,7 @@ TEST(JobFile, LiftOffs) {
   EXPECT_EQ(std::get<Job>(read).strokes.size(), 1u);
   EXPECT_TRUE(is_job(one("{allowed: true}")));
   EXPECT_FALSE(is_job(one("{allowed: false}")));
-  EXPECT_TRUE(std::holds_alternative<Problem>(load_problem_or_job(one("{allowed: false}"))));
+  EXPECT_TRUE(std::holds_alternative<PathProblem>(load_problem_or_job(one("{allowed: false}"))));
   expect_message(input_error([&] { (void)load_problem(one("{allowed: true}")); }),
                  {"lift: makes this file a job", "no `lift`"});
 }
@@ -231,7 +231,7 @@ TEST(JobFile, LiftOffs) {
 TEST(JobFile, LoadedByItsKey) {
   const JobFolder folder;
   EXPECT_TRUE(std::holds_alternative<Job>(load_problem_or_job(folder.write({}))));
-  EXPECT_TRUE(std::holds_alternative<Problem>(load_problem_or_job(folder.folder().write({}))));
+  EXPECT_TRUE(std::holds_alternative<PathProblem>(load_problem_or_job(folder.folder().write({}))));
 }
 
 TEST(JobFile, WhatStrokesMayNotHave) {
@@ -349,7 +349,7 @@ TEST(JobFile, FeedOfWaypoints) {
       input_error([&] { (void)load(rolls + "0,0,0,1,0,0,0,0,1,50\n1,0,0,1,0,0,0,0,1,50\n"); }),
       {"strokes[0].path", "50 m/s", "millimetres"});
   // Problems have no feeds: a warning says so.
-  const Problem problem = folder.folder().load({{"path", "{file: feed.csv}"}});
+  const PathProblem problem = folder.folder().load({{"path", "{file: feed.csv}"}});
   ASSERT_EQ(problem.model->warnings.size(), 1u);
   EXPECT_NE(problem.model->warnings[0].find("feed.csv:1: column feed is not used"),
             std::string::npos)

@@ -7,11 +7,11 @@ namespace swivel::io::test {
 namespace {
 
 /// Returns the arm's joint of a problem by number, from 1.
-const Joint& joint_of(const Problem& problem, int number) {
+const Joint& joint_of(const PathProblem& problem, int number) {
   const int index = problem.model->find_joint("joint_" + std::to_string(number));
   return problem.model->joints.at(static_cast<std::size_t>(index));
 }
-Problem with_limits(const ProblemFolder& folder, const std::string& limits) {
+PathProblem with_limits(const ProblemFolder& folder, const std::string& limits) {
   return folder.load({{"limits", limits}});
 }
 std::string refusal_of(const ProblemFolder& folder, const ProblemFolder::Sections& sections) {
@@ -20,7 +20,7 @@ std::string refusal_of(const ProblemFolder& folder, const ProblemFolder::Section
 
 TEST(JointLimits, AreNarrowedByName) {
   const ProblemFolder folder;
-  const Problem problem =
+  const PathProblem problem =
       with_limits(folder, "{joints: {joint_5: [-1.5, 1.25], finger_joint: [0.01, 0.04]}}");
   EXPECT_EQ(-1.5, joint_of(problem, 5).lower);
   EXPECT_EQ(1.25, joint_of(problem, 5).upper);
@@ -41,8 +41,8 @@ TEST(JointLimits, BoundAContinuousJoint) {
   std::string urdf = arm_urdf();
   urdf.replace(urdf.find("revolute"), 8, "continuous");
   folder.folder().write("robots/arm.urdf", urdf);
-  const Problem free = with_limits(folder, "{}"),
-                bounded = with_limits(folder, "{joints: {joint_1: [-7, 7]}}");
+  const PathProblem free = with_limits(folder, "{}"),
+                    bounded = with_limits(folder, "{joints: {joint_1: [-7, 7]}}");
   EXPECT_EQ(Joint::Type::kContinuous, joint_of(free, 1).type);
   EXPECT_EQ(Joint::Type::kRevolute, joint_of(bounded, 1).type);
   EXPECT_EQ(-7, joint_of(bounded, 1).lower);
@@ -51,13 +51,13 @@ TEST(JointLimits, BoundAContinuousJoint) {
 
 TEST(JointLimits, MarginsMayBeByName) {
   const ProblemFolder folder;
-  const Problem problem = with_limits(folder, "{joint_margin: {joint_2: 0.1, joint_3: 0.25}}");
+  const PathProblem problem = with_limits(folder, "{joint_margin: {joint_2: 0.1, joint_3: 0.25}}");
   EXPECT_EQ(0, problem.limits.joint_margin);
   EXPECT_EQ(-1.9, joint_of(problem, 2).lower);
   EXPECT_EQ(2.25, joint_of(problem, 3).upper);
   EXPECT_EQ(0.3, with_limits(folder, "{joint_margin: 0.3}").limits.joint_margin);
   // Both keys together: the margin is kept from the narrower range.
-  const Problem both =
+  const PathProblem both =
       with_limits(folder, "{joints: {joint_2: [-1, 1]}, joint_margin: {joint_2: 0.5}}");
   EXPECT_EQ(-0.5, joint_of(both, 2).lower);
   expect_message(refusal_of(folder, {{"limits", "{joint_margin: {joint_2: 2.3}}"}}),
@@ -67,7 +67,7 @@ TEST(JointLimits, MarginsMayBeByName) {
 
 TEST(JointLimits, WeightsMayBeByName) {
   const ProblemFolder folder;
-  const Problem problem = folder.load({{"cost", "{weights: {joint_1: 2, joint_7: 0.5}}"}});
+  const PathProblem problem = folder.load({{"cost", "{weights: {joint_1: 2, joint_7: 0.5}}"}});
   EXPECT_EQ((std::array<double, kDof>{2, 1, 1, 1, 1, 1, 0.5}), problem.cost.weights);
   expect_message(refusal_of(folder, {{"cost", "{weights: {finger_joint: 2}}"}}),
                  {"'finger_joint' is no joint of the arm", "nearest is"});
@@ -90,7 +90,7 @@ joint_limits:
   other_joint: {max_velocity: 1}
   finger_joint: {max_velocity: 0.02}
 )");
-  const Problem problem = with_limits(folder, "{file: joint_limits.yaml}");
+  const PathProblem problem = with_limits(folder, "{file: joint_limits.yaml}");
   EXPECT_EQ(0.7, joint_of(problem, 1).velocity);
   EXPECT_EQ(0, joint_of(problem, 1).acceleration);
   EXPECT_EQ(2, joint_of(problem, 2).acceleration);

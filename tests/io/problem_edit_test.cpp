@@ -18,14 +18,14 @@ const Offset kMoved{0.05, 0, -0.1, 0, 0, 0}, kTurned{0.05, 0.2, 0, 0.1, 0.2, 0.3
 
 struct Edited {
   std::string before, after;
-  Problem wanted, read;
+  PathProblem wanted, read;
 };
 
 Edited edited(const ProblemFolder& folder, const std::string& scene, const Offset& offset,
               const Movable& thing = {Movable::Kind::kObject, "part"},
               const std::string& path = "{file: weld.csv}") {
   const fs::path file = folder.write({{"scene", scene}, {"path", path}});
-  const Problem problem = load_problem(file);
+  const PathProblem problem = load_problem(file);
   Edited result{TempFolder::read(file), "", placed_problem(problem, thing, offset), {}};
   result.after = with_poses(result.before, problem, result.wanted);
   result.read = load_problem(folder.folder().write("problems/placed.yaml", result.after));
@@ -86,8 +86,8 @@ TEST(WithPoses, LineEndsAndByteOrderMarksStay) {
             "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}\r\npath: "
             "{file: "
             "weld.csv}\r\nscene:\r\n  - {name: part, sphere: 0.1, xyz: [1, 2, 3]}  # ö\r\n");
-    const Problem problem = load_problem(file),
-                  wanted = placed_problem(problem, {Movable::Kind::kObject, "part"}, kMoved);
+    const PathProblem problem = load_problem(file),
+                      wanted = placed_problem(problem, {Movable::Kind::kObject, "part"}, kMoved);
     std::string expected = TempFolder::read(file);
     expected.replace(expected.find("[1, 2, 3]"), 9, "[1.05, 2, 2.9]");
     EXPECT_EQ(with_poses(TempFolder::read(file), problem, wanted), expected);
@@ -131,11 +131,11 @@ TEST(WithPoses, HoldsJoints) {
   const std::map<std::string, double> wanted{{"a", 0.30000000000000004}, {"b: c", -2e-3}};
   const auto written = [&](const std::string& robot) {
     const std::string text = "# head\n" + robot + "\npath: {file: weld.csv}  # path\n";
-    Problem problem;
+    PathProblem problem;
     problem.source = "problem.yaml";
     const YAML::Node held = YAML::Load(text)["robot"]["hold"];
     for (const auto& entry : held) problem.hold[entry.first.Scalar()] = entry.second.as<double>();
-    Problem placed = problem;
+    PathProblem placed = problem;
     for (const auto& [joint, position] : wanted) placed.hold[joint] = position;
     const std::string after = with_poses(text, problem, placed);
     std::map<std::string, double> said;

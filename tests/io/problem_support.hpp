@@ -32,7 +32,9 @@ class ProblemFolder {
       if (!text.empty()) yaml += name + ": " + text + "\n";
     return folder_.write("problems/problem.yaml", yaml);
   }
-  [[nodiscard]] Problem load(const Sections& changes) const { return load_problem(write(changes)); }
+  [[nodiscard]] PathProblem load(const Sections& changes) const {
+    return load_problem(write(changes));
+  }
   [[nodiscard]] const TempFolder& folder() const { return folder_; }
 
  private:

@@ -9,8 +9,8 @@ namespace {
 TEST(ProblemFile, Defaults) {
   const ProblemFolder folder;
   const fs::path file = folder.write({});
-  const Problem problem = load_problem(file);
-  const Problem fresh;
+  const PathProblem problem = load_problem(file);
+  const PathProblem fresh;
   EXPECT_EQ(problem.source, file.string());
   EXPECT_EQ(problem.model->links.size(), 9u);
   EXPECT_EQ(problem.base_link, "base_link");
@@ -37,7 +37,7 @@ TEST(ProblemFile, WhatMotionsKeep) {
   const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
   EXPECT_FALSE(folder.load({}).smooth);
   EXPECT_FALSE(folder.load({}).limits.joint_jerk);
-  const Problem problem = folder.load(
+  const PathProblem problem = folder.load(
       {{"path", "{smooth: {position: 0.0002}, " + waypoints + "}"},
        {"limits", "{joint_speed: 2, joint_acceleration: [1, 2, 3, 4, 5, 6, 7], joint_jerk: null}"},
        {"refine", "{smoothing: 0.02, joint_margin: 0.03, singular_margin: 0.04}"}});
@@ -50,7 +50,7 @@ TEST(ProblemFile, WhatMotionsKeep) {
   EXPECT_EQ(problem.refinement.smoothing, 0.02);
   EXPECT_EQ(problem.refinement.joint_margin, 0.03);
   EXPECT_EQ(problem.refinement.singular_margin, 0.04);
-  const Problem sharp = folder.load({{"path", "{smooth: null, " + waypoints + "}"}});
+  const PathProblem sharp = folder.load({{"path", "{smooth: null, " + waypoints + "}"}});
   ASSERT_TRUE(sharp.smooth);
   EXPECT_EQ(sharp.smooth->position, 0);
   EXPECT_EQ(sharp.smooth->angle, 0);
@@ -61,14 +61,14 @@ TEST(ProblemFile, RollOfTheTool) {
   const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
   EXPECT_FALSE(folder.load({}).roll);
   EXPECT_FALSE(folder.load({}).cost.weights);
-  const Problem free = folder.load({{"path", "{roll: free, " + waypoints + "}"}});
+  const PathProblem free = folder.load({{"path", "{roll: free, " + waypoints + "}"}});
   ASSERT_TRUE(free.roll);
   EXPECT_EQ(*free.roll, Roll{});
   EXPECT_FALSE(free.cost.weights);
   EXPECT_EQ(free.limits.roll_slope, 20);
-  const Problem some = folder.load({{"path", "{roll: [-0.5, 1], " + waypoints + "}"},
-                                    {"limits", "{roll_slope: 7}"},
-                                    {"cost", "{weights: [1, 1, 1, 1, 1, 1, 0.3]}"}});
+  const PathProblem some = folder.load({{"path", "{roll: [-0.5, 1], " + waypoints + "}"},
+                                        {"limits", "{roll_slope: 7}"},
+                                        {"cost", "{weights: [1, 1, 1, 1, 1, 1, 0.3]}"}});
   ASSERT_TRUE(some.roll);
   EXPECT_EQ(some.roll->lower, -0.5);
   EXPECT_EQ(some.roll->upper, 1);
@@ -80,7 +80,7 @@ TEST(ProblemFile, RollOfTheTool) {
 struct RollWindows {
   /// Loads the problem; the texts are path.roll with its comma and what follows xyz of the
   /// waypoints.
-  [[nodiscard]] Problem load(const char* roll, const char* first, const char* second) const {
+  [[nodiscard]] PathProblem load(const char* roll, const char* first, const char* second) const {
     return folder.load({{"path", std::string("{") + roll + "waypoints: [{xyz: [0.6, -0.1, 0.9]" +
                                      first + "}, {xyz: [0.6, 0.1, 0.9]" + second + "}]}"}});
   }
@@ -91,14 +91,15 @@ struct RollWindows {
 TEST(ProblemFile, WindowsOfTheRoll) {
   const RollWindows windows;
   // Windows of waypoints are cut to path.roll, which is cut to what they leave of it.
-  const Problem cut = windows.load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
+  const PathProblem cut =
+      windows.load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
   EXPECT_EQ(cut.waypoints[0].roll, Roll(-0.5, 0.1));
   EXPECT_EQ(cut.waypoints[1].roll, Roll(0.2, 0.2));
   EXPECT_EQ(*cut.roll, Roll(-0.5, 0.2));
   EXPECT_EQ(*windows.load("roll: free, ", ", roll: [-2, 0.1]", ", roll: [0.2, 3]").roll,
             Roll(-2, 3));
   // What allows a whole turn at one waypoint allows no circle.
-  const Problem whole = windows.load("roll: free, ", ", roll: [-4, 4]", ", roll: [0.2, 0.2]");
+  const PathProblem whole = windows.load("roll: free, ", ", roll: [-4, 4]", ", roll: [0.2, 0.2]");
   EXPECT_FALSE(whole.roll->circle());
   EXPECT_NEAR(whole.roll->upper, kPi, 1e-5);
   EXPECT_FALSE(windows.load("roll: free, ", "", "").waypoints[0].roll);
@@ -127,11 +128,12 @@ TEST(ProblemFile, BadWindowsOfTheRollAreRefused) {
 TEST(ProblemFile, WindowsOfTheRollInATable) {
   const RollWindows windows;
   const ProblemFolder& folder = windows.folder;
-  const Problem cut = windows.load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
+  const PathProblem cut =
+      windows.load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
   folder.folder().write("problems/turns.csv",
                         "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0.6,-0.1,0.9,1,0,0,0,-2,0.1\n0.6,0.1,"
                         "0.9,1,0,0,0,0.2,0.2\n");
-  const Problem file = folder.load({{"path", "{roll: [-0.5, 1], file: turns.csv}"}});
+  const PathProblem file = folder.load({{"path", "{roll: [-0.5, 1], file: turns.csv}"}});
   EXPECT_EQ(file.waypoints, cut.waypoints);
   EXPECT_EQ(*file.roll, *cut.roll);
   expect_message(input_error([&] {
@@ -209,7 +211,7 @@ TEST(ProblemFile, KeysOfAnArmAngleAreForArmsThatHaveOne) {
 }
 
 /// Loads a problem file with every key.
-Problem load_every_key(const ProblemFolder& folder) {
+PathProblem load_every_key(const ProblemFolder& folder) {
   return folder.load({
       {"robot", R"(
   urdf: ../robots/arm.urdf
@@ -249,7 +251,7 @@ Problem load_every_key(const ProblemFolder& folder) {
 
 TEST(ProblemFile, EveryKey) {
   const ProblemFolder folder;
-  const Problem problem = load_every_key(folder);
+  const PathProblem problem = load_every_key(folder);
   EXPECT_TRUE(problem.model->has_srdf);
   EXPECT_EQ(problem.tool.translation(), Vector3d(0, 0, 0.1));
   const Matrix3d tool =
@@ -303,7 +305,7 @@ TEST(ProblemFile, EveryKey) {
 }
 
 /// Returns the problem of data/problems/kr6_weld_pipe.yaml, an arm of six joints, with an end.
-Problem kr6_problem(const fs::path& folder, const std::string& joints) {
+PathProblem kr6_problem(const fs::path& folder, const std::string& joints) {
   const std::string data = SWIVEL_DATA_DIR;
   std::ostringstream read;
   read << std::ifstream(fs::path(data) / "problems" / "kr6_weld_pipe.yaml").rdbuf();
@@ -323,7 +325,7 @@ TEST(ProblemFile, EndOfSixJoints) {
   const ProblemFolder folder;
   const fs::path place = folder.write({}).parent_path();
   for (const char* six : {"0, -1.4, 1.5, 0, 0.6, 0", "0.4, -1.2, 1.3, 0.7, -0.9, 2"}) {
-    const Problem problem = kr6_problem(place, six);
+    const PathProblem problem = kr6_problem(place, six);
     ASSERT_TRUE(problem.end);
     const Chain chain = build_arm(*problem.model, problem.base_link, problem.tip_link, {},
                                   problem.tool, problem.roll)
@@ -383,12 +385,12 @@ TEST(ProblemFile, ClosedPaths) {
 
 TEST(ProblemFile, SectionsWithEverythingCommentedOut) {
   const ProblemFolder folder;
-  const Problem problem = folder.load({{"limits", "# {}"},
-                                       {"scene", "null"},
-                                       {"resolution", "~"},
-                                       {"start", "null"},
-                                       {"vary", "[]"},
-                                       {"cost", "{}"}});
+  const PathProblem problem = folder.load({{"limits", "# {}"},
+                                           {"scene", "null"},
+                                           {"resolution", "~"},
+                                           {"start", "null"},
+                                           {"vary", "[]"},
+                                           {"cost", "{}"}});
   EXPECT_EQ(problem.limits.joint_step, 0.5);
   EXPECT_FALSE(problem.start);
 }
@@ -404,7 +406,7 @@ TEST(ProblemFile, NamesAreRelativeToTheFileWhereverItIsReadFrom) {
 
 TEST(ProblemFile, OneMeshForManyObjects) {
   const ProblemFolder folder;
-  const Problem problem =
+  const PathProblem problem =
       folder.load({{"scene", "[{name: a, mesh: box.stl}, {name: b, mesh: ./box.stl, scale: 1}]"}});
   EXPECT_EQ(std::get<MeshPtr>(problem.scene[0].shape), std::get<MeshPtr>(problem.scene[1].shape));
 }

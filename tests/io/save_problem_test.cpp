@@ -15,7 +15,7 @@
 namespace swivel::io::test {
 namespace {
 
-using Change = std::function<void(Problem&)>;
+using Change = std::function<void(PathProblem&)>;
 
 const char* const kFile =
     "# A weld, häßlich.\n"
@@ -49,7 +49,7 @@ std::string with(std::string text, const std::string& part, const std::string& n
   return at == std::string::npos ? text : text.replace(at, part.size(), now);
 }
 
-void expect_equal(const Problem& a, const Problem& b) {
+void expect_equal(const PathProblem& a, const PathProblem& b) {
   EXPECT_TRUE(static_cast<const Task&>(a) == static_cast<const Task&>(b));
   EXPECT_EQ(a.hold, b.hold);
   EXPECT_EQ(a.roll, b.roll);
@@ -72,7 +72,7 @@ std::string changed(const ProblemFolder& folder, const std::string& text, const 
   const fs::path file = folder.folder().write("problems/problem.yaml", text),
                  saved = folder.folder().path() / target;
   fs::create_directories(saved.parent_path());
-  Problem problem = load_problem(file);
+  PathProblem problem = load_problem(file);
   change(problem);
   save_problem(problem, saved);
   expect_equal(load_problem(saved), problem);
@@ -94,18 +94,19 @@ void expect_changes(const std::vector<Case>& cases) {
 
 TEST(SavedProblems, ChangeOnlyWhatChangedOfTheTask) {
   expect_changes({
-      {[](Problem&) {}, "# A weld", "# A weld"},
-      {[](Problem& p) { p.limits.clearance = 0.01; }, "clearance: 0.005", "clearance: 0.01"},
-      {[](Problem& p) { p.limits.edge_clearance = 0.001; }, "0.005, ",
+      {[](PathProblem&) {}, "# A weld", "# A weld"},
+      {[](PathProblem& p) { p.limits.clearance = 0.01; }, "clearance: 0.005", "clearance: 0.01"},
+      {[](PathProblem& p) { p.limits.edge_clearance = 0.001; }, "0.005, ",
        "0.005, edge_clearance: 0.001, "},
-      {[](Problem& p) { p.limits.tool_path_error.reset(); }, "0.4}", "0.4, tool_path_error: null}"},
-      {[](Problem& p) { p.resolution.dphi = 0.02; }, "# m\n", "# m\n  dphi: 0.02\n"},
-      {[](Problem& p) { p.resolution.ds = 0.005; }, "ds: 0.01  #", "ds: 0.005  #"},
-      {[](Problem& p) { p.cost.metric = CostMetric::kMax; }, "# m, rad\n",
+      {[](PathProblem& p) { p.limits.tool_path_error.reset(); }, "0.4}",
+       "0.4, tool_path_error: null}"},
+      {[](PathProblem& p) { p.resolution.dphi = 0.02; }, "# m\n", "# m\n  dphi: 0.02\n"},
+      {[](PathProblem& p) { p.resolution.ds = 0.005; }, "ds: 0.01  #", "ds: 0.005  #"},
+      {[](PathProblem& p) { p.cost.metric = CostMetric::kMax; }, "# m, rad\n",
        "# m, rad\ncost: {metric: max}\n"},
-      {[](Problem& p) { p.start = Config::Constant(0.5); }, "# m, rad\n",
+      {[](PathProblem& p) { p.start = Config::Constant(0.5); }, "# m, rad\n",
        "# m, rad\nstart: {joints: [0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5]}\n"},
-      {[](Problem& p) {
+      {[](PathProblem& p) {
          p.smooth = PathSmoothing{0.001, 0.5};
        },
        "units: m\n", "units: m\n  smooth: {position: 0.001, angle: 0.5}\n"},
@@ -114,40 +115,40 @@ TEST(SavedProblems, ChangeOnlyWhatChangedOfTheTask) {
 
 TEST(SavedProblems, ChangeOnlyWhatChangedOfBodies) {
   expect_changes({
-      {[](Problem& p) { p.tool.translation().z() = 0.25; }, "tip_link: link_7\n",
+      {[](PathProblem& p) { p.tool.translation().z() = 0.25; }, "tip_link: link_7\n",
        "tip_link: link_7\n  tool: {xyz: [0, 0, 0.25]}\n"},
-      {[](Problem& p) {
+      {[](PathProblem& p) {
          p.attached.push_back({"nozzle", Sphere{0.01}, p.tool, "link_7"});
        },
        "tip_link: link_7\n",
        "tip_link: link_7\n  attached:\n    - {name: nozzle, sphere: 0.01, link: link_7}\n"},
-      {[](Problem& p) { p.scene[1].pose.translation().y() = 0.25; }, "- 0.2\n", "- 0.25\n"},
-      {[](Problem& p) {
+      {[](PathProblem& p) { p.scene[1].pose.translation().y() = 0.25; }, "- 0.2\n", "- 0.25\n"},
+      {[](PathProblem& p) {
          p.scene[1].pose.linear() = rotation_from_rpy({0, 0, 0.5});
        },
        "quat: [0.5, 0.5, 0.5, 0.5]", "rpy: [0, 0, 0.5]"},
-      {[](Problem& p) { p.scene[1].pose.linear().setIdentity(); },
+      {[](PathProblem& p) { p.scene[1].pose.linear().setIdentity(); },
        "    quat: [0.5, 0.5, 0.5, 0.5]\n", ""},
-      {[](Problem& p) {
+      {[](PathProblem& p) {
          p.scene[0].shape = Cylinder{0.1, 0.5};
        },
        "sphere: 0.1", "cylinder: {radius: 0.1, length: 0.5}"},
-      {[](Problem& p) {
+      {[](PathProblem& p) {
          p.scene[0].allow = {{"link_6", 0.001}};
        },
        "[link_7]", "{link_6: 0.001}"},
-      {[](Problem& p) { p.scene[0].allow.clear(); }, ", allow: [link_7]", ""},
-      {[](Problem& p) { p.scene.erase(p.scene.begin()); },
+      {[](PathProblem& p) { p.scene[0].allow.clear(); }, ", allow: [link_7]", ""},
+      {[](PathProblem& p) { p.scene.erase(p.scene.begin()); },
        "  - {name: post, sphere: 0.1, xyz: [0.1, 0.2, 0.3], allow: [link_7]}  # a post\n", ""},
-      {[](Problem& p) {
+      {[](PathProblem& p) {
          p.scene.push_back({"cup", Box{{1, 1, 1}}, p.tool, {}});
        },
        "- 0.9\n", "- 0.9\n  - {name: cup, box: [1, 1, 1]}\n"},
-      {[](Problem& p) {
+      {[](PathProblem& p) {
          p.scene.insert(p.scene.begin(), {"cup", Sphere{1}, p.tool, {}});
        },
        "  - {name: post", "  - {name: cup, sphere: 1}\n  - {name: post"},
-      {[](Problem& p) { p.waypoints[1].position.z() = 0.5; },
+      {[](PathProblem& p) { p.waypoints[1].position.z() = 0.5; },
        "  file: weld.csv  # in metres\n  units: m\n",
        "  waypoints:\n    - {xyz: [0, 0, 0], quat: [1, 0, 0, 0]}\n    - {xyz: [1, 0, 0.5], quat: "
        "[1, 0, 0, 0]}  # in metres\n"},
@@ -159,15 +160,15 @@ TEST(SavedProblems, KeepLineEndsAndByteOrderMarks) {
   std::string text = "\xef\xbb\xbf";
   for (const char* c = kFile; *c != 0; ++c)
     text += *c == '\n' ? std::string("\r\n") : std::string(1, *c);
-  EXPECT_EQ(changed(folder, text, [](Problem& p) { p.resolution.dphi = 0.02; }),
+  EXPECT_EQ(changed(folder, text, [](PathProblem& p) { p.resolution.dphi = 0.02; }),
             with(text, "# m\r\n", "# m\r\n  dphi: 0.02\r\n"));
-  EXPECT_EQ(changed(folder, text, [](Problem& p) { p.limits.joint_step = 0.3; }),
+  EXPECT_EQ(changed(folder, text, [](PathProblem& p) { p.limits.joint_step = 0.3; }),
             with(text, "joint_step: 0.4", "joint_step: 0.3"));
 }
 
 TEST(SavedProblems, ItemsThatMoveToAnotherPlaceAreWrittenAnew) {
   const ProblemFolder folder;
-  const std::string text = changed(folder, kFile, [](Problem& p) {
+  const std::string text = changed(folder, kFile, [](PathProblem& p) {
     std::rotate(p.scene.begin(), p.scene.begin() + 1, p.scene.end());
   });
   EXPECT_NE(
@@ -179,7 +180,7 @@ TEST(SavedProblems, ItemsThatMoveToAnotherPlaceAreWrittenAnew) {
 
 TEST(SavedProblems, ABodyThatIsTakenUpStaysWhereTheFileHasIt) {
   const ProblemFolder folder;
-  const std::string text = changed(folder, kFile, [](Problem& p) {
+  const std::string text = changed(folder, kFile, [](PathProblem& p) {
     p.scene.erase(p.scene.begin());
     p.attached.push_back({"post", Sphere{0.1}, Pose(Eigen::Translation3d(0, 0, 0.1)), "link_7"});
   });
@@ -191,12 +192,12 @@ TEST(SavedProblems, ABodyThatIsTakenUpStaysWhereTheFileHasIt) {
 TEST(SavedProblems, NamesOfFilesFollowTheFile) {
   const ProblemFolder folder;
   const std::string text = changed(
-      folder, kFile, [](Problem& p) { p.resolution.ds = 0.02; }, "a/b/saved.yaml");
+      folder, kFile, [](PathProblem& p) { p.resolution.ds = 0.02; }, "a/b/saved.yaml");
   std::string expected = with(kFile, "../robots/arm.urdf ", "../../robots/arm.urdf ");
   expected = with(expected, "weld.csv", "../../problems/weld.csv");
   EXPECT_EQ(text, with(expected, "ds: 0.01", "ds: 0.02"));
   // Again, from there to the first folder.
-  Problem problem = load_problem(folder.folder().path() / "a/b/saved.yaml");
+  PathProblem problem = load_problem(folder.folder().path() / "a/b/saved.yaml");
   save_problem(problem, folder.folder().path() / "problems/back.yaml");
   EXPECT_EQ(TempFolder::read(folder.folder().path() / "problems/back.yaml"),
             with(kFile, "ds: 0.01", "ds: 0.02"));
@@ -204,7 +205,7 @@ TEST(SavedProblems, NamesOfFilesFollowTheFile) {
 
 TEST(SavedProblems, WholeOnesHaveNoDefaults) {
   const ProblemFolder folder;
-  Problem problem = folder.load(
+  PathProblem problem = folder.load(
       {{"robot", robot_with("srdf: ../robots/arm.srdf, hold: {finger_joint: 0.01}")},
        {"path", "{waypoints: [{xyz: [0, 0, 1]}, {xyz: [0, 0.1, 1]}]}"},
        {"limits", "{joints: {joint_2: [-1, 1]}, joint_margin: {joint_1: 0.1}, soft_limits: false}"},
@@ -230,17 +231,17 @@ TEST(SavedProblems, RefuseWhatNoFileCanSay) {
   const auto refused = [&](const std::string& text, const Change& change,
                            const std::vector<std::string>& words) {
     const fs::path file = folder.folder().write("problems/problem.yaml", text);
-    Problem problem = load_problem(file);
+    PathProblem problem = load_problem(file);
     change(problem);
     expect_message(input_error([&] { save_problem(problem, target); }), words);
     EXPECT_FALSE(fs::exists(target));
     ++refusals;
   };
-  refused(kFile, [](Problem& p) { p.source.clear(), p.model = parse_robot(arm_urdf()); },
+  refused(kFile, [](PathProblem& p) { p.source.clear(), p.model = parse_robot(arm_urdf()); },
           {"refused.yaml", "robot.urdf", "a text"});
-  refused(kFile, [](Problem& p) { p.model = parse_robot(arm_urdf()); }, {"robot.urdf"});
+  refused(kFile, [](PathProblem& p) { p.model = parse_robot(arm_urdf()); }, {"robot.urdf"});
   refused(kFile,
-          [](Problem& p) {
+          [](PathProblem& p) {
             auto mesh = std::make_shared<TriangleMesh>();
             mesh->source = "mesh", mesh->vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
             mesh->triangles = {{0, 1, 2}};
@@ -248,25 +249,25 @@ TEST(SavedProblems, RefuseWhatNoFileCanSay) {
           },
           {"mesh of 'post'", "'mesh' is no file"});
   refused(kFile,
-          [](Problem& p) {
+          [](PathProblem& p) {
             p.scene[0].allow = {{"link_6", 0.1}, {"link_7"}};
           },
           {"allow of 'post'", "some bodies have a depth"});
-  refused(kFile, [](Problem& p) { p.source += "x"; }, {"problem.yamlx"});
-  refused(kFile, [](Problem& p) { p.steps.assign(1, 3); }, {"path's layers"});
-  Problem varied = load_problem(folder.folder().write(
+  refused(kFile, [](PathProblem& p) { p.source += "x"; }, {"problem.yamlx"});
+  refused(kFile, [](PathProblem& p) { p.steps.assign(1, 3); }, {"path's layers"});
+  PathProblem varied = load_problem(folder.folder().write(
       "problems/problem.yaml", std::string(kFile) + "vary: [{object: post, xyz: [1, 1, 1]}]\n"));
   varied.scene.erase(varied.scene.begin());
   EXPECT_THROW(save_problem(varied, target), InvalidArgument);
   EXPECT_FALSE(fs::exists(target));
   refused(with(kFile, "[0.1, 0.2, 0.3], allow", "&here [0.1, 0.2, 0.3], allow") +
               "vary: [{object: post, xyz: *here}]\n",
-          [](Problem& p) { p.scene[0].pose.translation().x() = 0.2; }, {"vary"});
+          [](PathProblem& p) { p.scene[0].pose.translation().x() = 0.2; }, {"vary"});
   refused(with(kFile, "clearance: 0.005", "clearance: &c 0.005"),
-          [](Problem& p) { p.limits.clearance = 0.01; },
+          [](PathProblem& p) { p.limits.clearance = 0.01; },
           {"problem.yaml:20", "clearance: cannot be changed in place"});
   refused(with(kFile, "joint_step: 0.4", "joint_margin: {joint_1: 0.1}"),
-          [](Problem& p) { p.limits.joint_margin = 0.1; }, {"limits.joint_margin"});
+          [](PathProblem& p) { p.limits.joint_margin = 0.1; }, {"limits.joint_margin"});
   const auto robot = folder.folder().path() / "robots/arm.urdf";
   const std::string urdf = TempFolder::read(robot);
   expect_message(input_error([&] {
@@ -289,7 +290,7 @@ Pose random_pose(swivel::test::Random& random) {
   return pose;
 }
 
-void change_limits(Problem& p, swivel::test::Random& random) {
+void change_limits(PathProblem& p, swivel::test::Random& random) {
   const auto maybe = [&](std::optional<double>& limit) {
     limit = random.coin(0.3) ? std::nullopt : std::optional(random.uniform(0.001, 0.01));
   };
@@ -306,7 +307,7 @@ void change_limits(Problem& p, swivel::test::Random& random) {
     for (double& a : p.limits.joint_acceleration.emplace()) a = random.uniform(1, 5);
 }
 
-void change_scene(Problem& p, swivel::test::Random& random) {
+void change_scene(PathProblem& p, swivel::test::Random& random) {
   for (SceneObject& object : p.scene)
     if (random.coin(0.3)) object.pose = random_pose(random);
   for (SceneObject& object : p.scene)
@@ -322,7 +323,7 @@ void change_scene(Problem& p, swivel::test::Random& random) {
   if (random.coin(0.2)) std::reverse(p.scene.begin(), p.scene.end());
 }
 
-void change_path(Problem& p, swivel::test::Random& random) {
+void change_path(PathProblem& p, swivel::test::Random& random) {
   const bool windows = p.waypoints.front().roll.has_value();
   if (!p.closed && random.coin(0.4)) p.waypoints[1].position.x() += random.uniform(0, 0.01);
   if (!p.closed && !windows && random.coin(0.3)) p.waypoints.push_back(p.waypoints[0]);
@@ -339,7 +340,7 @@ void change_path(Problem& p, swivel::test::Random& random) {
   }
 }
 
-void change_rest(Problem& p, swivel::test::Random& random) {
+void change_rest(PathProblem& p, swivel::test::Random& random) {
   if (random.coin(0.3)) p.resolution.ds = random.uniform(0.002, 0.02);
   if (random.coin(0.3)) p.resolution.dalpha = random.uniform(0.02, 0.2);
   if (random.coin(0.2)) p.resolution = Resolution();
@@ -393,7 +394,7 @@ TEST(SavedProblems, RandomChangesOfOtherLayoutsAreReadBack) {
         SCOPED_TRACE(data.string() + ", case " + std::to_string(cases));
         folder.write("problem.yaml", text);
         swivel::test::Random random(seed + static_cast<std::uint64_t>(cases++));
-        Problem problem = load_problem(file);
+        PathProblem problem = load_problem(file);
         change_limits(problem, random);
         change_scene(problem, random);
         change_path(problem, random);
@@ -412,7 +413,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
   const TempFolder folder;
   int cases = 0, kept = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(SWIVEL_DATA_DIR) / "problems")) {
-    std::optional<Problem> loaded;
+    std::optional<PathProblem> loaded;
     try {
       loaded = load_problem(entry.path());
     } catch (const InputError&) {
@@ -421,7 +422,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
     if (entry.path().stem() == "experiment_c_20k") continue;  // as experiment_c, with a large mesh
     for (int k = 0; k < swivel::test::trials(12); ++k) {
       swivel::test::Random random(seed + static_cast<std::uint64_t>(cases));
-      Problem problem = *loaded;
+      PathProblem problem = *loaded;
       if (random.coin(0.1)) problem.source.clear();
       change_limits(problem, random);
       change_scene(problem, random);
@@ -431,7 +432,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
       SCOPED_TRACE(entry.path().string() + ", case " + std::to_string(cases));
       ++cases;
       save_problem(problem, file);
-      Problem expected = problem;
+      PathProblem expected = problem;
       if (!expected.start) expected.start_tolerance = Task().start_tolerance;
       expect_equal(load_problem(file), expected);
       // A list that is taken out takes the comments within it along.

@@ -7,7 +7,7 @@ namespace {
 
 TEST(SceneFrames, FixABodyToItsLink) {
   const ProblemFolder folder;
-  const Problem problem =
+  const PathProblem problem =
       folder.load({{"scene",
                     "[{name: post, box: [0.1, 0.1, 1], xyz: [0.5, 0, 0.5]},"
                     " {name: shelf, sphere: 0.1, xyz: [0.1, 0.2, 0.3], frame: link_2},"

@@ -152,7 +152,7 @@ struct Walk {
   }
 };
 
-Problem load(const ProblemFolder& folder, const Json& problem) {
+PathProblem load(const ProblemFolder& folder, const Json& problem) {
   return load_problem(folder.folder().write("problems/problem.yaml", problem.dump()));
 }
 Job load_as_job(const ProblemFolder& folder, const Json& problem) {
@@ -283,7 +283,7 @@ TEST(ProblemSchema, Defaults) {
   int keys = 0;
   const Json said = with_defaults(whole_problem(), keys);
   EXPECT_GE(keys, 24);
-  const Problem plain = load(folder, whole_problem()), explicitly = load(folder, said);
+  const PathProblem plain = load(folder, whole_problem()), explicitly = load(folder, said);
   Task without = plain, with = explicitly;
   without.waypoints = with.waypoints = {};  // they must have a position
   EXPECT_EQ(without, with);

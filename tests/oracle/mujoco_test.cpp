@@ -96,7 +96,7 @@ class State {
 
 /// A motion as it was planned: what a controller is sent, and the arm.
 struct Sent {
-  Problem problem;
+  PathProblem problem;
   ArmModel arm;
   std::vector<TimedRow> rows;
   double rate = 250;  // samples a second

@@ -28,7 +28,7 @@ namespace {
 using namespace test;
 
 struct Drawn {
-  Problem problem;
+  PathProblem problem;
   PlanResult result;
   LatticeMap map;
 };
@@ -49,8 +49,8 @@ Drawn draw(const std::string& name, PlannerKind planner, bool full) {
 
 /// Returns the problem of a torch at a door, with windows of the roll that go along the path, or
 /// with all rolls and a ball in the scene.
-Problem problem_of_rolls(bool windows) {
-  Problem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
+PathProblem problem_of_rolls(bool windows) {
+  PathProblem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
   problem.resolution.droll = 0.25;
   problem.resolution.dphi = 0.2;
   if (!windows)
@@ -145,7 +145,7 @@ void check_states_of_rolls(PanelOfRolls& panel) {
 /// nothing outside the windows.
 TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
   for (const bool windows : {false, true}) {
-    const Problem problem = problem_of_rolls(windows);
+    const PathProblem problem = problem_of_rolls(windows);
     Planner arm(problem);
     const PlanResult result = arm.plan({});
     ASSERT_EQ(result.status, PlanStatus::kSolved);
@@ -314,7 +314,7 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
                                          {"ur10e_rail_seam", "rail"},
                                          {"ur5e_deburr_edge", "roll"},
                                          {"kr6_weld_pipe", "roll"}}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.05;
     Planner arm(problem);
     (void)arm.plan({});

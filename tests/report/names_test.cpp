@@ -26,7 +26,7 @@ TEST(Names, OfBodiesStayWordsInEveryDrawing) {
   for (const std::string name : {"<!--<script>", "</script><script>", "a - b", "]]>&lt;\"'",
                                  "Türgriff 扉", "%s%n", "$&@@DATA@@"}) {
     SCOPED_TRACE(name);
-    Problem problem =
+    PathProblem problem =
         episode_problem(io::load_problem(data_dir() / "problems" / "experiment_c.yaml"), 1,
                         258);  // the post blocks it
     problem.source = name;

@@ -5,7 +5,7 @@
 namespace swivel::test {
 
 /// Ends the path in a posture at its last waypoint where the joints' limits and margins allow it.
-inline void end_at(Problem& problem, const Chain& chain, const Config& q) {
+inline void end_at(PathProblem& problem, const Chain& chain, const Config& q) {
   bool fits = true;
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];

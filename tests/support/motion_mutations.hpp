@@ -29,7 +29,7 @@ namespace swivel::test {
 /// A trajectory or a motion in time, and the problem that it is to be checked against.
 struct Judged {
   std::string what;
-  Problem problem;
+  PathProblem problem;
   std::shared_ptr<const PreparedRobot> robot;
   bool timed = false;          ///< else t, v and a of the rows mean nothing
   std::vector<TimedRow> rows;  ///< of a motion as planned: at equal steps of time
@@ -62,8 +62,8 @@ inline CheckResult judge(const Judged& judged, const CheckOptions& options = {})
 /// `timed`, motions at 20 to 250 samples a second.
 inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int small_ones) {
   std::vector<Judged> found;
-  const auto add = [&](const std::string& what, const Problem& problem, bool as_motion, double rate,
-                       bool refined) {
+  const auto add = [&](const std::string& what, const PathProblem& problem, bool as_motion,
+                       double rate, bool refined) {
     Judged judged{what, problem, nullptr, timed, {}};
     PlanOptions lazy;
     lazy.planner = PlannerKind::kLazy;
@@ -83,7 +83,7 @@ inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int sma
   int number = 0;
   for (const char* name : {"iiwa14_bench", "iiwa14_deburr_in_hand", "kr6_weld_pipe",
                            "panda_weld_seam", "ur5e_deburr_edge"}) {
-    const Problem problem =
+    const PathProblem problem =
         io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     add(name, problem, timed || number % 2 == 1, 25, false);
     ++number;
@@ -91,7 +91,7 @@ inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int sma
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < small_ones; ++trial) {
     Random random(seed + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     // Corners are rounded as motions round them by default, or so little that the tool stops there.
     if (trial % 2 == 0)
@@ -291,7 +291,7 @@ inline bool is_clear(const Judged& judged, World::Query& query, const Config& fr
   return true;
 }
 
-inline Problem as_a_motion(const Judged& judged) {
+inline PathProblem as_a_motion(const Judged& judged) {
   return judged.timed ? with_motion_defaults(judged.problem) : judged.problem;
 }
 

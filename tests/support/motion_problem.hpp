@@ -9,9 +9,9 @@ namespace swivel::test {
 /// Draws a problem of two to four segments from a posture well inside the limits, with a ball near
 /// the arm, and sometimes with a start, a turn on the spot or a metric other than l2. `roll`: of
 /// the tool, for an arm of six joints.
-inline Problem motion_problem(const TestRobot& robot, Random& random,
-                              const std::optional<Roll>& roll = {}) {
-  Problem problem = problem_for(robot);
+inline PathProblem motion_problem(const TestRobot& robot, Random& random,
+                                  const std::optional<Roll>& roll = {}) {
+  PathProblem problem = problem_for(robot);
   problem.roll = roll;
   const Chain chain =
       build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity(), roll).chain;

@@ -27,7 +27,7 @@ inline constexpr double kNone = std::numeric_limits<double>::infinity();
 /// joints of nodes (Lattice::exact_config()).
 class PlainArm {
  public:
-  PlainArm(const Problem& problem, const PreparedRobot& robot)
+  PlainArm(const PathProblem& problem, const PreparedRobot& robot)
       : path_(problem_path(problem, robot.arm().chain)),
         lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
         world_(robot.world(), problem),

@@ -36,7 +36,7 @@ namespace problem_parts {
 
 /// Draws waypoints near posture `q`, the first of them the pose of the tool there. Returns the
 /// length of the path, m.
-inline double draw_waypoints(Problem& problem, const Chain& chain, Config q, int waypoints,
+inline double draw_waypoints(PathProblem& problem, const Chain& chain, Config q, int waypoints,
                              Random& random) {
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
   double length = 0;
@@ -51,8 +51,8 @@ inline double draw_waypoints(Problem& problem, const Chain& chain, Config q, int
 }
 
 /// Draws obstacles near the first waypoint and near the axis of joint 5 at posture `q0`.
-inline void draw_obstacles(Problem& problem, const Chain& chain, const Config& q0, int obstacles,
-                           Random& random) {
+inline void draw_obstacles(PathProblem& problem, const Chain& chain, const Config& q0,
+                           int obstacles, Random& random) {
   const Vector3d near = chain.displacements(q0)[4] * chain.point[4];
   for (int k = 0; k < obstacles; ++k) {
     SceneObject object;
@@ -80,7 +80,7 @@ inline void draw_obstacles(Problem& problem, const Chain& chain, const Config& q
 }
 
 /// Draws limits. The slope of the arm angle is drawn relative to problem.resolution.
-inline void draw_limits(Problem& problem, Random& random) {
+inline void draw_limits(PathProblem& problem, Random& random) {
   Limits& limits = problem.limits;
   limits.arm_slope = random.uniform(0.8, 3.2) * problem.resolution.dphi / problem.resolution.ds;
   limits.joint_step = random.uniform(0.4, 1.2);
@@ -96,7 +96,7 @@ inline void draw_limits(Problem& problem, Random& random) {
 }
 
 /// Starts the path at posture `q0` where the joints' limits and margins allow it.
-inline void start_at(Problem& problem, const Chain& chain, const Config& q0) {
+inline void start_at(PathProblem& problem, const Chain& chain, const Config& q0) {
   const Limits& limits = problem.limits;
   bool fits = true;
   for (int j = 0; j < kDof; ++j) {
@@ -112,8 +112,8 @@ inline void start_at(Problem& problem, const Chain& chain, const Config& q0) {
 /// Draws a small problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near
 /// the arm, random limits, both edge modes, with and without a start. Small enough for brute force
 /// over all pairs of nodes.
-inline Problem random_problem(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
+inline PathProblem random_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   const Config q0 = random_config(chain, random);
   const int waypoints = 2 + random.below(3);

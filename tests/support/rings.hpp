@@ -59,7 +59,7 @@ inline void keep_ring_inside(const Chain& chain, Config& q) {
 }
 
 /// Sets how fine the lattice is, and limits that suit it; `coarse`: never fine.
-inline void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, bool coarse,
+inline void draw_ring_lattice(PathProblem& problem, RingNodes nodes, double length, bool coarse,
                               Random& random) {
   Resolution& resolution = problem.resolution;
   resolution.ds = std::max(0.01, length / (4 + random.below(4)));
@@ -93,8 +93,8 @@ inline void draw_ring_lattice(Problem& problem, RingNodes nodes, double length, 
 /// Draws a closed path of two to four sides through tool poses of postures near each other, some
 /// with obstacles. A ring of `spins` has three sides, along which the last joint turns once, that
 /// before a roll.
-inline Problem ring_problem(const RingArm& arm, Random& random, bool spins = false) {
-  Problem problem = problem_for(arm.robot);
+inline PathProblem ring_problem(const RingArm& arm, Random& random, bool spins = false) {
+  PathProblem problem = problem_for(arm.robot);
   if (arm.nodes == RingNodes::kSixJoints)
     problem.roll = random.coin() ? Roll{} : Roll{random.uniform(-2, -0.5), random.uniform(0.5, 2)};
   const Chain chain =
@@ -130,8 +130,8 @@ inline Problem ring_problem(const RingArm& arm, Random& random, bool spins = fal
 
 /// Draws a ring whose lattice is coarse, so that brute force is quick. Most are asked about their
 /// nodes alone.
-inline Problem coarse_ring(const RingArm& arm, Random& random, bool spins) {
-  Problem ring = ring_problem(arm, random, spins);
+inline PathProblem coarse_ring(const RingArm& arm, Random& random, bool spins) {
+  PathProblem ring = ring_problem(arm, random, spins);
   ring.resolution.dphi = std::max(ring.resolution.dphi, 0.45);
   ring.resolution.arc = std::max(ring.resolution.arc, 0.4);
   if (arm.nodes == RingNodes::kArmAngles)
@@ -150,7 +150,7 @@ struct RingTruth {
 };
 
 inline RingTruth ring_truth(const PreparedRobot& robot, const World& world, const ToolPath& path,
-                            const Problem& problem, RingNodes nodes) {
+                            const PathProblem& problem, RingNodes nodes) {
   const Chain& chain = robot.arm().chain;
   RingTruth truth;
   std::function<bool(int, int, int)> in_window;

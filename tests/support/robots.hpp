@@ -8,7 +8,7 @@
 #include "seed.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::test {
@@ -16,7 +16,7 @@ namespace swivel::test {
 /// A robot of the data folder, or one made here, ready for problems.
 struct TestRobot {
   std::string name;
-  std::shared_ptr<const RobotModel> model;  // shared: as Problem holds it
+  std::shared_ptr<const RobotModel> model;  // shared: as PathProblem holds it
   std::string base_link, tip_link;
 };
 
@@ -182,8 +182,8 @@ inline Config random_config(const Chain& chain, Random& random) {
   return q;
 }
 
-inline Problem problem_for(const TestRobot& robot) {
-  Problem problem;
+inline PathProblem problem_for(const TestRobot& robot) {
+  PathProblem problem;
   problem.source = robot.name;
   problem.model = robot.model;
   problem.base_link = problem.path_frame = robot.base_link;

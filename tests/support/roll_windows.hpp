@@ -11,7 +11,8 @@ namespace swivel::test {
 
 /// Gives every waypoint a part of the roll's range, which is less than a turn, within which the
 /// tool has to stand; `has`, where given, is in all of them.
-inline void draw_windows(Problem& problem, Random& random, const std::optional<double>& has = {}) {
+inline void draw_windows(PathProblem& problem, Random& random,
+                         const std::optional<double>& has = {}) {
   const Roll range = *problem.roll;
   for (Waypoint& waypoint : problem.waypoints) {
     double a = random.uniform(range.lower, range.upper),
@@ -24,7 +25,7 @@ inline void draw_windows(Problem& problem, Random& random, const std::optional<d
 /// Returns by how much a roll at a layer is outside what the waypoints before and after it allow,
 /// rad; negative inside. The path must not be rounded, must begin at the first waypoint, and its
 /// layers must be spread evenly between waypoints.
-inline double outside_windows(const Problem& problem, const ToolPath& path, int layer,
+inline double outside_windows(const PathProblem& problem, const ToolPath& path, int layer,
                               double roll) {
   int before = layer, after = layer;
   while (path.layer(before).waypoint < 0) --before;

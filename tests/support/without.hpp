@@ -4,13 +4,13 @@
 #include <optional>
 
 #include "swivel/core/answer/cause.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::test {
 
 /// Returns the problem without what the cause names; nothing where nothing can be taken away, as
 /// with reach and singular poses.
-inline std::optional<Problem> without(const Cause& cause, Problem problem) {
+inline std::optional<PathProblem> without(const Cause& cause, PathProblem problem) {
   Limits& limits = problem.limits;
   switch (cause.kind) {
     case Cause::Kind::kLimit: {

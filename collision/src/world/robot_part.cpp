@@ -43,7 +43,7 @@ std::vector<CandidatePair> candidates_of(const RobotModel& robot,
 
 }  // namespace
 
-RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const PathProblem& problem,
                      MeshStore& meshes, const Budget& budget)
     : chain(arm.chain),
       bodies(robot_bodies(robot, arm, problem.attached)),

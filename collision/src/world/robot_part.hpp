@@ -16,8 +16,8 @@ class RobotPart {
   /// Builds the shapes of the robot's bodies, with mesh models from `meshes`, and samples the robot
   /// pairs for which no SRDF speaks, up to the clearances that problem.limits need. Throws
   /// InputError for a mesh without a triangle that has an area.
-  RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem, MeshStore& meshes,
-            const Budget& budget);
+  RobotPart(const RobotModel& robot, const ArmModel& arm, const PathProblem& problem,
+            MeshStore& meshes, const Budget& budget);
   /// Returns `part` itself if its medians reach as far as these limits need, else a copy in which
   /// they do.
   [[nodiscard]] static std::shared_ptr<const RobotPart> for_limits(

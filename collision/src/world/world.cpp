@@ -277,14 +277,14 @@ struct World::Impl {
   }
 };
 
-World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+World::World(const RobotModel& robot, const ArmModel& arm, const PathProblem& problem,
              const Budget& budget)
     : World(MeshStore(), robot, arm, problem, budget) {}
 World::World(const World& like, const RobotModel& robot, const ArmModel& arm,
-             const Problem& problem, const Budget& budget)
+             const PathProblem& problem, const Budget& budget)
     : World(like.impl_->meshes, robot, arm, problem, budget) {}
-World::World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem,
-             const Budget& budget) {
+World::World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm,
+             const PathProblem& problem, const Budget& budget) {
   auto part = std::make_shared<const RobotPart>(robot, arm, problem, meshes, budget);
   impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, problem.limits,
                                  budget, 0);
@@ -292,7 +292,7 @@ World::World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, con
 World::World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget)
     : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_->limits,
                                    budget, 0, like.impl_.get())) {}
-World::World(const World& like, const Problem& problem, const Budget& budget, double forgiven)
+World::World(const World& like, const PathProblem& problem, const Budget& budget, double forgiven)
     : impl_(std::make_unique<Impl>(RobotPart::for_limits(like.impl_->robot, problem.limits, budget),
                                    like.impl_->meshes, problem.scene, problem.limits, budget,
                                    forgiven, like.impl_.get())) {}

@@ -8,8 +8,8 @@
 
 namespace swivel {
 
-ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem,
-                                 std::vector<std::vector<Point>> layers,
+ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path,
+                                 const PathProblem& problem, std::vector<std::vector<Point>> layers,
                                  const std::array<bool, kDof>& circles)
     : Lattice(chain, path, problem), points_(std::move(layers)) {
   if (static_cast<int>(points_.size()) != path.size())

@@ -26,7 +26,7 @@ std::string key_of(PathEnd which) {
 }
 
 /// Returns the line about a tool that stands too far from the path.
-std::string off_path(PathEnd which, const Problem& problem, double distance, double angle) {
+std::string off_path(PathEnd which, const PathProblem& problem, double distance, double angle) {
   if (which == PathEnd::kLast)
     return formatted(
         ": the end posture is not on the path: its tool is %.3g mm and %.3g rad from the last "
@@ -42,14 +42,14 @@ std::string off_path(PathEnd which, const Problem& problem, double distance, dou
 
 }  // namespace
 
-Config joints_given(PathEnd which, const Problem& problem, const Chain& chain,
+Config joints_given(PathEnd which, const PathProblem& problem, const Chain& chain,
                     const ToolPath& path) {
   TrajectoryRow row;
   row.q = which == PathEnd::kFirst ? *problem.start : *problem.end;
   return counted_from_path(chain, path, layer_of(which, path).travel, row).q;
 }
 
-void validate_given(PathEnd which, const Problem& problem, const Chain& chain,
+void validate_given(PathEnd which, const PathProblem& problem, const Chain& chain,
                     const ToolPath& path) {
   const Config q = joints_given(which, problem, chain, path);
   const Pose reached = chain.tool(q);
@@ -73,7 +73,7 @@ void validate_given(PathEnd which, const Problem& problem, const Chain& chain,
     throw InputError(problem.source, key_of(which) + off_path(which, problem, distance, angle));
 }
 
-double roll_of_given(PathEnd which, const Problem& problem, const Chain& chain,
+double roll_of_given(PathEnd which, const PathProblem& problem, const Chain& chain,
                      const ToolPath& path, const Roll& range) {
   constexpr double kRoll = 1e-6;  // rad: the precision to which joints are usually written
   const Config q = joints_given(which, problem, chain, path);

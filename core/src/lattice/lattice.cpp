@@ -67,7 +67,7 @@ class Step {
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem,
+Lattice::Lattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
                  const Config& fit_error)
     : chain_(&chain),
       path_(&path),

@@ -56,7 +56,7 @@ void count_from_path(const Chain& chain, const ToolPath& path, std::vector<Traje
     rows[i] = counted_from_path(chain, path, travel_of(path, i), rows[i]);
 }
 
-ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
+ToolPath problem_path(const PathProblem& problem, const Chain& chain, const Budget& budget,
                       const std::optional<PathSmoothing>& otherwise) {
   const std::vector<Waypoint> waypoints = waypoints_in_base(problem);
   ToolPath path(waypoints, problem.resolution, problem.source, budget,

@@ -145,13 +145,13 @@ std::optional<int> first_far_waypoint(const Chain& chain, const ToolPath& path) 
   return std::nullopt;
 }
 
-ToolPath path_within_scale(const Problem& problem, const Chain& chain, const Budget& budget) {
+ToolPath path_within_scale(const PathProblem& problem, const Chain& chain, const Budget& budget) {
   ToolPath path = problem_path(problem, chain, budget);
   if (const auto far = first_far_waypoint(chain, path)) path.end_at(std::max(1, *far));
   return path;
 }
 
-std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& problem) {
+std::vector<LargeLength> large_lengths(const Chain& chain, const PathProblem& problem) {
   const double reach = reach_of_arm(chain, problem.tool);
   const Limits& limits = problem.limits;
   std::vector<LargeLength> found;
@@ -185,7 +185,7 @@ std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& proble
   return found;
 }
 
-std::vector<std::string> limit_scale_warnings(const Chain& chain, const Problem& problem) {
+std::vector<std::string> limit_scale_warnings(const Chain& chain, const PathProblem& problem) {
   std::vector<std::string> warnings;
   for (const LargeLength& one : large_lengths(chain, problem))
     warnings.push_back(one.section + "." + one.key + " " + one.fault);

@@ -84,7 +84,7 @@ std::vector<int> changes_of_branch(const std::vector<TrajectoryRow>& rows) {
 class ArmAngleRedundancy final : public Redundancy {
  public:
   ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                     const Problem& problem, const Budget& budget,
+                     const PathProblem& problem, const Budget& budget,
                      std::optional<double> last_joint = {})
       : grid_(chain, arm, path, problem, budget, {}, last_joint,
               SrsLattice::possible_circles(chain, arm, path, problem)) {}
@@ -165,7 +165,7 @@ class Rolls final : public LayerSolver {
 class RollRedundancy final : public Redundancy {
  public:
   RollRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                 const Problem& problem, const Budget& budget)
+                 const PathProblem& problem, const Budget& budget)
       : arm_(&arm),
         // The lattice has no nodes: refinement does not need them.
         lattice_(chain, path, problem,
@@ -234,7 +234,7 @@ class RollRedundancy final : public Redundancy {
 class ArcLengthRedundancy final : public Redundancy {
  public:
   ArcLengthRedundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                      const Problem& problem)
+                      const PathProblem& problem)
       : arm_(&arm),
         // The lattice has no nodes: refinement does not need them.
         lattice_(chain, path, problem,
@@ -284,7 +284,7 @@ class ArcLengthRedundancy final : public Redundancy {
 }  // namespace
 
 std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm,
-                                                  const ToolPath& path, const Problem& problem,
+                                                  const ToolPath& path, const PathProblem& problem,
                                                   const Budget& budget) {
   if (arm.srs) return std::make_unique<ArmAngleRedundancy>(chain, *arm.srs, path, problem, budget);
   return std::make_unique<ArcLengthRedundancy>(chain, arm, path, problem);
@@ -292,13 +292,14 @@ std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmC
 
 std::unique_ptr<const Redundancy> make_coaxial_redundancy(const Chain& chain, const SrsArm& arm,
                                                           const ToolPath& path,
-                                                          const Problem& problem, double last_joint,
-                                                          const Budget& budget) {
+                                                          const PathProblem& problem,
+                                                          double last_joint, const Budget& budget) {
   return std::make_unique<ArmAngleRedundancy>(chain, arm, path, problem, budget, last_joint);
 }
 
 std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm,
-                                                       const ToolPath& path, const Problem& problem,
+                                                       const ToolPath& path,
+                                                       const PathProblem& problem,
                                                        const Budget& budget) {
   return std::make_unique<RollRedundancy>(chain, arm, path, problem, budget);
 }

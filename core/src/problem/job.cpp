@@ -202,7 +202,7 @@ bool on_one_line(const Waypoint& before, const Waypoint& middle, const Waypoint&
 /// retract goes straight on into its stroke: with them the stroke's first and last waypoint are
 /// layers, so that the process begins and ends there. Elsewhere, and where neighbouring waypoints
 /// are one pose, returns none.
-std::vector<int> steps_along_lines(const Stroke& stroke, const Problem& problem) {
+std::vector<int> steps_along_lines(const Stroke& stroke, const PathProblem& problem) {
   const std::vector<Waypoint>& waypoints = problem.waypoints;
   const ProcessWaypoints process = process_waypoints(stroke);
   const auto is_lost = [&](std::size_t line, std::size_t end, std::size_t inner) {
@@ -221,9 +221,9 @@ std::vector<int> steps_along_lines(const Stroke& stroke, const Problem& problem)
 
 }  // namespace
 
-Problem problem_of_run(const Job& job, const StrokeRun& run) {
+PathProblem problem_of_run(const Job& job, const StrokeRun& run) {
   const Stroke& stroke = job.strokes[run.stroke];
-  Problem problem;
+  PathProblem problem;
   static_cast<Robot&>(problem) = job;
   static_cast<Task&>(problem) = stroke;
   problem.waypoints = waypoints_of_run(stroke, run.reversed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ void close_at_first_pose(std::vector<Waypoint>& waypoints, bool axis_alone,
 
 }  // namespace
 
-std::vector<Waypoint> given_waypoints_in_base(const Problem& problem) {
+std::vector<Waypoint> given_waypoints_in_base(const PathProblem& problem) {
   Pose frame = Pose::Identity();
   if (problem.path_frame != problem.base_link && !problem.path_frame.empty()) {
     const auto object = std::find_if(problem.scene.begin(), problem.scene.end(),
@@ -77,11 +77,11 @@ std::vector<Waypoint> given_waypoints_in_base(const Problem& problem) {
   return result;
 }
 
-bool axis_alone(const Problem& problem) {
+bool axis_alone(const PathProblem& problem) {
   return problem.roll && problem.roll->circle() && problem.cost.roll == 0;
 }
 
-std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
+std::vector<Waypoint> waypoints_in_base(const PathProblem& problem) {
   std::vector<Waypoint> waypoints = given_waypoints_in_base(problem);
   if (axis_alone(problem)) carry_frames(waypoints);
   return waypoints;

@@ -131,7 +131,7 @@ bool named(const std::vector<AttachedBody>& attached, const std::string& name) {
                      [&](const auto& body) { return body.name == name; });
 }
 
-void validate_robot(const Field& root, const Problem& problem) {
+void validate_robot(const Field& root, const PathProblem& problem) {
   if (!problem.model) fail(root("model"), "is null", "a robot model, as io::load_robot gives it");
   pose(root("tool"), problem.tool);
   for (const auto& [joint, position] : problem.hold)
@@ -155,7 +155,7 @@ void validate_robot(const Field& root, const Problem& problem) {
   }
 }
 
-void validate_scene(const Field& root, const Problem& problem) {
+void validate_scene(const Field& root, const PathProblem& problem) {
   names(root, "scene", problem.scene);
   for (std::size_t k = 0; k < problem.scene.size(); ++k) {
     const SceneObject& object = problem.scene[k];
@@ -242,7 +242,7 @@ std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& obj
 
 namespace {
 
-void validate_window(const Field& field, const Problem& problem, const Waypoint& waypoint) {
+void validate_window(const Field& field, const PathProblem& problem, const Waypoint& waypoint) {
   if (waypoint.roll.has_value() != problem.waypoints.front().roll.has_value())
     fail(field, "is not given at all waypoints", "a range at each waypoint, or at none");
   if (!waypoint.roll) return;
@@ -258,7 +258,7 @@ void validate_window(const Field& field, const Problem& problem, const Waypoint&
     fail(field, "is not within the robot's roll", "a part of its range");
 }
 
-void validate_path(const Field& root, const Problem& problem) {
+void validate_path(const Field& root, const PathProblem& problem) {
   if (!problem.path_frame.empty() && problem.path_frame != problem.base_link &&
       !named(problem.scene, problem.path_frame))
     fail(root("path_frame"), "unknown frame '" + problem.path_frame + "'",
@@ -286,7 +286,7 @@ void validate_path(const Field& root, const Problem& problem) {
 
 /// Throws for a start or an end that is not finite, and for a place or a tolerance of the start
 /// that makes no sense.
-void validate_postures(const Field& root, const Problem& problem) {
+void validate_postures(const Field& root, const PathProblem& problem) {
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
   if (problem.end) numbers(root("end"), *problem.end, Range::kFinite);
   if (problem.closed && (problem.start || problem.end) && problem.start != problem.end)
@@ -302,7 +302,7 @@ void validate_postures(const Field& root, const Problem& problem) {
     fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");
 }
 
-void validate_numbers(const Field& root, const Problem& problem) {
+void validate_numbers(const Field& root, const PathProblem& problem) {
   constexpr auto kPositive = Range::kPositive, kNonNegative = Range::kNonNegative;
   const Field resolution = root("resolution");
   number(resolution("ds"), problem.resolution.ds, kPositive);
@@ -388,7 +388,7 @@ bool weight_allowed(double weight) {
   return weight == 0 || (weight >= 1e-6 && weight <= 1e6);
 }
 
-void validate(const Problem& problem) {
+void validate(const PathProblem& problem) {
   const Field root{nullptr, problem.source.empty() ? "problem" : problem.source.c_str()};
   validate_robot(root, problem);
   validate_scene(root, problem);

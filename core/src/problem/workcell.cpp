@@ -87,9 +87,9 @@ void validate_leader(const WorkcellArm& leader, const std::string& follower) {
 
 /// Returns the problem of an arm by itself, for its validation. An arm whose motion is given takes
 /// the other arm's waypoints for this.
-Problem alone(const Workcell& cell, std::size_t number) {
+PathProblem alone(const Workcell& cell, std::size_t number) {
   const WorkcellArm& arm = cell.arms[number];
-  Problem problem;
+  PathProblem problem;
   static_cast<Robot&>(problem) = arm;
   static_cast<Task&>(problem) = arm;
   problem.scene = scene_of(cell, number);

@@ -49,8 +49,8 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
 
 }  // namespace
 
-Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
-  Problem result = problem;
+PathProblem episode_problem(const PathProblem& problem, std::uint64_t seed, std::uint64_t episode) {
+  PathProblem result = problem;
   draw_scene(problem.vary, seed, episode, result.scene);
   return result;
 }
@@ -87,7 +87,7 @@ std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uin
   return offsets;
 }
 
-EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const Problem& problem)
+EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const PathProblem& problem)
     : episode(number),
       status(result.status),
       nodes_checked(result.counters.nodes_checked),

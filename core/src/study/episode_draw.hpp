@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/split_mix.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 

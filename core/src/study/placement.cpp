@@ -63,7 +63,7 @@ void turn_and_shift(const Matrix3d& turn, const Vector3d& shift, bool turns,
   }
 }
 
-bool in_base_frame(const Problem& problem) {
+bool in_base_frame(const PathProblem& problem) {
   return problem.path_frame.empty() || problem.path_frame == problem.base_link;
 }
 
@@ -119,7 +119,7 @@ void require_paths_move(const Workcell& cell, const Offset& offset) {
 /// Returns the waypoints of an arm's path, moved about the origin of its frame. That of a follower
 /// is moved in the frame of its leader's tool, any other along the axes of the base frame.
 std::vector<Waypoint> moved_path(const Workcell& cell, std::size_t k, const Offset& offset) {
-  Problem arm;
+  PathProblem arm;
   static_cast<Task&>(arm) = cell.arms[k];
   arm.scene = cell.scene;
   if (cell.leader_of(k) >= 0) arm.path_frame.clear();
@@ -201,10 +201,10 @@ void hold_joints(Workcell& cell, const HeldPositions& positions) {
   for (WorkcellArm& arm : cell.arms) hold_joints(arm, positions);
 }
 
-Problem placed_problem(const Problem& problem, const Movable& thing, const Offset& offset) {
+PathProblem placed_problem(const PathProblem& problem, const Movable& thing, const Offset& offset) {
   require_no_arm(thing);
   require_thing(thing, offset);
-  Problem result = problem;
+  PathProblem result = problem;
   const Motion motion = motion_of(offset);
   const auto named = [&](const std::string& name) {
     const auto found = std::find_if(result.scene.begin(), result.scene.end(),
@@ -241,11 +241,11 @@ Problem placed_problem(const Problem& problem, const Movable& thing, const Offse
 Job placed_job(const Job& job, const Movable& thing, const Offset& offset) {
   Job result = job;
   for (std::size_t k = 0; k < job.strokes.size(); ++k) {
-    Problem stroke;
+    PathProblem stroke;
     static_cast<Robot&>(stroke) = job;
     static_cast<Task&>(stroke) = job.strokes[k];
     stroke.scene = job.scene;
-    Problem placed = placed_problem(stroke, thing, offset);
+    PathProblem placed = placed_problem(stroke, thing, offset);
     result.strokes[k].waypoints = std::move(placed.waypoints);
     if (k == 0) result.scene = std::move(placed.scene);
   }
@@ -263,11 +263,11 @@ Workcell placed_workcell(const Workcell& cell, const Movable& thing, const Offse
   if (thing.kind == Movable::Kind::kPath) require_paths_move(cell, offset);
   for (std::size_t k = 0; k < 2; ++k) {
     if (cell.leader_of(k) >= 0) continue;
-    Problem arm;
+    PathProblem arm;
     static_cast<Robot&>(arm) = cell.arms[k];
     static_cast<Task&>(arm) = cell.arms[k];
     arm.scene = cell.scene;
-    Problem placed = placed_problem(arm, thing, offset);
+    PathProblem placed = placed_problem(arm, thing, offset);
     result.arms[k].waypoints = std::move(placed.waypoints);
     result.scene = std::move(placed.scene);
   }

@@ -91,8 +91,8 @@ class JobValues {
     return most;
   }
 
-  [[nodiscard]] Problem problem_of(const Stroke& stroke) const {
-    Problem problem;
+  [[nodiscard]] PathProblem problem_of(const Stroke& stroke) const {
+    PathProblem problem;
     static_cast<Robot&>(problem) = job_;
     problem.attached.clear();
     static_cast<Task&>(problem) = stroke;
@@ -124,7 +124,7 @@ class JobValues {
   const fs::path& folder_;
   const JobLayout& layout_;
   const std::string& file_;
-  Problem shared_;  ///< what all strokes have
+  PathProblem shared_;  ///< what all strokes have
   YAML::Node limits_;
   std::optional<Vector3d> approach_, retract_;
 };

@@ -295,7 +295,7 @@ Job load_job(const fs::path& yaml) {
   return read_job(yaml, load_root(yaml));
 }
 
-std::variant<Problem, Job> load_problem_or_job(const fs::path& yaml) {
+std::variant<PathProblem, Job> load_problem_or_job(const fs::path& yaml) {
   YamlSection root = load_root(yaml);
   if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));
   return ProblemReader(yaml, std::move(root)).read();

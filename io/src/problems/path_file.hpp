@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::io {
 

@@ -127,7 +127,7 @@ std::string difference_of_strokes(const Stroke& a, const Stroke& b, const std::s
 
 }  // namespace
 
-std::string difference(const Problem& a, const Problem& b) {
+std::string difference(const PathProblem& a, const PathProblem& b) {
   if (std::string robot = difference_of_robots(a, b); !robot.empty()) return robot;
   if (std::string task = difference_of_tasks(as_stated(a, a.base_link), as_stated(b, b.base_link));
       !task.empty())

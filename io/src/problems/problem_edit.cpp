@@ -31,7 +31,8 @@ void state_pose(YAML::Node object, const Pose& before, const Pose& after) {
 
 }  // namespace
 
-std::string with_poses(const std::string& text, const Problem& problem, const Problem& placed) {
+std::string with_poses(const std::string& text, const PathProblem& problem,
+                       const PathProblem& placed) {
   if (placed.waypoints != problem.waypoints)
     bad_input(
         problem.source, "the path has moved, and the file has no pose of it but its waypoints'",

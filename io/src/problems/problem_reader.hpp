@@ -16,7 +16,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 
 namespace swivel::io {
@@ -42,7 +42,7 @@ class ProblemReader {
       : file_(std::move(file)), root_(std::move(root)) {}
 
   /// Reads the file as a problem, which has one path. Throws InputError for a job.
-  Problem read();
+  PathProblem read();
 
  protected:
   /// Reads the robot and the bodies about it into `problem_`: `robot`, `scene`.
@@ -119,7 +119,7 @@ class ProblemReader {
 
   std::filesystem::path file_;
   YamlSection root_;
-  Problem problem_;
+  PathProblem problem_;
   /// `path.roll` of the path that was read last, as the file has it; in `problem_` it is narrowed
   /// to what the windows of the waypoints allow.
   std::optional<Roll> path_roll_;

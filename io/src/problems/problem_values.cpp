@@ -85,7 +85,7 @@ void add_pose(YAML::Node& section, const Pose& pose) {
 /// Makes the values of one problem.
 class ProblemValues {
  public:
-  ProblemValues(const Problem& problem, const fs::path& folder,
+  ProblemValues(const PathProblem& problem, const fs::path& folder,
                 const std::vector<std::string>& scene_names, const std::string& file)
       : problem_(problem), folder_(folder), scene_names_(scene_names), file_(file) {}
 
@@ -339,7 +339,7 @@ class ProblemValues {
     return list;
   }
 
-  const Problem& problem_;
+  const PathProblem& problem_;
   const fs::path& folder_;
   const std::vector<std::string>& scene_names_;
   const std::string& file_;
@@ -362,7 +362,7 @@ std::string name_seen_from(const fs::path& folder, const fs::path& name) {
   return file.lexically_relative(from).string();
 }
 
-YAML::Node problem_values(const Problem& problem, const fs::path& folder,
+YAML::Node problem_values(const PathProblem& problem, const fs::path& folder,
                           const std::vector<std::string>& scene_names, const std::string& file) {
   return ProblemValues(problem, folder, scene_names, file).all();
 }
@@ -395,7 +395,7 @@ YAML::Node strokes_beyond(const YAML::Node& strokes, const YAML::Node& of_path) 
 }  // namespace
 
 YAML::Node without_defaults(const YAML::Node& values, const Robot& robot) {
-  Problem plain;
+  PathProblem plain;
   static_cast<Robot&>(plain) = robot;
   plain.roll.reset();
   plain.start = Config::Zero();

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::io {
 
@@ -26,7 +26,8 @@ namespace swivel::io {
 /// Bodies that are fixed to a link are listed in `scene`, not in `robot.attached`, where
 /// `scene_names`, the names of the scene of a file in their order, has them. Throws InputError, in
 /// the name of `file`, for what no file can say.
-[[nodiscard]] YAML::Node problem_values(const Problem& problem, const std::filesystem::path& folder,
+[[nodiscard]] YAML::Node problem_values(const PathProblem& problem,
+                                        const std::filesystem::path& folder,
                                         const std::vector<std::string>& scene_names,
                                         const std::string& file);
 

@@ -111,7 +111,7 @@ Sphere sphere(const YamlValue& value) {
 
 }  // namespace
 
-Problem ProblemReader::read() {
+PathProblem ProblemReader::read() {
   require_one_path();
   read_surroundings();
   const YamlValue path = root_.require("path");
@@ -771,7 +771,7 @@ void ProblemReader::set(const YamlSection& section, const char* key,
   std::copy(values.begin(), values.end(), target->begin());
 }
 
-Problem load_problem(const fs::path& yaml) {
+PathProblem load_problem(const fs::path& yaml) {
   return ProblemReader(yaml, load_yaml(yaml, problem_schema()).section()).read();
 }
 

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void read_text(const std::string& text, const fs::path& file, Problem& problem) {
+void read_text(const std::string& text, const fs::path& file, PathProblem& problem) {
   problem = ProblemReader(file, parse_yaml(text, file.string(), problem_schema()).section()).read();
 }
 void read_text(const std::string& text, const fs::path& file, Job& job) {
@@ -95,7 +95,7 @@ std::set<std::string> strokes_with(const YAML::Node& root, const char* key) {
 }
 
 /// Returns all keys of a problem, in the way in which the file `root` states them.
-YAML::Node values_of(const Problem& problem, const fs::path& folder, const YAML::Node& root,
+YAML::Node values_of(const PathProblem& problem, const fs::path& folder, const YAML::Node& root,
                      const std::string& file) {
   return problem_values(problem, folder, names_in_scene(root), file);
 }
@@ -183,14 +183,14 @@ std::string proved_text(const Subject& subject, const fs::path& file) {
 
 }  // namespace
 
-std::string problem_text(const Problem& problem, const fs::path& file) {
+std::string problem_text(const PathProblem& problem, const fs::path& file) {
   return proved_text(problem, file);
 }
 std::string problem_text(const Job& job, const fs::path& file) {
   return proved_text(job, file);
 }
 
-void save_problem(const Problem& problem, const fs::path& file) {
+void save_problem(const PathProblem& problem, const fs::path& file) {
   write_file(file, problem_text(problem, file));
 }
 void save_problem(const Job& job, const fs::path& file) {

@@ -299,7 +299,7 @@ Workcell load_workcell(const std::filesystem::path& yaml) {
   return WorkcellReader(yaml, std::move(root)).read();
 }
 
-std::variant<Problem, Job, Workcell> load_problem_file(const std::filesystem::path& yaml) {
+std::variant<PathProblem, Job, Workcell> load_problem_file(const std::filesystem::path& yaml) {
   YamlSection root = load_yaml(yaml, problem_schema()).section();
   if (root.find_filled("arms")) return WorkcellReader(yaml, std::move(root)).read();
   if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));

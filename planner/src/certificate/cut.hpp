@@ -25,7 +25,7 @@ struct StatedLayout {
 };
 /// Throws InputError if a certificate is for another lattice than that of the problem, which has
 /// `layers` layers.
-void require_same_layout(const Problem& problem, const StatedLayout& stated, int layers);
+void require_same_layout(const PathProblem& problem, const StatedLayout& stated, int layers);
 
 /// What regions of conflict with another arm remove of an arm. Regions are witnesses of its cut
 /// besides its own causes: witness r below count() is region r, and witness count() + k is cause k.

@@ -224,7 +224,7 @@ class Verifier {
 
 }  // namespace
 
-void require_same_layout(const Problem& problem, const StatedLayout& stated, int layers) {
+void require_same_layout(const PathProblem& problem, const StatedLayout& stated, int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
       throw InputError(
@@ -272,7 +272,7 @@ std::string fault_of_cut(const Lattice& lattice, const World& world, const EdgeR
   return "";
 }
 
-CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem,
+CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProblem& problem,
                                     const InfeasibilityCertificate& certificate,
                                     const Budget& budget,
                                     const std::shared_ptr<StateCheck>& check) {

@@ -35,7 +35,7 @@ class JobCheck {
         timed_(timed),
         options_(options),
         margin_(limits_of_transitions(job).joint_margin) {
-    Problem between = problem_of_run(job, {0, false});
+    PathProblem between = problem_of_run(job, {0, false});
     between.limits = limits_of_transitions(job);
     if (timed)
       between.limits.edge_tolerance = std::min(between.limits.edge_tolerance, kVerdictBand);
@@ -104,7 +104,7 @@ class JobCheck {
   }
 
   void examine_run(std::size_t k) {
-    const Problem problem = problem_of_run(job_, *parts_[k].run);
+    const PathProblem problem = problem_of_run(job_, *parts_[k].run);
     CheckResult result = timed_ ? check_motion(robot_, problem, (*timed_)[k], options_)
                                 : check_trajectory(robot_, problem, parts_[k].rows, options_);
     for (const std::string& line : result.failures) fail(name(k) + ": " + line);
@@ -116,7 +116,7 @@ class JobCheck {
   }
 
   /// Examines how fast the tool is on a timed run.
-  void examine_speeds(std::size_t k, const Problem& problem) {
+  void examine_speeds(std::size_t k, const PathProblem& problem) {
     constexpr double kFaster = 1.001;    // of what is asked, as of limits.tool_speed
     constexpr double kSamePlace = 1e-6;  // m
     const StrokeRun& run = *parts_[k].run;

@@ -110,7 +110,7 @@ std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Job& job,
   if (stated.rows()) return parts;
   for (JobPart& part : parts)
     if (part.run)
-      part.rows = in_the_name_of(job, *part.run, [&](const Problem& problem) {
+      part.rows = in_the_name_of(job, *part.run, [&](const PathProblem& problem) {
         return complete_rows(robot, problem, std::move(part.rows), stated, budget);
       });
   if (stated.last_joint) return parts;
@@ -137,9 +137,10 @@ JobMotion complete_job_motion(const PreparedRobot& robot, const Job& job,
   if (!stated.motions()) {
     for (std::size_t part = 0; part < ranges.size(); ++part)
       if (const auto run = run_of_part(job, order, part)) {
-        const std::vector<TimedRow> rows = in_the_name_of(job, *run, [&](const Problem& problem) {
-          return complete_motion(robot, problem, rows_of(ranges[part]), stated, budget);
-        });
+        const std::vector<TimedRow> rows =
+            in_the_name_of(job, *run, [&](const PathProblem& problem) {
+              return complete_motion(robot, problem, rows_of(ranges[part]), stated, budget);
+            });
         std::copy(rows.begin(), rows.end(),
                   motion.rows.begin() + static_cast<std::ptrdiff_t>(ranges[part].begin));
       }
@@ -181,7 +182,7 @@ std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Job& job,
     for (std::size_t k = range.begin; k < range.end; ++k) part.rows.push_back(motion.rows[k].row);
     part.run = run_of_part(job, order, parts.size() - 1);
     if (part.run)
-      part.rows = in_the_name_of(completed, *part.run, [&](const Problem& problem) {
+      part.rows = in_the_name_of(completed, *part.run, [&](const PathProblem& problem) {
         return rows_at_layers(robot, problem, part.rows, {}, budget);
       });
     else

@@ -22,7 +22,7 @@ constexpr double kSameLength = 1e-9;    // m
 
 /// Returns the problem of a stroke without approach and retract, whose corners stay sharp: where
 /// they are rounded, a run that ends at a corner ends beside the curve.
-Problem bare_problem(const Job& job, std::size_t stroke) {
+PathProblem bare_problem(const Job& job, std::size_t stroke) {
   Job bare = job;
   bare.strokes[stroke].smooth.reset();
   bare.strokes[stroke].approach.setZero();
@@ -31,7 +31,8 @@ Problem bare_problem(const Job& job, std::size_t stroke) {
 }
 
 /// Throws InputError for what strokes in several runs do not have.
-void require_cuttable(const PreparedRobot& robot, const Problem& problem, const ToolPath& path) {
+void require_cuttable(const PreparedRobot& robot, const PathProblem& problem,
+                      const ToolPath& path) {
   if (robot.arm().chain.free_roll)
     throw InputError(problem.source,
                      "lift: is of arms without a roll besides the arm angle: allowed is to leave "
@@ -130,7 +131,7 @@ std::optional<CutPath> LiftSearch::best(int count) {
 /// directions.
 std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
   const double s = path_.layer(layer).s;
-  Problem line = problem_;
+  PathProblem line = problem_;
   line.end.reset();
   if (layer == 0) {
     // The stroke beyond the line says how the tool's frame is carried along its axis.

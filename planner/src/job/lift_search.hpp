@@ -56,7 +56,7 @@ class LiftSearch {
   std::size_t stroke_;
   DistanceProofs proofs_;
   Budget budget_;
-  Problem problem_;  // of the stroke without approach and retract, with sharp corners
+  PathProblem problem_;  // of the stroke without approach and retract, with sharp corners
   World world_;
   Executor executor_;
   ToolPath path_;

@@ -50,14 +50,14 @@ namespace {
 /// by layer of its path: those of the whole stroke, carried along the approach and the retract as
 /// well, so that the run has the nodes of the stroke's lattice. Empty where the run's own planes
 /// are these, or where the arm has no grid.
-std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const Problem& problem,
+std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const PathProblem& problem,
                                       const PreparedRobot& robot, const ToolPath& path,
                                       const Budget& budget) {
   const std::optional<SrsArm>& arm = robot.arm_class().srs;
   if (robot.arm_class().kind != ArmKind::kSrs || robot.arm().chain.free_roll || !stroke.piece ||
       (stroke.piece->before.empty() && stroke.approach.isZero(0)))
     return {};
-  Problem before = problem;
+  PathProblem before = problem;
   before.end.reset();
   before.smooth.reset();
   before.steps.clear();
@@ -85,7 +85,7 @@ std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const Problem& probl
 
 /// A run with what its search needs. Each is searched by one thread at a time.
 struct PlannedRun {
-  PlannedRun(const StrokeRun& of, const Stroke& stroke, Problem p, const PreparedRobot& robot,
+  PlannedRun(const StrokeRun& of, const Stroke& stroke, PathProblem p, const PreparedRobot& robot,
              const World& w, const Budget& budget)
       : run(of),
         problem(std::move(p)),
@@ -104,7 +104,7 @@ struct PlannedRun {
         SrsLattice::possible_circles(robot.arm().chain, arm, path, problem));
   }
   StrokeRun run;
-  Problem problem;
+  PathProblem problem;
   const World* world;
   EdgeRule rule;
   ToolPath path;
@@ -129,7 +129,7 @@ class JobRuns {
       : robot_(robot), job_(job), budget_(budget) {}
 
   /// Returns the world of the job's bodies with some limits. Runs with equal limits share it.
-  const World& world_of(const Limits& limits, const Problem& problem) {
+  const World& world_of(const Limits& limits, const PathProblem& problem) {
     for (const auto& [known, world] : worlds_)
       if (known == limits) return world;
     worlds_.emplace_back(
@@ -140,7 +140,7 @@ class JobRuns {
   /// `executor`. Throws InputError and Stopped.
   std::vector<std::shared_ptr<PlannedRun>> in_order(const std::vector<StrokeRun>& order,
                                                     Executor& executor) {
-    std::vector<std::pair<StrokeRun, Problem>> missing;
+    std::vector<std::pair<StrokeRun, PathProblem>> missing;
     std::vector<const World*> worlds;
     for (const StrokeRun& run : order) {
       if (find(run)) continue;
@@ -275,7 +275,7 @@ class JobPlan {
       directions_.back().push_back(std::move(run));
     }
     for (const auto& directions : directions_) runs_.push_back(directions.front());
-    Problem between = runs_.front()->problem;
+    PathProblem between = runs_.front()->problem;
     between.limits = transition_limits_;
     transition_world_ = &shared_->world_of(transition_limits_, between);
     describe();

@@ -5,7 +5,7 @@
 
 namespace swivel {
 
-std::vector<double> waypoint_distances(const Problem& problem) {
+std::vector<double> waypoint_distances(const PathProblem& problem) {
   std::vector<double> s{0};
   for (std::size_t k = 1; k < problem.waypoints.size(); ++k)
     s.push_back(s.back() +
@@ -14,7 +14,8 @@ std::vector<double> waypoint_distances(const Problem& problem) {
 }
 
 std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
-                                          const Problem& problem, std::span<const TimedRow> rows) {
+                                          const PathProblem& problem,
+                                          std::span<const TimedRow> rows) {
   constexpr double kSame = 1e-6;  // m; waypoints on a straight line are merged
   const std::vector<double> s = waypoint_distances(problem);
   const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
@@ -30,8 +31,8 @@ std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
   return {event(process.first, true), event(process.last, false)};
 }
 
-std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run, const Problem& problem,
-                                       std::optional<double> speed) {
+std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run,
+                                       const PathProblem& problem, std::optional<double> speed) {
   const Stroke& stroke = job.strokes[run.stroke];
   std::optional<double> usual;  // where the waypoints have no feed
   for (const std::optional<double>& said :

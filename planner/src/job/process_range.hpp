@@ -12,13 +12,13 @@
 namespace swivel {
 
 /// Returns how far along the path each of its waypoints is, m from the first.
-[[nodiscard]] std::vector<double> waypoint_distances(const Problem& problem);
+[[nodiscard]] std::vector<double> waypoint_distances(const PathProblem& problem);
 
 /// Returns the moments at which the process is switched on and off in a timed run: at the first of
 /// its rows at or after the stroke's first waypoint, and at or after its last one, turns there
 /// included.
 [[nodiscard]] std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
-                                                        const Problem& problem,
+                                                        const PathProblem& problem,
                                                         std::span<const TimedRow> rows);
 
 /// Returns the speeds that are asked for along a run of a stroke: the stroke's between its first
@@ -30,7 +30,7 @@ struct RunSpeeds {
   std::vector<SpeedFrom> from{};  ///< as TimingOptions::speeds
 };
 [[nodiscard]] std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run,
-                                                     const Problem& problem,
+                                                     const PathProblem& problem,
                                                      std::optional<double> speed);
 
 }  // namespace swivel

@@ -22,7 +22,7 @@ namespace swivel {
 namespace {
 
 /// Returns speeds_of_run(). Throws InputError if the stroke has no speed at all.
-RunSpeeds required_speeds(const Job& job, const StrokeRun& run, const Problem& problem,
+RunSpeeds required_speeds(const Job& job, const StrokeRun& run, const PathProblem& problem,
                           const JobTimingOptions& options) {
   if (auto speeds = speeds_of_run(job, run, problem, options.speed)) return *std::move(speeds);
   throw InputError(job.source, "stroke '" + job.strokes[run.stroke].name +
@@ -94,7 +94,7 @@ class JobTimer {
 
   std::optional<NoMotion> add_run(std::size_t k) {
     const StrokeRun& run = *parts_[k].run;
-    const Problem problem = problem_of_run(job_, run);
+    const PathProblem problem = problem_of_run(job_, run);
     MotionResult timed =
         time_trajectory(robot_, problem, parts_[k].rows, timing_of(run, problem), budget_);
     if (!timed.motion) return timed.failure;
@@ -112,7 +112,7 @@ class JobTimer {
     return std::nullopt;
   }
 
-  [[nodiscard]] TimingOptions timing_of(const StrokeRun& run, const Problem& problem) const {
+  [[nodiscard]] TimingOptions timing_of(const StrokeRun& run, const PathProblem& problem) const {
     RunSpeeds speeds = required_speeds(job_, run, problem, options_);
     TimingOptions timing;
     timing.rate = options_.rate;
@@ -123,7 +123,7 @@ class JobTimer {
   }
   /// Returns the largest speed asked for along the stroke of a run, m/s, its approach and retract
   /// aside.
-  [[nodiscard]] double fastest_of(const StrokeRun& run, const Problem& problem) const {
+  [[nodiscard]] double fastest_of(const StrokeRun& run, const PathProblem& problem) const {
     // Each waypoint but the last begins a stretch; where the tool retracts, one more follows.
     const std::vector<SpeedFrom> speeds = required_speeds(job_, run, problem, options_).from;
     const std::size_t stretches = job_.strokes[run.stroke].waypoints.size() - 1;
@@ -132,7 +132,7 @@ class JobTimer {
     return std::min(fastest, problem.limits.tool_speed.value_or(fastest));
   }
   /// Adds the events of a run whose rows begin at motion_.rows[first].
-  void add_events(const StrokeRun& run, const Problem& problem, std::size_t first) {
+  void add_events(const StrokeRun& run, const PathProblem& problem, std::size_t first) {
     for (const ProcessEvent& event :
          events_of_run(job_, run, problem, std::span(motion_.rows).subspan(first)))
       motion_.events.push_back(event);

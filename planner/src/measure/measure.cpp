@@ -149,7 +149,7 @@ void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World&
   if (wanted.contact && !measures.evidence.contact) measure_contact(world, rows, budget, measures);
 }
 
-Measures measure(const PreparedRobot& robot, const Problem& problem,
+Measures measure(const PreparedRobot& robot, const PathProblem& problem,
                  const std::vector<TrajectoryRow>& rows, const Evidence& wanted,
                  const Budget& budget) {
   validate(problem);

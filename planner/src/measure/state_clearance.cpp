@@ -5,7 +5,7 @@
 
 namespace swivel {
 
-StateClearances state_clearances(const PreparedRobot& robot, const Problem& problem,
+StateClearances state_clearances(const PreparedRobot& robot, const PathProblem& problem,
                                  std::span<const Config> states, const Budget& budget) {
   robot.require_prepared_for(problem);
   const World world(robot.world(), problem, budget);

@@ -86,7 +86,7 @@ std::vector<std::string> robot_warnings(const PreparedRobot& robot, const Robot&
   return all;
 }
 
-std::vector<std::string> path_warnings(const PreparedRobot& robot, const Problem& problem,
+std::vector<std::string> path_warnings(const PreparedRobot& robot, const PathProblem& problem,
                                        const ToolPath& path, const World& world) {
   const Chain& chain = robot.arm().chain;
   std::vector<std::string> all = limit_scale_warnings(chain, problem);

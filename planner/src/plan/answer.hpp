@@ -70,8 +70,8 @@ struct SpecialPairs {
 /// Returns the warnings about what a path asks of the robot: limits, waypoints and objects of the
 /// scene as large as if their lengths were millimetres, and those of the world.
 [[nodiscard]] std::vector<std::string> path_warnings(const PreparedRobot& robot,
-                                                     const Problem& problem, const ToolPath& path,
-                                                     const World& world);
+                                                     const PathProblem& problem,
+                                                     const ToolPath& path, const World& world);
 /// Adds those lines that are not there yet.
 void add_lines(const std::vector<std::string>& lines, std::vector<std::string>& all);
 

@@ -26,7 +26,7 @@ double length_of(const std::vector<Waypoint>& waypoints) {
 
 }  // namespace
 
-Problem problem_of_range(const Problem& problem, const PathRange& range) {
+PathProblem problem_of_range(const PathProblem& problem, const PathRange& range) {
   if (!problem.rolls.empty() || !problem.steps.empty())
     throw InvalidArgument("path range: rolls, steps: allowed are none, since they are of the path");
   const double length = length_of(problem.waypoints), to = std::min(range.to, length);
@@ -35,7 +35,7 @@ Problem problem_of_range(const Problem& problem, const PathRange& range) {
         formatted("path range: from %.6g to %.6g m: allowed are ranges forwards "
                   "within 0 to %.6g m",
                   range.from, range.to, length));
-  Problem found = problem;
+  PathProblem found = problem;
   found.start.reset();
   found.start_at.reset();
   found.end.reset();
@@ -50,10 +50,10 @@ Problem problem_of_range(const Problem& problem, const PathRange& range) {
   return found;
 }
 
-PathReach reach_from(const PreparedRobot& robot, const Problem& problem, double from,
+PathReach reach_from(const PreparedRobot& robot, const PathProblem& problem, double from,
                      PathDirection direction, const PlanOptions& options) {
   const bool backwards = direction == PathDirection::kBackwards;
-  Problem ahead = problem_of_range(problem, backwards ? PathRange{0, from} : PathRange{from});
+  PathProblem ahead = problem_of_range(problem, backwards ? PathRange{0, from} : PathRange{from});
   if (backwards) std::reverse(ahead.waypoints.begin(), ahead.waypoints.end());
   PathReach reach;
   reach.plan = plan(robot, ahead, options);

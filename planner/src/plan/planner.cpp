@@ -124,7 +124,7 @@ PlannerKind planner_from_string(const std::string& name) {
 /// The state kept between plans, each part with what it depends on; a change clears what depends on
 /// it.
 struct Planner::Impl {
-  Problem problem;
+  PathProblem problem;
 
   std::optional<PlanningArm> arm;                   // until the robot is prepared
   std::shared_ptr<const PreparedRobot> robot;       // shared with clones; depends on the robot
@@ -139,7 +139,7 @@ struct Planner::Impl {
   struct Layout {
     /// `told_apart`: whether the lattices of S-R-S arms tell the turns of all joints apart, because
     /// the caller's hooks may.
-    Layout(const PreparedRobot& robot, const Problem& problem, bool told_apart,
+    Layout(const PreparedRobot& robot, const PathProblem& problem, bool told_apart,
            const Budget& budget)
         : path(path_within_scale(problem, robot.arm().chain, budget)),
           turns_told_apart(told_apart),
@@ -153,7 +153,7 @@ struct Planner::Impl {
     }
     /// Returns the lattice of the task in which no joint rests.
     [[nodiscard]] std::unique_ptr<Lattice> free_lattice(const PreparedRobot& robot,
-                                                        const Problem& problem,
+                                                        const PathProblem& problem,
                                                         const Budget& budget) const {
       auto lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
       return turns_told_apart && robot.arm_class().srs ? with_all_windings(std::move(lattice))
@@ -189,7 +189,7 @@ struct Planner::Impl {
   SlotPath path;
   bool viewable = false, was_eager = false;
 
-  explicit Impl(Problem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
+  explicit Impl(PathProblem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
 
   // --- changes
   void path_changed() {
@@ -224,7 +224,7 @@ struct Planner::Impl {
   }
   /// Replaces the problem by `next`. Throws InvalidArgument, and changes nothing, if that is not
   /// valid.
-  void replace(Problem next) {
+  void replace(PathProblem next) {
     validate(next);
     problem = std::move(next);
   }
@@ -531,17 +531,17 @@ struct Planner::Impl {
 
 Planner::Planner(const Robot& robot)
     : Planner([&] {
-        Problem problem;
+        PathProblem problem;
         static_cast<Robot&>(problem) = robot;
         return problem;
       }()) {}
-Planner::Planner(Problem problem) : impl_(std::make_unique<Impl>(std::move(problem))) {
-  const Problem& p = impl_->problem;
+Planner::Planner(PathProblem problem) : impl_(std::make_unique<Impl>(std::move(problem))) {
+  const PathProblem& p = impl_->problem;
   validate(p);
   validate(*p.model);
   impl_->arm = planning_arm(p);
 }
-Planner::Planner(std::shared_ptr<const PreparedRobot> robot, Problem problem)
+Planner::Planner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem)
     : impl_(std::make_unique<Impl>(std::move(problem))) {
   validate(impl_->problem);
   robot->require_prepared_for(impl_->problem);
@@ -555,7 +555,7 @@ Planner Planner::clone() const {
   return impl_->robot ? Planner(impl_->robot, impl_->problem) : Planner(impl_->problem);
 }
 
-const Problem& Planner::problem() const {
+const PathProblem& Planner::problem() const {
   return impl_->problem;
 }
 const PreparedRobot& Planner::prepare(const Budget& budget) {
@@ -563,20 +563,20 @@ const PreparedRobot& Planner::prepare(const Budget& budget) {
 }
 
 void Planner::set_task(const Task& task) {
-  Problem next = impl_->problem;
+  PathProblem next = impl_->problem;
   static_cast<Task&>(next) = task;
   validate(next);
   impl_->set_task(task);
 }
 
 void Planner::set_scene(std::vector<SceneObject> scene) {
-  Problem next = impl_->problem;
+  PathProblem next = impl_->problem;
   next.scene = std::move(scene);
   validate(next);
   impl_->set_scene(std::move(next.scene));
 }
 
-void Planner::set_problem(Problem problem) {
+void Planner::set_problem(PathProblem problem) {
   validate(problem);
   if (impl_->robot) impl_->robot->require_prepared_for(problem);
   impl_->problem.source = problem.source;
@@ -588,7 +588,7 @@ void Planner::set_problem(Problem problem) {
 }
 
 void Planner::add(SceneObject object) {
-  Problem next = impl_->problem;
+  PathProblem next = impl_->problem;
   next.scene.push_back(std::move(object));
   impl_->replace(std::move(next));
   impl_->met.push_back(impl_->plans + 1);
@@ -604,7 +604,7 @@ void Planner::move(const std::string& object, const Pose& pose) {
 
 void Planner::remove(const std::string& object) {
   const std::size_t k = impl_->object(object);
-  Problem next = impl_->problem;
+  PathProblem next = impl_->problem;
   next.scene.erase(next.scene.begin() + static_cast<std::ptrdiff_t>(k));
   std::erase_if(next.vary, [&](const Variation& vary) { return vary.object == object; });
   impl_->replace(std::move(next));
@@ -614,14 +614,14 @@ void Planner::remove(const std::string& object) {
 }
 
 void Planner::attach(AttachedBody body) {
-  Problem next = impl_->problem;
+  PathProblem next = impl_->problem;
   next.attached.push_back(std::move(body));
   impl_->replace(std::move(next));
   impl_->attached_changed();
 }
 
 void Planner::detach(const std::string& body) {
-  Problem next = impl_->problem;
+  PathProblem next = impl_->problem;
   if (std::erase_if(next.attached, [&](const AttachedBody& b) { return b.name == body; }) == 0)
     throw InvalidArgument("'" + body + "': no such body: allowed are names of attached bodies");
   for (SceneObject& object : next.scene)
@@ -648,13 +648,14 @@ PlanView Planner::view() const {
           x.path};
 }
 
-PlanResult plan(const Problem& problem, const PlanOptions& options) {
+PlanResult plan(const PathProblem& problem, const PlanOptions& options) {
   Planner planner(problem);
   planner.impl_->single_use = true;
   return planner.plan(options);
 }
 
-PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
+PlanResult plan(const PreparedRobot& robot, const PathProblem& problem,
+                const PlanOptions& options) {
   // The pointer does not own the robot, which outlives this call.
   Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
   planner.impl_->single_use = true;

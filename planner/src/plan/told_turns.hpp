@@ -11,7 +11,7 @@
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
 
 namespace swivel {

@@ -83,8 +83,8 @@ void scale_rates(const Chain& chain, const CartesianPathOptions& options, Limits
 }
 
 /// Returns the problem's path up to a layer, as waypoints, with all else unchanged.
-Task path_up_to(const Problem& problem, const Chain& chain, int last, const Budget& budget) {
-  Problem straight = problem;
+Task path_up_to(const PathProblem& problem, const Chain& chain, int last, const Budget& budget) {
+  PathProblem straight = problem;
   straight.smooth.reset();
   const ToolPath path = problem_path(straight, chain, budget);
   Task part = problem;
@@ -140,7 +140,7 @@ class Follower {
     if (timed_) {
       try {
         scale_rates(chain, options_, task.limits);
-        Problem with_defaults;
+        PathProblem with_defaults;
         static_cast<Task&>(with_defaults) = task;
         task = with_motion_defaults(std::move(with_defaults));
       } catch (const InputError& error) {  // a joint without a speed limit
@@ -170,7 +170,7 @@ class Follower {
     const int last = static_cast<int>(path_.rows.size()) - 1;
     path_.fraction = static_cast<double>(last) / (layers - 1);
     if (last == 0) return;
-    const Problem whole = std::move(path_.problem);
+    const PathProblem whole = std::move(path_.problem);
     const auto end_at = [&](int row) {
       planner_.set_task(path_up_to(whole, chain, row, budget_));
       path_.problem = planner_.problem();

@@ -84,7 +84,7 @@ std::vector<double> rolls_for_motion(const Chain& chain, const ToolPath& path,
 
 /// Returns the motion of time_path(). If the tool would leave the path's tolerances between
 /// samples, as it may at few samples a second, returns a slower one, or none if that does so too.
-TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& problem,
+TimingResult time_within_tolerances(const PreparedRobot& robot, const PathProblem& problem,
                                     const PathMotion& motion, const JointRates& rates,
                                     const TimingOptions& options, const Budget& budget) {
   TimingResult timed = time_path(motion, rates, options, budget);
@@ -110,7 +110,7 @@ TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& p
 /// rows, the smoothest first, until one is without fault.
 class RowTimer {
  public:
-  RowTimer(const PreparedRobot& robot, const Problem& problem,
+  RowTimer(const PreparedRobot& robot, const PathProblem& problem,
            const std::vector<TrajectoryRow>& rows, const TimingOptions& asked, const Budget& budget)
       : robot_(robot),
         problem_(problem),
@@ -225,26 +225,26 @@ class RowTimer {
   }
 
   const PreparedRobot& robot_;
-  const Problem& problem_;
+  const PathProblem& problem_;
   const std::vector<TrajectoryRow>& rows_;
   const Budget& budget_;
   std::vector<std::string> lowered_;  ///< warnings about speeds that were lowered
   const TimingOptions options_;
   const ToolPath path_;
   const JointRates rates_;
-  const Problem of_samples_;
+  const PathProblem of_samples_;
   MotionResult result_;
 };
 
 /// Times a trajectory as time_trajectory() says. `between_layers`: where the motion is at fault
 /// between the rows, it may be led through other postures there.
-MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
+MotionResult time_rows(const PreparedRobot& robot, const PathProblem& problem,
                        const std::vector<TrajectoryRow>& rows, const TimingOptions& asked,
                        bool between_layers, const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
-    Problem turned = problem;
+    PathProblem turned = problem;
     turned.rolls =
         rolls_for_motion(robot.arm().chain, problem_path(problem, robot.arm().chain, budget), rows,
                          problem.end.has_value());
@@ -257,7 +257,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem,
 
 }  // namespace
 
-MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
+MotionResult time_trajectory(const PreparedRobot& robot, const PathProblem& problem,
                              const std::vector<TrajectoryRow>& rows, const TimingOptions& options,
                              const Budget& budget) {
   return time_rows(robot, problem, rows, options, true, budget);
@@ -323,7 +323,7 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
 
 /// Throws InvalidArgument for a problem that makes no sense, and as require_tool_speed() does for a
 /// speed of its tool, m/s.
-void require_tool_speed_of(const Problem& problem, double speed) {
+void require_tool_speed_of(const PathProblem& problem, double speed) {
   validate(problem);
   require_tool_speed(build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold,
                                problem.tool, problem.roll)
@@ -390,12 +390,12 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   return plan;
 }
 
-std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Problem& problem,
+std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const PathProblem& problem,
                                         const std::vector<TrajectoryRow>& rows) {
   validate(problem);
   robot.require_prepared_for(problem);
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {
-    Problem turned = problem;
+    PathProblem turned = problem;
     turned.rolls = rolls_on(robot.arm().chain, problem_path(problem, robot.arm().chain), rows);
     return rows_on_path(robot, turned, rows);
   }

@@ -45,7 +45,7 @@ std::optional<double> travel_at(const ToolPath& path, double s) {
 
 }  // namespace
 
-std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& of_samples,
+std::optional<Fault> first_fault(const PreparedRobot& robot, const PathProblem& of_samples,
                                  const std::vector<TimedRow>& rows, const Budget& budget) {
   std::vector<Config> samples;
   for (const TimedRow& row : rows) {
@@ -89,7 +89,7 @@ bool Bisection::allowed(const Config& q) {
          !query_.find_violating_pair(q, Threshold(ClearanceRule::kNode, kClear));
 }
 
-bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion,
+bool strays_between(const PreparedRobot& robot, const PathProblem& problem, const TimedPath& motion,
                     const Budget& budget) {
   // Beside a corner, the distance half way between samples is at least this share of the largest.
   constexpr double kShare = 0.5;

@@ -9,7 +9,7 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -24,14 +24,14 @@ struct Fault {
 /// Returns the first fault of a motion: a sample that leaves its limits or whose bodies come too
 /// near, or do so on the way to it; none if it has none. `of_samples` is problem_of_samples().
 /// Throws Stopped.
-std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& of_samples,
+std::optional<Fault> first_fault(const PreparedRobot& robot, const PathProblem& of_samples,
                                  const std::vector<TimedRow>& rows, const Budget& budget);
 
 /// Finds postures for the stretches between layers on which a motion is at fault.
 class Bisection {
  public:
   /// References must outlive it.
-  Bisection(const PreparedRobot& robot, const Problem& of_samples, const ToolPath& path,
+  Bisection(const PreparedRobot& robot, const PathProblem& of_samples, const ToolPath& path,
             const Budget& budget)
       : chain_(&robot.arm().chain),
         problem_(&of_samples),
@@ -48,7 +48,7 @@ class Bisection {
   [[nodiscard]] bool allowed(const Config& q);
 
   const Chain* chain_;
-  const Problem* problem_;
+  const PathProblem* problem_;
   const ToolPath* path_;
   World world_;
   World::Query query_;
@@ -57,7 +57,7 @@ class Bisection {
 
 /// Returns true if the tool leaves the tolerances of its path between the samples of a motion, as
 /// check_motion() finds.
-bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion,
+bool strays_between(const PreparedRobot& robot, const PathProblem& problem, const TimedPath& motion,
                     const Budget& budget);
 /// Returns the timing options with the tool no faster than limits.tool_speed and
 /// limits.tool_turn_speed allow. Adds a warning for each speed that is lowered.

@@ -73,7 +73,7 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
 /// of refinement.
 class RefinementChecker {
  public:
-  RefinementChecker(const PreparedRobot& robot, const Problem& problem,
+  RefinementChecker(const PreparedRobot& robot, const PathProblem& problem,
                     const Redundancy& redundancy, const RefineOptions& options,
                     const Budget& budget)
       : problem_(&problem),
@@ -193,7 +193,7 @@ class RefinementChecker {
     return true;
   }
 
-  const Problem* problem_;
+  const PathProblem* problem_;
   const Redundancy* redundancy_;
   const Lattice* lattice_;
   double extra_;
@@ -234,7 +234,7 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
 /// Which rows of a path keep their joints, since the problem gives them.
 struct FixedRows {
   bool first = false, last = false;
-  explicit FixedRows(const Problem& problem)
+  explicit FixedRows(const PathProblem& problem)
       : first(problem.start.has_value()), last(problem.end.has_value()) {}
   /// Returns whether row i of n keeps its joints.
   [[nodiscard]] bool row(std::size_t i, std::size_t n) const {
@@ -420,8 +420,8 @@ bool move_clear(const LayerSolver& solver, RefinementChecker& checker, const Fix
 
 /// Returns the problem on a lattice that is up to four times as coarse along the path and finer in
 /// its coordinate; none if it would be hardly coarser.
-std::optional<Problem> coarser(const Problem& problem) {
-  Problem coarse = problem;
+std::optional<PathProblem> coarser(const PathProblem& problem) {
+  PathProblem coarse = problem;
   // Steps longer than 20 mm reach so many angles that the search takes longer than it is worth.
   constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
   const double times = std::min(kMostTimes, kLongest / problem.resolution.ds);
@@ -442,7 +442,7 @@ std::optional<Problem> coarser(const Problem& problem) {
 /// Plans the coarse problem and returns its path with a row at each layer of the redundancy's
 /// lattice; none if there is no such path.
 std::optional<std::vector<TrajectoryRow>> rows_of_coarse_plan(const PreparedRobot& robot,
-                                                              const Problem& coarse,
+                                                              const PathProblem& coarse,
                                                               const Redundancy& redundancy,
                                                               const ToolPath& path,
                                                               const Budget& budget) {
@@ -512,7 +512,7 @@ std::vector<TrajectoryRow> smoothed_without_obstacles(const LayerSolver& solver,
 /// None if there is no such path, if even its optimum without obstacles is not cheaper than
 /// `to_beat`, or if a layer has no valid node nearby.
 std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot,
-                                                      const Problem& problem,
+                                                      const PathProblem& problem,
                                                       const Redundancy& redundancy,
                                                       RefinementChecker& checker,
                                                       const SmoothObjective& objective,
@@ -540,14 +540,14 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
 /// obstacles aside, the cheapest first: basin_seeds() on a grid of arm angles of its own. None for
 /// other arms.
 std::vector<std::vector<TrajectoryRow>> other_basins(const PreparedRobot& robot,
-                                                     const Problem& problem, const ToolPath& path,
-                                                     const Lattice& lattice,
+                                                     const PathProblem& problem,
+                                                     const ToolPath& path, const Lattice& lattice,
                                                      const SmoothObjective& objective,
                                                      double to_beat, const Budget& budget) {
   constexpr double kAngle = 0.03;  // rad
   const auto* grid = dynamic_cast<const SrsLattice*>(&lattice);
   if (grid == nullptr) return {};
-  Problem coarse = problem;
+  PathProblem coarse = problem;
   coarse.resolution.dphi = kAngle;
   coarse.resolution.arcs = false;
   const Chain& chain = robot.arm().chain;
@@ -562,7 +562,7 @@ std::vector<std::vector<TrajectoryRow>> other_basins(const PreparedRobot& robot,
 /// Refines one path after the other, and keeps the cheapest result.
 class Improver {
  public:
-  Improver(const Redundancy& redundancy, RefinementChecker& checker, const Problem& problem,
+  Improver(const Redundancy& redundancy, RefinementChecker& checker, const PathProblem& problem,
            const Budget& budget, Refined& result)
       : redundancy_(redundancy),
         checker_(checker),
@@ -652,7 +652,7 @@ class Improver {
 
 /// Refines a path along one coordinate.
 Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot,
-                     const Problem& problem, const ToolPath& path,
+                     const PathProblem& problem, const ToolPath& path,
                      const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
                      bool second_seed, const Budget& budget) {
   const Lattice& lattice = redundancy.lattice();
@@ -694,7 +694,7 @@ bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& ro
 
 /// Refines a path along which joint 7 rests, and keeps it at rest. None if joint 7 does not rest,
 /// or if the tool would then turn faster than it may.
-std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem& problem,
+std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const PathProblem& problem,
                                       const ToolPath& path, const std::vector<TrajectoryRow>& rows,
                                       const RefineOptions& options, const Budget& budget) {
   constexpr double kRests = 1e-3;  // rad; rows of arms that are not exact are not quite at rest
@@ -713,9 +713,9 @@ std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem&
 
 /// Refines a path of an arm with two coordinates: along one, then the other, for as long as that is
 /// worth it.
-Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
-                        const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
-                        const Budget& budget) {
+Refined refine_by_turns(const PreparedRobot& robot, const PathProblem& problem,
+                        const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+                        const RefineOptions& options, const Budget& budget) {
   constexpr int kMostTurns = 4;
   constexpr double kWorthIt = 1 - 1e-3;
   const Chain& chain = robot.arm().chain;
@@ -749,7 +749,7 @@ Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, cons
 }
 
 /// Refines rows whose roll is counted from the frames of the path (counted_from_path()).
-Refined refine_counted(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+Refined refine_counted(const PreparedRobot& robot, const PathProblem& problem, const ToolPath& path,
                        const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
                        const Budget& budget) {
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {
@@ -764,7 +764,7 @@ Refined refine_counted(const PreparedRobot& robot, const Problem& problem, const
 }
 
 /// Refines a path whose given ends, if any, stay as they are.
-Refined refine_between_ends(const PreparedRobot& robot, const Problem& problem,
+Refined refine_between_ends(const PreparedRobot& robot, const PathProblem& problem,
                             const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
                             const Budget& budget) {
   const Chain& chain = robot.arm().chain;
@@ -782,14 +782,14 @@ Refined refine_between_ends(const PreparedRobot& robot, const Problem& problem,
 
 }  // namespace
 
-Refined refine(const PreparedRobot& robot, const Problem& problem,
+Refined refine(const PreparedRobot& robot, const PathProblem& problem,
                const std::vector<TrajectoryRow>& rows, const RefineOptions& options,
                const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   if (!problem.closed || problem.start || rows.empty())
     return refine_between_ends(robot, problem, rows, options, budget);
-  Problem pinned = problem;  // both ends of a closed path stay as they are
+  PathProblem pinned = problem;  // both ends of a closed path stay as they are
   pinned.start = pinned.end = rows.front().q;
   return refine_between_ends(robot, pinned, rows, options, budget);
 }

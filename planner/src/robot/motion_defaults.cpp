@@ -7,7 +7,7 @@ void keep_clearance_between_layers(Limits& limits) {
   if (!limits.edge_clearance && !limits.self_clearance) limits.edge_clearance = limits.clearance;
 }
 
-Problem with_motion_defaults(Problem problem) {
+PathProblem with_motion_defaults(PathProblem problem) {
   if (!problem.smooth) problem.smooth.emplace();
   keep_clearance_between_layers(problem.limits);
   return problem;

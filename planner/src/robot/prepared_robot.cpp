@@ -20,7 +20,7 @@ bool same(const AttachedBody& a, const AttachedBody& b) {
 }
 
 /// Returns the robot of a problem. Throws for what validate() refuses.
-const Robot& checked(const Problem& problem) {
+const Robot& checked(const PathProblem& problem) {
   validate(problem);
   validate(*problem.model);
   return problem;
@@ -36,12 +36,12 @@ PlanningArm planning_arm(const Robot& robot) {
 }
 
 struct PreparedRobot::Impl {
-  Impl(const Problem& problem, PlanningArm of, const Budget& budget)
+  Impl(const PathProblem& problem, PlanningArm of, const Budget& budget)
       : basis(problem),
         arm(std::move(of)),
         world(*problem.model, arm.model, problem, budget),
         radii(motion_radii(arm.model.chain, world.bodies())) {}
-  Impl(const Impl& like, const Problem& problem, const Budget& budget)
+  Impl(const Impl& like, const PathProblem& problem, const Budget& budget)
       : basis(checked(problem)),
         arm(like.arm),
         world(like.world, *problem.model, arm.model, problem, budget),
@@ -53,13 +53,13 @@ struct PreparedRobot::Impl {
   std::array<double, kDof> radii;
 };
 
-PreparedRobot::PreparedRobot(const Problem& problem, PlanningArm arm, const Budget& budget)
+PreparedRobot::PreparedRobot(const PathProblem& problem, PlanningArm arm, const Budget& budget)
     : impl_(std::make_unique<const Impl>(problem, std::move(arm), budget)) {}
 
-PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
+PreparedRobot::PreparedRobot(const PathProblem& problem, const Budget& budget)
     : PreparedRobot(problem, planning_arm(checked(problem)), budget) {}
 
-PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem,
+PreparedRobot::PreparedRobot(const PreparedRobot& like, const PathProblem& problem,
                              const Budget& budget)
     : impl_(std::make_unique<const Impl>(*like.impl_, problem, budget)) {}
 
@@ -88,7 +88,7 @@ const SrsArm& PreparedRobot::srs(const char* what) const {
   return *impl_->arm.kind.srs;
 }
 
-void PreparedRobot::require_prepared_for(const Problem& problem) const {
+void PreparedRobot::require_prepared_for(const PathProblem& problem) const {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
       throw InvalidArgument((problem.source.empty() ? "" : problem.source + ": ") + what +

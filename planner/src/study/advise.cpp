@@ -173,8 +173,8 @@ class Adviser {
   }
 
   /// Returns the problem with the change.
-  [[nodiscard]] Problem changed_problem(const Advice& advice) const {
-    Problem changed = problem_;
+  [[nodiscard]] PathProblem changed_problem(const Advice& advice) const {
+    PathProblem changed = problem_;
     if (is_of_scene(advice.change))
       change_scene(advice, changed.scene, changed.vary);
     else
@@ -190,7 +190,7 @@ class Adviser {
     last_cause_ = {};
     options_.timeout_s = seconds_left();
     if (!(*options_.timeout_s > 0)) return;
-    Problem changed = changed_problem(advice);
+    PathProblem changed = changed_problem(advice);
     PlanResult found;
     try {
       // another arm: its roll has other limits, its base stands elsewhere, or its tool
@@ -379,7 +379,7 @@ class Adviser {
       }
   }
 
-  const Problem& problem_;
+  const PathProblem& problem_;
   const PlanResult& result_;
   PlanOptions options_;
   Planner trial_;

@@ -129,7 +129,7 @@ class EpisodePlanner {
 class ProblemEpisodes : public EpisodePlanner {
  public:
   /// Prepares `workers` planners.
-  ProblemEpisodes(const std::shared_ptr<const PreparedRobot>& prepared, const Problem& problem,
+  ProblemEpisodes(const std::shared_ptr<const PreparedRobot>& prepared, const PathProblem& problem,
                   const CampaignOptions& options, int workers,
                   const std::function<void(const EpisodeRow&)>& row_done)
       : EpisodePlanner(problem.vary, options, row_done), problem_(problem) {
@@ -156,7 +156,7 @@ class ProblemEpisodes : public EpisodePlanner {
                : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
   }
 
-  const Problem& problem_;
+  const PathProblem& problem_;
   std::vector<Planner> planners_;  ///< by worker
 };
 
@@ -227,7 +227,7 @@ int episodes_to_plan(const std::string& source, const std::vector<Variation>& va
 
 }  // namespace
 
-void run_campaign(const PreparedRobot& robot, const Problem& problem,
+void run_campaign(const PreparedRobot& robot, const PathProblem& problem,
                   const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
   // Not owned: `robot` outlives this call.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 

@@ -92,7 +92,7 @@ class LeastMargins {
 namespace {
 
 /// The number of the object that is moved, where the path stays.
-std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {
+std::optional<int> alone_moved(const PathProblem& problem, const Movable& thing) {
   if (thing.kind != Movable::Kind::kObject || thing.object == problem.path_frame)
     return std::nullopt;
   const auto found = std::find_if(problem.scene.begin(), problem.scene.end(),
@@ -194,19 +194,19 @@ struct PlacementPlanner::Impl {
 
 struct PlacementPlanner::ProblemPlacements : Impl {
   std::shared_ptr<const PreparedRobot> robot;
-  Problem problem;
+  PathProblem problem;
   Movable thing;
   /// What one thread plans with, and where its robot's joints are held.
   struct Worker {
     std::shared_ptr<const PreparedRobot> robot;
-    Problem problem;
+    PathProblem problem;
     HeldPositions hold;
     Planner planner;
     LeastMargins margins;
   };
   std::vector<Worker> workers;
 
-  ProblemPlacements(std::shared_ptr<const PreparedRobot> r, Problem p, Movable t,
+  ProblemPlacements(std::shared_ptr<const PreparedRobot> r, PathProblem p, Movable t,
                     const PlanOptions& options)
       : Impl(options), robot(std::move(r)), problem(std::move(p)), thing(std::move(t)) {
     static_cast<void>(placed_problem(problem, thing, {}));
@@ -214,7 +214,8 @@ struct PlacementPlanner::ProblemPlacements : Impl {
       workers.push_back(made(robot, problem, {}));
   }
 
-  Worker made(std::shared_ptr<const PreparedRobot> of, const Problem& held, HeldPositions hold) {
+  Worker made(std::shared_ptr<const PreparedRobot> of, const PathProblem& held,
+              HeldPositions hold) {
     Planner planner(of, held);
     return {std::move(of), held, std::move(hold), std::move(planner),
             LeastMargins(alone_moved(problem, thing))};
@@ -224,7 +225,7 @@ struct PlacementPlanner::ProblemPlacements : Impl {
                  const Budget& budget) {
     Worker& worker = workers[static_cast<std::size_t>(number)];
     if (worker.hold != hold) {
-      Problem held = problem;
+      PathProblem held = problem;
       hold_joints(held, hold);
       worker = made(std::make_shared<const PreparedRobot>(held, budget), held, hold);
     }
@@ -357,7 +358,7 @@ struct PlacementPlanner::WorkcellPlacements : Impl {
   void plan_again(const std::vector<PlacementCell>& /*cells*/, const Found& /*found*/) override {}
 };
 
-PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem,
+PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem,
                                    Movable thing, PlanOptions options)
     : impl_(std::make_unique<ProblemPlacements>(robot, std::move(problem), std::move(thing),
                                                 options)) {}

@@ -52,7 +52,7 @@ double apart(const Pose& a, const Pose& b) {
 
 /// Returns what each joint may move on the steps of a path, summed up: entry i is the sum over the
 /// steps before layer i, rad. Throws InputError if a speed limit that is needed is missing.
-std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain,
+std::vector<Config> allowed_moves(const PathProblem& problem, const Chain& chain,
                                   const ToolPath& path) {
   const Limits& limits = problem.limits;
   const bool timed = limits.tool_speed || limits.tool_turn_speed;
@@ -87,7 +87,7 @@ class Contacts {
  public:
   /// Builds the world of the problem, which forgives kVerdictBand, with the shapes of `like`, a
   /// world of the same robot.
-  Contacts(const PreparedRobot& robot, const Problem& problem, const World& like,
+  Contacts(const PreparedRobot& robot, const PathProblem& problem, const World& like,
            const Budget& budget)
       : world_(like, problem, budget, kVerdictBand),
         query_(world_),
@@ -136,7 +136,7 @@ class Contacts {
 /// Returns rows with their rolls counted from the frames of the path (counted_from_path()). The
 /// place of a row is the first at its s at which the path has the tool's position and axis, of
 /// those that are not before the place of the row before it.
-std::vector<TrajectoryRow> rows_counted_from(const ToolPath& path, const Problem& problem,
+std::vector<TrajectoryRow> rows_counted_from(const ToolPath& path, const PathProblem& problem,
                                              const Chain& chain, std::vector<TrajectoryRow> rows) {
   if (!path.has_waypoint_turns()) return rows;
   const PlacesOnPath places(path, problem.smooth.has_value(),
@@ -159,7 +159,7 @@ class Check {
  public:
   /// Prepares the check of `rows`. `like` is a world of the robot; `timed` holds the same rows with
   /// times, or is null.
-  Check(const PreparedRobot& robot, const Problem& problem, const World& like,
+  Check(const PreparedRobot& robot, const PathProblem& problem, const World& like,
         const std::vector<TrajectoryRow>& rows, const CheckOptions& options,
         const std::vector<TimedRow>* timed = nullptr)
       : problem_(problem),
@@ -816,7 +816,7 @@ class Check {
     return sum;
   }
 
-  const Problem& problem_;
+  const PathProblem& problem_;
   const CheckOptions& options_;
   const Limits& limits_;
   const Chain& chain_;
@@ -839,7 +839,7 @@ class Check {
 
 }  // namespace
 
-CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
+CheckResult check_trajectory(const PreparedRobot& robot, const PathProblem& problem,
                              const std::vector<TrajectoryRow>& rows, const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
@@ -848,7 +848,7 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
   if (result.passed || on_path || problem.smooth) return result;
   // Trajectories from which motions are to be made follow the rounded path of
   // with_motion_defaults().
-  const Problem of_motions = with_motion_defaults(problem);
+  const PathProblem of_motions = with_motion_defaults(problem);
   try {
     CheckResult rounded = Check(robot, of_motions, robot.world(), rows, options).run();
     if (rounded.failure_count >= result.failure_count) return result;
@@ -859,21 +859,22 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
   }
 }
 
-CheckResult check_motion(const PreparedRobot& robot, const Problem& problem,
+CheckResult check_motion(const PreparedRobot& robot, const PathProblem& problem,
                          const std::vector<TimedRow>& rows, const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
   return check_motion_in(robot.world(), robot, problem, rows, options);
 }
 
-CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows,
+CheckResult check_trajectory(const PathProblem& problem, const std::vector<TrajectoryRow>& rows,
                              const CheckOptions& options) {
   return check_trajectory(PreparedRobot(problem, options.budget), problem, rows, options);
 }
 
-CheckResult check_motion_in(const World& world, const PreparedRobot& robot, const Problem& problem,
-                            const std::vector<TimedRow>& rows, const CheckOptions& options) {
-  const Problem of_samples = problem_of_samples(problem);
+CheckResult check_motion_in(const World& world, const PreparedRobot& robot,
+                            const PathProblem& problem, const std::vector<TimedRow>& rows,
+                            const CheckOptions& options) {
+  const PathProblem of_samples = problem_of_samples(problem);
   std::vector<TrajectoryRow> places;
   for (const TimedRow& row : rows) places.push_back(row.row);
   return Check(robot, of_samples, world, places, options, &rows).run();
@@ -886,13 +887,13 @@ void require_passed(const CheckResult& result) {
                          (more > 0 ? ", and " + std::to_string(more) + " more" : ""));
 }
 
-void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem,
+void check_answer(const World& world, const PreparedRobot& robot, const PathProblem& problem,
                   const std::vector<TrajectoryRow>& rows, const Budget& budget) {
   const TraceSpan span("check");
   require_passed(Check(robot, problem, world, rows, {.margins = false, .budget = budget}).run());
 }
 
-void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem,
+void check_answer(const World& world, const PreparedRobot& robot, const PathProblem& problem,
                   const std::vector<TimedRow>& rows, const Budget& budget) {
   const TraceSpan span("check");
   require_passed(

@@ -36,8 +36,9 @@ class Completion {
  public:
   /// Finds the places of the rows. `of_motion`: rows are samples in time, which may be anywhere
   /// between layers. Throws InputError if the last joint is not stated and is not the roll.
-  Completion(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows,
-             const Stated& stated, bool of_motion, const Budget& budget)
+  Completion(const PreparedRobot& robot, const PathProblem& problem,
+             std::vector<TrajectoryRow> rows, const Stated& stated, bool of_motion,
+             const Budget& budget)
       : stated_(stated),
         of_motion_(of_motion),
         budget_(budget),
@@ -351,7 +352,7 @@ namespace {
 
 /// Returns the rows placed on the problem's own path, or on the rounded path of
 /// with_motion_defaults() if more of the rows are on that.
-std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Problem& problem,
+std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const PathProblem& problem,
                                           const std::vector<TrajectoryRow>& rows,
                                           const Stated& stated, bool of_motion,
                                           const Budget& budget) {
@@ -370,13 +371,13 @@ std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Prob
 
 }  // namespace
 
-std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const Problem& problem,
+std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const PathProblem& problem,
                                          std::vector<TrajectoryRow> rows, const Stated& stated,
                                          const Budget& budget) {
   return stated.rows() ? rows : completion_of(robot, problem, rows, stated, false, budget)->rows();
 }
 
-std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem& problem,
+std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const PathProblem& problem,
                                       std::vector<TimedRow> rows, const Stated& stated,
                                       const Budget& budget) {
   std::vector<TrajectoryRow> places;
@@ -389,7 +390,7 @@ std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem&
   return rows;
 }
 
-std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot, const Problem& problem,
+std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot, const PathProblem& problem,
                                           const std::vector<TrajectoryRow>& rows,
                                           const Stated& stated, const Budget& budget) {
   std::vector<TrajectoryRow> laid =

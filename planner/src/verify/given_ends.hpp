@@ -7,7 +7,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -34,7 +34,7 @@ inline std::vector<std::string> faults_of_closed_ends(const Chain& chain,
 /// of these rows do not have, and where rows of a closed path do not close; nothing if they have
 /// both and close. Joints agree with given ones within 1e-6 rad; at the end those without limits,
 /// and those of over 64 turns, may be whole turns away. There must be rows.
-inline std::vector<std::string> faults_of_given_ends(const Problem& problem, const Chain& chain,
+inline std::vector<std::string> faults_of_given_ends(const PathProblem& problem, const Chain& chain,
                                                      const std::vector<TrajectoryRow>& rows) {
   constexpr double kSame = 1e-6;  // rad
   std::vector<std::string> faults;

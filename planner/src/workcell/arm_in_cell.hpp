@@ -33,7 +33,7 @@ struct ArmInCell {
   ArmInCell(const ArmInCell&) = delete;
   ArmInCell& operator=(const ArmInCell&) = delete;
 
-  const Problem& problem;
+  const PathProblem& problem;
   const PreparedRobot& robot;
   World world;
   EdgeRule rule;

@@ -70,7 +70,7 @@ class WorkcellCheck {
   bool simultaneous() {
     constexpr double kSamePlace = 1e-6;  // m
     for (std::size_t k = 0; k < 2; ++k) {
-      const Problem& problem = prepared_.problem(k);
+      const PathProblem& problem = prepared_.problem(k);
       const ToolPath path =
           path_within_scale(problem, prepared_.robot(k).arm().chain, options_.budget);
       if (rows_[k].size() != static_cast<std::size_t>(path.size())) {

@@ -18,7 +18,7 @@ namespace swivel {
 class GivenLattice final : public ExplicitLattice {
  public:
   /// `path` has a layer for each row. References must outlive the lattice.
-  GivenLattice(const Chain& chain, const ToolPath& path, const Problem& problem,
+  GivenLattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
                const std::vector<TrajectoryRow>& rows)
       : ExplicitLattice(chain, path, without_limits(problem), nodes_of(rows)), rows_(rows) {}
 
@@ -27,7 +27,7 @@ class GivenLattice final : public ExplicitLattice {
   }
 
  private:
-  static Problem without_limits(Problem problem) {
+  static PathProblem without_limits(PathProblem problem) {
     problem.limits = Limits();
     problem.limits.joint_step = 1e3;
     problem.limits.tool_path_error = std::nullopt;

@@ -389,7 +389,7 @@ void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
     ask_for(wanted, !prepared.robot(k).world().allowed().empty(), result.arms[k]);
   for (std::size_t k = 0; k < 2; ++k) {
     const PreparedRobot& robot = prepared.robot(k);
-    const Problem& problem = prepared.problem(k);
+    const PathProblem& problem = prepared.problem(k);
     const ToolPath path = path_within_scale(problem, robot.arm().chain, budget);
     PlanResult& arm = result.arms[k];
     measure_margins(robot.arm().chain, path, arm.trajectory, arm);

@@ -40,7 +40,7 @@ TimingOptions options_of(const PreparedWorkcell& prepared, std::size_t arm,
 /// Returns the rows of a trajectory at the layers of a path, one for each, with the s of these:
 /// those of a follower move a little with the corners that its leader rounds. Throws InputError
 /// for rows that are at no layer.
-std::vector<TrajectoryRow> at_layers(const Problem& problem, const ToolPath& path,
+std::vector<TrajectoryRow> at_layers(const PathProblem& problem, const ToolPath& path,
                                      std::vector<TrajectoryRow> rows) {
   constexpr double kNear = 1e-3;  // m
   if (rows.size() != static_cast<std::size_t>(path.size()))
@@ -74,14 +74,14 @@ struct ArmToTime {
         rates(joint_rates(robot.arm().chain, problem.limits, problem.source)),
         of_samples(problem_of_samples(problem)) {}
 
-  const Problem& problem;
+  const PathProblem& problem;
   const PreparedRobot& robot;
   std::vector<std::string> lowered;  ///< warnings about speeds that were lowered
   TimingOptions options;
   ToolPath path;
   std::vector<TrajectoryRow> rows;
   JointRates rates;
-  Problem of_samples;
+  PathProblem of_samples;
   // How the motion goes through the rows: through those at least `apart` apart (m of travel) and
   // through the postures `between`, `off_limits` inside joint limits (rad).
   double apart = 0, off_limits = 0;
@@ -356,7 +356,7 @@ RefinedWorkcellMotion refine_and_time_workcell(
   require_motion_defaults(prepared);
   std::array<std::vector<TrajectoryRow>, 2> laid;
   for (std::size_t k = 0; k < 2; ++k) {
-    const Problem& problem = prepared.problem(k);
+    const PathProblem& problem = prepared.problem(k);
     const ToolPath path =
         problem_path(problem, prepared.robot(k).arm().chain, budget, PathSmoothing{});
     laid[k] = rows_on_path(prepared.robot(k), problem, at_layers(problem, path, rows[k]));

@@ -86,7 +86,7 @@ namespace {
 
 /// Plans a problem, and returns the certificate that it has no path; nothing where it has one.
 /// Throws TimeoutError.
-std::optional<InfeasibilityCertificate> certificate_of(const Problem& problem,
+std::optional<InfeasibilityCertificate> certificate_of(const PathProblem& problem,
                                                        const py::object& kind, int threads,
                                                        std::optional<double> timeout) {
   PlanOptions options = to_plan_options(kind, threads, timeout);
@@ -101,7 +101,7 @@ std::optional<InfeasibilityCertificate> certificate_of(const Problem& problem,
   });
 }
 
-CertificateCheck verdict_on(const Problem& problem, const InfeasibilityCertificate& certificate,
+CertificateCheck verdict_on(const PathProblem& problem, const InfeasibilityCertificate& certificate,
                             std::optional<double> timeout) {
   if (!certificate.stroke.empty())
     throw InputError("certificate", "stroke: is of stroke '" + certificate.stroke +
@@ -126,7 +126,7 @@ CertificateCheck verdict_on_stroke(const Job& of, const InfeasibilityCertificate
     throw InputError("certificate", "reversed: stroke '" + certificate.stroke +
                                         "' is not `reversible`: allowed is a certificate of it "
                                         "forwards");
-  const Problem problem = problem_of_run(job, {*stroke, certificate.reversed});
+  const PathProblem problem = problem_of_run(job, {*stroke, certificate.reversed});
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
     return verify_certificate(PreparedRobot(problem, budget), problem, certificate, budget);

@@ -29,14 +29,14 @@ struct Drawing {
 
 /// Returns the problem that a plan is of, as it was planned: `given`, or the one that the plan
 /// keeps. Throws ValueError if there is none, and for plans that functions of Python decided.
-Problem problem_of(const Plan& plan, const Problem* given) {
+PathProblem problem_of(const Plan& plan, const PathProblem* given) {
   if (plan.own_functions)
     throw py::value_error(
         "the plan depends on check, check_motions or cost: allowed are plans of the problem alone");
   if (given == nullptr && !plan.problem)
     throw py::value_error(
         "problem: a plan that was unpickled has none: allowed is the problem that was planned");
-  Problem problem = given != nullptr ? *given : *plan.problem;
+  PathProblem problem = given != nullptr ? *given : *plan.problem;
   if (plan.timing)
     problem = with_motion_defaults(std::move(problem));
   else if (plan.refined)
@@ -67,12 +67,12 @@ std::string page_of(const PlanView& view, const LatticeMap& map, const MotionPla
 
 /// Plans again what a plan is of, and draws it. `full`: the clearance of every node is asked.
 /// Throws ValueError for plans without a verdict, and if another path is found.
-Drawing draw(const Plan& plan, const Problem* given, bool with_page, bool full) {
+Drawing draw(const Plan& plan, const PathProblem* given, bool with_page, bool full) {
   if (with_page) require_pages();
   const PlanStatus status = plan.result().status;
   if (status != PlanStatus::kSolved && status != PlanStatus::kInfeasible)
     throw py::value_error("the plan has no verdict: allowed are those that were not stopped");
-  const Problem problem = problem_of(plan, given);
+  const PathProblem problem = problem_of(plan, given);
   PlanOptions options;
   for (const auto& [name, kind] : EnumNames<PlannerKind>::names)
     if (name == plan.result().planner) options.planner = kind;
@@ -155,7 +155,7 @@ void bind_drawings(py::module_& m) {
   m.def("_page_available", &page_available);
   m.def(
       "_draw",
-      [](const Plan& plan, const Problem* problem, bool page, bool full) {
+      [](const Plan& plan, const PathProblem* problem, bool page, bool full) {
         const Drawing drawing = draw(plan, problem, page, full);
         return py::make_tuple(drawing.map, drawing.page);
       },

@@ -80,12 +80,12 @@ Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::s
                           " entries: allowed are two, name -> Problem");
   auto cell = std::make_shared<swivel::Workcell>();
   std::size_t k = 0;
-  const Problem* first_problem = nullptr;
+  const PathProblem* first_problem = nullptr;
   for (const auto& [name, value] : arms) {
     WorkcellArm& arm = cell->arms[k++];
     arm.name = py::str(name);
     if (py::isinstance<py::tuple>(value)) continue;  // its motion is given
-    const auto& problem = value.cast<const Problem&>();
+    const auto& problem = value.cast<const PathProblem&>();
     static_cast<Robot&>(arm) = problem;
     static_cast<Task&>(arm) = problem;
     if (!at_rows.empty()) arm.steps = steps_of(at_rows);

@@ -18,7 +18,7 @@ bool page_available() {
 
 std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json,
                     const PageMotion& motion, const Budget& budget, const PageWords& words) {
-  const Problem& problem = view.problem;
+  const PathProblem& problem = view.problem;
   const World& world = view.world;
   const Lattice& lattice = view.lattice;
   Json result = Json::parse(result_json);

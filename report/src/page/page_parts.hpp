@@ -73,7 +73,7 @@ struct NearBodies {
 /// Returns the points of the tool in each layer.
 [[nodiscard]] Json tool_path_json(const ToolPath& path);
 /// Returns what was asked of a path, for the page's table and the bounds in its plots.
-[[nodiscard]] Json settings_json(const Problem& problem, const Lattice& lattice);
+[[nodiscard]] Json settings_json(const PathProblem& problem, const Lattice& lattice);
 
 /// Returns the place of each sample of a motion in the rows of the path that it executes.
 [[nodiscard]] std::vector<double> places_of(std::span<const TimedRow> samples,

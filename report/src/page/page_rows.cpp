@@ -199,7 +199,7 @@ std::vector<TrajectoryRow> rows_of(const Lattice& lattice, std::vector<int> slot
   return rows;
 }
 
-Json settings_json(const Problem& problem, const Lattice& lattice) {
+Json settings_json(const PathProblem& problem, const Lattice& lattice) {
   return {{"ds", problem.resolution.ds},
           {"dphi", problem.resolution.dphi},
           {"clearance_mm", 1e3 * problem.limits.clearance},

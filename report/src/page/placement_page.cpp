@@ -29,7 +29,7 @@ Json rounded(const std::optional<double>& value) {
 
 /// Returns the point that offsets are counted from: the origin of what is moved, before it is
 /// moved.
-Vector3d origin_of(const Problem& problem, const Movable& thing) {
+Vector3d origin_of(const PathProblem& problem, const Movable& thing) {
   const std::string& name =
       thing.kind == Movable::Kind::kObject ? thing.object : problem.path_frame;
   if (thing.kind != Movable::Kind::kBase)

@@ -8,7 +8,7 @@
 
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::detail {
 

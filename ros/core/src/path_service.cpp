@@ -305,7 +305,7 @@ class Request {
       key += name + formatted("=%a..%a\n", band.lower, band.upper);
     return service_.robot_of(key + scene_.key(), [&] {
       Ready made{key + scene_.key(), cartesian_robot(scene_.robot_with_bodies(robot), options), {}};
-      Problem problem;
+      PathProblem problem;
       static_cast<Robot&>(problem) = made.robot;
       made.prepared = std::make_shared<const PreparedRobot>(problem);
       return made;
@@ -339,7 +339,7 @@ class Request {
       add_point(start, {}, {}, 0);
       return;
     }
-    Problem problem;
+    PathProblem problem;
     static_cast<Robot&>(problem) = ready.robot;
     if (options.avoid_collisions) problem.scene = scene_.objects(ready.robot);
     Planner planner(ready.prepared, std::move(problem));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "robot_state.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/ros/path_service.hpp"
 
 namespace swivel::ros {

@@ -43,7 +43,7 @@ std::vector<Case> cases() {
 /// Plans with one axis sampled.
 class SampledAxis {
  public:
-  SampledAxis(const PreparedRobot& robot, const Problem& problem, int axis, double step)
+  SampledAxis(const PreparedRobot& robot, const PathProblem& problem, int axis, double step)
       : chain_(robot.arm().chain),
         problem_(problem),
         path_(problem_path(problem, chain_)),
@@ -111,7 +111,7 @@ class SampledAxis {
   }
 
   const Chain& chain_;
-  const Problem& problem_;
+  const PathProblem& problem_;
   ToolPath path_;
   World::Query query_;
   int axis_;
@@ -119,8 +119,8 @@ class SampledAxis {
 };
 
 /// Draws a path of 0.3 m to 0.6 m, with a turn of the tool, from a posture well inside the limits.
-Problem random_seam(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem random_seam(const TestRobot& robot, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   problem.waypoints.push_back(waypoint_of(chain.tool(inner_posture(chain, random))));
   Waypoint to = problem.waypoints[0];
@@ -148,7 +148,7 @@ TEST(SampledAxis, IsHardlyEverCheaper) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Case& one = all[static_cast<std::size_t>(trial) % all.size()];
-    const Problem problem = random_seam(one.robot, random);
+    const PathProblem problem = random_seam(one.robot, random);
     const PreparedRobot robot(problem);
     const auto& names = robot.arm().chain.joint_names;
     const auto axis =

@@ -31,21 +31,21 @@ void set_clearance(Limits& limits, double clearance) {
   limits.clearance = clearance;
 }
 
-void move_objects(Problem& problem, const Advice& advice) {
+void move_objects(PathProblem& problem, const Advice& advice) {
   for (SceneObject& object : problem.scene) {
     if (object.name == advice.object) object.pose.translation() += advice.offset;
     if (object.name == advice.also) object.pose.translation() += advice.also_offset;
   }
 }
 
-void remove_objects(Problem& problem, const Advice& advice) {
+void remove_objects(PathProblem& problem, const Advice& advice) {
   std::erase_if(problem.scene, [&](const SceneObject& object) {
     return object.name == advice.object || object.name == advice.also;
   });
 }
 
 /// The problem as a reader of the advice would change it by hand.
-Problem followed(Problem problem, const Advice& advice) {
+PathProblem followed(PathProblem problem, const Advice& advice) {
   const double share = advice.to.value_or(0);
   Limits& limits = problem.limits;
   switch (advice.change) {
@@ -113,8 +113,8 @@ struct AdviceCounts {
 };
 
 /// Draws a problem, at times with a bound on the joints' steps (rad) or with a clearance (m).
-Problem random_advised(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem random_advised(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   if (random.coin()) problem.limits.joint_step = random.uniform(0.1, 0.3);
   if (random.coin(0.3)) problem.limits.clearance = random.uniform(0.02, 0.08);
   return problem;
@@ -122,8 +122,8 @@ Problem random_advised(const TestRobot& robot, Random& random) {
 
 /// Where a limit is relaxed, it is relaxed no further than a sixteenth of the way beyond what is
 /// needed.
-void expect_stricter_unsolved(const Problem& problem, const Advice& one, const PlanOptions& options,
-                              const std::string& what) {
+void expect_stricter_unsolved(const PathProblem& problem, const Advice& one,
+                              const PlanOptions& options, const std::string& what) {
   if (one.outcome != Outcome::kSolved || !one.to || !one.from || one.change == Change::kHold)
     return;
   const bool down = *one.to < *one.from;
@@ -140,7 +140,7 @@ void expect_stricter_unsolved(const Problem& problem, const Advice& one, const P
 }
 
 /// Plans the problem that follows one advice and compares the result with the advice's outcome.
-void expect_outcome(const Problem& problem, const Advice& one, const PlanOptions& options,
+void expect_outcome(const PathProblem& problem, const Advice& one, const PlanOptions& options,
                     const std::string& what, AdviceCounts& counts) {
   ++counts.seen[{one.change, one.outcome}];
   EXPECT_FALSE(words(one).empty()) << what;
@@ -165,7 +165,7 @@ void expect_outcome(const Problem& problem, const Advice& one, const PlanOptions
 }
 
 /// Asks for advice about one problem and checks the order and the outcome of every change.
-void check_advice(const Problem& problem, const std::string& what, AdviceCounts& counts) {
+void check_advice(const PathProblem& problem, const std::string& what, AdviceCounts& counts) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   Planner planner(problem);
@@ -226,7 +226,7 @@ TEST(Advise, ATorsoHeldElsewhereHelps) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     SCOPED_TRACE("SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     const double turned = random.uniform(-1.5, 1.5);
     const Chain chain = build_arm(*robot.model, robot.base_link, robot.tip_link,
                                   {{"torso_joint_b1", turned}}, Pose::Identity())
@@ -286,7 +286,7 @@ TEST(Advise, ExperimentAFromItsStartNeedsAnother) {
 /// The torch stands turned so that the arm cannot follow; turned as it likes it can.
 TEST(Advise, ATorchMayTurnAboutItsAxis) {
   for (const Roll& roll : {Roll{-0.3, -0.2}, Roll{0.4, 0.5}}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml");
+    PathProblem problem = io::load_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml");
     problem.roll = roll;
     Planner planner(problem);
     const PlanResult result = planner.plan();
@@ -306,7 +306,7 @@ TEST(Advise, ATorchMayTurnAboutItsAxis) {
 
 /// A wall across the path, which nothing but its removal helps against.
 TEST(Advise, AWallMustGo) {
-  Problem problem = io::load_problem(data_dir() / "problems" / "experiment_a.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems" / "experiment_a.yaml");
   SceneObject& wall = problem.scene.emplace_back();
   wall.name = "wall";
   wall.shape = Box{{0.3, 0.02, 0.3}};
@@ -324,8 +324,8 @@ TEST(Advise, AWallMustGo) {
 }
 
 /// Returns a line of an iiwa 14 that works downwards on a part, with a sander as its tool.
-Problem sanded_line() {
-  Problem problem = problem_for(data_robot("iiwa14"));
+PathProblem sanded_line() {
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   problem.tip_link = "tool0";
   problem.tool.translation() = Vector3d(0, 0, 0.15);
   AttachedBody sander;
@@ -357,7 +357,7 @@ SceneObject wall(const std::string& name, double y) {
 }
 
 TEST(Advise, AToolThatPointsIntoItsFlangeIsTurnedOver) {
-  Problem problem = sanded_line();
+  PathProblem problem = sanded_line();
   EXPECT_EQ(plan(problem).status, PlanStatus::kSolved);
   problem.tool.linear() = Eigen::AngleAxisd(kPi, Vector3d::UnitX()).toRotationMatrix();
   Planner planner(problem);
@@ -372,7 +372,7 @@ TEST(Advise, AToolThatPointsIntoItsFlangeIsTurnedOver) {
 
 /// A wall over the end of the line must be moved away from it, by 45 mm.
 TEST(Advise, AWallIsMovedAsFarAsItMust) {
-  Problem problem = sanded_line();
+  PathProblem problem = sanded_line();
   problem.scene.push_back(wall("wall", 0.16));
   Planner planner(problem);
   const std::vector<Advice> advice = advise(planner, planner.plan(), for_seconds(120));
@@ -390,7 +390,7 @@ TEST(Advise, AWallIsMovedAsFarAsItMust) {
 
 /// Two walls, one over either end: neither alone helps.
 TEST(Advise, TwoWallsAreMovedTogether) {
-  Problem problem = sanded_line();
+  PathProblem problem = sanded_line();
   problem.scene.push_back(wall("left", 0.16));
   problem.scene.push_back(wall("right", -0.16));
   Planner planner(problem);

@@ -28,7 +28,7 @@ bool further(const PlanResult& result, const Diagnosis& than) {
 }
 
 /// Everything that can be taken away from a problem, one by one.
-std::vector<Cause> all_causes(const Problem& problem, const World& world, const Chain& chain) {
+std::vector<Cause> all_causes(const PathProblem& problem, const World& world, const Chain& chain) {
   std::vector<Cause> causes;
   const auto add = [&](Cause::Kind kind) -> Cause& {
     causes.emplace_back().kind = kind;
@@ -62,7 +62,7 @@ struct CauseCounts {
 };
 
 /// Plans the problem without the one cause that is said to be enough, and counts whether it helps.
-void check_single_cause(const Problem& problem, const Diagnosis& d, const std::string& what,
+void check_single_cause(const PathProblem& problem, const Diagnosis& d, const std::string& what,
                         CauseCounts& counts) {
   EXPECT_TRUE(d.together.empty()) << what;
   const auto relaxed = without(d.cause, problem);
@@ -76,8 +76,8 @@ void check_single_cause(const Problem& problem, const Diagnosis& d, const std::s
 }
 
 /// Plans the problem without each single thing, and without all that the diagnosis names together.
-void check_several_causes(const Problem& problem, const PreparedRobot& robot, const Diagnosis& d,
-                          const std::string& what, CauseCounts& counts) {
+void check_several_causes(const PathProblem& problem, const PreparedRobot& robot,
+                          const Diagnosis& d, const std::string& what, CauseCounts& counts) {
   ++counts.none_named;
   bool helps = false;
   for (const Cause& cause : all_causes(problem, robot.world(), robot.arm().chain)) {
@@ -90,7 +90,7 @@ void check_several_causes(const Problem& problem, const PreparedRobot& robot, co
   }
   counts.none_exists += !helps;
   if (d.together.empty()) return;
-  std::optional<Problem> relaxed = without(d.cause, problem);
+  std::optional<PathProblem> relaxed = without(d.cause, problem);
   for (const Cause& cause : d.together)
     if (relaxed) relaxed = without(cause, *relaxed);
   ++counts.together;
@@ -98,7 +98,7 @@ void check_several_causes(const Problem& problem, const PreparedRobot& robot, co
 }
 
 /// Plans one problem and, where it is infeasible, checks the causes of its diagnosis.
-void check_causes(const Problem& problem, const std::string& trial, CauseCounts& counts) {
+void check_causes(const PathProblem& problem, const std::string& trial, CauseCounts& counts) {
   const PreparedRobot robot(problem);
   const PlanResult result = plan(robot, problem);
   if (result.status != PlanStatus::kInfeasible) return;
@@ -150,7 +150,7 @@ TEST(Cause, OfADiagnosisThatEndsBeforeItIsKnownSaysSo) {
 }
 
 TEST(Cause, OfExperimentAFromItsGivenStartIsTheLimitOfJoint5) {
-  const Problem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
   const PlanResult result = plan(problem);
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   const Diagnosis& d = result.diagnosis;

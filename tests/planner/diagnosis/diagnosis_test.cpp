@@ -19,11 +19,11 @@ using namespace test;
 
 /// Everything that a problem's lattice needs.
 struct Laid {
-  Problem problem;
+  PathProblem problem;
   PreparedRobot robot;
   ToolPath path;
   SrsLattice lattice;
-  explicit Laid(const Problem& p)
+  explicit Laid(const PathProblem& p)
       : problem(p),
         robot(problem),
         path(waypoints_in_base(problem), problem.resolution, problem.source),
@@ -121,7 +121,7 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
   std::int64_t asked = 0, asked_eagerly = 0;
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robot, random);
+    PathProblem problem = random_problem(robot, random);
     problem.resolution.dphi *= 1.5;
     PlanOptions options;
     options.planner = PlannerKind::kEagerDp;
@@ -147,8 +147,8 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
 }
 
 /// A straight line that leaves the reach of the arm.
-Problem leaving(double to) {
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+PathProblem leaving(double to) {
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
   problem.waypoints[1].position = problem.waypoints[0].position + Vector3d(to, 0, 0);
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   return problem;
@@ -159,7 +159,7 @@ TEST(Diagnosis, SaysByHowMuchAPoseIsOutOfReach) {
   options.evidence = Evidence::all();
   int checked = 0;
   for (const double to : {0.8, -0.8}) {
-    const Problem problem = leaving(to);
+    const PathProblem problem = leaving(to);
     const Laid laid(problem);
     const PlanResult result = plan(laid.robot, problem, options);
     ASSERT_EQ(result.status, PlanStatus::kInfeasible);
@@ -193,7 +193,7 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
   options.evidence = Evidence::all();
   int checked = 0;
   for (const double to : {0.8, -0.3, -0.8}) {
-    const Problem problem = leaving(to);
+    const PathProblem problem = leaving(to);
     const Laid laid(problem);
     const PlanResult result = plan(laid.robot, problem, options);
     if (result.status != PlanStatus::kInfeasible) continue;
@@ -224,7 +224,7 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
 
 /// The layers that are looked at end at a count, not at a clock, and the answer says where.
 TEST(Diagnosis, EndsAtAFixedCountAndSaysSo) {
-  Problem problem = leaving(0.8);
+  PathProblem problem = leaving(0.8);
   problem.resolution = {.ds = 2e-5, .dphi = 1.0};
   auto model =
       std::make_shared<RobotModel>(*problem.model);  // with a mesh, whose questions count for more

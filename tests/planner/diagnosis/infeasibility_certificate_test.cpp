@@ -31,7 +31,7 @@ using namespace test;
 /// Nodes and edges by their definition, one by one.
 class Plain {
  public:
-  Plain(const Problem& problem, const PreparedRobot& robot,
+  Plain(const PathProblem& problem, const PreparedRobot& robot,
         const InfeasibilityCertificate& certificate)
       : path_(problem_path(problem, robot.arm().chain)),
         lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
@@ -292,8 +292,8 @@ TestRobot arm_of_data(const std::string& name) {
 
 /// Random problems; on arms planned on arcs as small ones as brute force can do. In every second
 /// one it is moves that end paths.
-Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem random_task(const TestRobot& robot, bool arcs, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   Limits& limits = problem.limits;
   if (random.coin()) {
     problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 2));
@@ -327,8 +327,8 @@ TestRobot wound_robot() {
 
 /// From a start at the upper limit of that joint the tool turns on, so that a path over the circle
 /// leaves the limits.
-Problem beyond_a_turn(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem beyond_a_turn(const TestRobot& robot, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   Config q = random_config(chain, random);
   q[6] = 3.25;
@@ -370,7 +370,7 @@ CertificateRobots certificate_robots(std::uint64_t base) {
 }
 
 /// Verifies the certificate by plain loops and by the check, and reads it back from `file`.
-void expect_verified(const Problem& problem, const PreparedRobot& robot,
+void expect_verified(const PathProblem& problem, const PreparedRobot& robot,
                      const InfeasibilityCertificate& certificate, Plain& plain,
                      const std::filesystem::path& file, const std::string& what,
                      CertificateTally& tally) {
@@ -384,7 +384,7 @@ void expect_verified(const Problem& problem, const PreparedRobot& robot,
 }
 
 /// Adds what a verified certificate of the problem shows to the tally.
-void tally_certificate(const Problem& problem, const InfeasibilityCertificate& certificate,
+void tally_certificate(const PathProblem& problem, const InfeasibilityCertificate& certificate,
                        CertificateTally& tally) {
   const CertificateCounts counts = count(certificate);
   bool nodes = false, edges = false;
@@ -402,7 +402,7 @@ void tally_certificate(const Problem& problem, const InfeasibilityCertificate& c
 
 /// Forges the certificate in every way that it allows and expects each forgery to be refused, or to
 /// be a proof as well.
-void expect_forgeries_refused(const Problem& problem, const PreparedRobot& robot,
+void expect_forgeries_refused(const PathProblem& problem, const PreparedRobot& robot,
                               const InfeasibilityCertificate& certificate, Plain& plain,
                               Random& random, const std::string& what, CertificateTally& tally) {
   for (const auto& [name, forge] : forgeries()) {
@@ -418,7 +418,7 @@ void expect_forgeries_refused(const Problem& problem, const PreparedRobot& robot
 }
 
 /// Plans one problem and, where it is infeasible, checks its certificate and forged ones.
-void check_certificate(const Problem& problem, int trial, Random& random,
+void check_certificate(const PathProblem& problem, int trial, Random& random,
                        const std::filesystem::path& file, const std::string& what,
                        CertificateTally& tally) {
   const auto robot = std::make_shared<const PreparedRobot>(problem);
@@ -474,9 +474,9 @@ TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesA
   for (int trial = 0; tally.infeasible < wanted; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::size_t number = static_cast<std::size_t>(trial) % robots.size();
-    const Problem problem = number + 1 == robots.size() && random.coin()
-                                ? beyond_a_turn(robots.back(), random)
-                                : random_task(robots[number], number >= grids, random);
+    const PathProblem problem = number + 1 == robots.size() && random.coin()
+                                    ? beyond_a_turn(robots.back(), random)
+                                    : random_task(robots[number], number >= grids, random);
     const int before = tally.infeasible;
     check_certificate(problem, trial, random, file,
                       "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
@@ -501,8 +501,8 @@ class RefusesHalf final : public StateCheck {
 };
 
 TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
-  const Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
-  Problem coarse = problem;
+  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  PathProblem coarse = problem;
   coarse.resolution = {.ds = 0.02, .dphi = 0.2};
   const auto robot = std::make_shared<const PreparedRobot>(coarse);
   const auto waypoints = waypoints_in_base(coarse);
@@ -530,13 +530,13 @@ TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
 
 /// A certificate says nothing about a lattice that is laid out otherwise.
 TEST(InfeasibilityCertificate, OfAnotherLayoutIsBadInput) {
-  const Problem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   Planner planner(robot, problem);
   ASSERT_EQ(planner.plan().status, PlanStatus::kInfeasible);
   const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
   EXPECT_TRUE(verify_certificate(*robot, problem, certificate).passed);
-  Problem other = problem;
+  PathProblem other = problem;
   other.resolution.ds *= 2;
   EXPECT_THROW(static_cast<void>(verify_certificate(*robot, other, certificate)), InputError);
   other = problem;

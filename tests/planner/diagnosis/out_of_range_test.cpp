@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-PlanResult planned(const Problem& problem) {
+PlanResult planned(const PathProblem& problem) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   return plan(problem, options);
@@ -53,7 +53,7 @@ TEST(OutOfRange, ARingThatNeedsMoreThanTheTurnsOfJoint1NamesIt) {
     robot = with_limits(robot, [&](int, Joint& joint) {
       if (joint.upper > 2.5) joint.upper = turns * kPi, joint.lower = -joint.upper;
     });
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     problem.waypoints =
         ring(random.uniform(0.42, 0.5), random.uniform(0.28, 0.4), random.uniform(-kPi, kPi),
              (random.coin() ? 1 : -1) * (turns + random.uniform(0.4, 0.8)));
@@ -82,7 +82,7 @@ TEST(OutOfRange, AJointOfSixThatLeavesItsRangeIsNamedWithHowFar) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     problem.tool.translation() = Vector3d(0.03, 0, 0.15);
     problem.tool.linear() = Eigen::AngleAxisd(0.5, Vector3d::UnitY()).toRotationMatrix();
     problem.roll = Roll{-0.001, 0.001};
@@ -107,7 +107,7 @@ TEST(OutOfRange, AJointOfSixThatLeavesItsRangeIsNamedWithHowFar) {
     ++joints;
     ASSERT_TRUE(cause.value && cause.limit) << what;
     EXPECT_TRUE(result.diagnosis.together.empty()) << what;
-    Problem wider = problem;
+    PathProblem wider = problem;
     auto model = std::make_shared<RobotModel>(*robot.model);
     for (Joint& joint : model->joints) {
       if (joint.name != cause.joint) continue;

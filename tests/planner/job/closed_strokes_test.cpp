@@ -27,7 +27,7 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 /// Draws a job of two or three rings, some from a home and back, some with a line before and after
 /// each ring.
 Job ring_job(const RingArm& arm, Random& random) {
-  const Problem first = coarse_ring(arm, random, random.coin(0.08));
+  const PathProblem first = coarse_ring(arm, random, random.coin(0.08));
   Job job;
   static_cast<Robot&>(job) = first;
   job.source = "rings";
@@ -35,7 +35,7 @@ Job ring_job(const RingArm& arm, Random& random) {
   if (random.coin()) job.scene = first.scene;
   const int count = 2 + random.below(2);
   for (int k = 0; k < count; ++k) {
-    Problem ring = k == 0 ? first : coarse_ring(arm, random, random.coin(0.08));
+    PathProblem ring = k == 0 ? first : coarse_ring(arm, random, random.coin(0.08));
     Stroke& stroke = job.strokes.emplace_back();
     static_cast<Task&>(stroke) = ring;
     stroke.cost = first.cost;
@@ -66,7 +66,7 @@ struct PlainRing {
 };
 
 PlainRing plain_ring(const PreparedRobot& robot, const Job& job, std::size_t k, RingNodes nodes) {
-  const Problem problem = problem_of_run(job, {k, false});
+  const PathProblem problem = problem_of_run(job, {k, false});
   const World world(robot.world(), problem);
   const ToolPath path = problem_path(problem, robot.arm().chain);
   PlainRing ring{ring_truth(robot, world, path, problem, nodes), {}};
@@ -102,8 +102,8 @@ class PlainMoves {
   }
 
  private:
-  static Problem between(const Job& job) {
-    Problem problem = problem_of_run(job, {0, false});
+  static PathProblem between(const Job& job) {
+    PathProblem problem = problem_of_run(job, {0, false});
     problem.limits = limits_of_transitions(job);
     return problem;
   }

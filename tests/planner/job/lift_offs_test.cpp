@@ -179,7 +179,7 @@ class Plain {
   }
 
  private:
-  Problem problem_;
+  PathProblem problem_;
   World world_;
   ToolPath path_;
   std::unique_ptr<Lattice> lattice_;

@@ -118,7 +118,7 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
 /// these jobs does, so that the cost is the same.
 TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
   const Job door = load("door_job.yaml");
-  const Problem first = problem_of_run(door, {0, false});
+  const PathProblem first = problem_of_run(door, {0, false});
   const TestRobot wide =
       with_limits({"door", door.model, first.base_link, first.tip_link}, [](int number, Joint& j) {
         if (number == 0 || number == 6) j.lower = -kTwoPi, j.upper = kTwoPi;
@@ -281,7 +281,7 @@ TEST(PlanJob, TriesOrdersWhereTheRollCosts) {
 
 /// Returns a problem's path cut in two strokes at its middle waypoint, without a start.
 Job halves(const char* name) {
-  Problem whole = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+  PathProblem whole = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
   whole.start.reset();
   if (whole.waypoints.size() == 2) {
     Waypoint middle = whole.waypoints[0];
@@ -413,7 +413,7 @@ void expect_executable(const JobCase& of, const Job& job, const JobMotionPlan& p
   const Chain& chain = of.robot.arm().chain;
   const auto shares = greatest_shares(motion.rows, joint_rates(chain, job.limits, ""), motion.rate);
   for (const double share : shares) ASSERT_LE(share, 1 + 1e-6) << what;
-  Problem problem = problem_of_run(with_motion_defaults(job), {0, false});
+  PathProblem problem = problem_of_run(with_motion_defaults(job), {0, false});
   const World world(of.robot.world(), problem);
   World::Query query(world);
   for (std::size_t k = 1; k < motion.rows.size(); k += 97)
@@ -431,7 +431,7 @@ void expect_executable(const JobCase& of, const Job& job, const JobMotionPlan& p
     ASSERT_EQ(event.stroke, run.stroke) << what;
     // the tool is at the stroke's end within one sample
     const auto row = static_cast<std::size_t>(std::llround(event.t * motion.rate));
-    const Problem path = problem_of_run(job, run);
+    const PathProblem path = problem_of_run(job, run);
     const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
     const Vector3d end = waypoints_in_base(path)[event.on ? process.first : process.last].position;
     const Vector3d at = chain.tool(motion.rows[row].row.q).translation();

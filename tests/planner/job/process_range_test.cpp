@@ -70,7 +70,7 @@ TEST(ProcessRange, EndsOfStrokesAreLayers) {
   Job job = drilling(true);
   Stroke& stroke = job.strokes.front();
   const auto layers = [&](bool reversed) {
-    const Problem problem = problem_of_run(job, {0, reversed});
+    const PathProblem problem = problem_of_run(job, {0, reversed});
     const ToolPath path(problem.waypoints, problem.resolution, "", {}, {}, false, problem.steps);
     std::vector<int> waypoints;
     for (int i = 0; i < path.size(); ++i)

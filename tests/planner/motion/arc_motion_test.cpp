@@ -74,7 +74,7 @@ struct MotionCounts {
 
 /// A random problem of an arm and how its motion is timed.
 struct MotionTask {
-  Problem problem;
+  PathProblem problem;
   bool windows = false;  ///< whether the waypoints have windows of roll
   std::string what;
   TimingOptions timing;
@@ -83,7 +83,7 @@ struct MotionTask {
 /// Draws a problem of the arm, its cost of roll and windows of roll, and speeds of its motion.
 MotionTask random_motion_task(const Arm& arm, int trial, Random& random) {
   MotionTask task;
-  Problem& problem = task.problem;
+  PathProblem& problem = task.problem;
   problem = with_motion_defaults(motion_problem(arm.robot, random, arm.roll));
   if (problem.roll) problem.limits.roll_slope = random.uniform(3, 20);
   if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.5, 20);
@@ -99,7 +99,7 @@ MotionTask random_motion_task(const Arm& arm, int trial, Random& random) {
 /// Expects the refined path to be no dearer than the one before and to pass the check of rows.
 void expect_refined_path(const MotionTask& task, const PreparedRobot& robot, const Refined& path,
                          ArmCounts& of_arm, MotionCounts& counts) {
-  const Problem& problem = task.problem;
+  const PathProblem& problem = task.problem;
   const std::string& what = task.what;
   const Chain& chain = robot.arm().chain;
   EXPECT_LE(path.cost, path.cost_before) << what;
@@ -122,7 +122,7 @@ void expect_refined_path(const MotionTask& task, const PreparedRobot& robot, con
 /// Expects the motion in time to pass the check of motions and to begin at the start.
 void expect_executable(const MotionTask& task, const PreparedRobot& robot, const TimedPath& motion,
                        MotionCounts& counts) {
-  const Problem& problem = task.problem;
+  const PathProblem& problem = task.problem;
   const std::string& what = task.what;
   counts.samples += static_cast<int>(motion.rows.size());
   counts.slower.push_back(motion.duration / motion.ideal);

@@ -24,7 +24,7 @@ namespace {
 
 using namespace test;
 
-PlanResult solve_lazily(const PreparedRobot& robot, const Problem& problem) {
+PlanResult solve_lazily(const PreparedRobot& robot, const PathProblem& problem) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   return plan(robot, problem, options);
@@ -43,8 +43,8 @@ Waypoint moved_away(Pose pose, double way, double turn, Random& random) {
 }
 
 /// Draws a line of 0.4 m, a ring or a corner, with turns, from a random posture.
-Problem basin_problem(const TestRobot& robot, int shape, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem basin_problem(const TestRobot& robot, int shape, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   Config q = random_config(chain, random);
   for (int j = 0; j < kDof; ++j)
@@ -86,7 +86,7 @@ struct BasinCounts {
 };
 
 /// Refines a path with other basins and without; compares and checks the results.
-void compare_basins(const PreparedRobot& robot, const Problem& problem, const PlanResult& found,
+void compare_basins(const PreparedRobot& robot, const PathProblem& problem, const PlanResult& found,
                     BasinCounts& counts) {
   const Refined one = refine(robot, problem, found.trajectory, {.other_basins = false});
   const Refined best = refine(robot, problem, found.trajectory);
@@ -128,7 +128,7 @@ TEST(Basins, AreValidAndNeverDearer) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& test_robot = robots[static_cast<std::size_t>(trial) % robots.size()];
     const int shape = random.below(3);
-    Problem problem = basin_problem(test_robot, shape, random);
+    PathProblem problem = basin_problem(test_robot, shape, random);
     SCOPED_TRACE(problem.source + " " + std::to_string(trial));
     const PreparedRobot robot(problem);
     PlanResult found = solve_lazily(robot, problem);
@@ -167,7 +167,7 @@ TEST(Basins, AreFoundWhereTheLatticePassesOverThem) {
         std::pair(1686u, 0.06), std::pair(2152u, 0.05)}) {
     SCOPED_TRACE(draw);
     Random random(draw);
-    const Problem problem =
+    const PathProblem problem =
         basin_problem(robots[draw % robots.size()], static_cast<int>(draw % 3), random);
     const PreparedRobot robot(problem);
     const PlanResult found = solve_lazily(robot, problem);
@@ -189,14 +189,14 @@ TEST(Basins, AreThoseOfFineArmAngles) {
   std::vector<double> ratios;
   for (int trial = 0; trial < trials(120); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         basin_problem(robots[static_cast<std::size_t>(trial) % robots.size()], trial % 3, random);
     problem.scene.clear();  // past obstacles other basins are not sought
     const PreparedRobot robot(problem);
     const PlanResult found = solve_lazily(robot, problem);
     if (found.status != PlanStatus::kSolved) continue;
     const double cost = refine(robot, problem, found.trajectory).cost;
-    Problem fine = problem;
+    PathProblem fine = problem;
     fine.resolution.dphi /= 5;
     const PlanResult finely = solve_lazily(robot, fine);
     ASSERT_EQ(finely.status, PlanStatus::kSolved) << trial;

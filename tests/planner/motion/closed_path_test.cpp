@@ -37,7 +37,7 @@ struct RingCounts {
 /// Expects that ten laps, each begun in the joints in which the one before ended, are the same lap
 /// but for whole turns of joints without limits, and that the check proves the first and refuses it
 /// where it does not close.
-void expect_laps(const PreparedRobot& robot, const Problem& problem, const PlanResult& result,
+void expect_laps(const PreparedRobot& robot, const PathProblem& problem, const PlanResult& result,
                  const std::string& what, RingCounts& counts) {
   const std::vector<TrajectoryRow>& rows = result.trajectory;
   const Chain& chain = robot.arm().chain;
@@ -63,7 +63,7 @@ void expect_laps(const PreparedRobot& robot, const Problem& problem, const PlanR
   ASSERT_NE(refused.failures[0].find("the path is closed"), std::string::npos) << what;
 }
 
-void check_ring(const RingArm& arm, const Problem& problem, const std::string& what,
+void check_ring(const RingArm& arm, const PathProblem& problem, const std::string& what,
                 RingCounts& counts) {
   const PreparedRobot robot(problem);
   const ToolPath path = problem_path(problem, robot.arm().chain);
@@ -116,7 +116,7 @@ TEST(ClosedPath, FourPlannersAndBruteForceOverAllStarts) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const RingArm& arm = arms[static_cast<std::size_t>(trial) % arms.size()];
-    const Problem problem = ring_problem(arm, random);
+    const PathProblem problem = ring_problem(arm, random);
     check_ring(arm, problem,
                "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
                    " robot " + problem.source,

@@ -36,7 +36,7 @@ int for_solved(const char* name, int count, const Each& each) {
   int solved = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const PreparedRobot robot(problem);
     PlanOptions options;
@@ -54,38 +54,38 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
   int refined = 0, cheaper = 0, starts = 0, turns = 0, seconds = 0;
   std::set<CostMetric> metrics;
   double sum = 0;
-  const int solved =
-      for_solved("Refine", trials(40),
-                 [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
-                   const Refined result = refine(robot, problem, found.trajectory);
-                   EXPECT_NEAR(result.cost_before, found.cost, 1e-9 * (1 + found.cost));
-                   EXPECT_LE(result.cost, result.cost_before);
-                   ASSERT_EQ(result.rows.size(), found.trajectory.size());
-                   EXPECT_EQ(result.refined, result.reason.empty());
-                   const CheckResult check = check_trajectory(robot, problem, result.rows);
-                   EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures[0]);
-                   EXPECT_NEAR(check.cost, result.cost, 1e-6);
-                   if (problem.start) {
-                     EXPECT_EQ(result.rows[0].q, *problem.start);
-                     ++starts;
-                   }
-                   for (std::size_t k = 0; k < result.rows.size(); ++k) {
-                     EXPECT_EQ(result.rows[k].s, found.trajectory[k].s);
-                     EXPECT_TRUE(result.from_second_seed ||
-                                 result.rows[k].branch == found.trajectory[k].branch);
-                     EXPECT_TRUE(result.refined || result.rows[k].q == found.trajectory[k].q);
-                     if (k > 0) turns += result.rows[k].s == result.rows[k - 1].s;
-                   }
-                   refined += result.refined;
-                   cheaper += result.cost < result.cost_before - 1e-6;
-                   seconds += result.from_second_seed;
-                   metrics.insert(problem.cost.metric);
-                   sum += result.cost / result.cost_before;
-                   // A second refinement gives the same joints, bit for bit.
-                   const Refined again = refine(robot, problem, found.trajectory);
-                   for (std::size_t k = 0; k < result.rows.size(); ++k)
-                     EXPECT_EQ(again.rows[k].q, result.rows[k].q);
-                 });
+  const int solved = for_solved(
+      "Refine", trials(40),
+      [&](const PathProblem& problem, const PreparedRobot& robot, const PlanResult& found) {
+        const Refined result = refine(robot, problem, found.trajectory);
+        EXPECT_NEAR(result.cost_before, found.cost, 1e-9 * (1 + found.cost));
+        EXPECT_LE(result.cost, result.cost_before);
+        ASSERT_EQ(result.rows.size(), found.trajectory.size());
+        EXPECT_EQ(result.refined, result.reason.empty());
+        const CheckResult check = check_trajectory(robot, problem, result.rows);
+        EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures[0]);
+        EXPECT_NEAR(check.cost, result.cost, 1e-6);
+        if (problem.start) {
+          EXPECT_EQ(result.rows[0].q, *problem.start);
+          ++starts;
+        }
+        for (std::size_t k = 0; k < result.rows.size(); ++k) {
+          EXPECT_EQ(result.rows[k].s, found.trajectory[k].s);
+          EXPECT_TRUE(result.from_second_seed ||
+                      result.rows[k].branch == found.trajectory[k].branch);
+          EXPECT_TRUE(result.refined || result.rows[k].q == found.trajectory[k].q);
+          if (k > 0) turns += result.rows[k].s == result.rows[k - 1].s;
+        }
+        refined += result.refined;
+        cheaper += result.cost < result.cost_before - 1e-6;
+        seconds += result.from_second_seed;
+        metrics.insert(problem.cost.metric);
+        sum += result.cost / result.cost_before;
+        // A second refinement gives the same joints, bit for bit.
+        const Refined again = refine(robot, problem, found.trajectory);
+        for (std::size_t k = 0; k < result.rows.size(); ++k)
+          EXPECT_EQ(again.rows[k].q, result.rows[k].q);
+      });
   std::printf(
       "%d solved, %d refined, %d cheaper, %d with start, %d turning steps, %d from the second "
       "seed; mean cost %.4f of before\n",
@@ -110,9 +110,9 @@ TEST(Refine, IsValidOnWhatUsersHave) {
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::size_t which = static_cast<std::size_t>(trial) % robots.size();
-    Problem problem = motion_problem(robots[which], random);
+    PathProblem problem = motion_problem(robots[which], random);
     problem.start.reset();
-    const auto refined = [&](const Problem& kind, const char* name) -> std::optional<Refined> {
+    const auto refined = [&](const PathProblem& kind, const char* name) -> std::optional<Refined> {
       const PreparedRobot robot(kind);
       PlanOptions options;
       options.planner = PlannerKind::kLazy;
@@ -129,15 +129,15 @@ TEST(Refine, IsValidOnWhatUsersHave) {
       return result;
     };
     const auto whole = refined(problem, "whole");
-    Problem reversed = problem;
+    PathProblem reversed = problem;
     std::reverse(reversed.waypoints.begin(), reversed.waypoints.end());
     refined(reversed, "reversed");
-    Problem turns = problem;
+    PathProblem turns = problem;
     for (Waypoint& waypoint : turns.waypoints) waypoint.position = turns.waypoints[0].position;
     refined(turns, "turns");
     if (!whole) continue;
     const std::size_t row = whole->rows.size() / 2;
-    Problem rest = problem;
+    PathProblem rest = problem;
     rest.start = whole->rows[row].q;
     rest.start_at = whole->rows[row].s;
     const auto after = refined(rest, "start_at");
@@ -154,7 +154,8 @@ TEST(Refine, IsValidOnWhatUsersHave) {
 }
 
 TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
-  Problem problem = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml");
+  PathProblem problem =
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml");
   const Waypoint first = problem.waypoints[0];
   problem.waypoints.clear();
   constexpr int kCount = 5000;
@@ -187,7 +188,8 @@ TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
 }
 
 TEST(Refine, TheResolutionStopsMattering) {
-  Problem problem = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml");
+  PathProblem problem =
+      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml");
   keep_clearance_between_layers(problem.limits);
   double dearest_before = 0;
   for (const auto& [ds, dphi] : {std::pair(0.02, 0.2), std::pair(0.01, 0.1), std::pair(0.005, 0.05),
@@ -206,7 +208,7 @@ TEST(Refine, TheResolutionStopsMattering) {
   EXPECT_GT(dearest_before, 5);
 }
 
-PlanResult planned(const PreparedRobot& robot, const Problem& problem) {
+PlanResult planned(const PreparedRobot& robot, const PathProblem& problem) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   return plan(robot, problem, options);
@@ -217,13 +219,13 @@ PlanResult planned(const PreparedRobot& robot, const Problem& problem) {
 /// between its own layers (83). Costs are those of fine lattices about the best path known
 /// (bench/basin_benchmark data/problems/experiment_c.yaml --episodes 1 --first 4).
 TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
-  const Problem base = with_motion_defaults(
+  const PathProblem base = with_motion_defaults(
       io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   const PreparedRobot robot(base);
   for (const auto& [episode, fine_lattice] :
        {std::pair(4u, 1.98137), std::pair(73u, 3.35499), std::pair(83u, 2.22246)}) {
     SCOPED_TRACE(episode);
-    const Problem problem = episode_problem(base, 1, episode);
+    const PathProblem problem = episode_problem(base, 1, episode);
     const PlanResult found = planned(robot, problem);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
     const Refined refined = refine(robot, problem, found.trajectory);
@@ -235,12 +237,12 @@ TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
 /// Door poses whose cheapest path changes branch at the wrist's singularity: to lead past it at a
 /// distance costs a turn of the outer joints, and bends that no smoothing takes away.
 TEST(Refine, CrossesSingularitiesStraight) {
-  const Problem base = with_motion_defaults(
+  const PathProblem base = with_motion_defaults(
       io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   const PreparedRobot robot(base);
   for (const unsigned episode : {60u, 88u}) {
     SCOPED_TRACE(episode);
-    const Problem problem = episode_problem(base, 1, episode);
+    const PathProblem problem = episode_problem(base, 1, episode);
     const PlanResult found = planned(robot, problem);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
     ASSERT_NE(found.trajectory.front().branch, found.trajectory.back().branch);
@@ -289,33 +291,33 @@ TEST(Refine, AsksTheCallersCheck) {
     for (const TrajectoryRow& row : rows) value = std::max(value, row.q[joint]);
     return value;
   };
-  const int solved =
-      for_solved("CallersCheck", trials(40),
-                 [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
-                   const Refined free = refine(robot, problem, found.trajectory);
-                   for (const int joint : {0, 2, 4}) {
-                     const double bound = most(found.trajectory, joint);
-                     if (!(most(free.rows, joint) > bound + 1e-6)) continue;
-                     ++beyond;
-                     const auto check = std::make_shared<Beyond>(joint, bound);
-                     PlanOptions options;
-                     options.planner = PlannerKind::kLazy;
-                     options.hooks.check = check;
-                     Planner planner(problem);
-                     const MotionPlan plan = plan_motion(planner, options, true, {});
-                     ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
-                     kept += most(plan.result.trajectory, joint) <= bound;
-                     refined += plan.refinement->refined;
-                     EXPECT_GT(check->asked, 0);
-                     options.hooks.cost = std::make_shared<NoCost>();
-                     options.evidence.postures = true;
-                     const MotionPlan costly = plan_motion(planner, options, true, {});
-                     EXPECT_FALSE(costly.refinement->refined);
-                     EXPECT_EQ(costly.refinement->reason, "the caller's own cost is not refined");
-                     EXPECT_TRUE(costly.result.evidence.postures);
-                     return;
-                   }
-                 });
+  const int solved = for_solved(
+      "CallersCheck", trials(40),
+      [&](const PathProblem& problem, const PreparedRobot& robot, const PlanResult& found) {
+        const Refined free = refine(robot, problem, found.trajectory);
+        for (const int joint : {0, 2, 4}) {
+          const double bound = most(found.trajectory, joint);
+          if (!(most(free.rows, joint) > bound + 1e-6)) continue;
+          ++beyond;
+          const auto check = std::make_shared<Beyond>(joint, bound);
+          PlanOptions options;
+          options.planner = PlannerKind::kLazy;
+          options.hooks.check = check;
+          Planner planner(problem);
+          const MotionPlan plan = plan_motion(planner, options, true, {});
+          ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
+          kept += most(plan.result.trajectory, joint) <= bound;
+          refined += plan.refinement->refined;
+          EXPECT_GT(check->asked, 0);
+          options.hooks.cost = std::make_shared<NoCost>();
+          options.evidence.postures = true;
+          const MotionPlan costly = plan_motion(planner, options, true, {});
+          EXPECT_FALSE(costly.refinement->refined);
+          EXPECT_EQ(costly.refinement->reason, "the caller's own cost is not refined");
+          EXPECT_TRUE(costly.result.evidence.postures);
+          return;
+        }
+      });
   std::printf(
       "%d solved, %d go beyond a bound when refined freely, %d keep it, %d of them refined\n",
       solved, beyond, kept, refined);
@@ -327,8 +329,8 @@ TEST(Refine, AsksTheCallersCheck) {
 TEST(Refine, RefusesRowsOfAnotherResolution) {
   const int solved = for_solved(
       "Refine", 12,
-      [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
-        Problem other = problem;
+      [&](const PathProblem& problem, const PreparedRobot& robot, const PlanResult& found) {
+        PathProblem other = problem;
         other.resolution.ds /= 2;
         EXPECT_THROW(static_cast<void>(refine(robot, other, found.trajectory)), InvalidArgument);
         EXPECT_THROW(static_cast<void>(refine(robot, problem, found.trajectory, {}, Budget(1e-9))),
@@ -342,7 +344,7 @@ TEST(Motion, PassesTheCheckOfMotions) {
   std::size_t samples = 0;
   const int solved = for_solved(
       "Motion", trials(40),
-      [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
+      [&](const PathProblem& problem, const PreparedRobot& robot, const PlanResult& found) {
         const Refined refined = refine(robot, problem, found.trajectory, {.second_seed = false});
         const TimingOptions options{.speed = 0.1, .turn_speed = 0.5, .rate = 250};
         const MotionResult result = time_trajectory(robot, problem, refined.rows, options);
@@ -385,8 +387,8 @@ struct ClearanceCounts {
 };
 
 /// Draws a problem before a ball, with layers that lie far apart or close together at times.
-Problem random_before_ball(const TestRobot& robot, Random& random) {
-  Problem problem = motion_problem(robot, random);
+PathProblem random_before_ball(const TestRobot& robot, Random& random) {
+  PathProblem problem = motion_problem(robot, random);
   problem = with_motion_defaults(problem);
   EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
   if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
@@ -397,7 +399,7 @@ Problem random_before_ball(const TestRobot& robot, Random& random) {
 }
 
 /// The ball is as large as leaves a path, so that the path must pass near it.
-void enlarge_ball(Problem& problem, const PlanOptions& options) {
+void enlarge_ball(PathProblem& problem, const PlanOptions& options) {
   double solvable = 0.02, blocked = 0.2;
   for (int k = 0; k < 5; ++k) {
     problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
@@ -420,7 +422,7 @@ void expect_margin_of_path(const PlanResult& result, World::Query& query) {
 
 /// Expects the clearance on every seventh move of the motion: at its row alone where only nodes are
 /// asked for, else at eleven points.
-void expect_clearance(const Problem& problem, const std::vector<TimedRow>& rows,
+void expect_clearance(const PathProblem& problem, const std::vector<TimedRow>& rows,
                       World::Query& query, int trial, ClearanceCounts& counts) {
   constexpr double kForgiven = kVerdictBand + 1e-6;
   bool comes_near = false;
@@ -439,7 +441,7 @@ void expect_clearance(const Problem& problem, const std::vector<TimedRow>& rows,
 }
 
 /// Plans, refines and times one problem before a ball and checks the clearance of its motion.
-void check_clearance(Problem problem, int trial, ClearanceCounts& counts) {
+void check_clearance(PathProblem problem, int trial, ClearanceCounts& counts) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.evidence.postures = true;
@@ -499,7 +501,7 @@ std::string said_of_postures(const TimedPath& motion) {
 
 /// The lattice's path runs along the limit of a joint, which leaves it between two layers.
 TEST(Motion, IsLedThroughOtherPosturesWhereItIsAtFaultBetweenLayers) {
-  const Problem base = with_motion_defaults(
+  const PathProblem base = with_motion_defaults(
       io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   Planner planner(episode_problem(base, 1, 25));
   PlanOptions options;
@@ -529,7 +531,7 @@ TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem = with_motion_defaults(problem);
     problem.limits.edges = EdgeMode::kNodes;
@@ -566,7 +568,7 @@ TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
 }
 
 TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
-  const Problem base = with_motion_defaults(
+  const PathProblem base = with_motion_defaults(
       io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   int jumps = 0;
   for (const std::uint64_t episode : {60u, 88u}) {
@@ -643,7 +645,7 @@ TEST(Motion, SlowsDownWhereTheToolWouldStrayBetweenSamples) {
 }
 
 TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
-  const Problem problem = with_motion_defaults(
+  const PathProblem problem = with_motion_defaults(
       io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
   // Stopped as soon as the lattice's path is known.
   std::stop_source stop;
@@ -680,7 +682,7 @@ TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
 
 TEST(Motion, RefusesSpeedsThatMakeNoSense) {
   Random random(1);
-  const Problem some = motion_problem(data_robot("iiwa14"), random);
+  const PathProblem some = motion_problem(data_robot("iiwa14"), random);
   const PreparedRobot robot(some);
   for (const TimingOptions& options :
        {TimingOptions{.speed = 0, .turn_speed = {}, .rate = 250},

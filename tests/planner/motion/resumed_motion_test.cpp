@@ -17,10 +17,10 @@
 namespace swivel {
 namespace {
 
-Problem coarse(const std::string& name) {
+PathProblem coarse(const std::string& name) {
   std::string file = SWIVEL_DATA_DIR;
   file += "/problems/" + name + ".yaml";
-  Problem problem = io::load_problem(file);
+  PathProblem problem = io::load_problem(file);
   problem.resolution.ds = 0.02;
   problem.resolution.dphi = 0.2;
   problem.resolution.arc = 0.35;
@@ -30,14 +30,14 @@ Problem coarse(const std::string& name) {
 
 const TimingOptions kTiming{.speed = 0.1, .turn_speed = {}, .rate = 50};
 
-PlanResult solve(const Problem& problem) {
+PlanResult solve(const PathProblem& problem) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.threads = 1;
   return Planner(problem).plan(options);
 }
 
-MotionPlan moved(const Problem& problem) {
+MotionPlan moved(const PathProblem& problem) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.threads = 1;
@@ -46,7 +46,7 @@ MotionPlan moved(const Problem& problem) {
 }
 
 /// Expects a motion that begins where the problem's start is, and that the check passes.
-void expect_motion_from_start(const Problem& problem, double whole) {
+void expect_motion_from_start(const PathProblem& problem, double whole) {
   const MotionPlan rest = moved(problem);
   ASSERT_EQ(rest.result.status, PlanStatus::kSolved);
   ASSERT_TRUE(rest.motion->motion) << rest.motion->failure->reason;
@@ -66,12 +66,12 @@ constexpr const char* kKinds[] = {"experiment_a",    "panda_weld_seam",     "kr6
 TEST(ResumedMotion, BeginsWhereTheStartIs) {
   for (const char* name : kKinds) {
     SCOPED_TRACE(name);
-    const Problem problem = coarse(name);
+    const PathProblem problem = coarse(name);
     const MotionPlan whole = moved(problem);
     ASSERT_EQ(whole.result.status, PlanStatus::kSolved);
     ASSERT_TRUE(whole.motion->motion) << whole.motion->failure->reason;
     const double duration = whole.motion->motion->duration;
-    Problem rest = problem;
+    PathProblem rest = problem;
     const TrajectoryRow& layer = whole.result.trajectory[whole.result.trajectory.size() / 2];
     rest.start = layer.q;
     rest.start_at = layer.s;
@@ -79,7 +79,7 @@ TEST(ResumedMotion, BeginsWhereTheStartIs) {
   }
 }
 
-void expect_passes(const PreparedRobot& robot, const Problem& problem,
+void expect_passes(const PreparedRobot& robot, const PathProblem& problem,
                    const std::vector<TimedRow>& rows) {
   EXPECT_LE((rows.front().row.q - *problem.start).cwiseAbs().maxCoeff(), 1e-7);
   const CheckResult check = check_motion(robot, problem, rows);
@@ -89,7 +89,7 @@ void expect_passes(const PreparedRobot& robot, const Problem& problem,
 /// Expects that a path which goes on from a start does so in a motion: through planning with a
 /// speed, and through timing of the rows of a plan, of a plan without a motion, and of the motion's
 /// own. With `places`, rows that state their joints alone pass the check as well.
-void expect_goes_on(const Problem& problem, bool places) {
+void expect_goes_on(const PathProblem& problem, bool places) {
   constexpr Stated kJointsAlone{.s = false, .phi = false, .branch = false, .roll = false};
   const PreparedRobot robot(problem);
   const MotionPlan rest = moved(problem);
@@ -101,7 +101,7 @@ void expect_goes_on(const Problem& problem, bool places) {
 
   std::vector<TrajectoryRow> samples;
   for (const TimedRow& row : rows) samples.push_back(row.row);
-  const Problem of_motions = with_motion_defaults(problem);
+  const PathProblem of_motions = with_motion_defaults(problem);
   std::vector<std::vector<TrajectoryRow>> plans{rest.result.trajectory,
                                                 rows_at_layers(robot, of_motions, samples, {})};
   try {
@@ -120,7 +120,7 @@ TEST(ResumedMotion, GoesOnFromJointsBesideThePath) {
   const int count = test::trials(8);
   int refused = 0;
   for (const char* name : kKinds) {
-    const Problem problem = coarse(name);
+    const PathProblem problem = coarse(name);
     const MotionPlan whole = moved(problem);
     ASSERT_TRUE(whole.motion->motion);
     const std::vector<TimedRow>& rows = whole.motion->motion->rows;
@@ -138,7 +138,7 @@ TEST(ResumedMotion, GoesOnFromJointsBesideThePath) {
         for (row = 0; rows[row + 1].row.s < s; ++row) {
         }
       }
-      Problem rest = problem;
+      PathProblem rest = problem;
       rest.start_at = rows[row].row.s;
       rest.start = rows[row].row.q;
       if (trial % 4 > 0) rest.start_tolerance = 0.005;
@@ -158,7 +158,7 @@ TEST(ResumedMotion, GoesOnFromJointsBesideThePath) {
 }
 
 TEST(ResumedMotion, RefusesAStartThatIsOnlyOnTheCornerThatItRounds) {
-  Problem problem = coarse("experiment_a");
+  PathProblem problem = coarse("experiment_a");
   const Waypoint first = problem.waypoints[0];
   problem.waypoints.assign(3, first);
   problem.waypoints[1].position += Vector3d(0, 0.1, 0);
@@ -176,7 +176,7 @@ TEST(ResumedMotion, RefusesAStartThatIsOnlyOnTheCornerThatItRounds) {
 TEST(ClosedMotion, EndsAtTheArmAngleOfItsBeginning) {
   for (int k = 0; k < 8; ++k) {
     SCOPED_TRACE(k);
-    Problem problem = coarse("experiment_a");
+    PathProblem problem = coarse("experiment_a");
     const Waypoint first = problem.waypoints[0];
     const Vector3d along(0.01 + 0.002 * k, 0.05, 0.03), across(0.01, 0.01, 0.04 + 0.003 * k);
     problem.waypoints.assign(5, first);

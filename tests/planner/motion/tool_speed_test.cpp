@@ -51,7 +51,7 @@ std::vector<Case> cases() {
 
 /// A random problem of an arm and how its motion is timed.
 struct SpeedTask {
-  Problem problem;
+  PathProblem problem;
   double speed = 0;            ///< of the tool, m/s
   std::optional<double> turn;  ///< speed of the tool's rotation, rad/s
   double rate = 0;             ///< rows per second
@@ -63,7 +63,7 @@ struct SpeedTask {
 SpeedTask random_speed_task(const Case& which, Random& random) {
   constexpr double kRows = 6000;  // that a motion has at most, about
   SpeedTask task;
-  Problem& problem = task.problem;
+  PathProblem& problem = task.problem;
   problem = with_motion_defaults(motion_problem(which.robot, random, which.roll));
   task.speed = 0.0005 * std::pow(1000, random.uniform(0, 1));  // 0.5 mm/s to 0.5 m/s
   double length = 0;
@@ -150,7 +150,7 @@ TEST(ToolSpeed, IsAtMostTheOneAskedFor) {
 TEST(ToolSpeed, IsKeptWhereATurnOnTheSpotBecomesALine) {
   TestRobot fetch = data_robot("fetch_like");
   fetch.tip_link = "flange";
-  Problem problem = problem_for(fetch);
+  PathProblem problem = problem_for(fetch);
   problem.tool.translation() = Vector3d(0.012961861183245462, 0, 0.1384121636511872);
   problem.tool.linear() = Eigen::AngleAxisd(0.785, Vector3d::UnitY()).toRotationMatrix();
   const auto add = [&](const Vector3d& xyz, double w, double x, double y, double z) {
@@ -188,7 +188,7 @@ TEST(ToolSpeed, IsKeptWhereATurnOnTheSpotBecomesALine) {
 
 TEST(ToolSpeed, LimitsAreKeptAndSaid) {
   Random random(seed("ToolSpeedSaid"));
-  Problem problem = with_motion_defaults(motion_problem(data_robot("iiwa14"), random));
+  PathProblem problem = with_motion_defaults(motion_problem(data_robot("iiwa14"), random));
   problem.limits.tool_speed = 0.02;
   problem.limits.tool_turn_speed = 0.1;
   Planner planner(problem);

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-Answer truth_of(const Problem& problem) {
+Answer truth_of(const PathProblem& problem) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
@@ -66,7 +66,7 @@ struct AgreementCounts {
 };
 
 /// Plans the problem with every planner, with all evidence, in the order of kPlanners.
-std::vector<PlanResult> plan_with_all(const Problem& problem) {
+std::vector<PlanResult> plan_with_all(const PathProblem& problem) {
   std::vector<PlanResult> results;
   for (const PlannerKind planner : kPlanners)
     results.push_back(plan(problem, with_all_evidence(planner)));
@@ -74,7 +74,7 @@ std::vector<PlanResult> plan_with_all(const Problem& problem) {
 }
 
 /// Expects the path of least cost that brute force finds, and that it passes the check.
-void expect_true_path(const Problem& problem, const PlanResult& result, const Answer& truth,
+void expect_true_path(const PathProblem& problem, const PlanResult& result, const Answer& truth,
                       const std::string& what, AgreementCounts& counts) {
   counts.chosen += truth.chosen;
   ASSERT_EQ(result.lattice.cost, truth.cost) << what;
@@ -110,7 +110,7 @@ void expect_true_diagnosis(const Diagnosis& diagnosis, const Answer& truth, bool
 }
 
 /// Compares the answers of all planners to one problem with each other and with brute force.
-void check_agreement(const Problem& problem, bool near_by_design, const std::string& what,
+void check_agreement(const PathProblem& problem, bool near_by_design, const std::string& what,
                      AgreementCounts& counts) {
   const Answer truth = truth_of(problem);
   const std::vector<PlanResult> results = plan_with_all(problem);
@@ -177,7 +177,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const bool near_by_design = trial % 8 == 7;
-    const Problem problem =
+    const PathProblem problem =
         random_problem(near_by_design ? bare[static_cast<std::size_t>(trial / 8) % bare.size()]
                                       : robots[static_cast<std::size_t>(trial) % robots.size()],
                        random);
@@ -200,7 +200,7 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
   const int count = trials(100);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + problem.source;
@@ -254,7 +254,7 @@ TEST(Agreement, FclAloneGivesTheSameAnswersOnOtherLattices) {
   std::int64_t more = 0;
   for (const char* name :
        {"panda_weld_seam", "kr6_weld_pipe", "torch_door", "iiwa14_deburr_in_hand"}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.02;
     problem.resolution.dphi = 0.2;
     problem.resolution.arc = problem.resolution.droll = 0.4;
@@ -307,7 +307,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial / kKinds) % robots.size()], random);
     const auto kind = static_cast<std::size_t>(trial % kKinds);
     problem.limits.step_error = std::nullopt;
@@ -355,7 +355,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
 
 /// A problem whose start may be in one of the slivers at the ends of the joints' ranges.
 struct SliverCase {
-  Problem problem;
+  PathProblem problem;
   int in_sliver = 0;  ///< how many joints start in the sliver at their upper limit
 };
 
@@ -368,7 +368,7 @@ SliverCase random_sliver_case(bool wide, Random& random) {
     if (number == 6) joint.lower = -kTwoPi, joint.upper = kTwoPi + slivers[1];
   });
   SliverCase drawn;
-  Problem& problem = drawn.problem;
+  PathProblem& problem = drawn.problem;
   problem = random_problem(robot, random);
   const Chain chain = arm_of(robot).chain;
   Config q = random_config(chain, random);
@@ -393,7 +393,7 @@ SliverCase random_sliver_case(bool wide, Random& random) {
 }
 
 /// Compares all planners with brute force, and expects a warning where a range is too wide.
-void check_slivers(const Problem& problem, const Answer& truth, bool wide,
+void check_slivers(const PathProblem& problem, const Answer& truth, bool wide,
                    const std::string& what) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -456,7 +456,7 @@ TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {
   q1 << 0.5, 0.7, 0.1, -1.0, 0.3, 0.8, 0.2;
   std::vector<PlanResult> results;
   for (const double limit : {3.14159, 3.1416}) {
-    Problem problem = problem_for(iiwa(limit));
+    PathProblem problem = problem_for(iiwa(limit));
     problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
     results.push_back(plan(problem));
     EXPECT_EQ(results.back().lattice.grid->windings, 1);
@@ -468,7 +468,8 @@ TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {
 class Experiments : public testing::TestWithParam<const char*> {};
 
 TEST_P(Experiments, FourPlannersAgreeAtTheCoarseResolution) {
-  Problem problem = io::load_problem(data_dir() / "problems" / (std::string(GetParam()) + ".yaml"));
+  PathProblem problem =
+      io::load_problem(data_dir() / "problems" / (std::string(GetParam()) + ".yaml"));
   problem.resolution.ds = 0.02;
   problem.resolution.dphi = 0.2;
   problem.limits.edges = EdgeMode::kNodes;

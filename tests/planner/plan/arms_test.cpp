@@ -54,8 +54,8 @@ std::vector<TestRobot> arms() {
           wound};
 }
 
-Problem random_task(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem random_task(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
   problem.limits.arm_slope = Limits().arm_slope;
   problem.resolution.arc = random.uniform(0.3, 0.6);
@@ -76,7 +76,7 @@ struct ArmsCounts {
 
 /// Plans the problem with every planner, expects the same answer of each and the verdict of brute
 /// force, and appends the results in the order of kPlanners.
-void plan_with_all(const PreparedRobot& robot, const Problem& problem, const Answer& truth,
+void plan_with_all(const PreparedRobot& robot, const PathProblem& problem, const Answer& truth,
                    const std::string& what, std::vector<PlanResult>& results) {
   for (const PlannerKind planner : kPlanners) {
     results.push_back(plan(robot, problem, with_all_evidence(planner)));
@@ -98,8 +98,9 @@ void plan_with_all(const PreparedRobot& robot, const Problem& problem, const Ans
 
 /// Expects the path of least cost that brute force finds on the lattice, and that it passes the
 /// check.
-void expect_true_path(const PreparedRobot& robot, const Problem& problem, const Lattice& lattice,
-                      const Answer& truth, const PlanResult& result, const std::string& what) {
+void expect_true_path(const PreparedRobot& robot, const PathProblem& problem,
+                      const Lattice& lattice, const Answer& truth, const PlanResult& result,
+                      const std::string& what) {
   const Chain& chain = robot.arm().chain;
   ASSERT_EQ(result.lattice.cost, truth.cost) << what;
   for (std::size_t i = 0; i < truth.slots.size(); ++i) {
@@ -115,7 +116,7 @@ void expect_true_path(const PreparedRobot& robot, const Problem& problem, const 
 }
 
 /// Compares the answers of all planners to one problem with each other and with brute force.
-void check_agreement(const Problem& problem, const std::string& what, ArmsCounts& counts) {
+void check_agreement(const PathProblem& problem, const std::string& what, ArmsCounts& counts) {
   const PreparedRobot robot(problem);
   const bool complete = robot.arm_class().complete();
   ASSERT_EQ(robot.arm_class().kind, complete ? ArmKind::kArcs : ArmKind::kSampled) << what;
@@ -155,7 +156,7 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     check_agreement(problem,
                     "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
@@ -188,7 +189,7 @@ TEST(Arms, FourPlannersAndBruteForceBesideATurntable) {
   int turned = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_task(robot, random);
+    PathProblem problem = random_task(robot, random);
     if (trial % 2 == 0) {
       const Pose post = random_pose(random, Vector3d(0.5, 0, 0.6), 0.4);
       problem.attached.push_back({"post", Cylinder{0.04, 0.8}, post, "room"});
@@ -219,7 +220,7 @@ void plan_with_one_more_axis(const char* stream, const std::vector<TestRobot>& r
   int moves = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const int solved = counts.solved;
     check_agreement(problem,
@@ -262,7 +263,7 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
   int wound = 0, replanned = 0;
   for (int trial = 0; trial < trials(100); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_task(robot, random);
+    PathProblem problem = random_task(robot, random);
     problem.scene.clear();
     problem.start.reset();
     problem.limits.joint_margin = 0;
@@ -301,7 +302,7 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
 /// check_trajectory() passes it, and the tool has the waypoints' poses apart from its roll.
 TEST(Arms, SixJointsAndTheRollOfTheTool) {
   for (const char* const name : {"kr6_weld_pipe", "ur5e_deburr_edge"}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     ASSERT_TRUE(problem.roll) << name;
     problem.resolution.ds = 0.02;
     problem.resolution.arc = 0.4;
@@ -348,7 +349,7 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
                 first->trajectory.size(), most);
     EXPECT_GT(most, 0.01) << name;  // or it would be of no use
     // Without it the arm is one of six joints, which is none.
-    Problem without = problem;
+    PathProblem without = problem;
     without.roll.reset();
     EXPECT_THROW((void)plan(without), InputError) << name;
     EXPECT_THROW(robot.require_prepared_for(without), InvalidArgument) << name;
@@ -356,7 +357,7 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
 }
 
 /// Computes the cost of the roll by its definition.
-double plain_roll_cost(const Problem& problem, const std::vector<TrajectoryRow>& rows) {
+double plain_roll_cost(const PathProblem& problem, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double before = i > 0 ? rows[i].s - rows[i - 1].s : 0,
@@ -383,7 +384,7 @@ struct Wave final : StateCost {
 
 /// A random problem with the weight that `cost.roll` is to have in it, and the caller's own cost.
 struct RollCostCase {
-  Problem problem;
+  PathProblem problem;
   double weight = 0;
   Hooks hooks;
 };
@@ -391,7 +392,7 @@ struct RollCostCase {
 /// Draws a problem of the arm of six joints whose tool may turn within `roll`.
 RollCostCase random_roll_cost_case(const char* name, const Roll& roll, Random& random) {
   RollCostCase drawn;
-  Problem& problem = drawn.problem;
+  PathProblem& problem = drawn.problem;
   problem = motion_problem(arm_of_data(name), random, roll);
   problem.smooth.reset();
   if (problem.roll->lower > 0) problem.start.reset();  // it stands unturned
@@ -412,7 +413,7 @@ RollCostCase random_roll_cost_case(const char* name, const Roll& roll, Random& r
 }
 
 /// Finds the answer by brute force, where the roll turns no faster than `roll_slope` allows.
-Answer truth_of(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+Answer truth_of(const PreparedRobot& robot, const PathProblem& problem, const ToolPath& path,
                 const Lattice& lattice, const Hooks& hooks) {
   const auto turns_slowly = [&](int layer, int a, int b) {
     const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
@@ -425,7 +426,7 @@ Answer truth_of(const PreparedRobot& robot, const Problem& problem, const ToolPa
 
 /// Plans the problem with every planner, expects the answer of brute force of each, and sets
 /// `first` to the first planner's result where there is a path.
-void plan_as_brute_force(const PreparedRobot& robot, const Problem& problem, const Hooks& hooks,
+void plan_as_brute_force(const PreparedRobot& robot, const PathProblem& problem, const Hooks& hooks,
                          const Answer& truth, const std::string& what,
                          std::optional<PlanResult>& first) {
   for (const PlannerKind planner : kPlanners) {
@@ -447,12 +448,12 @@ void plan_as_brute_force(const PreparedRobot& robot, const Problem& problem, con
 
 /// Expects the path to cost its moves and its roll, and to be turned no more than the `free` one,
 /// which is planned with a weight of `least` on the roll. `unit` is the lattice's unit of cost.
-void expect_cost_of_roll(const PreparedRobot& robot, const Problem& problem,
+void expect_cost_of_roll(const PreparedRobot& robot, const PathProblem& problem,
                          const PlanResult& found, const PlanResult& free, double least, double unit,
                          bool hooked, const std::string& what, RollCounts& counts) {
   const CheckResult check = check_trajectory(robot, problem, found.trajectory);
   ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
-  Problem unturned = problem;
+  PathProblem unturned = problem;
   unturned.cost.roll = 1e-6;  // with none at all the waypoints' own turn would not matter
   const double moves = check_trajectory(robot, unturned, found.trajectory).cost -
                        plain_roll_cost(unturned, found.trajectory);
@@ -477,7 +478,7 @@ void expect_cost_of_roll(const PreparedRobot& robot, const Problem& problem,
 
 /// Compares all planners with brute force on one problem and checks the cost of the path's roll.
 void check_roll_cost(const RollCostCase& drawn, const std::string& what, RollCounts& counts) {
-  Problem problem = drawn.problem;
+  PathProblem problem = drawn.problem;
   const PreparedRobot robot(problem);
   constexpr double kLeast = 1e-6;  // with some cost the nodes are the same
   problem.cost.roll = kLeast;
@@ -541,11 +542,11 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
 
 TEST(Arms, AStartThatDoesNotFitIsBadInput) {
   for (const char* const name : {"panda_weld_seam", "ur5e_deburr_edge"}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     const PlanResult whole = plan(problem);
     ASSERT_EQ(whole.status, PlanStatus::kSolved) << name;
     const auto message = [&](const Config& start) -> std::string {
-      Problem started = problem;
+      PathProblem started = problem;
       started.start = start;
       try {
         static_cast<void>(plan(started));
@@ -575,7 +576,7 @@ TEST(Arms, AStartThatDoesNotFitIsBadInput) {
 }
 
 TEST(Arms, WhatNeedsAnArmAngleSaysSo) {
-  const auto message = [](const Problem& problem) -> std::string {
+  const auto message = [](const PathProblem& problem) -> std::string {
     try {
       (void)plan(problem);
     } catch (const InputError& error) {
@@ -584,7 +585,7 @@ TEST(Arms, WhatNeedsAnArmAngleSaysSo) {
     return "";
   };
   Random random(1);
-  Problem problem = random_task(arms()[0], random);
+  PathProblem problem = random_task(arms()[0], random);
   problem.limits.step_error = 0.1;
   EXPECT_EQ(message(problem),
             problem.source +

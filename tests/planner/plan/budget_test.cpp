@@ -26,14 +26,14 @@ namespace {
 
 using namespace test;
 
-Problem experiment(const std::string& name) {
+PathProblem experiment(const std::string& name) {
   return io::load_problem(data_dir() / "problems" / (name + ".yaml"));
 }
 
 /// Experiment A with a plate before the tool half way: no path, for a cause that must be searched
 /// for.
-Problem infeasible() {
-  Problem problem = experiment("experiment_a");
+PathProblem infeasible() {
+  PathProblem problem = experiment("experiment_a");
   SceneObject plate;
   plate.name = "plate";
   plate.shape = Box{Vector3d(0.02, 0.1, 0.4)};
@@ -48,7 +48,7 @@ TEST(Budget, EveryPositiveTimeOutHolds) {
     EXPECT_FALSE(Budget(seconds).spent()) << seconds;
   EXPECT_FALSE(Budget().spent());
   EXPECT_TRUE(Budget(1e-300).spent());
-  Problem problem = experiment("experiment_a");
+  PathProblem problem = experiment("experiment_a");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   PlanOptions options;
   options.timeout_s = 1e10;
@@ -66,7 +66,7 @@ TEST(Budget, AFlagComesBeforeTheDeadline) {
 struct SpentPlan {
   using Stages = std::vector<std::pair<const char*, std::function<void()>>>;
 
-  Problem problem = infeasible();
+  PathProblem problem = infeasible();
   Budget spent{1e-12};
   PreparedRobot robot{problem};
   std::vector<Waypoint> waypoints = waypoints_in_base(problem);
@@ -169,10 +169,10 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
 /// Cancelled at the beginning of one stage after the other, which progress tells.
 TEST(Budget, APlanStopsInTheStageThatItIsIn) {
   int stopped = 0, verdicts_kept = 0;
-  for (const Problem& problem : {experiment("experiment_b"), infeasible()})
+  for (const PathProblem& problem : {experiment("experiment_b"), infeasible()})
     for (const PlannerKind planner :
          {PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
-      Problem coarse = problem;
+      PathProblem coarse = problem;
       if (planner == PlannerKind::kEagerDp) coarse.resolution = {.ds = 0.02, .dphi = 0.2};
       const PreparedRobot robot(coarse);
       PlanOptions options;
@@ -227,7 +227,7 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
 }
 
 TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
-  Problem problem = experiment("experiment_a");
+  PathProblem problem = experiment("experiment_a");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const PlanResult least = plan(problem);
   ASSERT_EQ(least.status, PlanStatus::kSolved);
@@ -245,7 +245,7 @@ TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
   EXPECT_EQ(all.arm_angle.size(), all.trajectory.size());
   EXPECT_GT(all.min_manipulability, 0);
 
-  Problem blocked = infeasible();
+  PathProblem blocked = infeasible();
   blocked.resolution = {.ds = 0.02, .dphi = 0.2};
   const PlanResult cause = plan(blocked), evidence = plan(blocked, options);
   ASSERT_EQ(cause.status, PlanStatus::kInfeasible);
@@ -268,7 +268,7 @@ TEST(Budget, ADeadlineHoldsOnLargeLattices) {
        {std::pair("solved", experiment("experiment_a")), std::pair("infeasible", infeasible())})
     for (const Size size :
          {Size{0.005, 0.05}, Size{0.001, 0.01}, Size{0.0005, 0.003}, Size{1e-6, 0.5}}) {
-      Problem fine = problem;
+      PathProblem fine = problem;
       fine.resolution = {.ds = size.ds, .dphi = size.dphi};
       const PreparedRobot robot(fine);
       for (const auto& [planner, timeout_s] :
@@ -300,7 +300,7 @@ TEST(Budget, ADeadlineHoldsOnLargeLattices) {
 
 /// A row without its columns would be a wrong answer.
 TEST(Budget, ACampaignLeavesOutTheEpisodeThatWasStopped) {
-  Problem problem = infeasible();
+  PathProblem problem = infeasible();
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const PreparedRobot robot(problem);
   CampaignOptions options;

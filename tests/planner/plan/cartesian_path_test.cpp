@@ -64,8 +64,8 @@ struct Query {
 };
 
 /// The problem of a query, written by hand.
-Problem problem_of(const Robot& robot, const Chain& chain, const Query& query) {
-  Problem problem;
+PathProblem problem_of(const Robot& robot, const Chain& chain, const Query& query) {
+  PathProblem problem;
   static_cast<Robot&>(problem) = robot;
   problem.start = query.start;
   problem.waypoints = query.waypoints;

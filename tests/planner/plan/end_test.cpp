@@ -87,7 +87,7 @@ void keep_inside(const Chain& chain, Config& q) {
 }
 
 /// Sets how fine the lattice is, and limits that suit it.
-void draw_lattice(Problem& problem, Nodes nodes, double length, Random& random) {
+void draw_lattice(PathProblem& problem, Nodes nodes, double length, Random& random) {
   Resolution& resolution = problem.resolution;
   resolution.ds = std::max(0.01, length / (3 + random.below(3)));
   resolution.dalpha = random.uniform(0.3, 0.8);
@@ -118,8 +118,8 @@ void draw_lattice(Problem& problem, Nodes nodes, double length, Random& random) 
 
 /// Draws a path whose last waypoint is where the tool stands in the posture that is given as its
 /// end, sometimes with a start that is given likewise.
-Problem ending_problem(const EndArm& arm, Random& random) {
-  Problem problem = problem_for(arm.robot);
+PathProblem ending_problem(const EndArm& arm, Random& random) {
+  PathProblem problem = problem_for(arm.robot);
   const bool rolls = arm.nodes == Nodes::kRolls;
   if (rolls || arm.nodes == Nodes::kSixJoints)
     problem.roll = random.coin() ? Roll{} : Roll{random.uniform(-2, -0.5), random.uniform(0.5, 2)};
@@ -190,7 +190,7 @@ bool may_end(const RollLattice& lattice, const Limits& limits, const Resolution&
          std::min(cells * cell, kPi) + 1e-9;
 }
 
-Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const Problem& problem,
+Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProblem& problem,
                Nodes nodes) {
   const Chain& chain = robot.arm().chain;
   const auto answer = [&](const Lattice& lattice,
@@ -234,7 +234,7 @@ struct EndCounts {
 
 /// Expects that the path ends in the given posture, in the same turn where it is not bound to a
 /// start, that it passes the check, and that the check refuses it for another end.
-void expect_ends(const PreparedRobot& robot, const Problem& problem, const PlanResult& result,
+void expect_ends(const PreparedRobot& robot, const PathProblem& problem, const PlanResult& result,
                  const std::string& what, EndCounts& counts) {
   const Config off = result.trajectory.back().q - *problem.end;
   for (std::size_t j = 0; j < kDof; ++j) {
@@ -252,7 +252,7 @@ void expect_ends(const PreparedRobot& robot, const Problem& problem, const PlanR
   ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
   ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
   if (problem.limits.step_error) return;  // whose estimate asks for an end that is on the path
-  Problem other = problem;
+  PathProblem other = problem;
   (*other.end)[3] += 2e-6;
   const CheckResult refused = check_trajectory(robot, other, result.trajectory);
   ASSERT_EQ(refused.failure_count, 1) << what;
@@ -262,7 +262,7 @@ void expect_ends(const PreparedRobot& robot, const Problem& problem, const PlanR
 
 /// Expects a certificate that there is no path with this end, which is none for the problem
 /// without.
-void expect_certified(const std::shared_ptr<const PreparedRobot>& robot, const Problem& problem,
+void expect_certified(const std::shared_ptr<const PreparedRobot>& robot, const PathProblem& problem,
                       const std::string& what, EndCounts& counts) {
   Planner planner(robot, problem);
   ASSERT_EQ(planner.plan().status, PlanStatus::kInfeasible) << what;
@@ -270,14 +270,14 @@ void expect_certified(const std::shared_ptr<const PreparedRobot>& robot, const P
   const CertificateCheck check = verify_certificate(*robot, problem, certificate);
   ASSERT_TRUE(check.passed) << what << ": " << check.failure;
   ++counts.certified;
-  Problem free = problem;
+  PathProblem free = problem;
   free.end.reset();
   if (plan(*robot, free).status != PlanStatus::kSolved) return;
   ++counts.freed;
   ASSERT_FALSE(verify_certificate(*robot, free, certificate).passed) << what;
 }
 
-void check_end(const EndArm& arm, const Problem& problem, const std::string& what,
+void check_end(const EndArm& arm, const PathProblem& problem, const std::string& what,
                EndCounts& counts) {
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   const ToolPath path = problem_path(problem, robot->arm().chain);
@@ -320,7 +320,7 @@ TEST(End, FourPlannersAndBruteForceOnRandomProblems) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const EndArm& arm = arms[static_cast<std::size_t>(trial) % arms.size()];
-    const Problem problem = ending_problem(arm, random);
+    const PathProblem problem = ending_problem(arm, random);
     check_end(arm, problem,
               "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
                   " robot " + problem.source,
@@ -350,7 +350,7 @@ TEST(End, FourPlannersAndBruteForceOnRandomProblems) {
 }
 
 /// Expects plan() to refuse the problem with one line that has all of `words`.
-void expect_refused(const Problem& problem, const std::vector<std::string>& words) {
+void expect_refused(const PathProblem& problem, const std::vector<std::string>& words) {
   try {
     static_cast<void>(plan(problem));
     FAIL() << "not refused: " << words[0];
@@ -366,14 +366,14 @@ TEST(End, PosturesThatDoNotFitAreRefused) {
     TestRobot robot = data_robot(name);
     if (std::string(name) != "iiwa14") robot = at_flange(name);
     const Chain chain = arm_of(robot).chain;
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     Config q;
     q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
     problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(q))};
     problem.waypoints[0].position.x() -= 0.02;
     problem.end = q;
     EXPECT_EQ(plan(problem).status, PlanStatus::kSolved) << name;
-    Problem off = problem;
+    PathProblem off = problem;
     (*off.end)[0] += 1e-3;
     expect_refused(off, {"path.end.joints", "not on the path", " mm and ", "1e-06"});
     off = problem;
@@ -383,10 +383,10 @@ TEST(End, PosturesThatDoNotFitAreRefused) {
 }
 
 /// Draws a problem for motions that ends where a path on another grid does.
-std::optional<Problem> ending_motion(const TestRobot& robot, const std::optional<Roll>& roll,
-                                     Random& random) {
-  Problem problem = motion_problem(robot, random, roll);
-  Problem elsewhere = problem;
+std::optional<PathProblem> ending_motion(const TestRobot& robot, const std::optional<Roll>& roll,
+                                         Random& random) {
+  PathProblem problem = motion_problem(robot, random, roll);
+  PathProblem elsewhere = problem;
   elsewhere.resolution.dphi = 0.13;
   elsewhere.resolution.arc = 0.11;
   const PlanResult found = plan(elsewhere);
@@ -433,7 +433,7 @@ TEST(End, RefinedPathsAndMotionsEndThere) {
 
 /// Laps of a ring that ends in the joints of its start repeat.
 TEST(End, ARingThatEndsInItsStartCanBeRepeated) {
-  Problem problem = problem_for(data_robot("iiwa14"));
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   const Chain chain = arm_of(data_robot("iiwa14")).chain;
   Config q;
   q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
@@ -506,7 +506,7 @@ TEST(End, StrokesOfAJobEndThere) {
 
 /// An end in collision is told and can be freed.
 TEST(End, APostureInCollisionIsToldAndAFreeEndIsAdvised) {
-  Problem problem = problem_for(data_robot("iiwa14"));
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   const Chain chain = arm_of(data_robot("iiwa14")).chain;
   Config q;
   q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;

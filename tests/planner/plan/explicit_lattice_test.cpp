@@ -83,12 +83,12 @@ std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chai
 
 /// A random problem of an arm of the robot, whose path begins at the tool's pose at `start`.
 struct ListedCase {
-  Problem problem;
+  PathProblem problem;
   Config start;
 };
 
 ListedCase random_listed_case(const TestRobot& robot, const Chain& chain, Random& random) {
-  Problem problem = random_problem(robot, random);
+  PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
   problem.limits.joint_step = random.uniform(0.5, 1.5);
   if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
@@ -197,7 +197,7 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_problem(robot, random);
+    PathProblem problem = random_problem(robot, random);
     problem.limits.step_error.reset();
     problem.limits.joint_step = random.uniform(0.1, 0.5);
     problem.start.reset();
@@ -208,7 +208,7 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
     problem.resolution = {.ds = 0.04, .dphi = 0.3, .dalpha = 0.3};
     const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
     const auto points = random_layers(arm.chain, path, start, random);
-    const auto truth_of = [&](const Problem& posed, Diagnosis* diagnosis) {
+    const auto truth_of = [&](const PathProblem& posed, Diagnosis* diagnosis) {
       const ExplicitLattice lattice(arm.chain, path, posed, points);
       const World world(*posed.model, arm, posed);
       const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
@@ -246,7 +246,7 @@ TEST(ExplicitLattice, ALimitThatEndsTheNodesIsNamed) {
   start << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
   end = start;
   end[1] += 0.5;  // beyond the limit, which is set between
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   problem.limits.clearance = 0;
   problem.waypoints = {waypoint_of(arm.chain.tool(start)), waypoint_of(arm.chain.tool(end))};
   problem.resolution = {.ds = 0.05, .dphi = 0.3, .dalpha = 0.3};
@@ -331,7 +331,7 @@ TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
-    Problem problem = random_problem(robot, random);
+    PathProblem problem = random_problem(robot, random);
     problem.limits.arm_slope = 1e6;  // any arm angle may follow any other
     problem.limits.step_error.reset();
     problem.start.reset();

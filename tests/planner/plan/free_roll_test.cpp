@@ -65,8 +65,8 @@ struct Raster {
 };
 
 /// A problem without a path: an S-R-S arm or one of six joints with a torch at an angle.
-Problem free_problem(bool srs) {
-  Problem problem;
+PathProblem free_problem(bool srs) {
+  PathProblem problem;
   problem.source = srs ? "iiwa14" : "kr6_like";
   problem.model = io::load_robot(data_dir() / "robots" / (problem.source + ".urdf"),
                                  data_dir() / "robots" / (problem.source + ".srdf"));
@@ -92,7 +92,7 @@ PlanOptions lazily() {
 
 /// Holds the roll that rows state against their joints: the tool stands turned by it from the
 /// waypoint's own orientation.
-void expect_stated_rolls(const Problem& problem, const PreparedRobot& robot,
+void expect_stated_rolls(const PathProblem& problem, const PreparedRobot& robot,
                          const std::vector<TrajectoryRow>& rows, const std::string& what) {
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain);
@@ -121,7 +121,7 @@ TEST(FreeRoll, CountsPositionsAndAxesAlone) {
     std::vector<double> costs;
     for (std::size_t way = 0; way < kWays.size(); ++way) {
       const std::string what = "trial " + std::to_string(trial) + ' ' + kWays[way];
-      Problem problem = free_problem(srs);
+      PathProblem problem = free_problem(srs);
       problem.waypoints = raster.written(way);
       const PreparedRobot robot(problem);
       const PlanResult result = plan(robot, problem, lazily());
@@ -158,7 +158,7 @@ TEST(FreeRoll, CountsAxesAloneInStrokes) {
         second(random, middle_of(srs) + Vector3d(0.08, 0.05, 0));
     std::vector<double> costs;
     for (std::size_t way = 0; way < kWays.size(); ++way) {
-      const Problem problem = free_problem(srs);
+      const PathProblem problem = free_problem(srs);
       Job job;
       static_cast<Robot&>(job) = problem;
       job.source = problem.source;

@@ -166,7 +166,7 @@ struct Case {
     if (check) check->look_for_collisions(world);
   }
 
-  const Problem problem;
+  const PathProblem problem;
   const PreparedRobot robot;
   const ToolPath path;
   const SrsLattice lattice;
@@ -324,8 +324,8 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
 }
 
 /// Makes a random problem on a coarse lattice whose last pose is within a wall.
-Problem walled_problem(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem walled_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
   problem.limits.arm_slope = Limits().arm_slope;
   problem.limits.joint_step = 1;
@@ -351,7 +351,7 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         walled_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + problem.source;
@@ -395,8 +395,8 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
 }
 
 /// Makes a random problem without a start and without a limit of step errors.
-Problem startless_problem(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem startless_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
   problem.start.reset();
   return problem;
@@ -437,7 +437,7 @@ struct ListedCase {
     ASSERT_TRUE(truth.solved || deepest == truth.deepest) << who;
   }
 
-  const Problem problem;
+  const PathProblem problem;
   const ArmModel arm;
   const SrsArm srs;
   const ToolPath path;
@@ -506,8 +506,8 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
   EXPECT_GT(rounds, 4 * count);
 }
 
-Problem experiment(const char* name, double ds, double dphi) {
-  Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+PathProblem experiment(const char* name, double ds, double dphi) {
+  PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
   problem.resolution.ds = ds;
   problem.resolution.dphi = dphi;
   return problem;
@@ -556,7 +556,7 @@ void expect_same(const PlanResult& a, const PlanResult& b) {
 }
 
 TEST(Hooks, ThatSayNothingChangeNothing) {
-  const Problem problem = experiment("experiment_a", 0.02, 0.1);
+  const PathProblem problem = experiment("experiment_a", 0.02, 0.1);
   const PreparedRobot robot(problem);
   for (const PlannerKind planner : kPlanners) {
     const PlanResult plain = plan(robot, problem, options_for(planner));
@@ -572,7 +572,7 @@ TEST(Hooks, ThatSayNothingChangeNothing) {
 }
 
 TEST(Hooks, ACheckThatRefusesIsTheCause) {
-  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PathProblem problem = experiment("experiment_a", 0.02, 0.2);
   const PreparedRobot robot(problem);
   class NoMotion : public StateCheck {
    public:
@@ -610,7 +610,7 @@ TEST(Hooks, ACheckThatRefusesIsTheCause) {
 }
 
 TEST(Hooks, WhatIsNoCostIsRefusedByName) {
-  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PathProblem problem = experiment("experiment_a", 0.02, 0.2);
   const PreparedRobot robot(problem);
   for (const auto& [cost, said] : {std::pair{-1e-300, "is -1e-300"},
                                    {std::nan(""), "nan"},
@@ -631,7 +631,7 @@ TEST(Hooks, WhatIsNoCostIsRefusedByName) {
 }
 
 TEST(Hooks, WhatTheyThrowComesThroughAndNothingElseIsLost) {
-  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PathProblem problem = experiment("experiment_a", 0.02, 0.2);
   const PreparedRobot robot(problem);
   const PlanResult plain = plan(robot, problem, options_for(PlannerKind::kLazy));
   struct Own {
@@ -664,7 +664,7 @@ TEST(Hooks, WhatTheyThrowComesThroughAndNothingElseIsLost) {
 }
 
 TEST(Hooks, ASlowOneEndsAtTheDeadline) {
-  const Problem problem = experiment("experiment_a", 0.01, 0.05);
+  const PathProblem problem = experiment("experiment_a", 0.01, 0.05);
   const PreparedRobot robot(problem);
   using Clock = std::chrono::steady_clock;
   const auto slow = [](const Config&) {
@@ -686,7 +686,7 @@ TEST(Hooks, ASlowOneEndsAtTheDeadline) {
 }
 
 TEST(Hooks, PlansInSeveralThreadsTakeTurns) {
-  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PathProblem problem = experiment("experiment_a", 0.02, 0.2);
   const PreparedRobot robot(problem);
   Random random(1);
   const auto check = std::make_shared<WaveCheck>(random, 0.9, 1);

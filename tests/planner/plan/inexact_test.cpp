@@ -23,7 +23,7 @@ namespace {
 using namespace test;
 
 struct Laid {
-  explicit Laid(const Problem& problem)
+  explicit Laid(const PathProblem& problem)
       : robot(problem),
         path(waypoints_in_base(problem), problem.resolution, problem.source),
         lattice(robot.arm().chain, robot.srs(), path, problem) {}
@@ -74,7 +74,7 @@ void expect_reaches_as_far(const Diagnosis& diagnosis, const Answer& truth,
 }
 
 /// Checks a trajectory's arm angles, start and cost, and notes how far its tool is from the path.
-void expect_rows_of_path(const Laid& laid, const Problem& problem, const PlanResult& result,
+void expect_rows_of_path(const Laid& laid, const PathProblem& problem, const PlanResult& result,
                          const Answer& truth, const std::string& what, Counts& counts) {
   const SrsLattice& lattice = laid.lattice;
   ASSERT_EQ(result.lattice.cost, truth.cost) << what;
@@ -97,7 +97,7 @@ void expect_rows_of_path(const Laid& laid, const Problem& problem, const PlanRes
 }
 
 /// Checks all planners on one problem of an arm that is approximately S-R-S.
-void check_problem(const Problem& problem, const std::string& what, Counts& counts) {
+void check_problem(const PathProblem& problem, const std::string& what, Counts& counts) {
   const Laid laid(problem);
   const SrsLattice& lattice = laid.lattice;
   ASSERT_TRUE(lattice.is_approximate()) << what;
@@ -131,7 +131,7 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (random.coin(0.3))
       problem.limits.joint_step = random.uniform(0.1, 0.4);  // where steps decide
@@ -179,7 +179,7 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
                                     std::abs(std::sin(arm.elbow_angle(q))),
                                     std::abs(std::sin(arm.wrist_angle(q)))});
       if (sine < 0.15) continue;
-      Problem problem = problem_for(robot);
+      PathProblem problem = problem_for(robot);
       const Pose tool = chain.tool(q);
       Pose next = tool;
       next.translation().z() += 0.01;
@@ -271,7 +271,7 @@ TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
     Config q = 0.3 * random_config(chain, random);
     q[1] = random.uniform(0.4, 0.8), q[5] = random.uniform(0.4, 0.8);
     q[3] = -arm.elbow_shift + (trial % 3 == 0 ? random.uniform(-0.002, 0.002) : 0.3);
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     Pose tool = chain.tool(q), next = tool;
     next.translation() -= 0.03 * (tool.translation() - arm.S).normalized();
     problem.waypoints = {waypoint_of(tool), waypoint_of(next)};

@@ -22,7 +22,7 @@ struct Narrowest {
 };
 
 /// Where along the path the widest arc of arm angles is narrowest.
-Narrowest narrowest(const ArmModel& arm, const SrsArm& srs, const Problem& problem) {
+Narrowest narrowest(const ArmModel& arm, const SrsArm& srs, const PathProblem& problem) {
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const SrsLattice lattice(arm.chain, srs, path, problem);
   Narrowest least;
@@ -39,8 +39,8 @@ Narrowest narrowest(const ArmModel& arm, const SrsArm& srs, const Problem& probl
 }
 
 /// A path of two moves from a random posture, each of up to so many metres along every axis.
-Problem drawn(const TestRobot& robot, const ArmModel& arm, double most, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem drawn(const TestRobot& robot, const ArmModel& arm, double most, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Config q = random_config(arm.chain, random);
   Pose tool = arm.chain.tool(q);
   problem.waypoints.push_back(waypoint_of(tool));
@@ -56,7 +56,7 @@ Problem drawn(const TestRobot& robot, const ArmModel& arm, double most, Random& 
 /// The joint margin that leaves an arc of this width where the path is narrowest; none where there
 /// is none.
 std::optional<double> margin_that_leaves(double width, const ArmModel& arm, const SrsArm& srs,
-                                         Problem problem) {
+                                         PathProblem problem) {
   double low = 0, high = 1.2;
   for (const JointLimit& limit : arm.chain.limit)
     if (!limit.continuous) high = std::min(high, 0.49 * (limit.upper - limit.lower));
@@ -70,7 +70,7 @@ std::optional<double> margin_that_leaves(double width, const ArmModel& arm, cons
   return std::abs(leaves(low) - width) < 0.01 * width ? std::optional(low) : std::nullopt;
 }
 
-PlanResult planned(Problem problem, bool arcs, PlannerKind kind = PlannerKind::kLazy) {
+PlanResult planned(PathProblem problem, bool arcs, PlannerKind kind = PlannerKind::kLazy) {
   problem.resolution.arcs = arcs;
   PlanOptions options;
   options.planner = kind;
@@ -87,7 +87,7 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
     const TestRobot& robot = robots[trial % 2];
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
-    Problem problem = drawn(robot, arm, 0.06, random);
+    PathProblem problem = drawn(robot, arm, 0.06, random);
     const auto margin = margin_that_leaves(0.01, arm, srs, problem);
     if (!margin) continue;
     problem.limits.joint_margin = *margin;
@@ -132,8 +132,8 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
 }
 
 /// Makes a path between random postures far apart: what is hard to reach is between waypoints.
-Problem drawn_far(const TestRobot& robot, const ArmModel& arm, double most, Random& random) {
-  Problem problem = drawn(robot, arm, most, random);
+PathProblem drawn_far(const TestRobot& robot, const ArmModel& arm, double most, Random& random) {
+  PathProblem problem = drawn(robot, arm, most, random);
   problem.waypoints = {problem.waypoints[0],
                        waypoint_of(arm.chain.tool(random_config(arm.chain, random)))};
   problem.resolution = {.ds = 0.05, .dphi = 0.2, .dalpha = 0.2};
@@ -159,7 +159,7 @@ bool sampled_within_limits(const Chain& chain, const SrsArm& srs,
 }
 
 /// Checks layers proved unreachable by sampling, and how far "no path" says that it holds.
-void expect_holds_as_proved(const Problem& problem, const ToolPath& path, const ArmModel& arm,
+void expect_holds_as_proved(const PathProblem& problem, const ToolPath& path, const ArmModel& arm,
                             const SrsArm& srs, const Diagnosis& diagnosis,
                             const std::string& what) {
   const SrsLattice lattice(arm.chain, srs, path, problem);
@@ -189,7 +189,7 @@ struct HoldsCounts {
 };
 
 /// Plans with the problem's joint margin and checks how far "no path" holds, if that is the answer.
-void check_no_path(const Problem& problem, const ArmModel& arm, const SrsArm& srs,
+void check_no_path(const PathProblem& problem, const ArmModel& arm, const SrsArm& srs,
                    const std::string& what, HoldsCounts& counts) {
   const PlanResult result = planned(problem, false);
   if (result.status == PlanStatus::kSolved) return;
@@ -201,7 +201,7 @@ void check_no_path(const Problem& problem, const ArmModel& arm, const SrsArm& sr
   if (diagnosis.holds() != Diagnosis::Holds::kEveryResolution) return;
   ASSERT_EQ(path.layer(diagnosis.unreachable->layer).waypoint, diagnosis.unreachable->waypoint)
       << what;
-  Problem finer = problem;
+  PathProblem finer = problem;
   finer.resolution.ds /= 3;
   finer.resolution.dphi /= 7;
   ASSERT_EQ(planned(finer, true).status, PlanStatus::kInfeasible) << what;
@@ -221,7 +221,7 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     const bool far = trial % 4 > 1;
-    Problem problem = (far ? drawn_far : drawn)(robot, arm, 0.1, random);
+    PathProblem problem = (far ? drawn_far : drawn)(robot, arm, 0.1, random);
     const auto margin = far ? std::optional(0.0) : margin_that_leaves(1e-3, arm, srs, problem);
     if (!margin) continue;
     const std::string what =

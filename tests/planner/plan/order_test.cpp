@@ -49,7 +49,7 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
         trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
     const TestRobot one = with_odd_joints_between(name, tip, kPi),
                     two = with_odd_joints_between(name, tip, kTwoPi);
-    Problem problem = problem_for(one);
+    PathProblem problem = problem_for(one);
     problem.waypoints = random_line(arm_of(one).chain, random);
     problem.resolution = {.ds = 0.01, .dphi = 0.15, .arc = 0.3};
     const std::string what =
@@ -84,7 +84,7 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const auto [name, tip] =
         trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
-    Problem problem = problem_for(with_odd_joints_between(name, tip, kPi));
+    PathProblem problem = problem_for(with_odd_joints_between(name, tip, kPi));
     const PreparedRobot robot(problem);
     const Chain& chain = robot.arm().chain;
     problem.waypoints = random_line(chain, random);
@@ -120,7 +120,7 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
 
 TEST(Order, ShippedArmsBeginInTheTurnNearestToTheMiddle) {
   for (const char* const name : {"ur5e_deburr_edge", "xarm7_polish_raster"}) {
-    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.02;
     const PreparedRobot robot(problem);
     const PlanResult result = plan(robot, problem);

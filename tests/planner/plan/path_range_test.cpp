@@ -51,12 +51,12 @@ struct RangeCounts {
   int ranges = 0, solved = 0, whole = 0, part = 0, none = 0;
 };
 
-void expect_cut_path(const PreparedRobot& robot, const Problem& problem, Random& random,
+void expect_cut_path(const PreparedRobot& robot, const PathProblem& problem, Random& random,
                      const std::string& what, RangeCounts& counts) {
   const double length = distances(problem.waypoints).back(),
                from = random.uniform(0.05, 0.5) * length, to = random.uniform(0.55, 0.95) * length;
-  const Problem range = problem_of_range(problem, {from, to});
-  Problem by_hand = problem;
+  const PathProblem range = problem_of_range(problem, {from, to});
+  PathProblem by_hand = problem;
   by_hand.closed = false;
   by_hand.waypoints = cut_by_hand(problem.waypoints, from, to);
   ASSERT_EQ(range.waypoints.size(), by_hand.waypoints.size()) << what;
@@ -74,13 +74,13 @@ void expect_cut_path(const PreparedRobot& robot, const Problem& problem, Random&
   ASSERT_NEAR(found.cost, cut.cost, 1e-6) << what;
 }
 
-void expect_reach(const PreparedRobot& robot, const Problem& problem, RingNodes nodes,
+void expect_reach(const PreparedRobot& robot, const PathProblem& problem, RingNodes nodes,
                   PathDirection direction, double from, const std::string& what,
                   RangeCounts& counts) {
   const bool backwards = direction == PathDirection::kBackwards;
   const double length = distances(problem.waypoints).back();
   const PathReach reach = reach_from(robot, problem, from, direction);
-  Problem ahead = problem_of_range(problem, backwards ? PathRange{0, from} : PathRange{from});
+  PathProblem ahead = problem_of_range(problem, backwards ? PathRange{0, from} : PathRange{from});
   if (backwards) std::reverse(ahead.waypoints.begin(), ahead.waypoints.end());
   const ToolPath path = problem_path(ahead, robot.arm().chain);
   const RingTruth truth = ring_truth(robot, robot.world(), path, ahead, nodes);
@@ -106,7 +106,7 @@ TEST(PathRange, PlansAndReachAreThoseOfTheCutPath) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const RingArm& arm = arms[static_cast<std::size_t>(trial) % arms.size()];
-    const Problem problem = coarse_ring(arm, random, random.coin());
+    const PathProblem problem = coarse_ring(arm, random, random.coin());
     const PreparedRobot robot(problem);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + arm.robot.name;
@@ -129,7 +129,7 @@ TEST(PathRange, PlansAndReachAreThoseOfTheCutPath) {
 
 TEST(PathRange, RangesLeadForwardsWithinThePath) {
   Random random(seed("PathRange.Refused"));
-  Problem problem = ring_problem(ring_arms(random).front(), random);
+  PathProblem problem = ring_problem(ring_arms(random).front(), random);
   const double length = distances(problem.waypoints).back();
   EXPECT_EQ(problem_of_range(problem, {}).waypoints.size(), problem.waypoints.size());
   EXPECT_FALSE(problem_of_range(problem, {}).closed);

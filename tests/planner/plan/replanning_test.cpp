@@ -32,7 +32,7 @@ void expect_same(const PlanResult& remembered, const PlanResult& fresh, const st
   ASSERT_EQ(remembered.lattice.nodes, fresh.lattice.nodes) << what;
 }
 
-SceneObject random_object(Random& random, const Problem& problem, const std::string& name) {
+SceneObject random_object(Random& random, const PathProblem& problem, const std::string& name) {
   SceneObject object;
   object.name = name;
   object.pose = random_pose(random, problem.waypoints[0].position, 0.35);
@@ -53,7 +53,7 @@ class RandomChange {
  public:
   /// Changes the problem and returns the kind: "nothing" where the drawn one has nothing to act on.
   std::string make(Planner& planner, Random& random) {
-    const Problem& problem = planner.problem();
+    const PathProblem& problem = planner.problem();
     const int objects = static_cast<int>(problem.scene.size());
     const int kind = random.below(12);
     const std::string object =
@@ -89,7 +89,7 @@ class RandomChange {
 
  private:
   static std::string move(Planner& planner, const std::string& object, Random& random) {
-    const Problem& problem = planner.problem();
+    const PathProblem& problem = planner.problem();
     const auto& o = *std::find_if(problem.scene.begin(), problem.scene.end(),
                                   [&](const auto& x) { return x.name == object; });
     planner.move(object, nudged(random, o.pose));
@@ -168,7 +168,7 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
     const TestRobot& robot = trial % 6 == 5
                                  ? without_srdf(robots[0])
                                  : robots[static_cast<std::size_t>(trial) % robots.size()];
-    Problem start = random_problem(robot, random);
+    PathProblem start = random_problem(robot, random);
     Planner planner(start);
     replan_after_changes(
         planner, random,
@@ -201,7 +201,7 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
   std::int64_t remembered_rounds = 0, fresh_rounds = 0;
   for (int trial = 0; trial < trials(60); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem.start.reset();
     Planner planner(problem);
@@ -234,7 +234,7 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
 }
 
 TEST(Planner, StopsAndGoesOn) {
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.005, .dphi = 0.1};
   problem = episode_problem(problem, 1, 17);
   PlanOptions options;
@@ -305,7 +305,7 @@ TEST(Planner, RefusesWhatNoProblemMayHaveAndStaysAsItWas) {
 }
 
 TEST(Planner, ClonesShareNothingThatIsWritten) {
-  const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   Planner planner(problem);

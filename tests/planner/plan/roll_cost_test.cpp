@@ -28,9 +28,9 @@ PlanOptions lazily() {
 TEST(RollCost, IsThatOfTheRowsFromFilesAndFromMemory) {
   for (const char* name :
        {"torch_door", "iiwa14_deburr_in_hand", "kr6_weld_pipe", "ur5e_deburr_edge"}) {
-    const Problem of_file =
+    const PathProblem of_file =
         io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
-    Problem of_memory = of_file;
+    PathProblem of_memory = of_file;
     of_memory.cost = Cost();
     const PreparedRobot robot(of_file);
     const bool six = robot.arm().chain.roll;
@@ -44,7 +44,7 @@ TEST(RollCost, IsThatOfTheRowsFromFilesAndFromMemory) {
 
 TEST(RollCost, IsTheSameForWeightsThatAreGiven) {
   for (const bool six : {false, true}) {
-    Problem problem;
+    PathProblem problem;
     problem.source = six ? "kr6_like" : "iiwa14";
     problem.model = io::load_robot(data_dir() / "robots" / (problem.source + ".urdf"),
                                    data_dir() / "robots" / (problem.source + ".srdf"));

@@ -43,8 +43,8 @@ std::vector<TestRobot> robots(Random& random) {
 
 /// Small enough for brute force. Some tools stand at an angle to the last joint, so that their
 /// wrist centre moves with the roll.
-Problem roll_problem(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem roll_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   if (random.coin(0.4)) {
     const Pose angled = Eigen::Translation3d(0.05, 0, 0.1) *
                         Eigen::AngleAxisd(random.uniform(0.2, 1), Vector3d::UnitY());
@@ -82,7 +82,7 @@ Problem roll_problem(const TestRobot& robot, Random& random) {
 
 /// Checks poses, arm angles and labels of all rows by forward kinematics, on a path whose roll and
 /// arm angle change.
-void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem,
+void expect_rows_on_path(const PreparedRobot& robot, const PathProblem& problem,
                          const std::vector<TrajectoryRow>& rows, const std::string& what) {
   const Chain& chain = robot.arm().chain;
   const SrsArm& arm = robot.srs();
@@ -118,7 +118,7 @@ struct Counts {
 /// Says by the definition which nodes of neighbouring layers may be joined.
 class Joinable {
  public:
-  Joinable(const RollLattice& lattice, const ToolPath& path, const Problem& problem)
+  Joinable(const RollLattice& lattice, const ToolPath& path, const PathProblem& problem)
       : lattice_(lattice), path_(path), problem_(problem) {}
 
   // Own words for what may follow what: cells on circles.
@@ -169,7 +169,7 @@ class Joinable {
 
   const RollLattice& lattice_;
   const ToolPath& path_;
-  const Problem& problem_;
+  const PathProblem& problem_;
 };
 
 /// Holds a lattice of one problem and its answer by brute force.
@@ -179,7 +179,7 @@ struct Truth {
 };
 
 /// Plans by brute force: with joint 7 at rest where that is enough, else with all rolls.
-Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const Problem& problem,
+Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProblem& problem,
                Counts& counts) {
   const Chain& chain = robot.arm().chain;
   const EdgeRule rule = robot.world().edge_rule(robot.radii());
@@ -218,7 +218,7 @@ void expect_same_answer(const PlanResult& result, const PlanResult& first, const
 }
 
 /// Checks the cost and the rows of a path, and counts what it has.
-void expect_path(const PreparedRobot& robot, const Problem& problem, const PlanResult& result,
+void expect_path(const PreparedRobot& robot, const PathProblem& problem, const PlanResult& result,
                  const Truth& truth, const std::string& what, Counts& counts) {
   ASSERT_EQ(result.lattice.cost, truth.answer.cost) << what;
   const auto& rows = result.trajectory;
@@ -234,7 +234,7 @@ void expect_path(const PreparedRobot& robot, const Problem& problem, const PlanR
 }
 
 /// Checks all planners on one problem against brute force.
-void check_problem(const Problem& problem, const std::string& what, Counts& counts) {
+void check_problem(const PathProblem& problem, const std::string& what, Counts& counts) {
   const PreparedRobot robot(problem);
   const ToolPath path = problem_path(problem, robot.arm().chain);
   const Truth truth = truth_of(robot, path, problem, counts);
@@ -268,7 +268,7 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   const int count = trials(80);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
     check_problem(problem,
                   "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
@@ -300,8 +300,8 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
 }
 
 /// Makes a random path without obstacles or a start, along which all rolls are free.
-Problem free_roll_problem(const TestRobot& robot, CostMetric metric, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem free_roll_problem(const TestRobot& robot, CostMetric metric, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   problem.limits = {};
   problem.limits.joint_step = 2;
   problem.limits.roll_slope = 1000;
@@ -320,7 +320,7 @@ struct RestCounts {
 };
 
 /// Checks that the least path with joint 7 at rest costs no more than the least of all rolls.
-void compare_rest_with_motion(const PreparedRobot& robot, const Problem& problem,
+void compare_rest_with_motion(const PreparedRobot& robot, const PathProblem& problem,
                               const std::string& what, RestCounts& counts) {
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain);
@@ -339,7 +339,7 @@ void compare_rest_with_motion(const PreparedRobot& robot, const Problem& problem
 }
 
 /// Checks that joint 7 keeps `rest`, rad, in the path over the lattice and in the refined one.
-void expect_refined_at_rest(const PreparedRobot& robot, const Problem& problem, double rest,
+void expect_refined_at_rest(const PreparedRobot& robot, const PathProblem& problem, double rest,
                             const std::string& what, RestCounts& counts) {
   Planner planner(with_motion_defaults(problem));
   const MotionPlan plan = plan_motion(planner, {.check = true}, true, std::nullopt);
@@ -366,7 +366,7 @@ TEST(RollLattice, JointSevenRests) {
   const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         free_roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()],
                           trial % 3 == 0 ? CostMetric::kMax : CostMetric::kL2, random);
     const std::string what =
@@ -392,7 +392,7 @@ TEST(RollLattice, JointSevenRests) {
 /// A URDF or a tool that rounds pi, or writes lengths to a tenth of a millimetre, does not hide
 /// that the tool turns about joint 7's axis.
 TEST(RollLattice, JointSevenRestsUnderARoundedTool) {
-  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.attached.clear();
   problem.resolution.droll = 0.3;
   problem.resolution.dphi = 0.3;
@@ -438,7 +438,7 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
    private:
     double liked_;
   };
-  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.tool = Eigen::Translation3d(0, 0, 0.2) * Pose::Identity();
   problem.attached.clear();
   problem.resolution.droll = 0.3;
@@ -469,7 +469,7 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
 /// Values after removals, few and many at once, are those of a sweep over what is left.
 TEST(RollLattice, RepairsAreSweeps) {
   const std::uint64_t base = seed("RollLattice.RepairsAreSweeps");
-  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.25;
   problem.resolution.dphi = 0.3;
   const PreparedRobot robot(problem);
@@ -529,8 +529,8 @@ TEST(RollLattice, RepairsAreSweeps) {
 }
 
 /// Makes an episode of a problem: the door in a random pose, with random ranges and cost of roll.
-Problem random_episode(const Problem& problem, Random& random) {
-  Problem episode = problem;
+PathProblem random_episode(const PathProblem& problem, Random& random) {
+  PathProblem episode = problem;
   for (SceneObject& object : episode.scene)
     if (object.name == "door")
       object.pose = object.pose *
@@ -551,7 +551,7 @@ struct RefinementCounts {
 };
 
 /// Checks that a refined path passes the check and costs no more than before.
-void expect_refined(const Problem& episode, const MotionPlan& plan, const std::string& what,
+void expect_refined(const PathProblem& episode, const MotionPlan& plan, const std::string& what,
                     RefinementCounts& counts) {
   counts.partial += episode.roll->upper < kPi;
   const auto& before = plan.lattice_path;
@@ -571,7 +571,7 @@ void expect_refined(const Problem& episode, const MotionPlan& plan, const std::s
 }
 
 /// Checks that the motion along a refined path passes the check, or prints why there is none.
-void expect_timed(const Problem& episode, const PreparedRobot& robot, const MotionPlan& plan,
+void expect_timed(const PathProblem& episode, const PreparedRobot& robot, const MotionPlan& plan,
                   const std::string& what, RefinementCounts& counts) {
   if (!plan.motion->motion) {
     std::printf("%s%s: no motion: %s\n", what.c_str(),
@@ -589,7 +589,7 @@ void expect_timed(const Problem& episode, const PreparedRobot& robot, const Moti
 /// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll
 /// that was chosen.
 TEST(RollLattice, PathsAreRefinedAndTimed) {
-  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.1;
   problem.resolution.dphi = 0.2;
   Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
@@ -597,7 +597,7 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
   RefinementCounts counts;
   const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
-    const Problem episode = random_episode(problem, random);
+    const PathProblem episode = random_episode(problem, random);
     Planner planner(with_motion_defaults(episode));
     const MotionPlan plan =
         plan_motion(planner, {.check = true}, true, TimingOptions{.speed = 0.05});
@@ -632,7 +632,7 @@ TEST(RollLattice, CutsAreVerified) {
   int cuts = 0, forged = 0, edges = 0;
   for (int trial = 0; trial < 400 && cuts < trials(20); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
+    PathProblem problem = roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
     if (trial % 2 == 1) {  // what lies between the layers of the lattice ends the paths
       problem.scene.clear();
       problem.limits.tool_path_error = 1e-4;
@@ -681,7 +681,7 @@ TEST(RollLattice, AsksTheCallersCheckBetween) {
     const Chain* chain_;
     double x_;
   };
-  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.4;
   problem.resolution.dphi = 0.4;
   Planner planner(problem);
@@ -707,7 +707,7 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
   Random random(seed("RollLattice.CheckRefusesOtherRolls"));
   int tried = 0;
   for (int trial = 0; tried < 5 && trial < 200; ++trial) {
-    Problem problem = roll_problem(all_robots().front(), random);
+    PathProblem problem = roll_problem(all_robots().front(), random);
     problem.scene.clear();
     problem.roll = Roll{-0.8, 0.8};
     for (Waypoint& waypoint : problem.waypoints) waypoint.roll.reset();
@@ -716,7 +716,7 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
     const PlanResult result = plan(robot, problem);
     if (result.status != PlanStatus::kSolved) continue;
     ++tried;
-    const auto fails = [&](const Problem& other, auto change, const char* words) {
+    const auto fails = [&](const PathProblem& other, auto change, const char* words) {
       std::vector<TrajectoryRow> rows = result.trajectory;
       change(rows);
       const CheckResult check = check_trajectory(other, rows);
@@ -733,7 +733,7 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
         problem, [](auto& rows) { rows[1].roll = 0.9; }, "roll 0.9 is outside its range");
     fails(
         problem, [](auto& rows) { rows[1].roll = std::nan(""); }, "not finite");
-    Problem narrow = problem;
+    PathProblem narrow = problem;
     const double least =
         std::min_element(result.trajectory.begin(), result.trajectory.end(),
                          [](const auto& a, const auto& b) { return a.roll < b.roll; })
@@ -742,7 +742,7 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
     if (narrow.roll->lower < narrow.roll->upper)
       fails(
           narrow, [](auto&) {}, "is outside its range");
-    Problem windows = problem;
+    PathProblem windows = problem;
     for (Waypoint& waypoint : windows.waypoints) waypoint.roll = Roll{-0.8, 0.8};
     EXPECT_TRUE(check_trajectory(windows, result.trajectory).passed);
     const double there = result.trajectory[0].roll;
@@ -757,8 +757,8 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
 
 TEST(RollLattice, RefusesWhatItCannotDo) {
   Random random(seed("RollLattice.RefusesWhatItCannotDo"));
-  Problem problem = roll_problem(all_robots().front(), random);
-  const auto expect = [&](const Problem& wrong, const std::string& words) {
+  PathProblem problem = roll_problem(all_robots().front(), random);
+  const auto expect = [&](const PathProblem& wrong, const std::string& words) {
     try {
       static_cast<void>(plan(wrong));
       FAIL() << words;
@@ -767,7 +767,7 @@ TEST(RollLattice, RefusesWhatItCannotDo) {
     }
   };
   for (Waypoint& waypoint : problem.waypoints) waypoint.roll.reset();
-  Problem wrong = problem;
+  PathProblem wrong = problem;
   wrong.limits.step_error = 0.1;
   expect(wrong, "limits.step_error: allowed without path.roll");
   wrong = problem;

@@ -26,7 +26,7 @@ TestRobot robot_of_data(const std::string& name) {
 }
 
 /// Returns the problem with each segment of its polyline cut into `parts` parts.
-Problem in_parts(Problem problem, int parts) {
+PathProblem in_parts(PathProblem problem, int parts) {
   std::vector<Waypoint> waypoints{problem.waypoints[0]};
   for (std::size_t k = 0; k + 1 < problem.waypoints.size(); ++k)
     for (int part = 1; part <= parts; ++part) {
@@ -44,8 +44,8 @@ Problem in_parts(Problem problem, int parts) {
 
 /// A line of one or two segments from a posture within the limits, that turns sometimes; coarse, so
 /// that it is planned at once.
-Problem random_line(const TestRobot& robot, const std::optional<Roll>& roll, Random& random) {
-  Problem problem = motion_problem(robot, random, roll);
+PathProblem random_line(const TestRobot& robot, const std::optional<Roll>& roll, Random& random) {
+  PathProblem problem = motion_problem(robot, random, roll);
   problem.scene.clear();
   problem.smooth.reset();
   problem.cost.metric = CostMetric::kL2;
@@ -74,14 +74,15 @@ struct Tally {
 };
 
 /// Plans a line with 1, 10 and 100 waypoints a segment, and compares.
-void plan_in_parts(const Problem& line, const std::string& what, Tally& tally, PlanResult& first) {
+void plan_in_parts(const PathProblem& line, const std::string& what, Tally& tally,
+                   PlanResult& first) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   first = plan(line, options);
   ++tally.lines;
   ++(first.status == PlanStatus::kSolved ? tally.solved : tally.infeasible);
   for (const int parts : {10, 100}) {
-    const Problem same = in_parts(line, parts);
+    const PathProblem same = in_parts(line, parts);
     const PlanResult result = plan(same, options);
     ASSERT_EQ(result.status, first.status) << what << " parts " << parts;
     ASSERT_EQ(result.lattice.layers, first.lattice.layers) << what << " parts " << parts;
@@ -112,7 +113,8 @@ TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem line = random_line(robots[trial % 2], random.coin(0.7) ? Roll{} : Roll{-1, 1}, random);
+    PathProblem line =
+        random_line(robots[trial % 2], random.coin(0.7) ? Roll{} : Roll{-1, 1}, random);
     line.limits.roll_slope = std::exp(random.uniform(std::log(0.5), std::log(20)));
     line.limits.joint_step = random.uniform(0.2, 1);
     // Where the roll is free the axis moves on its least turn, and so must the waypoints between.
@@ -168,7 +170,7 @@ TEST(Slopes, OneVerdictForALineOfSevenJointsHoweverManyWaypoints) {
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     const bool srs = trial % 3 < 2;
-    Problem line = random_line(
+    PathProblem line = random_line(
         robots[trial % 3], srs && random.coin(0.3) ? std::optional(Roll{-0.3, 0.3}) : std::nullopt,
         random);
     if (srs) line.limits.arm_slope = random.uniform(2, 40);
@@ -197,7 +199,7 @@ TEST(Slopes, AJointThatHasRunOutOfTurnsIsAtItsLimit) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = problem_for(robot);
+    PathProblem problem = problem_for(robot);
     problem.waypoints.assign(1, waypoint_of(chain.tool(inner_posture(chain, random))));
     const double way = trial % 2 == 0 ? 1 : -1;
     for (int k = 1; k <= 8; ++k) {

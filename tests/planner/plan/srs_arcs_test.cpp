@@ -65,8 +65,8 @@ struct Counts {
 };
 
 /// Makes a random path without obstacles, with nodes about as far apart on arcs as on the grid.
-Problem free_problem(const TestRobot& robot, Random& random) {
-  Problem problem = motion_problem(robot, random);
+PathProblem free_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = motion_problem(robot, random);
   problem.scene.clear();
   problem.smooth.reset();
   problem.resolution.dphi = 0.05;
@@ -75,7 +75,7 @@ Problem free_problem(const TestRobot& robot, Random& random) {
 }
 
 /// Checks that the least path along arcs costs no more than the one over the grid of arm angles.
-void compare_with_grid(Problem problem, const std::string& what, Counts& counts) {
+void compare_with_grid(PathProblem problem, const std::string& what, Counts& counts) {
   const PreparedRobot prepared(problem);
   const Chain& chain = prepared.arm().chain;
   ASSERT_EQ(prepared.arm_class().kind, ArmKind::kSrs) << what;

@@ -27,8 +27,8 @@ PlanOptions options_for(PlannerKind planner) {
 }
 
 /// A random problem; every third turns on the spot first.
-Problem turning_problem(const TestRobot& robot, Random& random, int trial) {
-  Problem problem = random_problem(robot, random);
+PathProblem turning_problem(const TestRobot& robot, Random& random, int trial) {
+  PathProblem problem = random_problem(robot, random);
   if (trial % 3 == 0) {
     Waypoint turned = problem.waypoints[0];
     turned.orientation = problem.waypoints[1].orientation;
@@ -38,7 +38,7 @@ Problem turning_problem(const TestRobot& robot, Random& random, int trial) {
   return problem;
 }
 
-ToolPath whole_path(const Problem& problem) {
+ToolPath whole_path(const PathProblem& problem) {
   return {waypoints_in_base(problem), problem.resolution, problem.source};
 }
 
@@ -50,7 +50,7 @@ TEST(StartAt, TheRestOfAPathIsTheWholePathsOwn) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
-    const Problem problem = turning_problem(robot, random, trial);
+    const PathProblem problem = turning_problem(robot, random, trial);
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const SrsArm arm = fit_srs(arm_of(robot).chain, what);
@@ -111,7 +111,7 @@ TEST(StartAt, FromARowOfATrajectoryTheRestIsTheSame) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const TestRobot& robot_model = robots[static_cast<std::size_t>(trial) % robots.size()];
-    const Problem problem = turning_problem(robot_model, random, trial);
+    const PathProblem problem = turning_problem(robot_model, random, trial);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + problem.source;
     const PreparedRobot robot(problem);
@@ -123,7 +123,7 @@ TEST(StartAt, FromARowOfATrajectoryTheRestIsTheSame) {
     const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
     double spent = 0;
     for (std::size_t cut = 0; cut + 1 < whole.trajectory.size(); ++cut) {
-      Problem rest = problem;
+      PathProblem rest = problem;
       rest.start = whole.trajectory[cut].q;
       rest.start_at = whole.trajectory[cut].s;
       options.planner = kPlanners[random.below(4)];
@@ -169,14 +169,14 @@ struct Stop {
   double t = 0;         // part of the way to the next row
   bool on_path = false;
   Config q;
-  Problem rest;
+  PathProblem rest;
 };
 
 /// Returns the configuration of the node nearest to `q` whose tool is on the path at the stop;
 /// none where there is no node.
-std::optional<Config> nearest_on_path(const PreparedRobot& robot, const Problem& problem,
+std::optional<Config> nearest_on_path(const PreparedRobot& robot, const PathProblem& problem,
                                       const Stop& stop, const Config& q, const std::string& what) {
-  Problem free = problem;
+  PathProblem free = problem;
   free.start.reset();
   const ToolPath all = whole_path(problem);
   ToolPath there = all;
@@ -193,7 +193,7 @@ std::optional<Config> nearest_on_path(const PreparedRobot& robot, const Problem&
 }
 
 /// Draws a stop on the way along a trajectory; none where no node is on the path there.
-std::optional<Stop> random_stop(const PreparedRobot& robot, const Problem& problem,
+std::optional<Stop> random_stop(const PreparedRobot& robot, const PathProblem& problem,
                                 const PlanResult& whole, Random& random, const std::string& what) {
   Stop stop;
   stop.cut = static_cast<std::size_t>(random.below(static_cast<int>(whole.trajectory.size()) - 1));
@@ -231,7 +231,7 @@ void expect_rest_from_stop(const PreparedRobot& robot, const Stop& stop, const P
 }
 
 /// Checks that all planners find the path of `result`.
-void expect_planners_agree(const PreparedRobot& robot, const Problem& problem,
+void expect_planners_agree(const PreparedRobot& robot, const PathProblem& problem,
                            const PlanResult& result, const std::string& what) {
   for (const PlannerKind planner : kPlanners) {
     const PlanResult other = plan(robot, problem, options_for(planner));
@@ -247,7 +247,7 @@ struct StopCounts {
 };
 
 /// Stops a trajectory on its way and checks what is planned from there.
-void check_stop(const Problem& problem, const PlanOptions& options, Random& random,
+void check_stop(const PathProblem& problem, const PlanOptions& options, Random& random,
                 const std::string& what, StopCounts& counts) {
   const PreparedRobot robot(problem);
   const PlanResult whole = plan(robot, problem, options);
@@ -284,7 +284,7 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
   const int count = trials(150);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         turning_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random, trial);
     problem.limits.clearance =
         0.001;  // motions keep half of it, rows all: a stop may be too near for a row
@@ -301,20 +301,20 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
   EXPECT_LE(counts.infeasible, counts.solved);
 }
 
-Problem experiment_a() {
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+PathProblem experiment_a() {
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.1};
   return problem;
 }
 
 TEST(StartAt, WhatDoesNotFitIsBadInput) {
-  const Problem problem = experiment_a();
+  const PathProblem problem = experiment_a();
   const PreparedRobot robot(problem);
   const PlanResult whole = plan(robot, problem);
   ASSERT_EQ(whole.status, PlanStatus::kSolved);
   const double length = whole.trajectory.back().s;
   const auto message_of = [&](double at, const Config& start, double tolerance) -> std::string {
-    Problem rest = problem;
+    PathProblem rest = problem;
     rest.start = start;
     rest.start_at = at;
     rest.start_tolerance = tolerance;
@@ -341,7 +341,7 @@ TEST(StartAt, WhatDoesNotFitIsBadInput) {
   EXPECT_EQ(message_of(row.s + 0.001, row.q, 0.0011), "");
   expect_said(message_of(row.s + 0.001, row.q, 0.0009), {"start.joints", "0.0009"});
   // A given start without a place stands at the path's beginning, within the tolerance.
-  Problem first = problem;
+  PathProblem first = problem;
   first.start = whole.trajectory[0].q;
   first.start->tail<1>()[0] += 1e-4;
   EXPECT_THROW(static_cast<void>(plan(robot, first)), InputError);

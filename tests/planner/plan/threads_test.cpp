@@ -65,7 +65,7 @@ TEST(Threads, SameResultAndCountsAtAnyThreadCount) {
   int compared = 0;
   for (int trial = 0; trial < trials(20); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const auto plan_with = [&](int threads) {
       PlanOptions options;
@@ -80,12 +80,12 @@ TEST(Threads, SameResultAndCountsAtAnyThreadCount) {
 
 /// Postures of long paths, of which most is kept from one to the next, and batches that fail.
 TEST(Threads, KeptClearancesCountTheSame) {
-  Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.dphi = 0.2;
   const PreparedRobot robot(base);
   int compared = 0, repaired = 0;
   for (int episode = 0; episode < 12; ++episode) {
-    const Problem problem = episode_problem(base, 1, episode);
+    const PathProblem problem = episode_problem(base, 1, episode);
     const auto plan_with = [&](int threads) {
       PlanOptions options;
       options.threads = threads;
@@ -102,13 +102,13 @@ TEST(Threads, KeptClearancesCountTheSame) {
 /// Plans on lattices so large that neighbours of failed nodes are asked about while those before
 /// them are dealt with.
 TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
-  Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.ds = 0.003;
   base.resolution.dphi = 0.04;
   const PreparedRobot robot(base);
   int compared = 0, grown = 0, solved = 0;
   for (int episode = 0; episode < trials(20); ++episode) {
-    const Problem problem = episode_problem(base, 1, episode);
+    const PathProblem problem = episode_problem(base, 1, episode);
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
     const PlanResult lazy = plan(robot, problem, options);
@@ -136,11 +136,11 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
 TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
   constexpr int kThreads = 8;
   const std::uint64_t base = seed("Planner.Clones");
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const int each = std::max(1, trials(800) / kThreads), kinds = std::min(each, 100);
   struct Step {
-    Problem problem;
+    PathProblem problem;
     PlanResult answer;
   };
   std::vector<Step> steps;
@@ -148,7 +148,7 @@ TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
   options.planner = PlannerKind::kLazy;
   Random random(base);
   for (int k = 0; k < kinds; ++k) {
-    Problem moved =
+    PathProblem moved =
         k % 4 == 0 ? episode_problem(problem, 1, static_cast<std::uint64_t>(k)) : problem;
     for (SceneObject& object : moved.scene)
       if (object.name != "door" && random.coin())
@@ -182,7 +182,7 @@ TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
 }
 
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
-  const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);
   for (const PlannerKind planner :
        {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {

@@ -24,8 +24,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
                  kInf = std::numeric_limits<double>::infinity();
 
 /// A valid problem in which every member is set.
-Problem full_problem() {
-  Problem problem = problem_for(data_robot("iiwa14"));
+PathProblem full_problem() {
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   const Chain chain = arm_of(data_robot("iiwa14")).chain;
   Config q0, q1;
   q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
@@ -50,15 +50,15 @@ Problem full_problem() {
 
 struct Case {
   std::string field;
-  std::function<void(Problem&)> breaks;
+  std::function<void(PathProblem&)> breaks;
 };
 
 /// A number that each of `values` breaks.
 void add_number(std::vector<Case>& cases, const std::string& field,
-                const std::function<double&(Problem&)>& member, std::vector<double> values) {
+                const std::function<double&(PathProblem&)>& member, std::vector<double> values) {
   values.insert(values.end(), {kNaN, kInf, -kInf});
   for (const double value : values)
-    cases.push_back({field, [=](Problem& problem) { member(problem) = value; }});
+    cases.push_back({field, [=](PathProblem& problem) { member(problem) = value; }});
 }
 
 /// Breaks numbers of the limits.
@@ -67,13 +67,13 @@ void add_limits(std::vector<Case>& cases) {
   const auto limit = [&](const char* name, auto member, const std::vector<double>& values) {
     add_number(
         cases, std::string("limits.") + name,
-        [=](Problem& p) -> double& { return p.limits.*member; }, values);
+        [=](PathProblem& p) -> double& { return p.limits.*member; }, values);
   };
   const auto optional_limit = [&](const char* name, auto member,
                                   const std::vector<double>& values) {
     add_number(
         cases, std::string("limits.") + name,
-        [=](Problem& p) -> double& { return (p.limits.*member).emplace(); }, values);
+        [=](PathProblem& p) -> double& { return (p.limits.*member).emplace(); }, values);
   };
   limit("clearance", &Limits::clearance, negative);
   limit("manipulability", &Limits::manipulability, negative);
@@ -94,26 +94,27 @@ void add_limits(std::vector<Case>& cases) {
 void add_resolution_and_cost(std::vector<Case>& cases) {
   const std::vector<double> not_positive{0, -1};
   add_number(
-      cases, "resolution.ds", [](Problem& p) -> double& { return p.resolution.ds; }, not_positive);
-  add_number(cases, "resolution.dphi", [](Problem& p) -> double& { return p.resolution.dphi; },
+      cases, "resolution.ds", [](PathProblem& p) -> double& { return p.resolution.ds; },
+      not_positive);
+  add_number(cases, "resolution.dphi", [](PathProblem& p) -> double& { return p.resolution.dphi; },
              {0, -1, 6.3});
   add_number(
-      cases, "resolution.dalpha", [](Problem& p) -> double& { return p.resolution.dalpha; },
+      cases, "resolution.dalpha", [](PathProblem& p) -> double& { return p.resolution.dalpha; },
       not_positive);
   for (std::size_t k : {0u, 6u})
     add_number(cases, "cost.weights[" + std::to_string(k) + "]",
-               [=](Problem& p) -> double& {
+               [=](PathProblem& p) -> double& {
                  if (!p.cost.weights) p.cost.weights = {1, 1, 1, 1, 1, 1, 1};
                  return (*p.cost.weights)[k];
                },
                {-1, 1e-7, 1.1e6, 1e160, 1e-300});
   add_number(cases, "cost.roll",
-             [](Problem& p) -> double& {
+             [](PathProblem& p) -> double& {
                p.roll = Roll{};
                return p.cost.roll;
              },
              {-1, 1e-7, 1.1e6});
-  cases.push_back({"cost.roll", [](Problem& p) { p.cost.roll = 1; }});  // no roll is free
+  cases.push_back({"cost.roll", [](PathProblem& p) { p.cost.roll = 1; }});  // no roll is free
 }
 
 /// Breaks numbers of the start and of joints that are held.
@@ -122,23 +123,23 @@ void add_start_and_hold(std::vector<Case>& cases) {
   for (std::size_t k : {0u, 6u})
     add_number(
         cases, "start[" + std::to_string(k) + "]",
-        [=](Problem& p) -> double& {
+        [=](PathProblem& p) -> double& {
           if (!p.start) p.start = Config::Zero();
           return (*p.start)[static_cast<Eigen::Index>(k)];
         },
         none);
-  add_number(cases, "start_tolerance", [](Problem& p) -> double& { return p.start_tolerance; },
+  add_number(cases, "start_tolerance", [](PathProblem& p) -> double& { return p.start_tolerance; },
              {0, -1, 0.11});
   add_number(
       cases, "start_at",
-      [](Problem& p) -> double& {
+      [](PathProblem& p) -> double& {
         p.start = Config::Zero();
         return p.start_at.emplace();
       },
       negative);
-  cases.push_back({"start_at", [](Problem& p) { p.start_at = 0.1; }});
+  cases.push_back({"start_at", [](PathProblem& p) { p.start_at = 0.1; }});
   add_number(
-      cases, "hold.joint", [](Problem& p) -> double& { return p.hold["joint"]; }, none);
+      cases, "hold.joint", [](PathProblem& p) -> double& { return p.hold["joint"]; }, none);
 }
 
 /// Breaks positions and orientations of waypoints, and how far objects vary.
@@ -148,17 +149,18 @@ void add_waypoints_and_variation(std::vector<Case>& cases) {
     const std::string at = "[" + std::to_string(k) + "]";
     add_number(
         cases, "waypoints[1].position" + at,
-        [=](Problem& p) -> double& { return p.waypoints[1].position[k]; }, none);
+        [=](PathProblem& p) -> double& { return p.waypoints[1].position[k]; }, none);
     add_number(
-        cases, "vary[0].xyz" + at, [=](Problem& p) -> double& { return p.vary[0].xyz[k]; },
+        cases, "vary[0].xyz" + at, [=](PathProblem& p) -> double& { return p.vary[0].xyz[k]; },
         negative);
     add_number(
-        cases, "vary[0].rpy" + at, [=](Problem& p) -> double& { return p.vary[0].rpy[k]; },
+        cases, "vary[0].rpy" + at, [=](PathProblem& p) -> double& { return p.vary[0].rpy[k]; },
         negative);
   }
   for (int k = 0; k < 4; ++k)
     add_number(cases, "waypoints[0].orientation",
-               [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; }, {3});
+               [=](PathProblem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; },
+               {3});
 }
 
 /// Breaks dimensions of boxes, spheres, cylinders and capsules.
@@ -167,31 +169,31 @@ void add_dimensions(std::vector<Case>& cases) {
   for (int k = 0; k < 3; ++k)
     add_number(
         cases, "scene[0].shape.size[" + std::to_string(k) + "]",
-        [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
+        [=](PathProblem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
         not_positive);
   add_number(
       cases, "scene[1].shape.radius",
-      [](Problem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
+      [](PathProblem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
       not_positive);
   add_number(
       cases, "scene[2].shape.radius",
-      [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).radius; },
+      [](PathProblem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).radius; },
       not_positive);
   add_number(
       cases, "scene[2].shape.length",
-      [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).length; },
+      [](PathProblem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).length; },
       not_positive);
   add_number(
       cases, "scene[3].shape.radius",
-      [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).radius; },
+      [](PathProblem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).radius; },
       not_positive);
   add_number(
       cases, "scene[3].shape.length",
-      [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).length; },
+      [](PathProblem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).length; },
       not_positive);
   add_number(
       cases, "attached[0].shape.radius",
-      [](Problem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
+      [](PathProblem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
       not_positive);
 }
 
@@ -199,70 +201,73 @@ void add_dimensions(std::vector<Case>& cases) {
 void add_beyond_bounds(std::vector<Case>& cases) {
   // Beyond kMostMetres distances are not right, and names stand on terminals and in pictures
   // (bounds.hpp).
-  cases.push_back({"scene[1].shape.radius", [](Problem& p) { p.scene[1].shape = Sphere{1000.1}; }});
   cases.push_back(
-      {"scene[0].shape.size[2]", [](Problem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
+      {"scene[1].shape.radius", [](PathProblem& p) { p.scene[1].shape = Sphere{1000.1}; }});
+  cases.push_back({"scene[0].shape.size[2]",
+                   [](PathProblem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
+  cases.push_back({"scene[4].shape",
+                   [](PathProblem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
   cases.push_back(
-      {"scene[4].shape", [](Problem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
-  cases.push_back({"scene[3].pose", [](Problem& p) { p.scene[3].pose.translation().x() = 1e9; }});
-  cases.push_back({"scene[2].name", [](Problem& p) { p.scene[2].name = "a\x1b[31m"; }});
-  cases.push_back({"attached[0].name", [](Problem& p) { p.attached[0].name = "\xff"; }});
+      {"scene[3].pose", [](PathProblem& p) { p.scene[3].pose.translation().x() = 1e9; }});
+  cases.push_back({"scene[2].name", [](PathProblem& p) { p.scene[2].name = "a\x1b[31m"; }});
+  cases.push_back({"attached[0].name", [](PathProblem& p) { p.attached[0].name = "\xff"; }});
 }
 
 /// Breaks entries of the tool's pose and of poses of objects, in the scene and attached.
 void add_poses(std::vector<Case>& cases) {
   const std::vector<double> none;
-  const std::pair<const char*, std::function<Pose&(Problem&)>> poses[] = {
-      {"tool", [](Problem& p) -> Pose& { return p.tool; }},
-      {"scene[1].pose", [](Problem& p) -> Pose& { return p.scene[1].pose; }},
-      {"attached[0].pose", [](Problem& p) -> Pose& { return p.attached[0].pose; }}};
+  const std::pair<const char*, std::function<Pose&(PathProblem&)>> poses[] = {
+      {"tool", [](PathProblem& p) -> Pose& { return p.tool; }},
+      {"scene[1].pose", [](PathProblem& p) -> Pose& { return p.scene[1].pose; }},
+      {"attached[0].pose", [](PathProblem& p) -> Pose& { return p.attached[0].pose; }}};
   for (const auto& [field, member] : poses) {
     const auto pose = member;
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column)
         add_number(
-            cases, field, [=](Problem& p) -> double& { return pose(p).matrix()(row, column); },
+            cases, field, [=](PathProblem& p) -> double& { return pose(p).matrix()(row, column); },
             row == 3 || column < 3 ? std::vector<double>{2, 1 - 1e-5 * (row == column)} : none);
-    cases.push_back(
-        {field, [=](Problem& p) { pose(p).matrix().topLeftCorner<3, 3>() *= -1; }});  // a mirror
-    cases.push_back({field, [=](Problem& p) { pose(p).matrix().setZero(); }});
+    cases.push_back({field, [=](PathProblem& p) {
+                       pose(p).matrix().topLeftCorner<3, 3>() *= -1;
+                     }});  // a mirror
+    cases.push_back({field, [=](PathProblem& p) { pose(p).matrix().setZero(); }});
   }
 }
 
 /// Breaks vertices of a mesh and corners of its triangles.
 void add_mesh(std::vector<Case>& cases) {
   const std::vector<double> none;
-  const auto mesh = [](Problem& p) {
+  const auto mesh = [](PathProblem& p) {
     auto copy = std::make_shared<TriangleMesh>(*std::get<MeshPtr>(p.scene[4].shape));
     p.scene[4].shape = MeshPtr(copy);
     return copy;
   };
   for (int k = 0; k < 3; ++k)
     add_number(
-        cases, "scene[4].shape", [=](Problem& p) -> double& { return mesh(p)->vertices[5][k]; },
+        cases, "scene[4].shape", [=](PathProblem& p) -> double& { return mesh(p)->vertices[5][k]; },
         none);
   for (const int corner : {-1, 8, std::numeric_limits<int>::max()})
-    cases.push_back({"scene[4].shape", [=](Problem& p) { mesh(p)->triangles[3][1] = corner; }});
+    cases.push_back({"scene[4].shape", [=](PathProblem& p) { mesh(p)->triangles[3][1] = corner; }});
 }
 
 /// Removes the model and a mesh, and sets names that are empty, taken or unknown.
 void add_names(std::vector<Case>& cases) {
   cases.insert(cases.end(),
-               {{"model", [](Problem& p) { p.model = nullptr; }},
-                {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = ""; }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = "box"; }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = "grip"; }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = "base_link"; }},
-                {"scene[0].allow[1]", [](Problem& p) { p.scene[0].allow[1] = "hand"; }},
-                {"scene[0].allow[0]", [](Problem& p) { p.scene[0].allow[0] = ""; }},
-                {"attached[0].name", [](Problem& p) { p.attached[0].name = ""; }},
-                {"attached[0].name", [](Problem& p) { p.attached[0].name = "link_3"; }},
-                {"attached[1].name", [](Problem& p) { p.attached.push_back(p.attached[0]); }},
-                {"attached[0].link", [](Problem& p) { p.attached[0].link = ""; }},
-                {"attached[0].link", [](Problem& p) { p.attached[0].link = "hand"; }},
-                {"path_frame", [](Problem& p) { p.path_frame = "door"; }},
-                {"vary[0].object", [](Problem& p) { p.vary[0].object = "door"; }}});
+               {{"model", [](PathProblem& p) { p.model = nullptr; }},
+                {"scene[4].shape", [](PathProblem& p) { p.scene[4].shape = MeshPtr(); }},
+                {"scene[1].name", [](PathProblem& p) { p.scene[1].name = ""; }},
+                {"scene[1].name", [](PathProblem& p) { p.scene[1].name = "box"; }},
+                {"scene[1].name", [](PathProblem& p) { p.scene[1].name = "grip"; }},
+                {"scene[1].name", [](PathProblem& p) { p.scene[1].name = "base_link"; }},
+                {"scene[0].allow[1]", [](PathProblem& p) { p.scene[0].allow[1] = "hand"; }},
+                {"scene[0].allow[0]", [](PathProblem& p) { p.scene[0].allow[0] = ""; }},
+                {"attached[0].name", [](PathProblem& p) { p.attached[0].name = ""; }},
+                {"attached[0].name", [](PathProblem& p) { p.attached[0].name = "link_3"; }},
+                {"attached[1].name", [](PathProblem& p) { p.attached.push_back(p.attached[0]); }},
+                {"attached[0].link", [](PathProblem& p) { p.attached[0].link = ""; }},
+                {"attached[0].link", [](PathProblem& p) { p.attached[0].link = "hand"; }},
+                {"path_frame", [](PathProblem& p) { p.path_frame = "door"; }},
+                {"vary[0].object", [](PathProblem& p) { p.vary[0].object = "door"; }}});
 }
 
 /// Lists every way to break every member of full_problem().
@@ -299,13 +304,13 @@ void expect_message(const std::string& message, const std::string& field) {
 }
 
 TEST(Validate, EveryMemberBrokenInEveryWayIsNamed) {
-  const Problem good = full_problem();
+  const PathProblem good = full_problem();
   ASSERT_EQ(message_of([&] { validate(good); }), "accepted");
   const PreparedRobot robot(good);
   ASSERT_NE(plan(robot, good).status, PlanStatus::kTimeout);
   int broken = 0;
   for (const Case& x : all_cases()) {
-    Problem bad = good;
+    PathProblem bad = good;
     x.breaks(bad);
     expect_message(message_of([&] { validate(bad); }), x.field);
     // The same wherever a problem is taken.
@@ -322,7 +327,7 @@ TEST(Validate, EveryMemberBrokenInEveryWayIsNamed) {
 }
 
 TEST(Validate, EndsOfWhatIsAllowed) {
-  Problem problem = full_problem();
+  PathProblem problem = full_problem();
   problem.cost.weights = {0, 1e-6, 1e6, 1, 0, 0, 0};
   problem.resolution.dphi = kTwoPi;
   problem.limits.clearance = problem.limits.manipulability = problem.limits.joint_margin = 0;
@@ -384,7 +389,7 @@ TEST(Validate, RobotModelsThatAreNone) {
   for (const auto& [field, breaks] : cases) {
     auto bad = std::make_shared<RobotModel>(good);
     breaks(*bad);
-    Problem problem = full_problem();
+    PathProblem problem = full_problem();
     problem.model = bad;
     expect_message(message_of([&] { PreparedRobot robot(problem); }), field);
   }
@@ -393,29 +398,29 @@ TEST(Validate, RobotModelsThatAreNone) {
 /// Every difference in what a robot was prepared for is refused by name; what is not baked in may
 /// differ.
 TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
-  const Problem good = full_problem();
+  const PathProblem good = full_problem();
   const PreparedRobot robot(good);
-  const std::pair<const char*, std::function<void(Problem&)>> others[] = {
-      {"model", [](Problem& p) { p.model = std::make_shared<RobotModel>(*p.model); }},
-      {"base_link", [](Problem& p) { p.base_link = p.path_frame = "link_1"; }},
-      {"tip_link", [](Problem& p) { p.tip_link = "link_7"; }},
-      {"tool", [](Problem& p) { p.tool.translation().z() += 1e-9; }},
-      {"hold", [](Problem& p) { p.hold["joint"] = 0; }},
+  const std::pair<const char*, std::function<void(PathProblem&)>> others[] = {
+      {"model", [](PathProblem& p) { p.model = std::make_shared<RobotModel>(*p.model); }},
+      {"base_link", [](PathProblem& p) { p.base_link = p.path_frame = "link_1"; }},
+      {"tip_link", [](PathProblem& p) { p.tip_link = "link_7"; }},
+      {"tool", [](PathProblem& p) { p.tool.translation().z() += 1e-9; }},
+      {"hold", [](PathProblem& p) { p.hold["joint"] = 0; }},
       {"attached",
-       [](Problem& p) {
+       [](PathProblem& p) {
          p.attached[0].shape = Cylinder{0.01, 0.3};
        }},
-      {"attached", [](Problem& p) { p.attached[0].pose.translation().x() += 0.1; }},
-      {"attached", [](Problem& p) { p.attached[0].link = "link_7"; }},
-      {"attached", [](Problem& p) { p.attached[0].name = "hand", p.scene[0].allow = {}; }},
+      {"attached", [](PathProblem& p) { p.attached[0].pose.translation().x() += 0.1; }},
+      {"attached", [](PathProblem& p) { p.attached[0].link = "link_7"; }},
+      {"attached", [](PathProblem& p) { p.attached[0].name = "hand", p.scene[0].allow = {}; }},
       {"attached",
-       [](Problem& p) {
+       [](PathProblem& p) {
          p.attached.push_back({"more", Sphere{0.01}, Pose::Identity(), "tool0"});
        }},
-      {"attached", [](Problem& p) { p.attached.clear(), p.scene[0].allow = {}; }},
+      {"attached", [](PathProblem& p) { p.attached.clear(), p.scene[0].allow = {}; }},
   };
   for (const auto& [what, changes] : others) {
-    Problem other = good;
+    PathProblem other = good;
     changes(other);
     for (const std::string& message :
          {message_of([&] { (void)plan(robot, other); }), message_of([&] {
@@ -426,7 +431,7 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
       EXPECT_NE(message.find("prepared for"), std::string::npos) << message;
     }
   }
-  Problem moved = good;
+  PathProblem moved = good;
   moved.scene.pop_back();
   moved.scene[0].pose.translation().x() += 1;
   moved.resolution.ds = 0.03;
@@ -443,31 +448,31 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
 /// Problems that a program makes have no file to name: a message begins with the key then, and not
 /// with a colon.
 TEST(Validate, MessagesWithoutAFileBeginWithTheKey) {
-  const std::vector<std::pair<const char*, std::function<void(Problem&)>>> breaks = {
-      {"path: 1 waypoint", [](Problem& p) { p.waypoints.resize(1); }},
+  const std::vector<std::pair<const char*, std::function<void(PathProblem&)>>> breaks = {
+      {"path: 1 waypoint", [](PathProblem& p) { p.waypoints.resize(1); }},
       {"path: all waypoints are one pose",
-       [](Problem& p) { p.waypoints.assign(3, p.waypoints[0]); }},
+       [](PathProblem& p) { p.waypoints.assign(3, p.waypoints[0]); }},
       {"path: waypoint 1: turns by 180 deg",
-       [](Problem& p) {
+       [](PathProblem& p) {
          p.waypoints[1].orientation = p.waypoints[0].orientation * Quaterniond(0, 1, 0, 0);
        }},
-      {"problem: path_frame: unknown frame", [](Problem& p) { p.path_frame = "nowhere"; }},
-      {"start.joints: joint", [](Problem& p) { p.start = Config::Constant(9); }},
-      {"start.joints: the tool", [](Problem& p) { p.start = Config::Zero(); }},
-      {"start_at: is", [](Problem& p) { p.start = Config::Zero(), p.start_at = 50; }},
-      {"limits.joint_margin: leaves no range", [](Problem& p) { p.limits.joint_margin = 3; }},
-      {"resolution", [](Problem& p) { p.resolution.ds = p.resolution.dphi = 1e-7; }},
+      {"problem: path_frame: unknown frame", [](PathProblem& p) { p.path_frame = "nowhere"; }},
+      {"start.joints: joint", [](PathProblem& p) { p.start = Config::Constant(9); }},
+      {"start.joints: the tool", [](PathProblem& p) { p.start = Config::Zero(); }},
+      {"start_at: is", [](PathProblem& p) { p.start = Config::Zero(), p.start_at = 50; }},
+      {"limits.joint_margin: leaves no range", [](PathProblem& p) { p.limits.joint_margin = 3; }},
+      {"resolution", [](PathProblem& p) { p.resolution.ds = p.resolution.dphi = 1e-7; }},
       {"problem: attached[0].name: 'link_3' is a link",
-       [](Problem& p) {
+       [](PathProblem& p) {
          p.attached = {{"link_3", Sphere{0.1}, Pose::Identity(), "tool0"}};
        }},
       {"problem: attached[0].link: unknown link",
-       [](Problem& p) { p.attached[0].link = "nothing"; }},
-      {"robot.tip_link: ", [](Problem& p) { p.tip_link = "nothing"; }},
-      {"robot.tip_link: only", [](Problem& p) { p.tip_link = "link_3"; }},
+       [](PathProblem& p) { p.attached[0].link = "nothing"; }},
+      {"robot.tip_link: ", [](PathProblem& p) { p.tip_link = "nothing"; }},
+      {"robot.tip_link: only", [](PathProblem& p) { p.tip_link = "link_3"; }},
   };
-  const Problem good = [] {
-    Problem problem = full_problem();
+  const PathProblem good = [] {
+    PathProblem problem = full_problem();
     problem.source.clear();
     auto model = std::make_shared<RobotModel>(*problem.model);
     model->source.clear();
@@ -477,7 +482,7 @@ TEST(Validate, MessagesWithoutAFileBeginWithTheKey) {
     return problem;
   }();
   for (const auto& [words, change] : breaks) {
-    Problem problem = good;
+    PathProblem problem = good;
     change(problem);
     try {
       (void)Planner(problem).plan({});

@@ -67,7 +67,7 @@ TestRobot widened(const TestRobot& robot, const Wide& wide) {
 enum class PathShape { kLine, kRing, kScrew };
 
 /// Draws a line, a ring or a screw of up to two turns that begins where the tool stands in `q`.
-PathShape draw_path(Problem& problem, const Pose& tool, Random& random) {
+PathShape draw_path(PathProblem& problem, const Pose& tool, Random& random) {
   const auto shape = static_cast<PathShape>(random.below(3));
   const Vector3d x = tool.linear().col(0), z = tool.linear().col(2);
   const double turns = random.uniform(0.6, 2), radius = random.uniform(0.02, 0.1);
@@ -106,9 +106,9 @@ struct Counts {
   std::array<int, 3> solved_by_shape{};
 };
 
-Problem wide_problem(const TestRobot& robot, const Wide& wide, bool rolls, Random& random,
-                     Counts& counts, PathShape& shape) {
-  Problem problem = problem_for(widened(robot, wide));
+PathProblem wide_problem(const TestRobot& robot, const Wide& wide, bool rolls, Random& random,
+                         Counts& counts, PathShape& shape) {
+  PathProblem problem = problem_for(widened(robot, wide));
   const Chain chain = arm_of(widened(robot, wide)).chain;
   Config q = random_config(chain, random);
   for (int j = 0; j < kDof; ++j)  // shoulder, elbow and wrist bent by half of what they can
@@ -147,8 +147,8 @@ bool has_circles(const Lattice& lattice) {
 }
 
 /// Expects the certificate that there is no path to pass its check.
-void expect_certified(const PreparedRobot& robot, const Problem& problem, const Planner& planner,
-                      const std::string& what, Counts& counts) {
+void expect_certified(const PreparedRobot& robot, const PathProblem& problem,
+                      const Planner& planner, const std::string& what, Counts& counts) {
   const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
   const CertificateCheck check = verify_certificate(robot, problem, certificate);
   ASSERT_TRUE(check.passed) << what << ": " << check.failure;
@@ -163,8 +163,9 @@ std::string turns_note_of(const std::vector<std::string>& warnings) {
 }
 
 /// Returns the robot of a problem with the joints of `wide` continuous.
-Problem without_wide_limits(const Problem& problem, const TestRobot& robot, const Wide& wide) {
-  Problem free = problem;
+PathProblem without_wide_limits(const PathProblem& problem, const TestRobot& robot,
+                                const Wide& wide) {
+  PathProblem free = problem;
   static_cast<Robot&>(free) = problem_for(with_limits(robot, [&](int number, Joint& joint) {
     if (wide.joints[static_cast<std::size_t>(number)]) joint.type = Joint::Type::kContinuous;
   }));
@@ -174,7 +175,7 @@ Problem without_wide_limits(const Problem& problem, const TestRobot& robot, cons
 
 /// Expects a path of `free`, the problem without limits of its wide joints, if an answer without a
 /// path names the turn of one of them.
-void check_note(const PlanResult& found, const Problem& free, const std::string& what,
+void check_note(const PlanResult& found, const PathProblem& free, const std::string& what,
                 Counts& counts) {
   const std::string note = turns_note_of(found.warnings);
   if (note.empty()) return;
@@ -185,8 +186,8 @@ void check_note(const PlanResult& found, const Problem& free, const std::string&
 
 /// Compares the answer with that of turns told apart: where a path did not fit, or `always`.
 /// `free`: the problem without limits of its wide joints.
-void check_windings(const Problem& problem, const Problem& free, PathShape shape, bool exact,
-                    bool always, const std::string& what, Counts& counts) {
+void check_windings(const PathProblem& problem, const PathProblem& free, PathShape shape,
+                    bool exact, bool always, const std::string& what, Counts& counts) {
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   const PlanOptions lazy = with_all_evidence(PlannerKind::kLazy);
   Planner planner(robot, problem);
@@ -254,7 +255,7 @@ TEST(Windings, CirclesCostWhatTurnsToldApartCost) {
     const Wide wide = draw_wide(random);
     const bool rolls = random.coin(0.2);
     PathShape shape{};
-    const Problem problem = wide_problem(robots[which], wide, rolls, random, counts, shape);
+    const PathProblem problem = wide_problem(robots[which], wide, rolls, random, counts, shape);
     counts.rolls += rolls;
     counts.inexact += which == 3;
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
@@ -288,7 +289,7 @@ TEST(Windings, TellHowFarAJointWouldTurn) {
   Wide wide;
   wide.joints[6] = true;
   const TestRobot robot = widened(data_robot("iiwa14"), wide);
-  Problem problem = problem_for(robot);
+  PathProblem problem = problem_for(robot);
   Config q;
   q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
   const Pose tool = arm_of(robot).chain.tool(q);
@@ -335,20 +336,20 @@ TEST(Windings, TellHowFarAJointWouldTurn) {
 TEST(Windings, JointsAreCirclesOnlyWhereNoStepTurnsThemByHalfATurn) {
   Wide wide;
   wide.joints[0] = wide.joints[6] = true;
-  Problem problem = problem_for(widened(data_robot("iiwa14"), wide));
+  PathProblem problem = problem_for(widened(data_robot("iiwa14"), wide));
   const Chain chain = arm_of(widened(data_robot("iiwa14"), wide)).chain;
   Config q;
   q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
   problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(q))};
   problem.waypoints[1].position.x() -= 0.05;
-  const auto circles = [](const Problem& of) {
+  const auto circles = [](const PathProblem& of) {
     Planner planner(of);
     EXPECT_EQ(planner.plan().status, PlanStatus::kSolved);
     return dynamic_cast<const SrsLattice&>(planner.view().lattice).circles();
   };
   const Lattice::Joints both{true, false, false, false, false, false, true};
   EXPECT_EQ(circles(problem), both);
-  Problem other = problem;
+  PathProblem other = problem;
   other.limits.joint_step = 3.2;
   EXPECT_EQ(circles(other), Lattice::Joints{});
   other = problem;

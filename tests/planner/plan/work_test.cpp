@@ -103,7 +103,7 @@ std::string row(const Work& w) {
 }
 
 Work measured(const Work& expected) {
-  Problem problem =
+  PathProblem problem =
       io::load_problem(test::data_dir() / "problems" / (std::string(expected.problem) + ".yaml"));
   problem.limits.edges = expected.edges;
   if (expected.planner == kEager || expected.planner == kEagerDp)
@@ -148,7 +148,7 @@ TEST(Work, IsWhatTheTableSays) {
 
 /// The inner loop of every search: asking about a posture or a motion that distance proofs decide.
 TEST(Work, AskingAboutAPostureAllocatesNothing) {
-  const Problem problem = io::load_problem(test::data_dir() / "problems/experiment_c.yaml");
+  const PathProblem problem = io::load_problem(test::data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);
   const World& world = robot.world();
   world.make_ready([] { return false; });

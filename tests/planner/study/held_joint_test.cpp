@@ -24,14 +24,14 @@ using namespace test;
 
 /// A problem with a joint that is held between base and tip.
 struct HeldProblem {
-  Problem problem;
+  PathProblem problem;
   std::string joint;
   double lower, upper;  ///< positions that are tried
 };
 
 /// Returns a problem of an arm without an arm angle: of six joints and one more.
-Problem arc_problem(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem arc_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
   problem.limits.arm_slope = Limits().arm_slope;
   problem.resolution.arc = random.uniform(0.3, 0.6);
@@ -56,7 +56,7 @@ HeldProblem held_problem(int trial, Random& random) {
       return {arc_problem(with_axis(torso_robot(), 0, slide), random), "slide", -0.1, 0.1};
     default: {
       const TestRobot on_rail = slide_robots()[static_cast<std::size_t>(random.below(3))];
-      Problem problem = arc_problem(on_rail, random);
+      PathProblem problem = arc_problem(on_rail, random);
       problem.model = with_axis(on_rail, 0, torso).model;
       problem.hold["torso"] = 0;
       return {problem, "torso", -0.1, 0.1};
@@ -81,14 +81,14 @@ std::vector<PlacementCell> cells_of(const HeldProblem& held, bool moves, Random&
 }
 
 /// Returns the problem of a cell, made by hand.
-Problem problem_of(const HeldProblem& held, const Movable& thing, const PlacementCell& cell) {
-  Problem problem = placed_problem(held.problem, thing, cell.offset);
+PathProblem problem_of(const HeldProblem& held, const Movable& thing, const PlacementCell& cell) {
+  PathProblem problem = placed_problem(held.problem, thing, cell.offset);
   problem.hold[held.joint] = cell.hold.at(held.joint);
   return problem;
 }
 
 /// Returns the row of a cell whose problem was planned alone.
-PlacementRow row_alone(const PlacementCell& cell, const Problem& problem,
+PlacementRow row_alone(const PlacementCell& cell, const PathProblem& problem,
                        const PlanOptions& options) {
   PlacementRow row;
   row.cell = cell.cell;
@@ -183,10 +183,10 @@ TEST(HeldJoint, MovesWhatItCarriesAndNothingElse) {
     SCOPED_TRACE("SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
     Random random(base + static_cast<std::uint64_t>(trial));
     const HeldProblem held = held_problem(1 + trial % 2, random);
-    Problem problem = held.problem;
+    PathProblem problem = held.problem;
     problem.attached.push_back(
         {"lamp", Sphere{0.01}, Pose(Eigen::Translation3d(0, 3, 3)), held.joint + "_link"});
-    Problem moved = problem;
+    PathProblem moved = problem;
     const double at = random.uniform(held.lower, held.upper);
     hold_joints(moved, {{held.joint, at}});
     EXPECT_EQ(moved.waypoints, problem.waypoints);
@@ -214,7 +214,7 @@ TEST(HeldJoint, RefusesByLine) {
   Random random(seed("HeldJoint.Refuses"));
   const HeldProblem held = held_problem(1, random);
   const auto refused = [&](const HeldPositions& positions, const char* words) {
-    Problem problem = held.problem;
+    PathProblem problem = held.problem;
     try {
       hold_joints(problem, positions);
       ADD_FAILURE() << words;

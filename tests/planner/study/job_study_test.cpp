@@ -228,8 +228,9 @@ TEST(PlacedJob, MovesEachStrokeAsItsProblem) {
     const Job placed = placed_job(door.job, thing, offset);
     EXPECT_EQ(placed.home, door.job.home);
     for (std::size_t k = 0; k < placed.strokes.size(); ++k) {
-      const Problem is = problem_of_run(placed, {k, false}),
-                    should = placed_problem(problem_of_run(door.job, {k, false}), thing, offset);
+      const PathProblem is = problem_of_run(placed, {k, false}),
+                        should =
+                            placed_problem(problem_of_run(door.job, {k, false}), thing, offset);
       ASSERT_EQ(is.waypoints.size(), should.waypoints.size());
       for (std::size_t i = 0; i < is.waypoints.size(); ++i) {
         EXPECT_LT((is.waypoints[i].position - should.waypoints[i].position).norm(), 1e-12);

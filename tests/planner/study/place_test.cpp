@@ -21,7 +21,7 @@ using namespace test;
 
 /// Returns the path, the base, or a random object, by turns as trials go on; the base where there
 /// is no object.
-Movable a_thing(int trial, Random& random, const Problem& problem) {
+Movable a_thing(int trial, Random& random, const PathProblem& problem) {
   const int kind = trial % 3;
   if (kind == 0 && !problem.scene.empty())
     return {
@@ -40,8 +40,8 @@ Offset random_offset(Random& random, double far) {
 }
 
 /// A path that is in the frame of an object half of the time.
-Problem random_cell(const TestRobot& robot, Random& random) {
-  Problem problem = random_problem(robot, random);
+PathProblem random_cell(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
   problem.start.reset();
   if (problem.scene.empty() || random.coin()) return problem;
   const Pose back = problem.scene[0].pose.inverse();
@@ -73,7 +73,7 @@ void expect_same(const PlacementRow& a, const PlacementRow& b, const std::string
 /// Plans the cells at one, two and three threads, in two parts each; checks that the rows are the
 /// same and puts them into `rows`.
 void plan_at_thread_counts(const std::shared_ptr<const PreparedRobot>& robot,
-                           const Problem& problem, const Movable& thing,
+                           const PathProblem& problem, const Movable& thing,
                            const std::vector<PlacementCell>& cells, PlanOptions options,
                            const std::string& what, std::vector<PlacementRow>& rows) {
   for (const int threads : {1, 2, 3}) {
@@ -90,7 +90,8 @@ void plan_at_thread_counts(const std::shared_ptr<const PreparedRobot>& robot,
 }
 
 /// Returns the row of a cell whose problem was planned alone.
-PlacementRow row_of(const PlacementCell& cell, const PlanResult& result, const Problem& placed) {
+PlacementRow row_of(const PlacementCell& cell, const PlanResult& result,
+                    const PathProblem& placed) {
   PlacementRow row;
   row.cell = cell.cell;
   row.offset = cell.offset;
@@ -116,7 +117,7 @@ PlacementRow row_of(const PlacementCell& cell, const PlanResult& result, const P
 
 /// Checks twelve random cells of a problem against plans of each alone; counts in `met` what the
 /// cells are and have.
-void check_cells(int trial, const Problem& problem, Random& random, const std::string& what,
+void check_cells(int trial, const PathProblem& problem, Random& random, const std::string& what,
                  std::map<std::string, int>& met) {
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   const Movable thing = a_thing(trial, random, problem);
@@ -131,7 +132,7 @@ void check_cells(int trial, const Problem& problem, Random& random, const std::s
   options.threads = 3;
   options.evidence.postures = true;
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const Problem placed = placed_problem(problem, thing, cells[k].offset);
+    const PathProblem placed = placed_problem(problem, thing, cells[k].offset);
     const PlanResult result = plan(*robot, placed, options);
     ++met[to_string(result.status)];
     ++met[thing.kind == Movable::Kind::kObject ? "object"
@@ -152,7 +153,7 @@ TEST(Place, CellsAreSinglePlans) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    const Problem problem =
+    const PathProblem problem =
         random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     check_cells(trial, problem, random, what, met);
     if (HasFailure()) return;
@@ -209,7 +210,7 @@ void expect_trajectory_of(const PlacedPlan& shown, const PlanResult& again, cons
 }
 
 /// Plans the cells one after the other and checks each against its plan alone.
-void check_neighbours(const Problem& problem, const std::shared_ptr<const PreparedRobot>& robot,
+void check_neighbours(const PathProblem& problem, const std::shared_ptr<const PreparedRobot>& robot,
                       const Movable& thing, Random& random, const std::string& what,
                       NeighbourCounts& counts) {
   PlanOptions options;
@@ -233,7 +234,7 @@ void check_neighbours(const Problem& problem, const std::shared_ptr<const Prepar
   std::optional<PlanStatus> before;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const std::string here = what + " cell " + std::to_string(k);
-    const Problem placed = placed_problem(problem, thing, cells[k].offset);
+    const PathProblem placed = placed_problem(problem, thing, cells[k].offset);
     const PlanResult alone = plan(*robot, placed, options);
     planner.set_problem(placed);
     const PlanResult again = planner.plan(options);
@@ -267,7 +268,7 @@ TEST(Place, NeighboursAreWhatTheyAreAlone) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    Problem problem =
+    PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (problem.scene.empty()) continue;
     const auto robot = std::make_shared<const PreparedRobot>(problem);
@@ -307,8 +308,9 @@ struct Displacement {
 };
 
 /// Checks objects in the world: `robot` is the pose of the base in the world as it was.
-void expect_objects_placed(const Problem& problem, const Problem& placed, const Movable& thing,
-                           const Displacement& by, const Pose& robot, int trial) {
+void expect_objects_placed(const PathProblem& problem, const PathProblem& placed,
+                           const Movable& thing, const Displacement& by, const Pose& robot,
+                           int trial) {
   for (std::size_t k = 0; k < problem.scene.size(); ++k) {
     Pose expected = problem.scene[k].pose;
     if (thing.object == problem.scene[k].name)
@@ -322,8 +324,9 @@ void expect_objects_placed(const Problem& problem, const Problem& placed, const 
 
 /// Checks waypoints in the world, where they move with the path or with the object whose frame
 /// they are in; returns how many there are.
-int expect_waypoints_placed(const Problem& problem, const Problem& placed, const Movable& thing,
-                            const Displacement& by, const Pose& robot, int trial) {
+int expect_waypoints_placed(const PathProblem& problem, const PathProblem& placed,
+                            const Movable& thing, const Displacement& by, const Pose& robot,
+                            int trial) {
   Vector3d path_origin = Vector3d::Zero();
   for (const SceneObject& object : problem.scene)
     if (problem.path_frame == object.name) path_origin = object.pose.translation();
@@ -352,11 +355,11 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
   int looked_at = 0, kept = 0;
   for (int trial = 0; trial < trials(300); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem =
+    const PathProblem problem =
         random_cell(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const Offset offset = random_offset(random, 3);
     const Movable thing = a_thing(trial, random, problem);
-    const Problem placed = placed_problem(problem, thing, offset);
+    const PathProblem placed = placed_problem(problem, thing, offset);
     const Displacement by(offset);
     // The pose of the base in the world as it was.
     Pose robot = Pose::Identity();
@@ -366,7 +369,7 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
     }
     expect_objects_placed(problem, placed, thing, by, robot, trial);
     looked_at += expect_waypoints_placed(problem, placed, thing, by, robot, trial);
-    const Problem still = placed_problem(problem, thing, {});
+    const PathProblem still = placed_problem(problem, thing, {});
     for (std::size_t k = 0; k < problem.scene.size(); ++k, ++kept)
       EXPECT_EQ(still.scene[k].pose.matrix(), problem.scene[k].pose.matrix());
     EXPECT_EQ(still.waypoints, problem.waypoints);
@@ -375,7 +378,7 @@ TEST(Place, MovesWhatItSaysAndNothingElse) {
   std::printf("%d waypoints, %d objects\n", looked_at, kept);
   EXPECT_GE(looked_at, at_least(600));
   EXPECT_GE(kept, at_least(300));
-  const Problem problem = random_problem(robots[0], *std::make_unique<Random>(base));
+  const PathProblem problem = random_problem(robots[0], *std::make_unique<Random>(base));
   EXPECT_THROW((void)placed_problem(problem, {Movable::Kind::kObject, "nothing"}, {}),
                InvalidArgument);
 }
@@ -401,7 +404,7 @@ TEST(Place, WrittenAnglesReadBackBitForBit) {
 }
 
 TEST(Place, StopsWithWhatIsKnown) {
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   std::vector<PlacementCell> cells;
@@ -427,7 +430,7 @@ TEST(Place, StopsWithWhatIsKnown) {
 }
 
 TEST(Place, AStartThatThePathLeavesIsBadInput) {
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   PlacementPlanner planner(std::make_shared<const PreparedRobot>(problem), problem,
                            {Movable::Kind::kPath, ""}, {});

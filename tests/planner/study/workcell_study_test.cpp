@@ -208,7 +208,7 @@ TEST(WorkcellPlacements, AnArmIsRefusedByLine) {
                InvalidArgument);
   Workcell planned = cell;
   EXPECT_THROW(hold_joints(planned, {{"arm_left_joint_1_s", 0}}), InvalidArgument);
-  Problem one;
+  PathProblem one;
   EXPECT_THROW(static_cast<void>(placed_problem(one, {Movable::Kind::kPath, "", "left"}, {})),
                InvalidArgument);
 }
@@ -461,7 +461,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
     EXPECT_EQ(told.size(), 12u);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       expect_same(others[k], rows[k]);
-      Problem problem;
+      PathProblem problem;
       problem.scene = cell.scene;
       problem.vary = cell.vary;
       const Workcell drawn = episode_workcell(cell, 5, k);

@@ -117,7 +117,8 @@ TEST(CheckOfPlans, RowsOfATimedPlanPass) {
   for (const bool refined : {false, true}) {
     Random random(seed("Rows") + refined);
     for (int trial = 0; trial < 6; ++trial) {
-      Problem problem = motion_problem(all_robots()[static_cast<std::size_t>(trial) % 5], random);
+      PathProblem problem =
+          motion_problem(all_robots()[static_cast<std::size_t>(trial) % 5], random);
       problem.smooth.reset();
       Planner planner(with_motion_defaults(problem));
       const MotionPlan plan =
@@ -146,7 +147,7 @@ TEST(CheckOfPlans, RowsOfATimedPlanPass) {
 TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
   int passed = 0, slowed = 0, refused = 0;
   for (const char* name : {"kr6_weld_pipe", "ur5e_deburr_edge", "iiwa14_bench"}) {
-    const Problem problem =
+    const PathProblem problem =
         io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     for (const double rate : {2.0, 3.0, 5.0, 7.0, 10.0}) {
       Planner planner(with_motion_defaults(problem));
@@ -173,7 +174,7 @@ TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
 /// The tool turns away on the spot and comes back. A motion that rests meanwhile has the same poses
 /// at its rows, and turns nowhere.
 TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
-  Problem problem = problem_for(data_robot("iiwa14"));
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));
   const Quaterniond aside = down * Quaterniond(Eigen::AngleAxisd(0.4, Vector3d::UnitX()));
   const Vector3d corner(0.5, 0, 0.6);
@@ -222,7 +223,7 @@ TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
 /// A tool that may stand turned turns further and further at rest, each time by less than is
 /// forgiven.
 TEST(CheckOfPlans, SmallChangesOfTheRollDoNotAddUp) {
-  Problem problem = problem_for(data_robot("iiwa14"));
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));
   problem.waypoints = {{{0.5, -0.1, 0.6}, down}, {{0.5, 0.1, 0.6}, down}};
   problem.roll = Roll{};

@@ -51,7 +51,7 @@ TestRobot rounded_robot() {
 /// layers have places between.
 struct Good {
   std::string what;
-  Problem problem;
+  PathProblem problem;
   std::shared_ptr<const PreparedRobot> robot;
   std::shared_ptr<const ToolPath> path;
   std::vector<ArmPlane> planes;
@@ -75,7 +75,7 @@ double largest(const Good& good, const Deviation& deviation) {
   return most;
 }
 
-std::optional<Good> solved(const std::string& what, const Problem& problem) {
+std::optional<Good> solved(const std::string& what, const PathProblem& problem) {
   Good good{what, problem, std::make_shared<PreparedRobot>(problem), nullptr, {}, {}};
   good.path =
       std::make_shared<ToolPath>(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -102,8 +102,8 @@ Waypoint moved(const Waypoint& from, const Vector3d& by, const Vector3d& turn) {
 
 /// Three to five waypoints from a pose well inside the limits, straight and turning; every third
 /// path turns on the spot once.
-Problem some_problem(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
+PathProblem some_problem(const TestRobot& robot, Random& random) {
+  PathProblem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
   const Config q = inner_posture(chain, random);
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
@@ -566,14 +566,14 @@ class Fault final : public StateCheck {
 /// they were.
 TEST(Check, WrongAnswersOfAPlannerAreRefused) {
   const std::uint64_t base = seed("Faults");
-  const std::vector<std::function<void(Problem&, double)>> faults = {
-      [](Problem& p, double) { p.limits.clearance = 1; },
-      [](Problem& p, double) { p.limits.joint_step = 1e-6; },
-      [](Problem& p, double) { p.limits.manipulability = 1e3; },
-      [](Problem& p, double) { p.limits.joint_margin = 10; },
-      [](Problem& p, double) { p.waypoints.back().position.x() += 1e-4; },
-      [](Problem& p, double x) { p.start = Config::Constant(x); },
-      [](Problem& p, double) { p.limits.tool_path_error = 1e-9; },
+  const std::vector<std::function<void(PathProblem&, double)>> faults = {
+      [](PathProblem& p, double) { p.limits.clearance = 1; },
+      [](PathProblem& p, double) { p.limits.joint_step = 1e-6; },
+      [](PathProblem& p, double) { p.limits.manipulability = 1e3; },
+      [](PathProblem& p, double) { p.limits.joint_margin = 10; },
+      [](PathProblem& p, double) { p.waypoints.back().position.x() += 1e-4; },
+      [](PathProblem& p, double x) { p.start = Config::Constant(x); },
+      [](PathProblem& p, double) { p.limits.tool_path_error = 1e-9; },
   };
   int refused = 0, right = 0;
   for (const Good& good : good_trajectories()) {
@@ -590,7 +590,7 @@ TEST(Check, WrongAnswersOfAPlannerAreRefused) {
     Random random(base + static_cast<std::uint64_t>(right));
     for (std::size_t k = 0; k < faults.size(); ++k) {
       Planner planner(good.robot, good.problem);
-      auto& problem = const_cast<Problem&>(planner.problem());
+      auto& problem = const_cast<PathProblem&>(planner.problem());
       const double x = random.uniform(0.1, 1);
       options.hooks.check = std::make_shared<Fault>([&] { faults[k](problem, x); });
       EXPECT_THROW(static_cast<void>(planner.plan(options)), std::logic_error)
@@ -755,8 +755,8 @@ TEST(Check, LegalResamplingsPass) {
 }
 
 /// A closed path of the iiwa14 with corners that turn, as a user might write it.
-Problem closed_problem() {
-  Problem problem = problem_for(data_robot("iiwa14"));
+PathProblem closed_problem() {
+  PathProblem problem = problem_for(data_robot("iiwa14"));
   const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));
   const Quaterniond aside = Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitZ())) * down;
   problem.waypoints = {{{0.5, -0.1, 0.6}, down},
@@ -773,19 +773,19 @@ TEST(Check, TwoEqualRowsDoNotFollowAClosedPath) {
   TrajectoryRow end = good->rows[0];
   end.s = good->rows.back().s;
   EXPECT_FALSE(check_trajectory(good->problem, {good->rows[0], end}).passed);
-  Problem unlimited = good->problem;
+  PathProblem unlimited = good->problem;
   unlimited.limits.tool_path_error = std::nullopt;  // waypoints are passed all the same
   EXPECT_FALSE(check_trajectory(unlimited, {good->rows[0], end}).passed);
 }
 
 TEST(Check, AWaypointThatTurnsIsNotSkipped) {
-  Problem problem = closed_problem();
+  PathProblem problem = closed_problem();
   problem.waypoints = {problem.waypoints[0], problem.waypoints[1], problem.waypoints[1]};
   problem.waypoints[1] = {
       {0.5, 0.05, 0.6},
       problem.waypoints[0].orientation * Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitX()))};
   // What it looks like without the turn is straight, so the tool is never off in position.
-  Problem straight = problem;
+  PathProblem straight = problem;
   straight.waypoints.erase(straight.waypoints.begin() + 1);
   const auto good = solved("straight", straight);
   ASSERT_TRUE(good);
@@ -874,8 +874,8 @@ TEST(Check, ManySmallMovesInOneStepDoNotAddUp) {
 }
 
 /// 3 layers a waypoint, some apart by noise alone, so that 360 deg are made of 180 layers at one s.
-Problem turning_problem(double noise, bool back) {
-  Problem problem = problem_for(continuous_robot());
+PathProblem turning_problem(double noise, bool back) {
+  PathProblem problem = problem_for(continuous_robot());
   Random random(seed("Turning"));
   Waypoint at{{0.5, 0.05, 0.5}, Quaterniond(Eigen::AngleAxisd(3.0, Vector3d::UnitY()))};
   problem.waypoints.push_back(at);

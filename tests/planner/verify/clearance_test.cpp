@@ -14,15 +14,15 @@ namespace {
 
 using namespace test;
 
-PlanResult plan_with_evidence(const Problem& problem) {
+PlanResult plan_with_evidence(const PathProblem& problem) {
   PlanOptions options;
   options.evidence = Evidence::all();
   return plan(problem, options);
 }
 
 /// 2 cm along y from the given start.
-Problem short_path(const TestRobot& robot, const Config& start) {
-  Problem problem = problem_for(robot);
+PathProblem short_path(const TestRobot& robot, const Config& start) {
+  PathProblem problem = problem_for(robot);
   const Pose tool = arm_of(robot).chain.tool(start);
   Pose end = tool;
   end.translation().y() += 0.02;
@@ -41,7 +41,7 @@ Config posture(double q6) {
 TEST(SelfClearance, LinksThatAreNearByDesignMayNotMeet) {
   const TestRobot robot = near_wrist_robot();
   for (const double clearance : {0.001, 0.005, 0.05}) {
-    Problem problem = short_path(robot, posture(kPi / 2));
+    PathProblem problem = short_path(robot, posture(kPi / 2));
     problem.limits.clearance = clearance;
     const PlanResult touching = plan_with_evidence(problem);
     EXPECT_EQ(touching.status, PlanStatus::kInfeasible) << clearance;
@@ -68,7 +68,7 @@ TEST(SelfClearance, LinksThatAreNearByDesignMayNotMeet) {
 /// A trajectory that touches fails, whatever is asked.
 TEST(SelfClearance, CheckForgivesNoContact) {
   const TestRobot robot = near_wrist_robot();
-  Problem problem = short_path(robot, posture(-1.0));
+  PathProblem problem = short_path(robot, posture(-1.0));
   problem.limits.clearance = 0;
   PlanResult result = plan_with_evidence(problem);
   ASSERT_EQ(result.status, PlanStatus::kSolved);
@@ -93,7 +93,7 @@ TEST(SelfClearance, ALargerClearanceNeverMakesAPath) {
     std::optional<PreparedRobot> prepared;
     for (int trial = 0; trial < trials(8); ++trial) {
       Random random(base + 1000 * r + static_cast<std::uint64_t>(trial));
-      Problem problem = random_problem(robots[r], random);
+      PathProblem problem = random_problem(robots[r], random);
       problem.limits.joint_step = 0.8;
       if (trial % 3 == 0) problem.limits.self_clearance = random.uniform(0, 0.02);
       if (trial % 4 == 0) problem.limits.edge_clearance = random.uniform(0, 0.01);

@@ -34,10 +34,10 @@ namespace {
 using namespace test;
 
 /// A disc is led along a plate, `deep` beneath its surface.
-Problem polishing(double deep, std::optional<double> allowed = {}) {
-  static const Problem loaded =
+PathProblem polishing(double deep, std::optional<double> allowed = {}) {
+  static const PathProblem loaded =
       io::load_problem(data_dir() / "problems" / "xarm7_polish_raster.yaml");
-  Problem problem = loaded;
+  PathProblem problem = loaded;
   problem.waypoints.resize(2);
   problem.waypoints[1].position.y() = 0;
   problem.resolution.ds = 0.03;
@@ -48,7 +48,7 @@ Problem polishing(double deep, std::optional<double> allowed = {}) {
     if (object.name == "plate") object.allow = {Allowed("disc", allowed)};
   return problem;
 }
-PlanResult planned(const Problem& problem, PlannerKind planner = PlannerKind::kLazy) {
+PlanResult planned(const PathProblem& problem, PlannerKind planner = PlannerKind::kLazy) {
   PlanOptions options;
   options.planner = planner;
   options.evidence = Evidence::all();
@@ -57,7 +57,7 @@ PlanResult planned(const Problem& problem, PlannerKind planner = PlannerKind::kL
 
 TEST(Contact, IsMeasuredAndSaid) {
   for (const double deep : {-0.002, 0.001, 0.004}) {
-    const Problem problem = polishing(deep);
+    const PathProblem problem = polishing(deep);
     const PlanResult result = planned(problem);
     ASSERT_EQ(result.status, PlanStatus::kSolved);
     ASSERT_EQ(result.deepest_contact.has_value(), deep > 0);
@@ -82,7 +82,7 @@ TEST(Contact, IsMeasuredAndSaid) {
 
 TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
   const double deep = 0.004;
-  const Problem as_deep_as_it_likes = polishing(deep);
+  const PathProblem as_deep_as_it_likes = polishing(deep);
   const PlanResult free = planned(as_deep_as_it_likes);
   ASSERT_EQ(free.status, PlanStatus::kSolved);
   for (const PlannerKind planner :
@@ -119,7 +119,7 @@ TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
 }
 
 TEST(Contact, ThatIsTooDeepHasACertificate) {
-  const Problem problem = polishing(0.004, 0.003);
+  const PathProblem problem = polishing(0.004, 0.003);
   Planner planner(problem);
   const PlanResult result = planner.plan();
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
@@ -137,14 +137,14 @@ TEST(Contact, ThatIsTooDeepHasACertificate) {
 
 TEST(Contact, BetweenLayersIsBoundedAsWell) {
   // At layers the disc is as deep as it may be; on the way from one to the next it swings deeper.
-  Problem problem = polishing(0.003);
+  PathProblem problem = polishing(0.003);
   problem.resolution.ds = 0.15;
   problem.limits.tool_path_error = 0.02;
   problem.limits.joint_step = 1.5;
   const PlanResult free = planned(problem);
   ASSERT_EQ(free.status, PlanStatus::kSolved);
   ASSERT_TRUE(free.deepest_contact);
-  Problem bounded = problem;
+  PathProblem bounded = problem;
   for (SceneObject& object : bounded.scene)
     if (object.name == "plate") object.allow = {Allowed("disc", 0.00302)};
   int deeper_at_rows = 0;
@@ -172,7 +172,7 @@ TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
   int solved = 0, refused = 0;
   for (const double deep : {0.0020, 0.0025, 0.0027, 0.0028, 0.00285, 0.0029, 0.00299}) {
     SCOPED_TRACE(deep);
-    Problem problem = polishing(deep, kAllowed);
+    PathProblem problem = polishing(deep, kAllowed);
     problem.resolution.ds =
         0.005;  // straight joint motions leave the path by some 0.01 mm between layers
     problem.limits.joint_acceleration = std::array<double, kDof>{10, 10, 10, 10, 10, 10, 10};
@@ -220,7 +220,7 @@ TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
 /// is advised.
 TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
   // A stylus of 8 mm is led past a pin of 12 mm, which it meets half-way between two layers.
-  Problem problem = polishing(-0.05);
+  PathProblem problem = polishing(-0.05);
   Pose tip = Pose::Identity();
   tip.translation().z() = 0.145;
   problem.attached.push_back({"stylus", Sphere{0.004}, tip, problem.tip_link});
@@ -281,7 +281,7 @@ bool says(const std::string& text, const std::string& part) {
 }
 
 TEST(Contact, ThatWasNotMeasuredIsToldFromContactThatIsNone) {
-  const Problem touching = polishing(0.001), above = polishing(-0.002);
+  const PathProblem touching = polishing(0.001), above = polishing(-0.002);
   const PlanResult whole = planned(touching), none = planned(above);
   EXPECT_EQ(whole.deepest_contact_status(), Known::kMeasured);
   EXPECT_EQ(none.deepest_contact_status(), Known::kNone);
@@ -329,7 +329,7 @@ TEST(Contact, ThatWasNotMeasuredIsToldFromContactThatIsNone) {
 }
 
 TEST(Contact, ThatWasNotMeasuredOfAJobIsSaidOfEachRun) {
-  const Problem problem = polishing(0.001);
+  const PathProblem problem = polishing(0.001);
   Job job;
   static_cast<Robot&>(job) = problem;
   job.scene = problem.scene;
@@ -382,7 +382,7 @@ TEST(Contact, ThatWasNotMeasuredOfTwoArmsIsSaidOfBoth) {
 }
 
 TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {
-  const auto led_in_base = [](Problem problem) {  // else the path goes with the plate
+  const auto led_in_base = [](PathProblem problem) {  // else the path goes with the plate
     problem.waypoints = waypoints_in_base(problem);
     problem.path_frame = problem.base_link;
     return problem;
@@ -393,7 +393,7 @@ TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {
     Pose pose = polishing(0).scene[1].pose;
     pose.translation() += lift * pose.linear().col(2);
     planner.move("plate", pose);
-    Problem problem = planner.problem();
+    PathProblem problem = planner.problem();
     const PlanResult again = planner.plan(), fresh = planned(problem);
     EXPECT_EQ(again.status, fresh.status) << lift;
     EXPECT_EQ(again.cost, fresh.cost) << lift;
@@ -405,7 +405,7 @@ TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {
 }
 
 TEST(Contact, OfMotionsIsBoundedAsWell) {
-  Problem problem = polishing(0.001, 0.002);
+  PathProblem problem = polishing(0.001, 0.002);
   problem.limits.joint_acceleration = std::array<double, kDof>{10, 10, 10, 10, 10, 10, 10};
   problem = with_motion_defaults(problem);
   const PlanResult result = planned(problem);
@@ -416,7 +416,7 @@ TEST(Contact, OfMotionsIsBoundedAsWell) {
       time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
   ASSERT_TRUE(motion.motion) << (motion.failure ? motion.failure->reason : "");
   EXPECT_TRUE(check_motion(PreparedRobot(problem), problem, motion.motion->rows).passed);
-  Problem strict = problem;
+  PathProblem strict = problem;
   for (SceneObject& object : strict.scene)
     if (object.name == "plate") object.allow = {Allowed("disc", 0.0005)};
   EXPECT_FALSE(check_motion(PreparedRobot(strict), strict, motion.motion->rows).passed);
@@ -424,7 +424,7 @@ TEST(Contact, OfMotionsIsBoundedAsWell) {
 
 TEST(Contact, DepthsThatMeanNothingAreRefused) {
   const auto message = [](const Shape& object, std::optional<double> depth) {
-    Problem problem = polishing(0.001, depth);
+    PathProblem problem = polishing(0.001, depth);
     problem.scene[1].shape = object;
     try {
       static_cast<void>(plan(problem));
@@ -448,7 +448,7 @@ TEST(Contact, DepthsThatMeanNothingAreRefused) {
   EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.015).find("at most 0.015 m deep"),
             std::string::npos);  // half of 10 mm, half of 20 mm
   EXPECT_NE(message(MeshPtr(mesh(false)), 0.001).find("part.stl is not closed"), std::string::npos);
-  Problem problem = polishing(0.001, 0.002);
+  PathProblem problem = polishing(0.001, 0.002);
   problem.attached[1].shape = MeshPtr(mesh(true));
   problem.scene[1].shape = MeshPtr(mesh(true));
   EXPECT_THROW(static_cast<void>(plan(problem)), InvalidArgument);

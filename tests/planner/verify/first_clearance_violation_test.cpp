@@ -70,7 +70,7 @@ Walks compare_walks(const std::vector<test::TestRobot>& robots, std::uint64_t ba
   std::int64_t rows_asked = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         test::random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (random.coin()) problem.limits.edges = EdgeMode::kContinuous;
     // Rows that must keep less than motions, too.

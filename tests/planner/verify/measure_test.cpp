@@ -27,7 +27,7 @@ struct Counts {
 
 /// Checks that the measures are what plan() says of its trajectory.
 void expect_what_plan_says(const Measures& measures, const PlanResult& result,
-                           const Problem& problem, const std::string& what) {
+                           const PathProblem& problem, const std::string& what) {
   EXPECT_EQ(measures.min_clearance, result.min_clearance) << what;
   EXPECT_EQ(measures.min_manipulability, result.min_manipulability) << what;
   EXPECT_EQ(measures.arm_angle, result.arm_angle) << what;
@@ -39,7 +39,7 @@ void expect_what_plan_says(const Measures& measures, const PlanResult& result,
 
 /// Checks that the measures are what rows say one by one.
 void expect_what_rows_say(const Measures& measures, const PreparedRobot& robot,
-                          const Problem& problem, const std::vector<TrajectoryRow>& trajectory,
+                          const PathProblem& problem, const std::vector<TrajectoryRow>& trajectory,
                           const std::string& what, Counts& counts) {
   const Chain& chain = robot.arm().chain;
   const World world(robot.world(), problem);
@@ -81,7 +81,7 @@ void expect_what_rows_say(const Measures& measures, const PreparedRobot& robot,
 /// Checks what measuring gives without evidence, and that it refuses a trajectory without its last
 /// row.
 void expect_less_without_evidence(const Measures& measures, const PreparedRobot& robot,
-                                  const Problem& problem,
+                                  const PathProblem& problem,
                                   const std::vector<TrajectoryRow>& trajectory,
                                   const std::string& what) {
   const Measures little = measure(robot, problem, trajectory, {});
@@ -104,7 +104,7 @@ TEST(Measure, IsWhatPlanSaysAndWhatRowsSay) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem =
+    PathProblem problem =
         random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     if (arm_of({"", problem.model, problem.base_link, problem.tip_link}).chain.slide() >= 0) {
       problem.limits.arm_slope = Limits().arm_slope;  // these arms have no arm angle

@@ -97,7 +97,7 @@ struct Tally {
 };
 
 /// Compares what the plan and the check of a path say of the tool's error with what it is.
-void expect_errors_as_outside(const PreparedRobot& robot, const Problem& problem,
+void expect_errors_as_outside(const PreparedRobot& robot, const PathProblem& problem,
                               const std::vector<TrajectoryRow>& rows, const Measures& measures,
                               const CheckResult& check, const std::string& what, Tally& tally) {
   const Chain& chain = robot.arm().chain;
@@ -155,7 +155,7 @@ TEST(StepSegment, ErrorsOfTurnsOnTheSpotAreFromTheSegmentAndNoiseChangesNoVerdic
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::size_t kind = static_cast<std::size_t>(trial) % robots.size();
-    Problem problem = problem_for(robots[kind]);
+    PathProblem problem = problem_for(robots[kind]);
     problem.tool.translation() = Vector3d(random.uniform(0, 0.06), 0, random.uniform(0.05, 0.2));
     if (kind == 4 || kind == 6) problem.roll = Roll{-0.5, 0.5};
     problem.resolution = coarse(random);
@@ -174,7 +174,7 @@ TEST(StepSegment, ErrorsOfTurnsOnTheSpotAreFromTheSegmentAndNoiseChangesNoVerdic
       ++tally.solved;
       expect_errors_as_outside(robot, problem, found.trajectory, found,
                                check_trajectory(robot, problem, found.trajectory), what, tally);
-      Problem other = problem;
+      PathProblem other = problem;
       other.waypoints = paths[1 - noisy];
       loosen(other);
       EXPECT_EQ(plan(other, with_errors()).status, PlanStatus::kSolved) << what << " " << noisy;
@@ -199,7 +199,7 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = problem_for(robot);
+    const PathProblem problem = problem_for(robot);
     const Chain chain = planning_arm(problem).model.chain;
     const Config q = inner_posture(chain, random);
     std::array<Job, 2> jobs;

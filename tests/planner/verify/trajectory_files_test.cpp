@@ -116,7 +116,7 @@ TEST(TrajectoryFiles, PassAsTheyWereWritten) {
       const io::TrajectoryFile file =
           io::load_trajectory_file(folder.write(format.name, text_of(format, judged)), names);
       ASSERT_EQ(file.rows.size(), judged.rows.size()) << what;
-      const Problem of_motions = with_motion_defaults(judged.problem);
+      const PathProblem of_motions = with_motion_defaults(judged.problem);
       std::vector<TrajectoryRow> rows = file.rows;
       if (!judged.timed) rows = complete_rows(*judged.robot, judged.problem, rows, file.stated);
       if (judged.timed) {
@@ -239,7 +239,7 @@ TEST(TrajectoryFiles, LegalOnesPassInEveryFormat) {
 /// A path through these offsets from a pose well inside the limits of the iiwa14, and turns about
 /// the tool's x axis.
 struct Planned {
-  Problem problem;
+  PathProblem problem;
   std::shared_ptr<const PreparedRobot> robot;
   std::vector<TrajectoryRow> rows;
 };
@@ -354,7 +354,7 @@ TEST(RowsAtLayers, OfOtherRowsMakeMotions) {
   TimingOptions timing;
   timing.speed = 0.1;
   for (const double ds : {0.004, 0.0123, 0.03}) {
-    Problem other = planned.problem;
+    PathProblem other = planned.problem;
     other.resolution.ds = ds;
     const auto rows =
         rows_at_layers(*planned.robot, other, joints_alone(planned.rows), kJointsAlone);
@@ -365,7 +365,7 @@ TEST(RowsAtLayers, OfOtherRowsMakeMotions) {
     // Layers are found in the rows of a motion as well, whose path is rounded.
     std::vector<TrajectoryRow> samples;
     for (const TimedRow& row : timed.motion->rows) samples.push_back({.q = row.row.q});
-    const Problem rounded = with_motion_defaults(planned.problem);
+    const PathProblem rounded = with_motion_defaults(planned.problem);
     const auto again = rows_at_layers(*planned.robot, rounded, samples, kJointsAlone);
     EXPECT_EQ(again.size(), planned.rows.size());
     EXPECT_TRUE(check_trajectory(*planned.robot, rounded, again).passed) << ds;

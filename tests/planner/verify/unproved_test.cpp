@@ -23,8 +23,8 @@ namespace {
 
 using namespace test;
 
-Problem short_path() {
-  Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+PathProblem short_path() {
+  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   return problem;
 }
@@ -110,7 +110,7 @@ void expect_none_unproved(const Plan& plan, const std::string& what) {
 }
 
 TEST(Unproved, OfEveryKindIsPartial) {
-  const Problem problem = short_path();
+  const PathProblem problem = short_path();
   expect_none_unproved([&](const PlanOptions& options) { return plan(problem, options); }, "path");
   Job job = short_job();
   const PreparedRobot robot(problem_of_run(job, {0, false}));

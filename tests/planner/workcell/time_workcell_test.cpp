@@ -140,7 +140,7 @@ class Measurement {
       ASSERT_EQ(left.rows[row].t, static_cast<double>(row) * (1 / motion_.rate));
     }
     for (std::size_t k = 0; k < 2; ++k) {
-      const Problem& problem = prepared_.problem(k);
+      const PathProblem& problem = prepared_.problem(k);
       const JointRates rates =
           joint_rates(prepared_.robot(k).arm().chain, problem.limits, problem.source);
       worst_.differences +=

@@ -482,7 +482,7 @@ ArcsOfLayer arcs_of(const SelfMotion& motion, const LockMethod& method, const Po
 }
 
 /// Adds images to an arc where the roll costs least, and at the ends of what it may be.
-void add_at_asked_rolls(const Chain& chain, const Problem& problem, const SelfMotion& motion,
+void add_at_asked_rolls(const Chain& chain, const PathProblem& problem, const SelfMotion& motion,
                         const PathLayer& layer, const SelfMotionArc& arc, int number,
                         std::vector<Image>& images) {
   const Roll& window = layer.window;
@@ -497,7 +497,8 @@ void add_at_asked_rolls(const Chain& chain, const Problem& problem, const SelfMo
 
 /// Throws InputError unless the posture that the problem gives for an end of the path is within its
 /// limits and puts the tool there.
-void require_fits(PathEnd which, const Problem& problem, const Chain& chain, const ToolPath& path) {
+void require_fits(PathEnd which, const PathProblem& problem, const Chain& chain,
+                  const ToolPath& path) {
   validate_given(which, problem, chain, path);
   if (chain.roll)
     static_cast<void>(roll_of_given(which, problem, chain, path,
@@ -535,7 +536,7 @@ Point given_point(const SelfMotion& motion, const Config& q) {
 }  // namespace
 
 ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method,
-                                     const ToolPath& path, const Problem& problem,
+                                     const ToolPath& path, const PathProblem& problem,
                                      const Budget& budget) {
   const TraceSpan span("arcs");
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
@@ -596,11 +597,11 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
 }
 
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-                       const Problem& problem, const Budget& budget)
+                       const PathProblem& problem, const Budget& budget)
     : ArcLattice(chain, method, path, problem, build(chain, method, path, problem, budget)) {}
 
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-                       const Problem& problem, Layers&& layers)
+                       const PathProblem& problem, Layers&& layers)
     : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
       method_(method),
       problem_(problem),

@@ -12,7 +12,7 @@
 namespace swivel {
 
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                                      const Problem& problem, const Budget& budget) {
+                                      const PathProblem& problem, const Budget& budget) {
   if (path.closed() && chain.free_roll)
     throw InputError(problem.source,
                      "path.closed: is not supported yet for arms of seven joints whose roll is "
@@ -31,7 +31,7 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
 }
 
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
-                                         const Problem& problem) {
+                                         const PathProblem& problem) {
   // If the roll has a cost, turning joint 7 may be cheaper than resting it.
   if (!arm.srs || !arm.srs->coaxial || problem.start || problem.end || !problem.rolls.empty() ||
       problem.cost.roll > 0)
@@ -42,7 +42,7 @@ std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm
 }
 
 std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm,
-                                              const ToolPath& path, const Problem& problem,
+                                              const ToolPath& path, const PathProblem& problem,
                                               const Budget& budget) {
   if (path.closed()) return nullptr;
   const auto rest = last_joint_at_rest(chain, arm, problem);

@@ -67,7 +67,7 @@ int cells_per_step(int angles, double turn, double dphi) {
 }  // namespace
 
 std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm,
-                                               const ToolPath& path, const Problem& problem,
+                                               const ToolPath& path, const PathProblem& problem,
                                                const Budget& budget,
                                                std::optional<double> last_joint, bool circles) {
   if (problem.limits.step_error)
@@ -99,7 +99,7 @@ RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resoluti
 }
 
 RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                         const Problem& problem, const Budget& budget, Knots knots,
+                         const PathProblem& problem, const Budget& budget, Knots knots,
                          std::optional<double> last_joint, const Joints& wound)
     : Lattice(chain, *knots.path, problem, arm.fit_error),
       arm_(&arm),
@@ -132,7 +132,7 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   else
     choose_rolls(nominal, resolution.droll);
 
-  Problem of_nodes = problem;
+  PathProblem of_nodes = problem;
   of_nodes.start.reset();
   of_nodes.end.reset();
   for (const int value : value_of_) {
@@ -155,8 +155,8 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   find_near(problem);
 }
 
-void RollLattice::place_given(const Problem& problem, const Budget& budget) {
-  const auto place = [&](PathEnd which, Problem only) {
+void RollLattice::place_given(const PathProblem& problem, const Budget& budget) {
+  const auto place = [&](PathEnd which, PathProblem only) {
     const double roll = roll_of_given(which, problem, *chain_, *whole_, *chain_->free_roll);
     ToolPath turned =
         knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
@@ -164,7 +164,7 @@ void RollLattice::place_given(const Problem& problem, const Budget& budget) {
     return std::make_unique<const Given>(roll, std::move(turned), *chain_, *arm_, only, budget,
                                          std::move(planes), circles_);
   };
-  Problem only = problem;
+  PathProblem only = problem;
   only.end.reset();
   if (problem.start) start_ = place(PathEnd::kFirst, only);
   only.end = end_;
@@ -177,7 +177,7 @@ double RollLattice::way(int step) const {
   return path_->layer(step + 1).travel - path_->layer(step).travel;
 }
 
-void RollLattice::find_near(const Problem& problem) {
+void RollLattice::find_near(const PathProblem& problem) {
   const double droll = problem.resolution.droll;
   const int values = rolls(), most = circle_ ? (values - 1) / 2 : values - 1;
   bool turns = values == 1;

@@ -207,8 +207,9 @@ void fill_winding_mask(const LayerNodes& nodes, int solution,
 }  // namespace
 
 SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                       const Problem& problem, const Budget& budget, std::vector<ArmPlane> planes,
-                       std::optional<double> last_joint, const Joints& circles)
+                       const PathProblem& problem, const Budget& budget,
+                       std::vector<ArmPlane> planes, std::optional<double> last_joint,
+                       const Joints& circles)
     : Lattice(chain, path, problem, arm.fit_error),
       id_(next_id()),
       source_(problem.source),
@@ -243,7 +244,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
 }
 
 Lattice::Joints SrsLattice::possible_circles(const Chain& chain, const SrsArm& arm,
-                                             const Problem& problem,
+                                             const PathProblem& problem,
                                              const std::vector<Config>& step_bounds) {
   Joints circles{};
   for (std::size_t j = 0; j < kDof && !problem.resolution.arcs; ++j) {

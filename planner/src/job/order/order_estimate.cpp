@@ -40,8 +40,8 @@ struct Gates {
 };
 
 /// Returns the nodes at which a path may begin, and sets `least` to the cost of its best path.
-std::vector<Gate> begins_of(const PreparedRobot& robot, const Problem& problem, std::size_t most,
-                            double& least, const Budget& budget) {
+std::vector<Gate> begins_of(const PreparedRobot& robot, const PathProblem& problem,
+                            std::size_t most, double& least, const Budget& budget) {
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
   const auto lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
@@ -88,7 +88,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     const auto run = static_cast<std::size_t>(part) / 2;
     const bool reversed = run % 2 == 1, of_ends = part % 2 == 1;
     if (reversed && !job.strokes[run / 2].reversible) return;
-    Problem problem = problem_of_run(job, {run / 2, reversed});
+    PathProblem problem = problem_of_run(job, {run / 2, reversed});
     if (of_ends) {
       std::reverse(problem.waypoints.begin(), problem.waypoints.end());
       std::reverse(problem.steps.begin(), problem.steps.end());
@@ -100,7 +100,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     if (!of_ends) gates[run].least = least;
   });
   budget.tell(Stage::kSearch);  // the lattices of all strokes are swept
-  const Problem first = problem_of_run(job, {0, false});
+  const PathProblem first = problem_of_run(job, {0, false});
   const ToolPath path = path_within_scale(first, robot.arm().chain, budget);
   const auto metric = make_lattice(robot.arm().chain, robot.arm_class(), path, first, budget);
   const std::vector<Gate> home{Gate(job.home.value_or(Config::Zero()), 0)};

@@ -51,8 +51,8 @@ std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm, const A
 }
 
 /// Returns the problem of an arm by itself, but for its path. `other` is the other arm.
-Problem problem_of(const Workcell& cell, std::size_t arm, const ArmModel& other) {
-  Problem problem;
+PathProblem problem_of(const Workcell& cell, std::size_t arm, const ArmModel& other) {
+  PathProblem problem;
   static_cast<Robot&>(problem) = cell.arms[arm];
   static_cast<Task&>(problem) = cell.arms[arm];
   problem.model = without_shapes_of(*cell.arms[arm].model, other);
@@ -63,11 +63,11 @@ Problem problem_of(const Workcell& cell, std::size_t arm, const ArmModel& other)
   return problem;
 }
 
-bool turns_freely(const Problem& problem) {
+bool turns_freely(const PathProblem& problem) {
   return problem.roll && problem.roll->circle();
 }
 
-ToolPath path_of(const Problem& problem, const std::vector<Waypoint>& waypoints,
+ToolPath path_of(const PathProblem& problem, const std::vector<Waypoint>& waypoints,
                  const std::vector<int>& steps, const Budget& budget) {
   return ToolPath(waypoints, problem.resolution, problem.source, budget, problem.smooth,
                   turns_freely(problem), steps);
@@ -119,7 +119,7 @@ std::vector<int> too_long(const std::vector<Waypoint>& carried, const std::vecto
 
 /// Cuts the paths of a leader and its follower into as many steps each, and gives the follower its
 /// path in the base frame. Returns the follower's waypoints in the leader's tool frame.
-std::vector<Waypoint> follow(Problem& leader, Problem& follower, const Budget& budget) {
+std::vector<Waypoint> follow(PathProblem& leader, PathProblem& follower, const Budget& budget) {
   const auto carrying = given_waypoints_in_base(leader);
   follower.path_frame = follower.base_link;
   const auto on_tool = waypoints_in_base(follower);  // in the leader's tool frame
@@ -143,12 +143,12 @@ std::vector<Waypoint> follow(Problem& leader, Problem& follower, const Budget& b
 }
 
 /// Cuts the paths of two arms into as many steps each.
-void cut_alike(std::array<Problem, 2>& problems, const Budget& budget) {
+void cut_alike(std::array<PathProblem, 2>& problems, const Budget& budget) {
   std::vector<int> steps(problems[0].waypoints.size() - 1, 1);
-  for (const Problem& problem : problems)
+  for (const PathProblem& problem : problems)
     raise(steps, steps_between(waypoints_in_base(problem), problem.resolution, problem.source,
                                turns_freely(problem)));
-  for (Problem& problem : problems) {
+  for (PathProblem& problem : problems) {
     problem.steps = steps;
     static_cast<void>(path_of(problem, waypoints_in_base(problem), steps, budget));  // or throws
   }
@@ -183,7 +183,7 @@ std::vector<Waypoint> waypoints_of_rows(const Chain& chain, const std::vector<Co
 
 /// Gives an arm the path that its given rows lead its tool along, with a layer at each row. Limits
 /// of the tool's path are those of a leader, whose follower keeps to it; else there is none.
-void lay_along_rows(Problem& problem, const WorkcellArm& arm, const Chain& chain, bool leads) {
+void lay_along_rows(PathProblem& problem, const WorkcellArm& arm, const Chain& chain, bool leads) {
   problem.waypoints = waypoints_of_rows(chain, arm.given, problem.source);
   problem.steps.assign(arm.given.size() - 1, 1);
   problem.path_frame = problem.base_link;
@@ -192,7 +192,7 @@ void lay_along_rows(Problem& problem, const WorkcellArm& arm, const Chain& chain
 
 /// Cuts the path of an arm beside a given motion into steps that end where those of the motion do.
 /// `steps` of the problem says how, or is empty (Workcell).
-void cut_along(std::size_t rows, Problem& planned) {
+void cut_along(std::size_t rows, PathProblem& planned) {
   if (!planned.steps.empty()) return;
   if (planned.waypoints.size() == rows)
     planned.steps.assign(rows - 1, 1);
@@ -203,8 +203,8 @@ void cut_along(std::size_t rows, Problem& planned) {
 /// Gives the follower of a given motion its path in the base frame, at the tool of each row as the
 /// joints have turned it. `chain`: of the leader. Returns the follower's waypoints in the leader's
 /// tool frame, one for each row.
-std::vector<Waypoint> follow_rows(const Problem& leader, const Chain& chain,
-                                  const std::vector<Config>& rows, Problem& follower,
+std::vector<Waypoint> follow_rows(const PathProblem& leader, const Chain& chain,
+                                  const std::vector<Config>& rows, PathProblem& follower,
                                   const Budget& budget) {
   std::vector<Waypoint> tools, waypoints;
   for (const Config& q : rows) tools.push_back(waypoint_at(turned_tool(chain, q)));
@@ -233,7 +233,7 @@ Pose turned_tool(const Chain& chain, const Config& q) {
 ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget) {
   const std::array<ArmModel, 2> arms = arms_of(cell);
   ArmProblems of_arms{{problem_of(cell, 0, arms[1]), problem_of(cell, 1, arms[0])}, {}};
-  std::array<Problem, 2>& problems = of_arms.problems;
+  std::array<PathProblem, 2>& problems = of_arms.problems;
   for (std::size_t k = 0; k < 2; ++k)
     if (arms[k].chain.free_roll)
       throw InputError(problems[k].source,

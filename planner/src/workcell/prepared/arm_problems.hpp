@@ -11,7 +11,7 @@ namespace swivel {
 
 /// The problems that the arms of a workcell pose by themselves (PreparedWorkcell::problem).
 struct ArmProblems {
-  std::array<Problem, 2> problems;
+  std::array<PathProblem, 2> problems;
   /// Where one arm leads the other one: the waypoints of the follower in the leader's tool frame.
   std::vector<Waypoint> on_leader;
 };

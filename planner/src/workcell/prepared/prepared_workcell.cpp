@@ -43,7 +43,7 @@ struct PreparedWorkcell::Impl {
   std::shared_ptr<const RobotModel> model;  // of the whole robot
   std::vector<std::array<std::string, 2>> may_touch;
   ArmProblems of_arms;
-  const std::array<Problem, 2>& problems;
+  const std::array<PathProblem, 2>& problems;
   std::array<PreparedRobot, 2> robots;
   InterArmWorld between;
   std::optional<std::size_t> given_arm;
@@ -98,7 +98,7 @@ PreparedWorkcell& PreparedWorkcell::operator=(PreparedWorkcell&&) noexcept = def
 const std::string& PreparedWorkcell::name(std::size_t arm) const {
   return impl_->names[arm];
 }
-const Problem& PreparedWorkcell::problem(std::size_t arm) const {
+const PathProblem& PreparedWorkcell::problem(std::size_t arm) const {
   return impl_->problems[arm];
 }
 const PreparedRobot& PreparedWorkcell::robot(std::size_t arm) const {

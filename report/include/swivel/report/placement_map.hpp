@@ -74,7 +74,7 @@ struct PlacedEnd {
 /// What the page's view in three dimensions shows.
 struct PlacementScene {
   const PreparedRobot* robot = nullptr;
-  const Problem* problem = nullptr;  ///< with nothing moved, and joints held as the file says
+  const PathProblem* problem = nullptr;  ///< with nothing moved, and joints held as the file says
   Movable thing;
   std::vector<PlacedPlan> plans;       ///< of the best
   std::vector<PlacedEnd> ends;         ///< of some that have no path

@@ -13,7 +13,7 @@
 #include "swivel/collision/proofs/verdict.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -145,11 +145,11 @@ class World {
   /// Builds the world of a problem. Its pairs are those of two robot bodies that are not dropped
   /// (RobotPair), and those of a moving robot body and a scene object that are not allowed to
   /// touch, or only to a depth. Throws InputError for a mesh without triangles; Stopped.
-  World(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+  World(const RobotModel& robot, const ArmModel& arm, const PathProblem& problem,
         const Budget& budget = {});
   /// Builds the world of a problem, and shares the trees of every mesh that `like` has met. Throws
   /// InputError and Stopped.
-  World(const World& like, const RobotModel& robot, const ArmModel& arm, const Problem& problem,
+  World(const World& like, const RobotModel& robot, const ArmModel& arm, const PathProblem& problem,
         const Budget& budget = {});
   /// Builds a world with the robot and the limits of `like` and another scene. It shares the robot
   /// pairs of `like`, its scene's shapes and the trees of every mesh that it has met, so that an
@@ -158,7 +158,8 @@ class World {
   World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget = {});
   /// Builds a world with the robot of `like` and the scene and limits of `problem`. Pairs may be
   /// nearer by `forgiven`, m, than they should, but not touch. Throws InputError and Stopped.
-  World(const World& like, const Problem& problem, const Budget& budget = {}, double forgiven = 0);
+  World(const World& like, const PathProblem& problem, const Budget& budget = {},
+        double forgiven = 0);
   /// Which pairs to keep: those with one of some scene objects (kOf), which a change of these
   /// objects may affect, or all others (kBut), which it does not.
   enum class Pairs { kOf, kBut };
@@ -321,7 +322,7 @@ class World {
  private:
   struct Impl;
   World(detail::MeshStore meshes, const RobotModel& robot, const ArmModel& arm,
-        const Problem& problem, const Budget& budget);
+        const PathProblem& problem, const Budget& budget);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/answer/cause.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 

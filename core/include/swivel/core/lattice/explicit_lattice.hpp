@@ -27,7 +27,7 @@ class ExplicitLattice : public Lattice {
   /// the circle, as those of continuous joints are. Throws InputError for limits.step_error, which
   /// needs a closed form, and std::invalid_argument if the number of layers is not that of the
   /// path.
-  ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem,
+  ExplicitLattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
                   std::vector<std::vector<Point>> layers,
                   const std::array<bool, kDof>& circles = {});
 

@@ -11,7 +11,7 @@
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/body_pose_classes.hpp"
 #include "swivel/core/lattice/lattice_description.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
@@ -288,7 +288,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// Builds what all lattices share. `fit_error`: rad, by joint. Throws InputError if a speed limit
   /// of the tool or the time metric needs joint speeds that the robot does not state, if such a
   /// speed is outside of 1e-6 ... 1e6 rad/s, or if limits.joint_margin leaves a joint no range.
-  Lattice(const Chain& chain, const ToolPath& path, const Problem& problem,
+  Lattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
           const Config& fit_error = Config::Zero());
   /// Returns the largest move of each joint, rad, on each step of a path; one entry if all steps
   /// are alike.
@@ -324,8 +324,8 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   Limits limits_;
   Cost cost_;
   std::array<bool, kDof> continuous_{};  // wide joints and joints treated as circles too
-  bool starts_given_ = false;            // the path begins at Problem::start
-  std::optional<Config> end_;            // Problem::end, unless the path ends early
+  bool starts_given_ = false;            // the path begins at PathProblem::start
+  std::optional<Config> end_;            // PathProblem::end, unless the path ends early
 
  private:
   std::array<double, kDof> cost_scale_{};

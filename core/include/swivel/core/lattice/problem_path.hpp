@@ -13,7 +13,7 @@ namespace swivel {
 /// start on. Corners are rounded by `problem.smooth`, or by `otherwise` if that is unset. Throws
 /// InputError for what ToolPath refuses and for a start_at beyond the path; InvalidArgument if
 /// Task::rolls is given and does not have one entry for each layer; Stopped.
-[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain,
+[[nodiscard]] ToolPath problem_path(const PathProblem& problem, const Chain& chain,
                                     const Budget& budget = {},
                                     const std::optional<PathSmoothing>& otherwise = {});
 

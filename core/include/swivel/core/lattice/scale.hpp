@@ -27,7 +27,7 @@ inline constexpr double kFar = 20;
 /// Returns problem_path(), cut off at first_far_waypoint() if there is one. Nothing leads through
 /// that layer at any resolution, and the rest of the path, which is usually in millimetres, has too
 /// many layers to look at. Throws as problem_path() does.
-[[nodiscard]] ToolPath path_within_scale(const Problem& problem, const Chain& chain,
+[[nodiscard]] ToolPath path_within_scale(const PathProblem& problem, const Chain& chain,
                                          const Budget& budget = {});
 
 /// Returns the largest speed of the tool that is not suspected to be in millimetres a second: 10
@@ -53,10 +53,11 @@ struct LargeLength {
   std::string fault;
   double most = 0;  ///< the largest value that is not suspected, m, m/s, rad or rad/s
 };
-[[nodiscard]] std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& problem);
+[[nodiscard]] std::vector<LargeLength> large_lengths(const Chain& chain,
+                                                     const PathProblem& problem);
 /// Returns one warning for each of large_lengths().
 [[nodiscard]] std::vector<std::string> limit_scale_warnings(const Chain& chain,
-                                                            const Problem& problem);
+                                                            const PathProblem& problem);
 
 /// Returns one warning for the tool and one for each body of the robot that is as large as if its
 /// lengths were millimetres, and one for all joints of the chain whose limits are as large as if

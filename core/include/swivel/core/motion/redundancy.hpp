@@ -74,14 +74,14 @@ class Redundancy {
 [[nodiscard]] std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain,
                                                                 const ArmClass& arm,
                                                                 const ToolPath& path,
-                                                                const Problem& problem,
+                                                                const PathProblem& problem,
                                                                 const Budget& budget);
 
 /// Returns the arm angle of an S-R-S arm whose joint 7 rests at `last_joint`, rad
 /// (last_joint_at_rest()), so that the other joints turn the tool. All arguments but the problem
 /// must outlive it.
 [[nodiscard]] std::unique_ptr<const Redundancy> make_coaxial_redundancy(
-    const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
+    const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
     double last_joint, const Budget& budget);
 
 /// Returns the roll of the tool of an S-R-S arm that has a free one (Chain::free_roll), at the arm
@@ -90,7 +90,7 @@ class Redundancy {
 [[nodiscard]] std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain,
                                                                      const SrsArm& arm,
                                                                      const ToolPath& path,
-                                                                     const Problem& problem,
+                                                                     const PathProblem& problem,
                                                                      const Budget& budget);
 
 }  // namespace swivel

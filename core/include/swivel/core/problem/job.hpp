@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -118,7 +118,7 @@ struct StrokeRun {
 
 /// Returns the problem that one run of a job poses by itself. Its path begins with the approach and
 /// ends with the retract; its `source` names the stroke.
-[[nodiscard]] Problem problem_of_run(const Job& job, const StrokeRun& run);
+[[nodiscard]] PathProblem problem_of_run(const Job& job, const StrokeRun& run);
 
 /// Returns which rows of a run's waypoints_of_run() belong to the stroke: the first and the last.
 struct ProcessWaypoints {
@@ -130,11 +130,11 @@ struct ProcessWaypoints {
 /// strokes, since strokes begin and end there.
 [[nodiscard]] Limits limits_of_transitions(const Job& job);
 
-/// Throws InvalidArgument for a job that makes no sense whatever the robot: what validate(Problem)
-/// refuses of any of its runs, no strokes, names that are empty or taken, a start in a stroke, an
-/// end in a reversible one, a home that is not finite, speeds that are not positive, feeds that are
-/// not one per waypoint, lift-offs that cost less than nothing or overlap by less, in an order that
-/// is to be found, or with names that have a slash.
+/// Throws InvalidArgument for a job that makes no sense whatever the robot: what
+/// validate(PathProblem) refuses of any of its runs, no strokes, names that are empty or taken, a
+/// start in a stroke, an end in a reversible one, a home that is not finite, speeds that are not
+/// positive, feeds that are not one per waypoint, lift-offs that cost less than nothing or overlap
+/// by less, in an order that is to be found, or with names that have a slash.
 void validate(const Job& job);
 
 }  // namespace swivel

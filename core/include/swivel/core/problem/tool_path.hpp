@@ -9,7 +9,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 

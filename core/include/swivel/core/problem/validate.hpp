@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -10,7 +10,7 @@ namespace swivel {
 /// null. Every function that takes a problem calls it. What is wrong only together with the robot,
 /// the path or the lattice throws InputError later. The robot model itself is validated where it is
 /// loaded, not here.
-void validate(const Problem& problem);
+void validate(const PathProblem& problem);
 /// Throws InvalidArgument for a robot model whose names, indices, rotations, axes, limits or shapes
 /// make no sense, or whose links form no tree.
 void validate(const RobotModel& robot);

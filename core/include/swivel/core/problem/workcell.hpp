@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -62,7 +62,7 @@ struct Workcell {
 /// given motions, or one of fewer than two rows, with joints that are not finite, or of an arm with
 /// a path, a start, an end or a bounded roll; `steps` that do not lead to its last row; windows of
 /// the roll at waypoints; a leader that is planned with a roll, or whose start may be off its path;
-/// attached bodies of one name; and what validate(Problem) refuses of either arm.
+/// attached bodies of one name; and what validate(PathProblem) refuses of either arm.
 void validate(const Workcell& cell);
 
 }  // namespace swivel

@@ -9,7 +9,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/workcell.hpp"
 
 namespace swivel {
@@ -29,8 +29,8 @@ struct Shard {
 /// Returns the problem of an episode under a seed: the objects named in `vary` are moved. Offsets d
 /// (m) and angles (rad) are drawn by SplitMix64 seeded by (seed, episode) alone, in the order of
 /// `vary`, x y z roll pitch yaw: p' = p + d, R' = Rz Ry Rx R, about the object's origin.
-[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed,
-                                      std::uint64_t episode);
+[[nodiscard]] PathProblem episode_problem(const PathProblem& problem, std::uint64_t seed,
+                                          std::uint64_t episode);
 /// Returns the job of an episode under a seed: its objects are moved as those of a problem.
 [[nodiscard]] Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode);
 /// Returns the workcell of an episode under a seed: its objects are moved as those of a problem.
@@ -67,7 +67,7 @@ struct EpisodeRow {
   EpisodeRow() = default;
   /// Takes an episode's row from its result, for which Evidence::tool_path_error must have been
   /// asked. `problem` may be that of any episode.
-  EpisodeRow(std::uint64_t episode, const PlanResult& result, const Problem& problem);
+  EpisodeRow(std::uint64_t episode, const PlanResult& result, const PathProblem& problem);
   /// Takes an episode's row from the result of its job, for which Evidence::tool_path_error must
   /// have been asked. Its plan_ms is the time that lattices, search and order took; its mean error
   /// is that of the strokes, weighted by their steps. `job` may be that of any episode.

@@ -10,7 +10,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/workcell.hpp"
 
 namespace swivel {
@@ -51,8 +51,8 @@ void hold_joints(Workcell& cell, const HeldPositions& positions);
 /// of objects that do are multiples of 1e-12 m, and of 1e-12 rad as roll, pitch and yaw, so that a
 /// file can state them exactly. Throws InvalidArgument for an unknown object, for an arm, and for
 /// an offset of kNothing.
-[[nodiscard]] Problem placed_problem(const Problem& problem, const Movable& thing,
-                                     const Offset& offset);
+[[nodiscard]] PathProblem placed_problem(const PathProblem& problem, const Movable& thing,
+                                         const Offset& offset);
 /// Returns the job with one thing moved as by placed_problem(), for Movable::Kind::kPath the paths
 /// of all strokes. Its home stays as it is, seven joints. Throws InvalidArgument as
 /// placed_problem() does.

@@ -6,7 +6,7 @@
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 

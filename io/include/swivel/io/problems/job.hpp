@@ -28,6 +28,6 @@ void save_problem(const Job& job, const std::filesystem::path& file);
 
 /// Loads a file by load_job() if is_job(), else by load_problem(). It reads the
 /// file once, which may be a pipe. Throws InputError.
-[[nodiscard]] std::variant<Problem, Job> load_problem_or_job(const std::filesystem::path& yaml);
+[[nodiscard]] std::variant<PathProblem, Job> load_problem_or_job(const std::filesystem::path& yaml);
 
 }  // namespace swivel::io

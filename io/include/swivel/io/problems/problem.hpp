@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel::io {
 
@@ -15,7 +15,7 @@ namespace swivel::io {
 
 /// Loads a problem file and the files that it names, docs/formats.md. Throws InputError; for an
 /// unknown key it names the nearest known key.
-[[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
+[[nodiscard]] PathProblem load_problem(const std::filesystem::path& yaml);
 
 /// Returns the text of a problem file that gives this problem when it is loaded as `file`:
 /// rotations to a rounding error, everything else bit for bit. Of a problem that was loaded from a
@@ -25,11 +25,12 @@ namespace swivel::io {
 /// without defaults. Throws InvalidArgument for a problem that makes no sense, and InputError for
 /// what no file can say or what cannot be changed in place, if the file that it was loaded from
 /// cannot be read any more, and if `file` is one of those that it names.
-[[nodiscard]] std::string problem_text(const Problem& problem, const std::filesystem::path& file);
+[[nodiscard]] std::string problem_text(const PathProblem& problem,
+                                       const std::filesystem::path& file);
 
 /// Writes problem_text() to a file, which is replaced as a whole or left as it was. Throws as
 /// problem_text() does, and InputError if the file cannot be written.
-void save_problem(const Problem& problem, const std::filesystem::path& file);
+void save_problem(const PathProblem& problem, const std::filesystem::path& file);
 
 /// Turns waypoints of a tool that may turn freely about its z axis by half a turn about that axis
 /// where they would turn by 180 deg from the one before, about another axis: which way such a turn
@@ -43,7 +44,7 @@ void choose_sides(std::vector<Waypoint>& waypoints);
 /// order and layout stay. Loading it gives them bit for bit. `text` is the text that `problem` was
 /// loaded from. Throws InputError, in the name of `problem.source`, if the text states one of them
 /// in a way that cannot be edited in place, and if waypoints in the base frame have moved.
-[[nodiscard]] std::string with_poses(const std::string& text, const Problem& problem,
-                                     const Problem& placed);
+[[nodiscard]] std::string with_poses(const std::string& text, const PathProblem& problem,
+                                     const PathProblem& placed);
 
 }  // namespace swivel::io

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/workcell.hpp"
 
 namespace swivel::io {
@@ -15,7 +15,7 @@ namespace swivel::io {
 
 /// Loads a file as what its keys make it: with `arms` a workcell, with `strokes` a job, else a
 /// problem. It reads the file once, which may be a pipe. Throws InputError.
-[[nodiscard]] std::variant<Problem, Job, Workcell> load_problem_file(
+[[nodiscard]] std::variant<PathProblem, Job, Workcell> load_problem_file(
     const std::filesystem::path& yaml);
 
 }  // namespace swivel::io

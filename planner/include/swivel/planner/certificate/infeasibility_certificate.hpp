@@ -11,7 +11,7 @@
 namespace swivel {
 
 class PreparedRobot;
-struct Problem;
+struct PathProblem;
 struct PlanView;
 
 /// Returns a certificate that the last plan's problem has no path, which verify_certificate()
@@ -40,7 +40,8 @@ struct CertificateCheck {
 /// InputError if the problem's lattice differs from the certificate's (resolution, edges, layers),
 /// InvalidArgument as check_trajectory() does, and Stopped.
 [[nodiscard]] CertificateCheck verify_certificate(
-    const PreparedRobot& robot, const Problem& problem, const InfeasibilityCertificate& certificate,
-    const Budget& budget = {}, const std::shared_ptr<StateCheck>& check = nullptr);
+    const PreparedRobot& robot, const PathProblem& problem,
+    const InfeasibilityCertificate& certificate, const Budget& budget = {},
+    const std::shared_ptr<StateCheck>& check = nullptr);
 
 }  // namespace swivel

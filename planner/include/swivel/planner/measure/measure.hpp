@@ -4,7 +4,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -15,7 +15,7 @@ class PreparedRobot;
 /// of the problem's path, in order, valid or not (check_trajectory() judges). `wanted` selects what
 /// is computed. Throws InvalidArgument for another number of rows or a robot that was not prepared
 /// for the problem, InputError as plan() does, and Stopped.
-[[nodiscard]] Measures measure(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] Measures measure(const PreparedRobot& robot, const PathProblem& problem,
                                const std::vector<TrajectoryRow>& rows,
                                const Evidence& wanted = Evidence::all(), const Budget& budget = {});
 

@@ -29,7 +29,8 @@ struct StateClearances {
 /// Measures states, rad, one by one, as exactly as FCL tells. Pairs that may touch are left out.
 /// Throws InvalidArgument for a robot that is not prepared for the problem, InputError for an empty
 /// mesh, and Stopped.
-[[nodiscard]] StateClearances state_clearances(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] StateClearances state_clearances(const PreparedRobot& robot,
+                                               const PathProblem& problem,
                                                std::span<const Config> states,
                                                const Budget& budget = {});
 

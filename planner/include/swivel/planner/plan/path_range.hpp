@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel {
@@ -22,7 +22,7 @@ struct PathRange {
 /// one is put there, on the straight line between its neighbours. Layers, and the reference of arm
 /// angles, begin anew at `from`. Throws InvalidArgument for a range that does not lead forwards or
 /// begins outside the path, and for a problem with `rolls` or `steps`, which are of the whole path.
-[[nodiscard]] Problem problem_of_range(const Problem& problem, const PathRange& range);
+[[nodiscard]] PathProblem problem_of_range(const PathProblem& problem, const PathRange& range);
 
 /// Which way a path is followed.
 enum class PathDirection { kForwards, kBackwards };
@@ -39,8 +39,8 @@ struct PathReach {
 /// Finds how far an arm, free to begin in any posture, follows a problem's path from the arc length
 /// `from` on, m, or backwards from there: up to the last layer that a valid path reaches. Throws
 /// InvalidArgument where nothing of the path lies ahead and as problem_of_range() and plan() do.
-[[nodiscard]] PathReach reach_from(const PreparedRobot& robot, const Problem& problem, double from,
-                                   PathDirection direction = PathDirection::kForwards,
+[[nodiscard]] PathReach reach_from(const PreparedRobot& robot, const PathProblem& problem,
+                                   double from, PathDirection direction = PathDirection::kForwards,
                                    const PlanOptions& options = {});
 
 }  // namespace swivel

@@ -8,13 +8,13 @@ class Lattice;
 class PreparedRobot;
 class Verdicts;
 class World;
-struct Problem;
+struct PathProblem;
 
 /// What the last plan of a planner found out, for those who draw or measure it. Valid until the
 /// planner plans again, changes or is destroyed.
 struct PlanView {
   const PreparedRobot& robot;
-  const Problem& problem;
+  const PathProblem& problem;
   const Lattice& lattice;
   const World& world;
   const Verdicts* verdicts;  ///< null after an eager planner, which asks about every node

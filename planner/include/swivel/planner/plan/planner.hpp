@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel {
@@ -29,11 +29,11 @@ class Planner {
   explicit Planner(const Robot& robot);
   /// Builds a planner with the robot, scene and task of a problem. Throws as the constructor for a
   /// robot does.
-  explicit Planner(Problem problem);
+  explicit Planner(PathProblem problem);
   /// Builds a planner for a problem and a robot that was prepared before. Throws InvalidArgument
   /// for what validate() refuses, and if the robot was not prepared for this problem
   /// (PreparedRobot::require_prepared_for).
-  Planner(std::shared_ptr<const PreparedRobot> robot, Problem problem);
+  Planner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem);
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
@@ -41,7 +41,7 @@ class Planner {
   /// thread. The two share only data that are never written.
   [[nodiscard]] Planner clone() const;
 
-  [[nodiscard]] const Problem& problem() const;
+  [[nodiscard]] const PathProblem& problem() const;
   /// Computes what depends on the robot alone, which the first plan would do otherwise: trees of
   /// its meshes and pairs of its bodies that touch by design. Does nothing if that is done. Throws
   /// InputError and Stopped.
@@ -60,7 +60,7 @@ class Planner {
   void detach(const std::string& body);
   /// Replaces scene and task at once. Throws InvalidArgument if the robot of `problem` needs to be
   /// prepared otherwise (PreparedRobot::require_prepared_for).
-  void set_problem(Problem problem);
+  void set_problem(PathProblem problem);
 
   /// Plans with the current scene and task. The result is the same at any thread count, unless it
   /// times out. Throws InputError for a problem that makes no sense, and std::logic_error if
@@ -73,18 +73,18 @@ class Planner {
   [[nodiscard]] PlanView view() const;
 
  private:
-  friend PlanResult plan(const Problem& problem, const PlanOptions& options);
-  friend PlanResult plan(const PreparedRobot& robot, const Problem& problem,
+  friend PlanResult plan(const PathProblem& problem, const PlanOptions& options);
+  friend PlanResult plan(const PreparedRobot& robot, const PathProblem& problem,
                          const PlanOptions& options);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
 /// Plans one problem, once. Throws as the constructors of Planner and Planner::plan() do.
-[[nodiscard]] PlanResult plan(const Problem& problem, const PlanOptions& options = {});
+[[nodiscard]] PlanResult plan(const PathProblem& problem, const PlanOptions& options = {});
 /// Plans one problem, once, with a robot that was prepared before. Throws InvalidArgument if it was
 /// not prepared for this problem (PreparedRobot::require_prepared_for).
-[[nodiscard]] PlanResult plan(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] PlanResult plan(const PreparedRobot& robot, const PathProblem& problem,
                               const PlanOptions& options = {});
 
 }  // namespace swivel

@@ -7,7 +7,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
@@ -46,7 +46,7 @@ struct CartesianPath {
   PlanResult plan;  ///< of the whole path
   /// The problem whose path ends where the rows end: check_trajectory(problem, rows) proves them,
   /// if they are at least two.
-  Problem problem;
+  PathProblem problem;
 };
 
 /// Follows straight lines through waypoints as far as possible, as the function of this name does

@@ -22,7 +22,7 @@ struct MotionResult : TimingResult {
 /// between samples (within 0.05 mm). The problem is completed by with_motion_defaults(). Throws
 /// InvalidArgument and InputError as plan() does, InvalidArgument for rows that are not at layers,
 /// and Stopped.
-[[nodiscard]] MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] MotionResult time_trajectory(const PreparedRobot& robot, const PathProblem& problem,
                                            const std::vector<TrajectoryRow>& rows,
                                            const TimingOptions& options, const Budget& budget = {});
 
@@ -52,7 +52,7 @@ struct MotionPlan {
 /// an arm angle has no solution there, and InvalidArgument if the robot was not prepared for the
 /// problem.
 [[nodiscard]] std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot,
-                                                      const Problem& problem,
+                                                      const PathProblem& problem,
                                                       const std::vector<TrajectoryRow>& rows);
 
 }  // namespace swivel

@@ -10,7 +10,7 @@
 namespace swivel {
 
 class PreparedRobot;
-struct Problem;
+struct PathProblem;
 
 /// What rows must keep besides the problem's own rules, layer by layer.
 class LayerCheck {
@@ -54,7 +54,7 @@ struct RefineOptions {
 /// The result is valid and never dearer by the problem's metric; otherwise it is the given path,
 /// with the reason. A given start and a given end stay. `rows` is a trajectory of this problem that
 /// plan() found. Throws InputError and InvalidArgument as plan() does, and Stopped.
-[[nodiscard]] Refined refine(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] Refined refine(const PreparedRobot& robot, const PathProblem& problem,
                              const std::vector<TrajectoryRow>& rows,
                              const RefineOptions& options = {}, const Budget& budget = {});
 

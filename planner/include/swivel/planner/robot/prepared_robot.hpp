@@ -5,7 +5,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -22,19 +22,19 @@ class PreparedRobot {
   /// Prepares the robot of a problem. Throws InputError for an unknown link, an arm of fewer than
   /// seven joints (six, if the tool may roll) and the like; InvalidArgument for what validate()
   /// refuses; Stopped, only with a budget.
-  explicit PreparedRobot(const Problem& problem, const Budget& budget = {});
+  explicit PreparedRobot(const PathProblem& problem, const Budget& budget = {});
   /// Prepares the robot of a problem with an arm that is known, which must be planning_arm() of
   /// this problem. Throws InputError and Stopped.
-  PreparedRobot(const Problem& problem, PlanningArm arm, const Budget& budget);
+  PreparedRobot(const PathProblem& problem, PlanningArm arm, const Budget& budget);
   /// Prepares the arm of `like` with the attached bodies of `problem`, and shares the trees of
   /// meshes. Throws InputError, InvalidArgument for what validate() refuses, and Stopped.
-  PreparedRobot(const PreparedRobot& like, const Problem& problem, const Budget& budget = {});
+  PreparedRobot(const PreparedRobot& like, const PathProblem& problem, const Budget& budget = {});
   ~PreparedRobot();
   PreparedRobot(PreparedRobot&&) noexcept;
   PreparedRobot& operator=(PreparedRobot&&) noexcept;
   /// Throws InvalidArgument if the problem needs another PreparedRobot: its model, base_link,
   /// tip_link, tool, hold, roll or an attached body differs. Limits may differ.
-  void require_prepared_for(const Problem& problem) const;
+  void require_prepared_for(const PathProblem& problem) const;
   /// Returns the kinematic chain of the arm and which links move with it.
   [[nodiscard]] const ArmModel& arm() const;
   /// Returns the class of the arm, which says how its self-motion is computed.

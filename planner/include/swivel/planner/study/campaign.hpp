@@ -31,7 +31,7 @@ struct CampaignOptions {
 /// of `planned`. Exceptions of the callbacks end the campaign and reach the caller. Throws
 /// InvalidArgument as plan() does; InputError for an episode whose problem is invalid, and for a
 /// problem without `vary` if there is more than one episode.
-void run_campaign(const PreparedRobot& robot, const Problem& problem,
+void run_campaign(const PreparedRobot& robot, const PathProblem& problem,
                   const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 /// Plans the episodes of a shard of a job's campaign, each as plan_job() does with one thread.

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel {

@@ -36,7 +36,7 @@ class PlacementPlanner {
   /// planned at once; evidence, hooks and progress are ignored; the time-out covers all calls
   /// together, from now on. Throws as the Planner of a prepared robot does, and InvalidArgument for
   /// an unknown object.
-  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing,
+  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem, Movable thing,
                    PlanOptions options);
   /// Prepares to plan placements of `thing` in `job`, each in full as plan_job() does with one
   /// thread. Clearances, margins and speeds of rows are those of the strokes.

@@ -9,7 +9,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -109,14 +109,14 @@ struct CheckOptions {
 /// - step_error is kept if both rows are neighbouring layers; elsewhere it is not defined;
 /// - nothing comes nearer than d_edge (0.05 mm), with `edges: continuous`.
 /// Throws InvalidArgument and InputError as plan() does, and Stopped.
-[[nodiscard]] CheckResult check_trajectory(const Problem& problem,
+[[nodiscard]] CheckResult check_trajectory(const PathProblem& problem,
                                            const std::vector<TrajectoryRow>& rows,
                                            const CheckOptions& options = {});
 /// Proves a trajectory, as check_trajectory() of the problem alone does, with a robot prepared
 /// before. Throws InvalidArgument unless it was prepared for this problem
 /// (PreparedRobot::require_prepared_for), otherwise InputError, InvalidArgument and Stopped as that
 /// function does.
-[[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const PathProblem& problem,
                                            const std::vector<TrajectoryRow>& rows,
                                            const CheckOptions& options = {});
 /// Proves a timed motion from the problem alone, or tells what is wrong with it. The problem is
@@ -138,7 +138,7 @@ struct CheckOptions {
 ///   acceleration and jerk change in a step;
 /// - limits.tool_speed and tool_turn_speed, if given, are kept (0.1 %).
 /// Throws InvalidArgument, InputError and Stopped as check_trajectory() does.
-[[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const Problem& problem,
+[[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const PathProblem& problem,
                                        const std::vector<TimedRow>& rows,
                                        const CheckOptions& options = {});
 /// Throws std::logic_error, with the first failure, if the result has not passed. For a program's

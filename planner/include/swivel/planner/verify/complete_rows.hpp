@@ -9,7 +9,7 @@
 namespace swivel {
 
 class PreparedRobot;
-struct Problem;
+struct PathProblem;
 
 /// Computes what a trajectory's file does not state about its rows (s, arm angle, branch, roll of
 /// the tool) from their joints and the problem, so that check_trajectory() can judge them, and
@@ -26,7 +26,7 @@ struct Problem;
 /// Throws InvalidArgument and InputError as check_trajectory() does, InputError if the last joint
 /// is not stated and is not the roll, and Stopped.
 [[nodiscard]] std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot,
-                                                       const Problem& problem,
+                                                       const PathProblem& problem,
                                                        std::vector<TrajectoryRow> rows,
                                                        const Stated& stated,
                                                        const Budget& budget = {});
@@ -36,7 +36,7 @@ struct Problem;
 /// accelerations follow from the joints and times, with rest before the first row and after the
 /// last. Times must ascend. Throws InvalidArgument, InputError and Stopped as complete_rows() does.
 [[nodiscard]] std::vector<TimedRow> complete_motion(const PreparedRobot& robot,
-                                                    const Problem& problem,
+                                                    const PathProblem& problem,
                                                     std::vector<TimedRow> rows,
                                                     const Stated& stated,
                                                     const Budget& budget = {});
@@ -49,7 +49,7 @@ struct Problem;
 /// path or that goes back, for rows that do not reach from the path's beginning to its end, and for
 /// rows without the joints that the problem gives as its start or end.
 [[nodiscard]] std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot,
-                                                        const Problem& problem,
+                                                        const PathProblem& problem,
                                                         const std::vector<TrajectoryRow>& rows,
                                                         const Stated& stated,
                                                         const Budget& budget = {});

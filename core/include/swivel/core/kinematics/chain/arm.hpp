@@ -8,7 +8,7 @@
 
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/problem/held_joint.hpp"
-#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/robot_model.hpp"
 
 namespace swivel {

@@ -42,7 +42,7 @@ class ArcLattice final : public ExplicitLattice {
   /// continue the layer before; "no path" then means that none was found. Throws InputError and
   /// Stopped.
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-             const Problem& problem, const Budget& budget = {});
+             const PathProblem& problem, const Budget& budget = {});
 
   /// Returns arc_branch() of the node; phi() returns its arc_angle(), rad.
   [[nodiscard]] int branch(int layer, int slot) const override;
@@ -92,9 +92,9 @@ class ArcLattice final : public ExplicitLattice {
     std::int64_t arcs = 0;
   };
   static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path,
-                      const Problem& problem, const Budget& budget);
+                      const PathProblem& problem, const Budget& budget);
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-             const Problem& problem, Layers&& layers);
+             const PathProblem& problem, Layers&& layers);
 
   /// Returns the rows of a path, unwrapped without jumps from the first one, in the turn of the
   /// given start if there is one, else in that of the given end if they lead there.
@@ -113,8 +113,8 @@ class ArcLattice final : public ExplicitLattice {
   void add_images(std::size_t joint, std::size_t first, std::vector<WoundPoint>& images) const;
 
   LockMethod method_;
-  Problem problem_;  // for with_windings
-  Layers layers_;    // without the points, which the base class keeps
+  PathProblem problem_;  // for with_windings
+  Layers layers_;        // without the points, which the base class keeps
 };
 
 }  // namespace swivel

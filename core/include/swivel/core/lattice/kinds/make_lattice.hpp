@@ -17,7 +17,8 @@ struct ArmClass;
 /// (ArcLattice). Throws InputError where the lattice does, also for limits.arm_slope with an arm
 /// that has no arm angle; Stopped. `chain`, `arm` and `path` must outlive the lattice.
 [[nodiscard]] std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm,
-                                                    const ToolPath& path, const Problem& problem,
+                                                    const ToolPath& path,
+                                                    const PathProblem& problem,
                                                     const Budget& budget = {});
 
 /// Returns where joint 7 may rest, rad, if the tool of an S-R-S arm may turn freely about the axis
@@ -26,7 +27,7 @@ struct ArmClass;
 /// with joint 7 at rest. Returns nothing for other arms and tools, and for a problem with a start,
 /// an end, given rolls or a cost of the roll.
 [[nodiscard]] std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
-                                                       const Problem& problem);
+                                                       const PathProblem& problem);
 
 /// Returns a lattice of arm angles alone with joint 7 at last_joint_at_rest(); null if that returns
 /// nothing. No path of make_lattice() costs less, by its joints, than the cheapest path of this
@@ -35,7 +36,7 @@ struct ArmClass;
 /// make_lattice().
 [[nodiscard]] std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm,
                                                             const ToolPath& path,
-                                                            const Problem& problem,
+                                                            const PathProblem& problem,
                                                             const Budget& budget = {});
 
 /// Returns by how much the tool stands turned about its own z axis at a row, rad.

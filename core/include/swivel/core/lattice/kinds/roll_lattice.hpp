@@ -38,7 +38,7 @@ class RollLattice final : public Lattice {
   /// Throws InputError as SrsLattice does, and for a start or end whose roll is outside the range,
   /// a roll_slope of less than a cell from knot to knot, and limits.step_error; Stopped.
   [[nodiscard]] static std::unique_ptr<RollLattice> make(
-      const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
+      const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
       const Budget& budget = {}, std::optional<double> last_joint = {}, bool circles = false);
 
   // --- rolls
@@ -167,9 +167,9 @@ class RollLattice final : public Lattice {
     std::vector<int> layers;
     std::unique_ptr<const ToolPath> path;
   };
-  RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
-              const Budget& budget, Knots knots, std::optional<double> last_joint,
-              const Joints& wound);
+  RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+              const PathProblem& problem, const Budget& budget, Knots knots,
+              std::optional<double> last_joint, const Joints& wound);
   static Knots knots_along(const ToolPath& path, const Resolution& resolution);
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
   [[nodiscard]] const SrsLattice& at(int layer, int slot) const {
@@ -177,7 +177,7 @@ class RollLattice final : public Lattice {
     return only ? only->lattice : at_roll(slot / width_);
   }
   /// Places the start and the end that the problem gives, each at the roll of its joints.
-  void place_given(const Problem& problem, const Budget& budget);
+  void place_given(const PathProblem& problem, const Budget& budget);
   /// Returns the rows of a path as path_rows() does, in whatever turn circles are.
   [[nodiscard]] std::vector<TrajectoryRow> followed(const std::vector<int>& slots) const;
   /// Returns the turns of the circles along the rows of a path of so many slots.
@@ -187,7 +187,7 @@ class RollLattice final : public Lattice {
   /// Returns the roll, rad, that an entry of values_ stands for at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
   [[nodiscard]] double way(int step) const;
-  void find_near(const Problem& problem);
+  void find_near(const PathProblem& problem);
   /// Returns whether limits.roll_slope lets the roll of the last step change from that of a rank to
   /// that of the given end.
   [[nodiscard]] bool may_end_from(int rank) const;
@@ -208,7 +208,7 @@ class RollLattice final : public Lattice {
 
   struct Turned {
     Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm,
-           const Problem& problem, const Budget& budget, std::vector<ArmPlane> planes,
+           const PathProblem& problem, const Budget& budget, std::vector<ArmPlane> planes,
            const std::optional<double>& last_joint, const Joints& circles)
         : rolls(std::move(by)),
           path(std::move(knots)),
@@ -220,8 +220,9 @@ class RollLattice final : public Lattice {
   /// A posture that the problem gives for the first or the last layer: the tool stands turned by
   /// `roll` (rad) along `path`, and `lattice` has the posture at that layer.
   struct Given {
-    Given(double by, ToolPath turned, const Chain& chain, const SrsArm& arm, const Problem& problem,
-          const Budget& budget, std::vector<ArmPlane> planes, const Joints& circles)
+    Given(double by, ToolPath turned, const Chain& chain, const SrsArm& arm,
+          const PathProblem& problem, const Budget& budget, std::vector<ArmPlane> planes,
+          const Joints& circles)
         : roll(by),
           path(std::move(turned)),
           lattice(chain, arm, path, problem, budget, std::move(planes), {}, circles) {}
@@ -244,8 +245,8 @@ class RollLattice final : public Lattice {
   const SrsArm* arm_;
   std::optional<double> last_joint_;
   Joints circles_{};
-  std::vector<Joints> told_apart_;  // joints_with_windings()
-  std::optional<Problem> problem_;  // for with_windings(), if there are circles
+  std::vector<Joints> told_apart_;      // joints_with_windings()
+  std::optional<PathProblem> problem_;  // for with_windings(), if there are circles
   const ToolPath* whole_;
   std::vector<int> knots_;
   std::unique_ptr<const ToolPath> knot_path_;

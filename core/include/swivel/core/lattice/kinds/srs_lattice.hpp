@@ -115,19 +115,20 @@ class SrsLattice final : public Lattice {
   /// axis, in a problem without a start and an end. `circles`: which joints are circles, as
   /// possible_circles() allows. Throws InputError if start or end do not fit, for more than 1024
   /// windings, and if the lattice is too large for the machine's memory; Stopped.
-  SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
-             const Budget& budget = {}, std::vector<ArmPlane> planes = {},
-             std::optional<double> last_joint = {}, const Joints& circles = {});
+  SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+             const PathProblem& problem, const Budget& budget = {},
+             std::vector<ArmPlane> planes = {}, std::optional<double> last_joint = {},
+             const Joints& circles = {});
   /// Returns which joints can be circles: bounded joints of several images that no edge moves by
   /// half a turn. None can with `resolution.arcs`, whose nodes at the ends of arcs depend on the
   /// turns. `step_bounds`: the largest moves of rows on each step, rad; one entry if all steps are
   /// alike.
   [[nodiscard]] static Joints possible_circles(const Chain& chain, const SrsArm& arm,
-                                               const Problem& problem,
+                                               const PathProblem& problem,
                                                const std::vector<Config>& step_bounds);
   /// Returns possible_circles() for a path all of whose layers are layers of the lattice.
   [[nodiscard]] static Joints possible_circles(const Chain& chain, const SrsArm& arm,
-                                               const ToolPath& path, const Problem& problem) {
+                                               const ToolPath& path, const PathProblem& problem) {
     return possible_circles(chain, arm, problem,
                             step_bounds_along(chain, path, problem.limits, problem.resolution));
   }

@@ -34,7 +34,7 @@ class PreparedWorkcell {
   /// Returns the problem of an arm by itself: its path in the base frame, cut into as many steps as
   /// the other's (for a given motion, the path that its rows lead the tool along), and a robot
   /// model without the collision shapes of the links that the other arm moves.
-  [[nodiscard]] const Problem& problem(std::size_t arm) const;
+  [[nodiscard]] const PathProblem& problem(std::size_t arm) const;
   [[nodiscard]] const PreparedRobot& robot(std::size_t arm) const;
   [[nodiscard]] const InterArmWorld& between() const;
   /// Returns the number of the arm whose motion is given, if one is.

@@ -216,7 +216,7 @@ struct Task {
 
 /// Everything that a problem file says, with the files it names loaded. Poses are in base_link
 /// unless said otherwise. Source: io::load_problem.
-struct Problem : Robot, Task {
+struct PathProblem : Robot, Task {
   std::string source;  ///< problem file, for messages
   std::vector<SceneObject> scene;
   std::vector<Variation> vary;
@@ -224,7 +224,7 @@ struct Problem : Robot, Task {
 
 /// Returns true if a path is the tool's position and z axis alone: the tool may be turned about its
 /// z axis by any angle, at no cost.
-[[nodiscard]] bool axis_alone(const Problem& problem);
+[[nodiscard]] bool axis_alone(const PathProblem& problem);
 
 /// Returns the waypoints in base_link: path_frame applied, quaternions normalised. If axis_alone(),
 /// only the z axes of the orientations are those given: the others are carried along them
@@ -232,9 +232,9 @@ struct Problem : Robot, Task {
 /// turn about its z axis if axis_alone(). Throws InputError for an unknown path_frame,
 /// fewer than two waypoints, a number that is not finite, a quaternion whose length is off 1 by
 /// more than 1e-3, or the ends of a closed path that are not one pose with one range of the roll.
-[[nodiscard]] std::vector<Waypoint> waypoints_in_base(const Problem& problem);
+[[nodiscard]] std::vector<Waypoint> waypoints_in_base(const PathProblem& problem);
 /// Returns waypoints_in_base() with the orientations as the problem gives them. Throws as that
 /// does.
-[[nodiscard]] std::vector<Waypoint> given_waypoints_in_base(const Problem& problem);
+[[nodiscard]] std::vector<Waypoint> given_waypoints_in_base(const PathProblem& problem);
 
 }  // namespace swivel
