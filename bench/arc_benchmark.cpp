@@ -126,7 +126,7 @@ struct Options {
 
 void run(const Options& options, const std::string& file) {
   constexpr std::uint64_t kMostTries = 1000;  // for each path asked for
-  const PathProblem base = io::load_problem(file);
+  const PathProblem base = io::load_path_problem(file);
   const PreparedRobot robot(base);
   Random random(options.seed);
   std::map<std::string, std::vector<double>> parts;

@@ -46,7 +46,7 @@ double percentile(std::vector<double> values, double share) {
 }
 
 void run(const Options& options) {
-  PathProblem base = with_motion_defaults(io::load_problem(options.file));
+  PathProblem base = with_motion_defaults(io::load_path_problem(options.file));
   if (options.metric) base.cost.metric = *options.metric;
   const PreparedRobot robot(base);
   std::vector<double> ratios;

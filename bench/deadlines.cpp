@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   for (const char* name : {"experiment_c", "experiment_a_start"})
     for (const Size& size : {Size{0.005, 0.05}, Size{0.001, 0.01}, Size{0.0005, 0.003}}) {
       PathProblem problem =
-          io::load_problem(std::string(SWIVEL_DATA_DIR "/problems/") + name + ".yaml");
+          io::load_path_problem(std::string(SWIVEL_DATA_DIR "/problems/") + name + ".yaml");
       problem.resolution.ds = size.ds;
       problem.resolution.dphi = size.dphi;
       for (const double deadline : {0.002, 0.005, 0.020}) {

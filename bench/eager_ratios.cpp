@@ -179,7 +179,7 @@ void run(const Options& options) {
   std::vector<PathProblem> problems;
   std::vector<PreparedRobot> robots;
   for (const std::string& file : options.files) {
-    problems.push_back(io::load_problem(file));
+    problems.push_back(io::load_path_problem(file));
     robots.emplace_back(problems.back());
   }
   std::vector<double> verdict, whole;

@@ -247,9 +247,9 @@ int main(int argc, char** argv) {
     json out;
     for (const auto& [key, value] : bench::context()) out["context"][key] = value;
     out["seed"] = kSeed;
-    out["rows"] =
-        run(io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems/experiment_c.yaml"),
-            episodes);
+    out["rows"] = run(io::load_path_problem(std::filesystem::path(SWIVEL_DATA_DIR) /
+                                            "problems/experiment_c.yaml"),
+                      episodes);
     io::write_file(file, out.dump(1) + "\n");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "experiment_c: %s\n", error.what());

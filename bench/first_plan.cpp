@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   app.add_option("problem", file, "problem file with one path")->required();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   PathProblem problem;
-  const double load = ms_of([&] { problem = io::load_problem(file); });
+  const double load = ms_of([&] { problem = io::load_path_problem(file); });
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.threads = 1;

@@ -54,7 +54,7 @@ class Random {
 /// Experiment C and what all pieces share. Never moved: the lattice points into it.
 struct Fixture {
   explicit Fixture(const std::filesystem::path& file)
-      : problem(io::load_problem(file)),
+      : problem(io::load_path_problem(file)),
         robot(problem),
         path(waypoints_in_base(problem), problem.resolution, problem.source),
         lattice(robot.arm().chain, robot.srs(), path, problem),
@@ -229,7 +229,7 @@ void add_pairs(const Fixture& c, const std::filesystem::path& problems) {
       {"box", Box{Vector3d(0.2, 0.3, 0.4)}},
       {"cylinder", Cylinder{0.1, 0.4}},
       {"mesh_2k", door(c.problem)},
-      {"mesh_20k", door(io::load_problem(problems / "experiment_c_20k.yaml"))}};
+      {"mesh_20k", door(io::load_path_problem(problems / "experiment_c_20k.yaml"))}};
   for (const auto& [name, shape] : shapes) {
     const auto pairs = std::make_shared<Pairs>(shape);  // shared: three benchmarks read it
     const std::string end = std::string("/capsule-") + name;

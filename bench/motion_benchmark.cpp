@@ -102,7 +102,7 @@ void measure_timing(const PreparedRobot& robot, const PathProblem& problem,
 }
 
 int run(const std::string& file, std::uint64_t episodes) {
-  PathProblem base = io::load_problem(file);
+  PathProblem base = io::load_path_problem(file);
   base = with_motion_defaults(base);
   base.limits.joint_acceleration.emplace().fill(10);
   base.limits.joint_jerk.emplace().fill(100);

@@ -84,8 +84,8 @@ const Prepared& prepared(const Scene& scene) {
   static std::map<std::string, std::unique_ptr<const Prepared>> all;
   auto& entry = all[scene.name];
   if (!entry) {
-    PathProblem problem = io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" /
-                                           (std::string(scene.file) + ".yaml"));
+    PathProblem problem = io::load_path_problem(std::filesystem::path(SWIVEL_DATA_DIR) /
+                                                "problems" / (std::string(scene.file) + ".yaml"));
     entry = std::make_unique<const Prepared>(
         scene.mesh_bodies ? bench::with_mesh_bodies(std::move(problem)) : std::move(problem));
   }
@@ -301,9 +301,10 @@ std::vector<Case> cases(const Scene& scene, int setting) {
 
 /// Plans a pad's stroke across a dome with everything that is told of it.
 void run_pad(benchmark::State& state, const char* pad, int triangles, double depth) {
-  const PathProblem problem = bench::pad_on_dome(
-      io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" / "iiwa14_bench.yaml"),
-      pad, triangles, depth);
+  const PathProblem problem =
+      bench::pad_on_dome(io::load_path_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" /
+                                               "iiwa14_bench.yaml"),
+                         pad, triangles, depth);
   const PreparedRobot robot(problem);
   PlanOptions options = options_for(PlannerKind::kLazy, 1);
   options.evidence = Evidence::all();

@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
-  PathProblem problem = io::load_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
+  PathProblem problem = io::load_path_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
   for (const bench::Setting& setting : bench::kSettings) {
     if (setting.name[1] != '1' && setting.name[1] != '4') continue;
     bench::set_resolution(problem, setting);

@@ -10,13 +10,13 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/messages/invalid_argument.hpp
   swivel/core/problem/held_joint.hpp
   swivel/core/problem/hooks.hpp
-  swivel/core/problem/job.hpp
   swivel/core/problem/path_problem.hpp
+  swivel/core/problem/problem.hpp
   swivel/core/problem/robot_model.hpp
   swivel/core/problem/shape.hpp
+  swivel/core/problem/stroke.hpp
   swivel/core/problem/tool_path.hpp
   swivel/core/problem/validate.hpp
-  swivel/core/problem/workcell.hpp
   swivel/core/answer/advice.hpp
   swivel/core/answer/job_result.hpp
   swivel/core/answer/answer_text.hpp
@@ -78,9 +78,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/meshes/mesh.hpp
   swivel/io/motions/motion.hpp
   swivel/io/motions/trajectory.hpp
-  swivel/io/problems/job.hpp
   swivel/io/problems/problem.hpp
-  swivel/io/problems/workcell.hpp
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp

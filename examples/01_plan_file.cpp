@@ -6,7 +6,7 @@
 
 int main(int argc, char** argv) {
   const swivel::PathProblem problem =
-      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+      swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   const swivel::PlanResult result = swivel::plan(problem);
   if (result.status != swivel::PlanStatus::kSolved)
     return std::cerr << words(result.diagnosis.cause) << '\n', 1;

@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   swivel::Planner planner(
-      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml"));
+      swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml"));
   swivel::PlanOptions options;
   options.planner = swivel::PlannerKind::kLazy;  // on one thread
 

@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
   swivel::PathProblem problem =
-      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml");
+      swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.0002, .dphi = 0.0002};  // so fine that an answer takes minutes
   swivel::Planner planner(problem);
   planner.prepare();

@@ -6,7 +6,7 @@
 
 int main(int argc, char** argv) {
   swivel::PathProblem problem =
-      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+      swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   swivel::SceneObject& wall = problem.scene.emplace_back();
   wall.name = "wall";
   wall.shape = swivel::Box{{0.3, 0.02, 0.3}};

@@ -24,7 +24,7 @@ class Hose : public swivel::StateCheck {
 
 int main(int argc, char** argv) {
   const swivel::PathProblem problem =
-      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml");
+      swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml");
   for (const double most_twist : {10.0, 1.0}) {
     const auto hose = std::make_shared<Hose>(most_twist);
     swivel::PlanOptions options;

@@ -20,7 +20,7 @@ class NearTheMiddle : public swivel::StateCost {
 
 int main(int argc, char** argv) {
   swivel::PathProblem problem =
-      swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+      swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.1};
   for (const double weight : {0.0, 0.02}) {
     swivel::PlanOptions options;

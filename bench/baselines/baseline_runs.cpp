@@ -84,7 +84,7 @@ void run_swivel(const char* name, const PreparedRobot& robot, const PathProblem&
 }
 
 void run(const char* title, const std::filesystem::path& file, const std::filesystem::path& rows) {
-  const PathProblem problem = io::load_problem(file);
+  const PathProblem problem = io::load_path_problem(file);
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const double length = path.layer(path.size() - 1).s;

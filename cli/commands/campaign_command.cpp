@@ -8,11 +8,10 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
-#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
 #include "output/campaign_output.hpp"
@@ -128,9 +127,8 @@ CampaignOptions campaign_options(const CampaignArguments& arguments) {
 
 /// What the episodes are drawn of.
 struct Drawn {
-  std::optional<Job> job;        ///< set for a job
-  std::optional<Workcell> cell;  ///< set for a workcell
-  PathProblem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
+  Problem problem;
+  PathProblem first;  ///< first_path() of it
   std::vector<io::InputFiles::File> inputs;
 };
 
@@ -138,25 +136,13 @@ struct Drawn {
 /// there is a results file, which says what it was computed from. Throws InputError.
 Drawn load_drawn(const CampaignArguments& arguments) {
   Drawn drawn;
-  std::variant<PathProblem, Job, Workcell> loaded = [&] {
-    const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
-                                                     : io::InputFiles::Contents::kHash);
-    std::variant<PathProblem, Job, Workcell> read = io::load_problem_file(arguments.problem);
-    drawn.inputs = noted.files();
-    return read;
-  }();
-  if (Job* const job = std::get_if<Job>(&loaded)) {
-    require_planner_of("jobs", arguments.search);
-    drawn.job = chosen_job(std::move(*job), arguments.search, {});
-    drawn.problem = problem_of_run(*drawn.job, {0, false});
-  } else if (Workcell* const cell = std::get_if<Workcell>(&loaded)) {
-    require_planner_of("workcells", arguments.search);
-    drawn.cell = chosen_workcell(std::move(*cell), arguments.search, {});
-    drawn.problem = problem_of_arm(*drawn.cell, 0);
-  } else {
-    drawn.problem = std::get<PathProblem>(std::move(loaded));
-    arguments.search.apply(drawn.problem);
-  }
+  const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
+                                                   : io::InputFiles::Contents::kHash);
+  drawn.problem = io::load_problem(arguments.problem);
+  drawn.inputs = noted.files();
+  require_planner_of(drawn.problem, arguments.search);
+  drawn.problem = chosen_problem(drawn.problem, arguments.search, {});
+  drawn.first = first_path(drawn.problem);
   return drawn;
 }
 
@@ -205,7 +191,7 @@ std::vector<EpisodeRow> resume(io::CampaignFile& file, const std::vector<Episode
 
 /// Plans the episodes that `rows` lacks, and appends them to `rows` and to the results file. Shows
 /// on standard error how many are done.
-/// `robot`: the prepared one of a problem or job.
+/// `robot`: the prepared one, unless the problem is of two arms.
 void plan_episodes(const std::optional<PreparedRobot>& robot, const Drawn& drawn,
                    const CampaignOptions& options, std::vector<EpisodeRow>& rows,
                    std::optional<io::CampaignFile>& file) {
@@ -227,12 +213,10 @@ void plan_episodes(const std::optional<PreparedRobot>& robot, const Drawn& drawn
     solved += row.status == PlanStatus::kSolved;
     show();
   };
-  if (drawn.cell)
-    run_campaign(*drawn.cell, options, row_done);
-  else if (drawn.job)
-    run_campaign(*robot, *drawn.job, options, row_done);
-  else
+  if (robot)
     run_campaign(*robot, drawn.problem, options, row_done);
+  else
+    run_campaign(drawn.problem, options, row_done);
 }
 
 /// Writes results, summary and page, prints the summary, and finishes the results file if all rows
@@ -253,10 +237,10 @@ int run(const CampaignArguments& arguments) {
   if (!arguments.report.empty()) require_pages();
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
   const Drawn drawn = load_drawn(arguments);
-  const PathProblem& problem = drawn.problem;
+  const Problem& problem = drawn.problem;
   std::optional<PreparedRobot> robot;
-  if (!drawn.cell) robot.emplace(problem);
-  const std::vector<HeldJoint> held = drawn.cell ? held_joints(*drawn.cell) : robot->arm().held;
+  if (problem.arms.size() == 1) robot.emplace(drawn.first);
+  const std::vector<HeldJoint> held = held_joints(problem);
   warn_of_held(held);
 
   std::vector<io::InputFiles::File> read = drawn.inputs;
@@ -277,14 +261,14 @@ int run(const CampaignArguments& arguments) {
     };
     options.job_planned = [&](std::uint64_t episode, const JobResult& result) {
       trajectories->write(episode, result,
-                          [&](const JobResult& one) { return io::to_job_csv(one, *drawn.job); });
+                          [&](const JobResult& one) { return io::to_job_csv(one, problem); });
     };
     options.workcell_planned = [&](std::uint64_t episode, const WorkcellResult& result) {
       trajectories->write(episode, result,
                           [](const WorkcellResult& one) { return io::to_workcell_csv(one); });
     };
   }
-  const io::ShardRecord record = record_of(arguments, options, problem, held, drawn.inputs);
+  const io::ShardRecord record = record_of(arguments, options, drawn.first, held, drawn.inputs);
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
     file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
@@ -300,9 +284,9 @@ int run(const CampaignArguments& arguments) {
     complain("swivel: removed %llu earlier trajectories in %s: there is no %s now\n",
              static_cast<unsigned long long>(trajectories->removed()),
              arguments.trajectories.c_str(),
-             drawn.cell  ? "plan"
-             : drawn.job ? "job"
-                         : "path");
+             is_path(problem)           ? "path"
+             : problem.arms.size() == 1 ? "job"
+                                        : "plan");
   return campaign_exit_code(rows, record);
 }
 

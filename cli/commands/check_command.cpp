@@ -6,13 +6,12 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "commands/check_job_command.hpp"
 #include "commands/workcell_command.hpp"
+#include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
-#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "output/check_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
@@ -136,9 +135,7 @@ void require_one_file(const CheckArguments& arguments) {
             : "--certificate: there is a trajectory as well: allowed is one of the two");
 }
 
-int run_on_job(const CheckArguments& arguments, const Job& file) {
-  require_one_file(arguments);
-  const Job job = chosen_job(file, arguments.lattice, arguments.episode);
+int run_on_job(const CheckArguments& arguments, const Problem& job) {
   if (arguments.certificate.empty())
     return check_job_file(job, arguments.trajectory, arguments.speed);
   const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
@@ -147,12 +144,12 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
     throw InputError(arguments.certificate, "stroke: '" + certificate.stroke +
                                                 "' is none of the job: allowed are the names of "
                                                 "its strokes");
-  if (job.strokes[*stroke].reversible)
+  if (job.arm().strokes[*stroke].reversible)
     throw InputError(arguments.certificate,
                      "stroke: '" + certificate.stroke +
                          "' is reversible, and a certificate is of one direction: allowed are "
                          "strokes that are not reversible");
-  if (certificate.reversed && !job.strokes[*stroke].reversible)
+  if (certificate.reversed && !job.arm().strokes[*stroke].reversible)
     throw InputError(arguments.certificate, "reversed: stroke '" + certificate.stroke +
                                                 "' is not `reversible`: allowed is a certificate "
                                                 "of it forwards");
@@ -162,9 +159,7 @@ int run_on_job(const CheckArguments& arguments, const Job& file) {
       "stroke '" + certificate.stroke + (certificate.reversed ? "' backwards: " : "': "));
 }
 
-int run_on_workcell(const CheckArguments& arguments, const Workcell& file) {
-  require_one_file(arguments);
-  const Workcell cell = chosen_workcell(file, arguments.lattice, arguments.episode);
+int run_on_workcell(const CheckArguments& arguments, const Problem& cell) {
   if (!arguments.certificate.empty()) return check_workcell_proof(cell, arguments.certificate);
   return check_workcell_file(cell, arguments.trajectory);
 }
@@ -182,14 +177,13 @@ void require_speed_of_job(const CheckArguments& arguments, bool is_job) {
 }
 
 int run(const CheckArguments& arguments) {
-  const std::variant<PathProblem, Job, Workcell> file = io::load_problem_file(arguments.problem);
-  const Job* const job = std::get_if<Job>(&file);
-  require_speed_of_job(arguments, job != nullptr);
-  if (job) return run_on_job(arguments, *job);
-  if (const Workcell* cell = std::get_if<Workcell>(&file)) return run_on_workcell(arguments, *cell);
-  PathProblem problem = arguments.episode.apply(std::get<PathProblem>(file));
-  arguments.lattice.apply(problem);
+  const Problem file = io::load_problem(arguments.problem);
+  require_speed_of_job(arguments, file.arms.size() == 1 && !is_path(file));
   require_one_file(arguments);
+  const Problem chosen = chosen_problem(file, arguments.lattice, arguments.episode);
+  if (chosen.arms.size() == 2) return run_on_workcell(arguments, chosen);
+  if (!is_path(chosen)) return run_on_job(arguments, chosen);
+  const PathProblem problem = problem_of_run(chosen, {0, false});
   if (!arguments.certificate.empty()) {
     const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
     if (!certificate.stroke.empty())

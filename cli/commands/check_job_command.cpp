@@ -62,8 +62,9 @@ CheckResult summary_of(const JobCheckResult& result) {
 
 /// Prints the verdict and what was proved of `rows` rows, whose last is at `duration`, s. `job` has
 /// a stroke for each of the `runs` of a stroke with lift-offs.
-void print_verdict(const JobCheckResult& result, const Job& job, const std::vector<HeldJoint>& held,
-                   std::size_t runs, std::size_t rows, double duration) {
+void print_verdict(const JobCheckResult& result, const Problem& job,
+                   const std::vector<HeldJoint>& held, std::size_t runs, std::size_t rows,
+                   double duration) {
   const std::size_t strokes = runs - std::min(runs, lift_off_count(job));
   say("%s: %zu stroke%s", result.passed ? "passed" : "failed", strokes, strokes == 1 ? "" : "s");
   if (runs > strokes) say(" in %zu runs", runs);
@@ -93,13 +94,14 @@ void print_verdict(const JobCheckResult& result, const Job& job, const std::vect
 
 }  // namespace
 
-int check_job_file(const Job& given, const std::string& trajectory, std::optional<double> speed) {
+int check_job_file(const Problem& given, const std::string& trajectory,
+                   std::optional<double> speed) {
   const PreparedRobot robot(problem_of_run(given, {0, false}));
   const std::vector<HeldJoint>& held = robot.arm().held;
   warn_of_held(held);
   const io::ExecutedJobRows executed =
       io::load_executed_rows(trajectory, given, robot.arm().chain.joint_names);
-  const Job& job = executed.job;
+  const Problem& job = executed.job;
   const auto& file = executed.rows;
   JobCheckResult result;
   if (const auto* read = std::get_if<io::JobTrajectory>(&file)) {

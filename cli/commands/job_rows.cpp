@@ -7,7 +7,7 @@
 
 namespace swivel::cli {
 
-std::vector<JobPart> parts_of(const PreparedRobot& robot, const Job& job,
+std::vector<JobPart> parts_of(const PreparedRobot& robot, const Problem& job,
                               const io::JobTrajectory& read) {
   std::vector<JobPart> parts;
   for (const io::JobTrajectoryPart& part : read.parts) {

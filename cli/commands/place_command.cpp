@@ -11,11 +11,10 @@
 #include <set>
 #include <sstream>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
-#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
 #include "output/placement_output.hpp"
@@ -116,46 +115,31 @@ std::string problem_text(const PlaceArguments& arguments) {
   return text.str();
 }
 
-/// The problem, job or workcell whose thing is placed.
+/// The problem whose thing is placed.
 struct PlacedProblem {
   std::string text;  ///< of the problem file; empty without --write
   std::vector<io::InputFiles::File> inputs;
-  std::optional<Job> job;        ///< set for a job
-  std::optional<Workcell> cell;  ///< set for a workcell
-  PathProblem problem;  ///< of a job: that of its first stroke; of a workcell: of its first arm
+  Problem problem;
+  PathProblem first;  ///< first_path() of it
   Movable thing;
-  [[nodiscard]] bool has_one_path() const { return !job && !cell; }
 };
 
 /// Loads the problem file and notes which files were read: with hashes of their contents for a
 /// shard, whose results say what they were computed from. Throws InputError.
-PlacedProblem load_problem(const PlaceArguments& arguments) {
+PlacedProblem load_placed(const PlaceArguments& arguments) {
   PlacedProblem placed;
   if (!arguments.write.empty()) placed.text = problem_text(arguments);
-  std::variant<PathProblem, Job, Workcell> loaded = [&] {
+  {
     const io::InputFiles noted(arguments.shard.empty() ? io::InputFiles::Contents::kIgnore
                                                        : io::InputFiles::Contents::kHash);
-    std::variant<PathProblem, Job, Workcell> read = io::load_problem_file(arguments.problem);
+    placed.problem = io::load_problem(arguments.problem);
     placed.inputs = noted.files();
-    return read;
-  }();
-  std::string source;
-  if (Job* const job = std::get_if<Job>(&loaded)) {
-    require_planner_of("jobs", arguments.search);
-    source = job->source;
-    placed.job = chosen_job(std::move(*job), arguments.search, {});
-    placed.problem = problem_of_run(*placed.job, {0, false});
-  } else if (Workcell* const cell = std::get_if<Workcell>(&loaded)) {
-    require_planner_of("workcells", arguments.search);
-    source = cell->source;
-    placed.cell = chosen_workcell(std::move(*cell), arguments.search, {});
-    placed.problem = problem_of_arm(*placed.cell, 0);
-  } else {
-    placed.problem = std::get<PathProblem>(std::move(loaded));
-    source = placed.problem.source;
-    arguments.search.apply(placed.problem);
   }
-  placed.thing = arguments.request.placement.thing(placed.problem, placed.problem.scene, source);
+  require_planner_of(placed.problem, arguments.search);
+  placed.problem = chosen_problem(placed.problem, arguments.search, {});
+  placed.first = first_path(placed.problem);
+  placed.thing =
+      arguments.request.placement.thing(placed.first, placed.problem.scene, placed.problem.source);
   return placed;
 }
 
@@ -169,36 +153,25 @@ void in_the_name_of_option(const std::string& option, const Work& work) {
   }
 }
 
-/// Returns the text of a job's file with a placement. Throws InputError where that moves the path
-/// of a stroke in its frame, which files cannot say.
-std::string text_with_job(const std::string& text, const Job& job, const Movable& thing,
-                          const Placement& at) {
-  Job moved = placed_job(job, thing, at.offset);
-  hold_joints(moved, at.hold);
-  std::size_t stroke = 0;
-  for (std::size_t k = job.strokes.size(); k-- > 0;)
-    if (moved.strokes[k].waypoints != job.strokes[k].waypoints) stroke = k;
-  return io::with_poses(text, problem_of_run(job, {stroke, false}),
-                        problem_of_run(moved, {stroke, false}));
-}
-
-/// Returns the text of a workcell's file with a placement. Throws InputError where that moves the
-/// path of an arm in its frame, which files cannot say.
-std::string text_with_cell(const std::string& text, const Workcell& cell, const Movable& thing,
-                           const Placement& at) {
-  Workcell moved = placed_workcell(cell, thing, at.offset);
-  hold_joints(moved, at.hold);
-  const std::size_t arm = moved.arms[1].waypoints != cell.arms[1].waypoints ? 1 : 0;
-  return io::with_poses(text, problem_of_arm(cell, arm), problem_of_arm(moved, arm));
-}
-
-/// Returns the problem file with a placement.
+/// Returns the problem file with a placement. Throws InputError where that moves a path in its
+/// frame, which files cannot say.
 std::string text_with(const PlacedProblem& placed, const Placement& at) {
-  if (placed.cell) return text_with_cell(placed.text, *placed.cell, placed.thing, at);
-  if (placed.job) return text_with_job(placed.text, *placed.job, placed.thing, at);
-  PathProblem moved = placed_problem(placed.problem, placed.thing, at.offset);
+  const Problem& problem = placed.problem;
+  Problem moved = placed_problem(problem, placed.thing, at.offset);
   hold_joints(moved, at.hold);
-  return io::with_poses(placed.text, placed.problem, moved);
+  const auto moves = [](const Stroke& path, const Stroke& other) {
+    return path.waypoints != other.waypoints;
+  };
+  if (problem.arms.size() == 2) {
+    const std::size_t arm = moves(moved.arms[1].path(), problem.arms[1].path()) ? 1 : 0;
+    return io::with_poses(placed.text, problem_of_arm(problem, arm), problem_of_arm(moved, arm));
+  }
+  const std::vector<Stroke>&strokes = problem.arm().strokes, &now = moved.arm().strokes;
+  std::size_t stroke = 0;  // the first that moves
+  while (stroke < strokes.size() && !moves(now[stroke], strokes[stroke])) ++stroke;
+  if (stroke == strokes.size()) stroke = 0;
+  return io::with_poses(placed.text, problem_of_run(problem, {stroke, false}),
+                        problem_of_run(moved, {stroke, false}));
 }
 
 /// Returns a placement along every axis of the grid.
@@ -219,19 +192,12 @@ void require_placeable(const PlacedProblem& placed, const PlacementGrid& grid, b
   for (const PlacementAxis& axis : grid.axes())
     if (!axis.joint.empty())
       for (const double position : {axis.from, sample ? axis.to : axis.at(axis.count - 1)}) {
-        std::variant<PathProblem, Workcell> copy = placed.problem;
-        if (placed.cell) copy = *placed.cell;
-        in_the_name_of_option("--hold: ", [&] {
-          std::visit([&](auto& what) { hold_joints(what, {{axis.joint, position}}); }, copy);
-        });
+        Problem copy = placed.problem;
+        in_the_name_of_option("--hold: ", [&] { hold_joints(copy, {{axis.joint, position}}); });
       }
   const Offset offset = placement_along_all(grid).offset;
-  in_the_name_of_option("--", [&] {
-    if (placed.cell)
-      static_cast<void>(placed_workcell(*placed.cell, placed.thing, offset));
-    else
-      static_cast<void>(placed_problem(placed.problem, placed.thing, offset));
-  });
+  in_the_name_of_option(
+      "--", [&] { static_cast<void>(placed_problem(placed.problem, placed.thing, offset)); });
 }
 
 /// Throws InputError if --write could not write the best placement, before it is sought: writes, to
@@ -265,7 +231,7 @@ io::ShardRecord record_of(const PlaceArguments& arguments, const PlacedProblem& 
                           const Shard& shard) {
   io::ShardRecord record{
       "place",
-      run_settings(arguments.problem, placed.problem, arguments.search, placed.inputs),
+      run_settings(arguments.problem, placed.first, arguments.search, placed.inputs),
       shard,
       arguments.request.total(),
       fs::path(arguments.problem).filename().string(),
@@ -274,11 +240,10 @@ io::ShardRecord record_of(const PlaceArguments& arguments, const PlacedProblem& 
   return record;
 }
 
-/// Returns a planner of the placements. `robot`: the prepared one of a problem or job.
+/// Returns a planner of the placements. `robot`: the prepared one, or null of two arms.
 PlacementPlanner planner_of(const PlacedProblem& placed, std::shared_ptr<const PreparedRobot> robot,
                             const PlanOptions& options) {
-  if (placed.cell) return {*placed.cell, placed.thing, options};
-  if (placed.job) return {std::move(robot), *placed.job, placed.thing, options};
+  if (!robot) return {placed.problem, placed.thing, options};
   return {std::move(robot), placed.problem, placed.thing, options};
 }
 
@@ -387,9 +352,9 @@ int run(PlaceArguments arguments) {
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
   const AskedPlacements asked = asked_placements(arguments);
   require_options_agree(arguments);
-  const PlacedProblem placed = load_problem(arguments);
+  const PlacedProblem placed = load_placed(arguments);
   require_placeable(placed, asked.grid, arguments.request.sample.has_value());
-  arguments.request.placement.slides = slides_of(*placed.problem.model, asked.grid);
+  arguments.request.placement.slides = slides_of(*placed.first.model, asked.grid);
   if (!arguments.write.empty()) require_writable(placed, asked.grid);
   require_drawable(arguments.request, arguments.svg);
   io::ShardRecord record = record_of(arguments, placed, asked.shard);
@@ -398,10 +363,10 @@ int run(PlaceArguments arguments) {
 
   catch_interrupts();
   const auto begun = std::chrono::steady_clock::now();
-  const auto prepared =
-      placed.cell ? nullptr : std::make_shared<const PreparedRobot>(placed.problem);
-  record.held =
-      still_held(placed.cell ? held_joints(*placed.cell) : prepared->arm().held, asked.grid);
+  const auto prepared = placed.problem.arms.size() == 2
+                            ? nullptr
+                            : std::make_shared<const PreparedRobot>(placed.first);
+  record.held = still_held(held_joints(placed.problem), asked.grid);
   warn_of_held(record.held);
   PlacementPlanner planner = planner_of(placed, prepared, options);
   const std::vector<PlacementRow> rows = plan_placements(planner, asked, arguments.refine_grid);
@@ -417,10 +382,10 @@ int run(PlaceArguments arguments) {
                 a_second);
   PlacementScene scene;
   io::VisualRobot visual;
-  if (outputs.wants("--report") && placed.has_one_path()) {
-    visual = io::load_visuals(*placed.problem.model);
+  if (outputs.wants("--report") && is_path(placed.problem)) {
+    visual = io::load_visuals(*placed.first.model);
     scene = {prepared.get(),
-             &placed.problem,
+             &placed.first,
              placed.thing,
              planner.trajectories(cells_on_page(rows, asked.criteria)),
              ends_on_page(planner, rows),

@@ -11,13 +11,12 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "commands/plan_job_command.hpp"
 #include "commands/workcell_command.hpp"
+#include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
-#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "output/advice_or_warning.hpp"
 #include "output/motion_output.hpp"
@@ -120,7 +119,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 /// A problem file as it was read.
 struct LoadedFile {
-  std::variant<PathProblem, Job, Workcell> what{};
+  Problem problem{};
   std::vector<io::InputFiles::File> inputs{};  ///< the files that were read
   double load_ms = 0;                          ///< time that loading took
 };
@@ -129,7 +128,7 @@ LoadedFile load_file(const PlanArguments& arguments) {
   const TraceSpan span("load");
   const auto start = std::chrono::steady_clock::now();
   const io::InputFiles noted;
-  LoadedFile file{.what = io::load_problem_file(arguments.problem)};
+  LoadedFile file{.problem = io::load_problem(arguments.problem)};
   file.inputs = noted.files();
   file.load_ms = milliseconds_since(start);
   return file;
@@ -151,20 +150,25 @@ void read_motion(PlanRequest& request) {
   }
 }
 
-/// Returns the request that a problem of one path and the command line make. The objects stand as
-/// the chosen episode and placement say. Throws InputError.
-PlanRequest request_of(const PlanArguments& arguments, LoadedFile file) {
-  PlanRequest request{.arguments = arguments,
-                      .problem = arguments.episode.apply(std::get<PathProblem>(file.what)),
-                      .inputs = std::move(file.inputs),
-                      .options = arguments.search.plan_options(),
-                      .load_ms = file.load_ms};
-  arguments.search.apply(request.problem);
-  read_motion(request);
+/// Gives a request the times that the command line allows, and what is to be found out besides the
+/// answer. Throws InputError.
+template <class Request>
+void take_limits(const PlanArguments& arguments, Request& request) {
   if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
   if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
     request.options.evidence = Evidence::all();
+}
+
+/// Returns the request that a problem of one path and the command line make. Throws InputError.
+PlanRequest request_of(const PlanArguments& arguments, LoadedFile file) {
+  PlanRequest request{.arguments = arguments,
+                      .problem = problem_of_run(file.problem, {0, false}),
+                      .inputs = std::move(file.inputs),
+                      .options = arguments.search.plan_options(),
+                      .load_ms = file.load_ms};
+  read_motion(request);
+  take_limits(arguments, request);
   return request;
 }
 
@@ -329,30 +333,30 @@ ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
   return answer.plan.stopped ? kStopped : kNo;
 }
 
-/// Throws InputError for options that jobs do not have.
-void require_options_of_jobs(const PlanArguments& arguments) {
-  refuse_options("jobs", arguments.problem,
-                 {{arguments.refine, "--refine"},
-                  {arguments.motion.chord.has_value(), "--chord"},
+/// Throws InputError for options that are of problems with one path alone.
+void require_options_of(const PlanArguments& arguments, const Problem& problem) {
+  if (is_path(problem)) return;
+  const bool two_arms = problem.arms.size() == 2;
+  refuse_options(problem, arguments.problem,
+                 {{!two_arms && arguments.refine, "--refine"},
+                  {!two_arms && arguments.motion.chord.has_value(), "--chord"},
                   {!arguments.trace.empty(), "--trace"},
                   {arguments.map, "--map"},
                   {!arguments.map_svg.empty(), "--map-svg"},
                   {arguments.full_map, "--full-map"}});
-  require_planner_of("jobs", arguments.search);
+  require_planner_of(problem, arguments.search);
 }
 
 /// Plans a job and writes and prints the answer, as plan_problem() does for one path.
 int plan_job_of(const PlanArguments& arguments, LoadedFile file,
                 std::optional<io::OutputFiles>& outputs) {
-  require_options_of_jobs(arguments);
   if (!arguments.report.empty()) require_pages();
-  JobRequest request{
-      .job = chosen_job(std::get<Job>(std::move(file.what)), arguments.search, arguments.episode),
-      .options = arguments.search.plan_options(),
-      .which = arguments.episode.words(),
-      .report = !arguments.report.empty(),
-      .quiet = arguments.quiet,
-      .load_ms = file.load_ms};
+  JobRequest request{.job = std::move(file.problem),
+                     .options = arguments.search.plan_options(),
+                     .which = arguments.episode.words(),
+                     .report = !arguments.report.empty(),
+                     .quiet = arguments.quiet,
+                     .load_ms = file.load_ms};
   if (arguments.motion.ask_for_job_motion()) {
     require_motion_formats(arguments.out);
     request.timing = arguments.motion.job_timing();
@@ -361,7 +365,7 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
     require_table_names(arguments.out, "a job without times",
                         "--speed or --rate, with which motions are written in other formats");
   }
-  if (!arguments.certificate.empty() && request.job.lift)
+  if (!arguments.certificate.empty() && request.job.arm().lift)
     throw InputError(
         "--certificate: proves that one run of a stroke has no path, and the job allows several "
         "by `lift`: allowed without lift-offs");
@@ -369,10 +373,7 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
     throw InputError(
         "--certificate: is of the job as its file has it: allowed without --speed and --rate, "
         "which ask for more");
-  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
-  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
-  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
-    request.options.evidence = Evidence::all();
+  take_limits(arguments, request);
   outputs.emplace(std::move(file.inputs));
   add_outputs(arguments, *outputs);
   return plan_job_file(std::move(request), *outputs);
@@ -381,18 +382,12 @@ int plan_job_of(const PlanArguments& arguments, LoadedFile file,
 /// Plans a workcell and writes and prints the answer.
 int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
                      std::optional<io::OutputFiles>& outputs) {
-  refuse_options("workcells", arguments.problem,
-                 {{!arguments.trace.empty(), "--trace"},
-                  {arguments.map, "--map"},
-                  {!arguments.map_svg.empty(), "--map-svg"},
-                  {arguments.full_map, "--full-map"}});
   if (!arguments.report.empty()) require_pages();
   if (!arguments.certificate.empty() && (arguments.refine || arguments.motion.speed))
     throw InputError(
         "--certificate: is of the workcell as its file has it: allowed without --refine and "
         "--speed, which ask for more");
-  WorkcellRequest request{.cell = chosen_workcell(std::get<Workcell>(std::move(file.what)),
-                                                  arguments.search, arguments.episode),
+  WorkcellRequest request{.cell = std::move(file.problem),
                           .options = arguments.search.plan_options(),
                           .refine = arguments.refine,
                           .which = arguments.episode.words(),
@@ -406,14 +401,10 @@ int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
   } else {
     require_table_names(arguments.out, "the trajectory of a workcell without times",
                         "--speed, with which motions are written in other formats");
-    for (WorkcellArm& arm : request.cell.arms)
-      if (arguments.refine) keep_clearance_between_layers(arm.limits);
+    for (ArmTask& arm : request.cell.arms)
+      if (arguments.refine) keep_clearance_between_layers(arm.path().limits);
   }
-  require_planner_of("workcells", arguments.search);
-  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
-  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
-  if (!arguments.quiet || !arguments.json.empty() || request.report)
-    request.options.evidence = Evidence::all();
+  take_limits(arguments, request);
   outputs.emplace(std::move(file.inputs));
   add_outputs(arguments, *outputs);
   return plan_workcell_file(std::move(request), *outputs);
@@ -426,10 +417,10 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   std::optional<Timeline> timeline;
   if (!arguments.trace.empty()) timeline.emplace();
   LoadedFile file = load_file(arguments);
-  if (std::holds_alternative<Job>(file.what))
-    return plan_job_of(arguments, std::move(file), outputs);
-  if (std::holds_alternative<Workcell>(file.what))
-    return plan_workcell_of(arguments, std::move(file), outputs);
+  require_options_of(arguments, file.problem);
+  file.problem = chosen_problem(file.problem, arguments.search, arguments.episode);
+  if (file.problem.arms.size() == 2) return plan_workcell_of(arguments, std::move(file), outputs);
+  if (!is_path(file.problem)) return plan_job_of(arguments, std::move(file), outputs);
   PlanRequest request = request_of(arguments, std::move(file));
 
   catch_interrupts();
@@ -511,17 +502,7 @@ void EpisodeChoice::require_episodes(const std::vector<Variation>& vary) const {
         "file with it, or neither option");
 }
 
-Job EpisodeChoice::apply(const Job& job) const {
-  require_episodes(job.vary);
-  return placement.apply(seed ? episode_job(job, *seed, *episode) : job);
-}
-
-Workcell EpisodeChoice::apply(const Workcell& cell) const {
-  require_episodes(cell.vary);
-  return placement.apply(seed ? episode_workcell(cell, *seed, *episode) : cell);
-}
-
-PathProblem EpisodeChoice::apply(const PathProblem& problem) const {
+Problem EpisodeChoice::apply(const Problem& problem) const {
   require_episodes(problem.vary);
   return placement.apply(seed ? episode_problem(problem, *seed, *episode) : problem);
 }

@@ -41,7 +41,7 @@ std::string stages_text(const JobResult& result) {
 }
 
 /// Prints the answer, times and work counts of a job; warnings go to standard error.
-void print_job(const JobMotionPlan& plan, const Job& job) {
+void print_job(const JobMotionPlan& plan, const Problem& job) {
   const JobResult& result = plan.result;
   say_text(job_text(result, job));
   if (plan.timing) say_text(job_motion_text(*plan.timing, result.parts, job));
@@ -67,7 +67,7 @@ struct JobAnswer {
 
 /// Proves that a stroke of the job has no path, if one has none, from what the plan found out about
 /// it. Adds a warning to the result if none is known to have none, or if the budget ends first.
-void find_certificate(const Job& job, const JobView& view, const Budget& budget,
+void find_certificate(const Problem& job, const JobView& view, const Budget& budget,
                       JobAnswer& answer) {
   JobResult& result = answer.plan.result;
   const auto run = std::find_if(result.runs.begin(), result.runs.end(), [](const RunResult& one) {
@@ -79,7 +79,7 @@ void find_certificate(const Job& job, const JobView& view, const Budget& budget,
                                   : "each stroke has a path by itself: there is no certificate");
     return;
   }
-  const Stroke& stroke = job.strokes[run->run.stroke];
+  const Stroke& stroke = job.arm().strokes[run->run.stroke];
   if (stroke.reversible) {
     result.warnings.push_back("stroke '" + stroke.name +
                               "' is reversible, and a certificate is of one direction: there is "
@@ -99,7 +99,7 @@ void find_certificate(const Job& job, const JobView& view, const Budget& budget,
 
 /// Where there is no job, seeks changes that would help, within --advise and what is left of
 /// --timeout, that of `budget`.
-void find_advice(const JobRequest& request, const PreparedRobot& robot, const Job& job,
+void find_advice(const JobRequest& request, const PreparedRobot& robot, const Problem& job,
                  const Budget& budget, JobAnswer& answer) {
   if (!request.advise_s) return;
   PlanOptions trials = request.options;
@@ -116,7 +116,7 @@ io::JobExtras extras_of(const JobAnswer& answer) {
           answer.advice ? &*answer.advice : nullptr};
 }
 
-JobMotionPlan planned(const JobRequest& request, const PreparedRobot& robot, const Job& job,
+JobMotionPlan planned(const JobRequest& request, const PreparedRobot& robot, const Problem& job,
                       JobView* view) {
   if (request.timing) return plan_job_motion(robot, job, request.options, *request.timing, view);
   return {.result = plan_job(robot, job, request.options, view), .timing = {}};
@@ -125,11 +125,11 @@ JobMotionPlan planned(const JobRequest& request, const PreparedRobot& robot, con
 /// Returns the page of --report; unset where there is neither a job nor a verdict, or where time is
 /// up first, of which a warning tells.
 std::optional<std::string> page_of(const JobRequest& request, const PreparedRobot& robot,
-                                   const Job& given, const JobView& view, const Budget& budget,
+                                   const Problem& given, const JobView& view, const Budget& budget,
                                    JobAnswer& answer) {
   const JobMotionPlan& plan = answer.plan;
   const JobResult& result = plan.result;
-  const Job job = executed_job(given, result);
+  const Problem job = executed_job(given, result);
   if (!request.report || (result.parts.empty() && result.status != PlanStatus::kInfeasible))
     return std::nullopt;
   try {
@@ -137,7 +137,7 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
     if (answer.advice) text += advice_text(*answer.advice);
     if (plan.timing) text += job_motion_text(*plan.timing, result.parts, job);
     const JobMotion* motion = plan.timing && plan.timing->motion ? &*plan.timing->motion : nullptr;
-    const io::VisualRobot visual = io::load_visuals(*job.model);
+    const io::VisualRobot visual = io::load_visuals(*job.arm().model);
     return to_job_page({robot, job, result, view, motion},
                        io::to_job_json(result, job, extras_of(answer)), budget,
                        {request.which, text, visual.model.get(), visual.left_out});
@@ -150,7 +150,7 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
 /// Gives --out its text: the motion where one is asked for, else the trajectory. Marks an earlier
 /// file for removal if there is none.
 /// `job` is the one of which the parts of the plan are.
-void write_rows(const JobRequest& request, const JobMotionPlan& plan, const Job& job,
+void write_rows(const JobRequest& request, const JobMotionPlan& plan, const Problem& job,
                 io::OutputFiles& outputs) {
   const bool motion = plan.timing && plan.timing->motion;
   if (plan.result.parts.empty() || (request.timing && !motion))
@@ -159,8 +159,8 @@ void write_rows(const JobRequest& request, const JobMotionPlan& plan, const Job&
     outputs.write("--out", io::to_job_csv(plan.result, job));
   else
     outputs.write_each("--out", [&](const std::filesystem::path& file) {
-      return io::job_motion_text(*plan.timing->motion, job, plan.result.joint_names, job.base_link,
-                                 file);
+      return io::job_motion_text(*plan.timing->motion, job, plan.result.joint_names,
+                                 job.arm().base_link, file);
     });
 }
 
@@ -179,7 +179,7 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   catch_interrupts();
   ProgressLine progress(!request.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  const Job job = request.timing ? with_motion_defaults(request.job) : request.job;
+  const Problem job = request.timing ? with_motion_defaults(request.job) : request.job;
   // This budget covers the certificate, the advice and the page; planning has one of its own.
   const Budget budget = request.options.budget();
   const PreparedRobot robot(problem_of_run(job, {0, false}));
@@ -196,7 +196,7 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
   std::optional<std::string> page = page_of(request, robot, job, view, budget, answer);
   progress.clear();
 
-  const Job executed = executed_job(request.job, result);
+  const Problem executed = executed_job(request.job, result);
   write_rows(request, plan, executed, outputs);
   const std::size_t certificate_bytes = answer.certificate.size();
   if (answer.proof)

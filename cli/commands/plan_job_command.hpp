@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
@@ -12,7 +12,7 @@ namespace swivel::cli {
 
 /// What `swivel plan` is asked to do with a job.
 struct JobRequest {
-  Job job{};
+  Problem job{};
   PlanOptions options{};
   std::optional<JobTimingOptions> timing{};  ///< set: the job is timed
   std::optional<double> advise_s{};          ///< s, time for all trials of --advise

@@ -2,12 +2,11 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <variant>
 
 #include "commands/time_job_command.hpp"
 #include "commands/workcell_command.hpp"
+#include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
-#include "options/job_options.hpp"
 #include "options/search_options.hpp"
 #include "output/motion_output.hpp"
 #include "swivel/io/io.hpp"
@@ -44,11 +43,11 @@ std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const PathProblem
   return result.rows;
 }
 
-int run_on_job(const TimeArguments& arguments, const Job& job,
+int run_on_job(const TimeArguments& arguments, const Problem& job,
                std::optional<io::InputFiles>& noted) {
-  refuse_options("jobs", job.source,
+  refuse_options(job, job.source,
                  {{arguments.refine, "--refine"}, {arguments.motion.chord.has_value(), "--chord"}});
-  JobTimeRequest request{.job = chosen_job(job, arguments.lattice, arguments.episode),
+  JobTimeRequest request{.job = job,
                          .timing = arguments.motion.job_timing(),
                          .trajectory = arguments.trajectory,
                          .out = arguments.out,
@@ -58,11 +57,10 @@ int run_on_job(const TimeArguments& arguments, const Job& job,
   return time_job_file(request, noted);
 }
 
-int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
+int run_on_workcell(const TimeArguments& arguments, const Problem& cell,
                     std::optional<io::InputFiles>& noted) {
-  Workcell cell = chosen_workcell(file, arguments.lattice, arguments.episode);
   const WorkcellTimeRequest request{.timing = arguments.motion.timing(limits_of_speeds(cell)),
-                                    .cell = std::move(cell),
+                                    .cell = cell,
                                     .trajectory = arguments.trajectory,
                                     .out = arguments.out,
                                     .refine = arguments.refine,
@@ -74,12 +72,11 @@ int run_on_workcell(const TimeArguments& arguments, const Workcell& file,
 int run(const TimeArguments& arguments) {
   require_motion_formats(arguments.out);
   std::optional<io::InputFiles> noted(std::in_place);
-  const std::variant<PathProblem, Job, Workcell> read = io::load_problem_file(arguments.problem);
-  if (const Job* job = std::get_if<Job>(&read)) return run_on_job(arguments, *job, noted);
-  if (const Workcell* cell = std::get_if<Workcell>(&read))
-    return run_on_workcell(arguments, *cell, noted);
-  PathProblem problem = arguments.episode.apply(std::get<PathProblem>(read));
-  arguments.lattice.apply(problem);
+  const Problem chosen =
+      chosen_problem(io::load_problem(arguments.problem), arguments.lattice, arguments.episode);
+  if (chosen.arms.size() == 2) return run_on_workcell(arguments, chosen, noted);
+  if (!is_path(chosen)) return run_on_job(arguments, chosen, noted);
+  const PathProblem problem = problem_of_run(chosen, {0, false});
   const TimingOptions options = arguments.motion.timing(problem.limits);
   const PreparedRobot robot(problem);
   if (!arguments.quiet) warn_of_held(robot.arm().held);

@@ -24,8 +24,8 @@ namespace {
 /// lift-offs, if it has any. Throws InputError unless they are proved to be the job's.
 std::vector<JobPart> proved_parts(const PreparedRobot& robot, const io::ExecutedJobRows& read,
                                   const Budget& budget) {
-  const Job& job = read.job;
-  const auto require_check = [&](const Job& of, const std::vector<JobPart>& parts) {
+  const Problem& job = read.job;
+  const auto require_check = [&](const Problem& of, const std::vector<JobPart>& parts) {
     const JobCheckResult check = check_job(robot, of, parts, {.margins = false, .budget = budget});
     if (!check.passed)
       throw InputError(check.failures.front() + ": allowed is a job that passes `swivel check`");
@@ -67,7 +67,7 @@ struct Timed {
 Timed timed(const PreparedRobot& robot, const JobTimeRequest& request,
             const io::ExecutedJobRows& read) {
   const Budget budget(std::nullopt, &interrupted);
-  const Job& job = read.job;
+  const Problem& job = read.job;
   Timed made{proved_parts(robot, read, budget), {}};
   made.timing = time_job(robot, job, made.parts, request.timing, budget);
   if (!made.timing.motion || !request.check) return made;
@@ -86,7 +86,7 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
   if (!request.quiet) warn_of_held(robot.arm().held);
   const io::JointNames& names = robot.arm().chain.joint_names;
   const io::ExecutedJobRows read = io::load_executed_rows(request.trajectory, request.job, names);
-  const Job& job = read.job;
+  const Problem& job = read.job;
   io::OutputFiles outputs(noted->files());
   noted.reset();
   for (const std::string& file : request.out) outputs.add("--out", file);
@@ -102,7 +102,7 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
     outputs.remove("--out");
   else
     outputs.write_each("--out", [&](const std::filesystem::path& file) {
-      return io::job_motion_text(*made->timing.motion, job, names, job.base_link, file);
+      return io::job_motion_text(*made->timing.motion, job, names, job.arm().base_link, file);
     });
   deliver(outputs, made ? "there is no motion now" : "the work was stopped", [&] {
     if (!made) return say("stopped\n");

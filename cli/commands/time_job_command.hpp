@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/planner/job/time_job.hpp"
 
@@ -12,7 +12,7 @@ namespace swivel::cli {
 
 /// What `swivel time` is asked to do with a job.
 struct JobTimeRequest {
-  Job job{};
+  Problem job{};
   JobTimingOptions timing{};
   std::string trajectory{};
   std::vector<std::string> out{};  ///< names of files; maybe none

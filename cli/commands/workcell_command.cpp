@@ -48,7 +48,7 @@ io::WorkcellRows rows_of_file(const PreparedWorkcell& prepared, const std::strin
 /// Returns rows at the layers of both arms' paths, from a trajectory or a motion, whose times are
 /// left aside. `prepared` is that of the workcell with_motion_defaults(). Throws InputError.
 std::array<std::vector<TrajectoryRow>, 2> rows_to_time(const PreparedWorkcell& prepared,
-                                                       const Workcell& cell, io::WorkcellRows read,
+                                                       const Problem& cell, io::WorkcellRows read,
                                                        const Budget& budget) {
   if (!read.timed[0].empty()) return rows_at_layers(prepared, read.timed, read.stated, budget);
   if (read.stated[0].rows() && read.stated[1].rows()) return std::move(read.rows);
@@ -247,12 +247,12 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   return whole ? kOk : kStopped;
 }
 
-Limits limits_of_speeds(const Workcell& cell) {
+Limits limits_of_speeds(const Problem& cell) {
   Limits limits;
-  for (const WorkcellArm& arm : cell.arms)
-    if (arm.limits.tool_speed)
-      limits.tool_speed =
-          std::min(*arm.limits.tool_speed, limits.tool_speed.value_or(*arm.limits.tool_speed));
+  for (const ArmTask& arm : cell.arms)
+    if (arm.path().limits.tool_speed)
+      limits.tool_speed = std::min(*arm.path().limits.tool_speed,
+                                   limits.tool_speed.value_or(*arm.path().limits.tool_speed));
   return limits;
 }
 
@@ -306,7 +306,7 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
   return !timed ? kStopped : executable ? kOk : kNo;
 }
 
-int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
+int check_workcell_file(const Problem& cell, const std::string& trajectory) {
   std::optional<PreparedWorkcell> prepared(cell);
   for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared->robot(k).arm().held);
   io::WorkcellRows read = rows_of_file(*prepared, trajectory);
@@ -345,8 +345,8 @@ int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
     if (arm.motion) print_rates(*arm.motion, prepared->robot(k).arm().chain.joint_names);
     print_failures(arm.failures, arm.failure_count);
   }
-  const auto asks_speed = [](const WorkcellArm& arm) {
-    return arm.limits.tool_speed || arm.limits.tool_turn_speed;
+  const auto asks_speed = [](const ArmTask& arm) {
+    return arm.path().limits.tool_speed || arm.path().limits.tool_turn_speed;
   };
   if (!timed && std::any_of(cell.arms.begin(), cell.arms.end(), asks_speed))
     say("%s", kSpeedsNotChecked);
@@ -354,7 +354,7 @@ int check_workcell_file(const Workcell& cell, const std::string& trajectory) {
   return result.passed ? kOk : kNo;
 }
 
-int check_workcell_proof(const Workcell& cell, const std::string& file) {
+int check_workcell_proof(const Problem& cell, const std::string& file) {
   catch_interrupts();
   const WorkcellCertificate certificate = io::load_workcell_certificate(file);
   WorkcellCertificateCheck result;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
@@ -13,7 +13,7 @@ namespace swivel::cli {
 
 /// What `swivel plan` is asked to do with a workcell.
 struct WorkcellRequest {
-  Workcell cell{};
+  Problem cell{};
   PlanOptions options{};
   std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
   std::optional<double> advise_s{};       ///< s, time for all trials of --advise
@@ -32,7 +32,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs);
 /// What `swivel time` is asked to do with a workcell.
 struct WorkcellTimeRequest {
   TimingOptions timing{};
-  Workcell cell{};
+  Problem cell{};
   std::string trajectory{};
   std::vector<std::string> out{};  ///< names of files; maybe none
   bool refine = false;             ///< --refine
@@ -45,14 +45,14 @@ int time_workcell_file(const WorkcellTimeRequest& request, std::optional<io::Inp
 
 /// Returns limits whose tool speed is the lowest that an arm of a workcell has, for motions whose
 /// speed the command line does not give.
-[[nodiscard]] Limits limits_of_speeds(const Workcell& cell);
+[[nodiscard]] Limits limits_of_speeds(const Problem& cell);
 
 /// Checks the trajectories or the motion of a workcell that a file has, and prints the verdict.
 /// Returns the exit code. Throws InputError.
-int check_workcell_file(const Workcell& cell, const std::string& trajectory);
+int check_workcell_file(const Problem& cell, const std::string& trajectory);
 
 /// Verifies the certificate that a workcell has no plan, and prints the verdict. Returns the exit
 /// code. Throws InputError.
-int check_workcell_proof(const Workcell& cell, const std::string& certificate);
+int check_workcell_proof(const Problem& cell, const std::string& certificate);
 
 }  // namespace swivel::cli

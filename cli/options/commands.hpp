@@ -11,9 +11,8 @@
 #include "options/placement_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/held_joint.hpp"
-#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/path_problem.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/files/files.hpp"
 
 namespace swivel::cli {
@@ -38,11 +37,8 @@ struct EpisodeChoice {
   std::optional<std::uint64_t> seed, episode;
   PlacementOptions placement;
   void add_to(CLI::App& command);
-  /// Returns the problem, job or workcell with its objects as the episode and the placement say.
-  /// Throws InputError.
-  [[nodiscard]] PathProblem apply(const PathProblem& problem) const;
-  [[nodiscard]] Job apply(const Job& job) const;
-  [[nodiscard]] Workcell apply(const Workcell& cell) const;
+  /// Returns the problem with its objects as the episode and the placement say. Throws InputError.
+  [[nodiscard]] Problem apply(const Problem& problem) const;
   /// Returns words such as "episode 33 of seed 1"; "" if no episode is chosen.
   [[nodiscard]] std::string words() const;
 

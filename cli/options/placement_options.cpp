@@ -68,15 +68,14 @@ PlacementAxis held_axis_from(const std::string& given) {
   return axis_from("hold", given.substr(0, equals), given.substr(equals + 1));
 }
 
-/// Holds the joints of a problem, a job or a workcell. Throws InputError.
-template <class Planned>
-Planned held_as(Planned planned, const HeldPositions& positions) {
+/// Returns the problem with joints held. Throws InputError.
+Problem held_as(Problem problem, const HeldPositions& positions) {
   try {
-    hold_joints(planned, positions);
+    hold_joints(problem, positions);
   } catch (const InvalidArgument& error) {
     throw InputError(std::string("--hold: ") + error.what());
   }
-  return planned;
+  return problem;
 }
 
 /// Returns what `place` makes. Throws InputError in the name of an option.
@@ -165,27 +164,12 @@ bool PlacementOptions::any() const {
   return !axes().empty() || !object.empty() || !arm.empty() || path || base;
 }
 
-PathProblem PlacementOptions::apply(const PathProblem& problem) const {
+Problem PlacementOptions::apply(const Problem& problem) const {
   if (!any()) return problem;
-  const Movable what = thing(problem, problem.scene, problem.source);
+  const Movable what = thing(problem.arm(), problem.scene, problem.source);
   const Placement at = one_placement();
   return in_the_name_of_options(
       [&] { return placed_problem(held_as(problem, at.hold), what, at.offset); });
-}
-
-Job PlacementOptions::apply(const Job& job) const {
-  if (!any()) return job;
-  const Movable what = thing(job, job.scene, job.source);
-  const Placement at = one_placement();
-  return in_the_name_of_options([&] { return placed_job(held_as(job, at.hold), what, at.offset); });
-}
-
-Workcell PlacementOptions::apply(const Workcell& cell) const {
-  if (!any()) return cell;
-  const Movable what = thing(cell.arms[0], cell.scene, cell.source);
-  const Placement at = one_placement();
-  return in_the_name_of_options(
-      [&] { return placed_workcell(held_as(cell, at.hold), what, at.offset); });
 }
 
 Placement PlacementOptions::one_placement() const {

@@ -29,11 +29,9 @@ struct PlacementOptions {
   /// Lists the joints that are given, then the coordinates in the order of kCoordinates:
   /// FROM:TO:STEP, FROM:TO (count 0) or a number (count 1). Throws InputError.
   [[nodiscard]] std::vector<PlacementAxis> axes() const;
-  /// Returns the problem, job or workcell with joints held, and one thing moved, by one number for
-  /// each joint and coordinate that is given; itself if nothing is named. Throws InputError.
-  [[nodiscard]] PathProblem apply(const PathProblem& problem) const;
-  [[nodiscard]] Job apply(const Job& job) const;
-  [[nodiscard]] Workcell apply(const Workcell& cell) const;
+  /// Returns the problem with joints held, and one thing moved, by one number for each joint and
+  /// coordinate that is given; itself if nothing is named. Throws InputError.
+  [[nodiscard]] Problem apply(const Problem& problem) const;
   /// Returns true if a thing or a coordinate is named.
   [[nodiscard]] bool given() const { return any(); }
   /// Returns the words of a command line that ask for one placement, with a space before each.

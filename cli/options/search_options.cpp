@@ -66,11 +66,6 @@ void LatticeOptions::apply(Task& task) const {
   }
 }
 
-void LatticeOptions::apply(PathProblem& problem) const {
-  apply(static_cast<Task&>(problem));
-  if (dphi || arcs.value_or(false)) require_used(unused_keys_of(problem, problem.source));
-}
-
 void LatticeOptions::require_used(const std::vector<UnusedKey>& unused) const {
   for (const UnusedKey& key : unused) {
     const std::string option = key.key == "dphi" && dphi   ? "--dphi"

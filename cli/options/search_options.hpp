@@ -20,8 +20,6 @@ struct LatticeOptions {
   void add_to(CLI::App& command);
   /// Replaces values of the problem file by those that the command line gives.
   void apply(Task& task) const;
-  /// Does so for a problem of one path. Throws InputError for options that its arm does not use.
-  void apply(PathProblem& problem) const;
   /// Throws InputError for options that are given and of which no lattice makes use.
   void require_used(const std::vector<UnusedKey>& unused) const;
 };

@@ -101,7 +101,7 @@ void print_pairs(const std::string& file) {
     throw InputError(
         "--pairs: " + file +
         " is a URDF file: allowed is a problem file, whose limits say what pairs keep");
-  const PathProblem problem = io::load_problem(file);
+  const PathProblem problem = io::load_path_problem(file);
   const PreparedRobot robot(problem);
   const World& world = robot.world();
   const std::vector<RobotPair> pairs = world.robot_pairs_with_medians();

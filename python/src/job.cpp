@@ -9,6 +9,7 @@
 #include "job_archive.hpp"
 #include "runs.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::python {
@@ -199,17 +200,18 @@ void Job::set_strokes(const std::vector<Stroke>& all) {
   for (const Stroke& stroke : all) strokes.append(py::cast(stroke));
 }
 
-swivel::Job to_core(const Job& job) {
-  swivel::Job core;
-  static_cast<Robot&>(core) = job;
+swivel::Problem to_core(const Job& job) {
+  swivel::Problem core;
+  ArmTask& arm = core.arm();
+  static_cast<Robot&>(arm) = job;
   core.source = job.source, core.scene = job.scene, core.vary = job.vary;
-  core.limits = job.limits, core.home = job.home, core.order = job.order;
-  core.process_speed = job.process_speed, core.approach_speed = job.approach_speed;
-  core.rapid = job.rapid, core.lift = job.lift;
+  arm.transition_limits = job.limits, arm.home = job.home, arm.order = job.order;
+  arm.process_speed = job.process_speed, arm.approach_speed = job.approach_speed;
+  arm.rapid = job.rapid, arm.lift = job.lift;
   for (Stroke& stroke : job.all_strokes()) {
-    swivel::Stroke& made = core.strokes.emplace_back();
+    swivel::Stroke& made = arm.strokes.emplace_back();
     made.name = std::move(stroke.name), made.waypoints = std::move(stroke.waypoints);
-    pass_half_turns(core, made.waypoints);
+    pass_half_turns(arm, made.waypoints);
     made.path_frame = std::move(stroke.frame), made.smooth = stroke.smooth;
     made.limits = stroke.limits.value_or(job.limits);
     made.resolution = stroke.resolution.value_or(job.resolution);
@@ -220,22 +222,24 @@ swivel::Job to_core(const Job& job) {
     made.process_speed = stroke.process_speed, made.approach_speed = stroke.approach_speed;
     made.feed = std::move(stroke.feed), made.end = stroke.end, made.closed = stroke.closed;
   }
+  if (is_path(core)) throw InvalidArgument("strokes: name: allowed are non-empty names");
   validate(core);
   return core;
 }
 
-Job from_core(swivel::Job core) {
+Job from_core(swivel::Problem core) {
   Job job;
-  static_cast<Robot&>(job) = core;
+  ArmTask& arm = core.arm();
+  static_cast<Robot&>(job) = arm;
   job.source = std::move(core.source), job.scene = std::move(core.scene);
   job.vary = std::move(core.vary);
-  job.limits = core.limits, job.home = core.home, job.order = core.order;
-  job.process_speed = core.process_speed, job.approach_speed = core.approach_speed;
-  job.rapid = core.rapid, job.lift = core.lift;
+  job.limits = arm.transition_limits, job.home = arm.home, job.order = arm.order;
+  job.process_speed = arm.process_speed, job.approach_speed = arm.approach_speed;
+  job.rapid = arm.rapid, job.lift = arm.lift;
   std::vector<Stroke> strokes;
-  for (swivel::Stroke& stroke : core.strokes) {
+  for (swivel::Stroke& stroke : arm.strokes) {
     job.cost = stroke.cost, job.refinement = stroke.refinement;  // files have one for all
-    const bool own_limits = stroke.limits != core.limits;
+    const bool own_limits = stroke.limits != arm.transition_limits;
     strokes.push_back({std::move(stroke.name), std::move(stroke.waypoints),
                        std::move(stroke.path_frame), stroke.smooth, stroke.reversible,
                        stroke.approach, stroke.retract, stroke.process_speed, stroke.approach_speed,
@@ -250,7 +254,7 @@ Job from_core(swivel::Job core) {
   return job;
 }
 
-swivel::Job to_core(const JobOrFile& job) {
+swivel::Problem to_core(const JobOrFile& job) {
   if (const auto* made = std::get_if<const Job*>(&job)) return to_core(**made);
   const std::filesystem::path& file = std::get<std::filesystem::path>(job);
   return interruptible([&](const std::stop_token&) { return io::load_job(file); });
@@ -354,8 +358,8 @@ void bind_job(py::module_& m) {
           "placed",
           [](const Job& job, const Offset& offset, const std::optional<std::string>& object,
              bool path, bool base, const HeldPositions& hold) {
-            return from_core(placed_job(held_as(to_core(job), hold),
-                                        to_movable(object, path, base, !hold.empty()), offset));
+            return from_core(placed_problem(held_as(to_core(job), hold),
+                                            to_movable(object, path, base, !hold.empty()), offset));
           },
           py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
           py::arg("base") = false, py::arg("hold") = HeldPositions(),
@@ -365,14 +369,14 @@ void bind_job(py::module_& m) {
       .def(
           "episode",
           [](const Job& job, std::uint64_t seed, std::uint64_t episode) {
-            return from_core(episode_job(to_core(job), seed, episode));
+            return from_core(episode_problem(to_core(job), seed, episode));
           },
           py::arg("seed"), py::arg("episode"),
           "The job of this episode of a campaign: objects moved as the file's `vary` says.")
       .def(
           "save",
           [](const Job& job, const std::filesystem::path& file) {
-            const swivel::Job core = to_core(job);
+            const swivel::Problem core = to_core(job);
             interruptible([&](const std::stop_token&) {
               io::save_problem(core, file);
               return true;

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::python {
 
 /// A workcell. It does not change.
 struct Workcell {
-  std::shared_ptr<const swivel::Workcell> cell;  // shared with plans
+  std::shared_ptr<const swivel::Problem> cell;  // shared with plans
 };
 
 /// A stroke of a job. What is unset is as the job says, as in a problem file.
@@ -66,13 +65,13 @@ struct Job : Robot {
 
 /// Returns a job for the planner, and the other way round. Strokes that say what all strokes say
 /// get it from the job. Throws as Job::all_strokes() and swivel::validate() do.
-[[nodiscard]] swivel::Job to_core(const Job& job);
-[[nodiscard]] Job from_core(swivel::Job job);
+[[nodiscard]] swivel::Problem to_core(const Job& job);
+[[nodiscard]] Job from_core(swivel::Problem job);
 
 /// A job, or the name of its file.
 using JobOrFile = std::variant<const Job*, std::filesystem::path>;
 /// Returns a job for the planner. Throws as to_core() and io::load_job() do.
-[[nodiscard]] swivel::Job to_core(const JobOrFile& job);
+[[nodiscard]] swivel::Problem to_core(const JobOrFile& job);
 
 void bind_job(py::module_& m);
 void bind_job_results(py::module_& m);

@@ -32,37 +32,26 @@ void serialize(A& archive, Stroke& x) {
   archive(static_cast<Task&>(x), x.name, x.reversible, x.approach, x.retract, x.process_speed,
           x.approach_speed, x.feed, x.piece);
 }
-/// Lists the members of a Job and of its base.
+/// Lists the members of an ArmTask and of its base.
 template <class A>
-void serialize(A& archive, Job& x) {
+void serialize(A& archive, ArmTask& x) {
   struct Listed : Robot {
-    std::string source;
-    std::vector<SceneObject> scene;
-    std::vector<Variation> vary;
+    std::string name;
     std::vector<Stroke> strokes;
-    Limits limits;
+    std::vector<Config> given;
+    Limits transition_limits;
     std::optional<Config> home;
     StrokeOrder order;
     std::optional<double> process_speed, approach_speed;
     double rapid;
     std::optional<LiftOffs> lift;
   };
-  static_assert(sizeof(Listed) == sizeof(Job));
-  archive(static_cast<Robot&>(x), x.source, x.scene, x.vary, x.strokes, x.limits, x.home, x.order,
+  static_assert(sizeof(Listed) == sizeof(ArmTask));
+  archive(static_cast<Robot&>(x), x.name, x.strokes, x.given, x.transition_limits, x.home, x.order,
           x.process_speed, x.approach_speed, x.rapid, x.lift);
 }
-/// Lists the members of a WorkcellArm and of its bases.
 template <class A>
-void serialize(A& archive, WorkcellArm& x) {
-  struct Listed : Robot, Task {
-    std::string name;
-    std::vector<Config> given;
-  };
-  static_assert(sizeof(Listed) == sizeof(WorkcellArm));
-  archive(static_cast<Robot&>(x), static_cast<Task&>(x), x.name, x.given);
-}
-template <class A>
-void serialize(A& archive, Workcell& x) {
+void serialize(A& archive, Problem& x) {
   auto& [source, arms, scene, vary, may_touch] = x;
   archive(source, arms, scene, vary, may_touch);
 }

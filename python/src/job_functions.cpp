@@ -23,7 +23,7 @@ namespace {
 
 using Parts = std::vector<JobPart>;
 
-PreparedRobot prepared(const swivel::Job& job, const std::stop_token& stop) {
+PreparedRobot prepared(const swivel::Problem& job, const std::stop_token& stop) {
   return PreparedRobot(problem_of_run(job, {0, false}), Budget({}, nullptr, stop));
 }
 
@@ -42,10 +42,10 @@ JobTimingOptions timing_of(std::optional<double> speed, std::optional<double> tu
 }
 
 /// Returns the index of the stroke with this name. Throws InvalidArgument if there is none.
-std::size_t stroke_of(const swivel::Job& job, const std::string& name) {
+std::size_t stroke_of(const swivel::Problem& job, const std::string& name) {
   if (const auto found = find_stroke(job, name)) return *found;
   std::vector<std::string> known;
-  for (const swivel::Stroke& stroke : job.strokes) known.push_back(stroke.name);
+  for (const swivel::Stroke& stroke : job.arm().strokes) known.push_back(stroke.name);
   throw InvalidArgument("'" + name + "' is no stroke of the job, nearest is '" +
                         nearest_name(name, known) + "'");
 }
@@ -60,8 +60,8 @@ struct RunInRows {
 /// Returns the job whose strokes the runs are: where the job allows lift-offs and a stroke is done
 /// in several runs, with its lift-offs. Throws InvalidArgument for runs that are not in their
 /// order, that leave some of the stroke out, or that overlap by less than LiftOffs::overlap.
-swivel::Job executed_by(const swivel::Job& job, const std::vector<RunInRows>& runs) {
-  if (!job.lift) return job;
+swivel::Problem executed_by(const swivel::Problem& job, const std::vector<RunInRows>& runs) {
+  if (!job.arm().lift) return job;
   constexpr double kSamePlace = 1e-9;  // m
   std::vector<LiftOff> places;
   std::optional<std::size_t> stroke;
@@ -78,7 +78,7 @@ swivel::Job executed_by(const swivel::Job& job, const std::vector<RunInRows>& ru
     if (run.name.substr(slash + 1) != std::to_string(number))
       throw InvalidArgument("'" + run.name + "': allowed is '" + run.name.substr(0, slash + 1) +
                             std::to_string(number) + "': runs of a stroke in their order");
-    const double most = std::max(0.0, end - job.lift->overlap);
+    const double most = std::max(0.0, end - job.arm().lift->overlap);
     if (number > 1 && run.begin > most + kSamePlace)
       throw InvalidArgument("'" + run.name +
                             formatted("': begins at s = %.9g: allowed is at most %.9g, so that "
@@ -86,13 +86,13 @@ swivel::Job executed_by(const swivel::Job& job, const std::vector<RunInRows>& ru
                                       "LiftOffs.overlap says",
                                       run.begin, most));
     if (number > 1) places.push_back({*whole, end, run.begin});
-    const swivel::Stroke& of = job.strokes[*whole];
+    const swivel::Stroke& of = job.arm().strokes[*whole];
     end = run.begin + run.length - of.approach.norm() - of.retract.norm();
   }
   return with_lift_offs(job, places);
 }
 
-swivel::Job executed_by(const swivel::Job& job, const Parts& parts) {
+swivel::Problem executed_by(const swivel::Problem& job, const Parts& parts) {
   std::vector<RunInRows> runs;
   for (const JobPart& part : parts)
     if (part.stroke)
@@ -100,23 +100,23 @@ swivel::Job executed_by(const swivel::Job& job, const Parts& parts) {
   return executed_by(job, runs);
 }
 
-swivel::Job executed_by(const swivel::Job& job, const JobMotion& motion) {
+swivel::Problem executed_by(const swivel::Problem& job, const JobMotion& motion) {
   const swivel::JobMotion& timed = *motion.motion();
   std::vector<RunInRows> runs;
   for (const StrokeRun& run : motion.order) {
-    const swivel::Stroke& stroke = motion.job->strokes[run.stroke];
+    const swivel::Stroke& stroke = motion.job->arm().strokes[run.stroke];
     runs.push_back({stroke.name, s_of_piece(stroke), 0});
   }
   for (std::size_t k = 0; k < timed.rows.size(); ++k) {
     const std::size_t part = timed.part[k];
-    if ((part % 2 == 1) == job.home.has_value() && part / 2 < runs.size())
+    if ((part % 2 == 1) == job.arm().home.has_value() && part / 2 < runs.size())
       runs[part / 2].length = timed.rows[k].row.s;
   }
   return executed_by(job, runs);
 }
 
 /// Returns parts for the planner. Throws InvalidArgument for a stroke that the job does not have.
-std::vector<swivel::JobPart> to_core(const swivel::Job& job, const Parts& parts) {
+std::vector<swivel::JobPart> to_core(const swivel::Problem& job, const Parts& parts) {
   std::vector<swivel::JobPart> all;
   for (const JobPart& part : parts) {
     swivel::JobPart& made = all.emplace_back();
@@ -130,7 +130,7 @@ std::vector<swivel::JobPart> to_core(const swivel::Job& job, const Parts& parts)
 
 /// Returns the parts of a file. A stroke is run backwards if the tool begins at its last waypoint.
 /// Throws InputError, also for a stroke that the job does not have.
-Parts from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobTrajectory read,
+Parts from_file(const PreparedRobot& robot, const swivel::Problem& job, io::JobTrajectory read,
                 const Budget& budget) {
   std::vector<swivel::JobPart> rows;
   for (io::JobTrajectoryPart& one : read.parts) {
@@ -153,7 +153,7 @@ Parts from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobTraje
     if (rows[k].run) {
       part.stroke = one.stroke;
       part.reversed = rows[k].run->reversed;
-      part.begin = s_of_piece(job.strokes[rows[k].run->stroke]);
+      part.begin = s_of_piece(job.arm().strokes[rows[k].run->stroke]);
       for (std::size_t i = one.first_process; i <= one.last_process; ++i) part.process[i] = true;
     }
     part.rows = std::make_shared<const std::vector<TrajectoryRow>>(std::move(rows[k].rows));
@@ -163,7 +163,7 @@ Parts from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobTraje
 
 /// Returns the motion of a file. A stroke is run backwards if the tool begins at its last waypoint.
 /// Throws InputError.
-JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobMotionFile read,
+JobMotion from_file(const PreparedRobot& robot, const swivel::Problem& job, io::JobMotionFile read,
                     const Budget& budget) {
   JobMotion motion;
   motion.joint_names = robot.arm().chain.joint_names;
@@ -176,7 +176,7 @@ JobMotion from_file(const PreparedRobot& robot, const swivel::Job& job, io::JobM
   return motion;
 }
 
-std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swivel::Job& job,
+std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swivel::Problem& job,
                                          const std::filesystem::path& file, const Budget& budget) {
   auto read = io::load_executed_rows(file, job, robot.arm().chain.joint_names);
   try {
@@ -189,8 +189,8 @@ std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swive
 }
 
 /// `job`: with the lift-offs of the parts.
-JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Job& job, const Parts& parts,
-                           const CheckOptions& options) {
+JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Problem& job,
+                           const Parts& parts, const CheckOptions& options) {
   const std::vector<swivel::JobPart> all = to_core(job, parts);
   JobCheckResult result = swivel::check_job(robot, job, all, options);
   std::vector<std::vector<bool>> process;
@@ -201,9 +201,11 @@ JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Job& job, c
 
 /// Checks a motion whose strokes are numbered as in the job that it was made for. `job`: with the
 /// lift-offs of the motion.
-JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Job& job,
+JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Problem& job,
                            const JobMotion& motion, const CheckOptions& options) {
-  const auto number = [&](std::size_t k) { return stroke_of(job, motion.job->strokes[k].name); };
+  const auto number = [&](std::size_t k) {
+    return stroke_of(job, motion.job->arm().strokes[k].name);
+  };
   std::vector<StrokeRun> order = motion.order;
   swivel::JobMotion timed = *motion.motion();
   for (StrokeRun& run : order) run.stroke = number(run.stroke);
@@ -213,7 +215,7 @@ JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Job& job,
 
 using Checked = std::variant<JobPlan, JobMotion, Parts, std::filesystem::path>;
 JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> speed) {
-  const swivel::Job job = to_core(of);
+  const swivel::Problem job = to_core(of);
   if (speed && !(std::isfinite(*speed) && *speed > 0))
     throw py::value_error("speed: not a positive number: allowed are values above 0, or None");
   return interruptible([&](const std::stop_token& stop) -> JobCheck {
@@ -241,7 +243,7 @@ JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> s
 
 JobPlan plan(const JobOrFile& of, PlanOptions options,
              const std::optional<JobTimingOptions>& timing) {
-  const swivel::Job job = to_core(of);
+  const swivel::Problem job = to_core(of);
   JobPlan plan;
   plan.plan = std::make_shared<const JobMotionPlan>(interruptible([&](const std::stop_token& stop) {
     options.stop = stop;
@@ -250,7 +252,7 @@ JobPlan plan(const JobOrFile& of, PlanOptions options,
   }));
   plan.job = without_surroundings(executed_job(job, plan.plan->result));
   plan.timing = timing;
-  plan.given = std::make_shared<const swivel::Job>(job);
+  plan.given = std::make_shared<const swivel::Problem>(job);
   return plan;
 }
 
@@ -258,14 +260,14 @@ using Timeable = std::variant<JobPlan, Parts, std::filesystem::path>;
 
 /// Parts that are proved, and the job of which they are, with its lift-offs.
 struct ProvedParts {
-  swivel::Job job;
+  swivel::Problem job;
   std::vector<swivel::JobPart> parts;
 };
 
 /// Returns the parts of a file, or made by hand, with rows at the layers of each run. Throws
 /// InputError unless they are proved to be the job's.
-ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Job& of, const Timeable& rows,
-                         const Budget& budget) {
+ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Problem& of,
+                         const Timeable& rows, const Budget& budget) {
   CheckOptions options;
   options.margins = false, options.budget = budget;
   std::string source;
@@ -290,7 +292,7 @@ ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Job& of, cons
   }
   const Parts& given = std::get<Parts>(read);
   ProvedParts proved{executed_by(of, given), {}};
-  const swivel::Job& job = proved.job;
+  const swivel::Problem& job = proved.job;
   require(check_parts(robot, job, given, options));
   proved.parts = to_core(job, given);
   for (swivel::JobPart& part : proved.parts)
@@ -303,7 +305,7 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
                std::optional<double> timeout) {
   if (timeout && !(*timeout > 0))
     throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
-  const swivel::Job given = to_core(of);
+  const swivel::Problem given = to_core(of);
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
     const PreparedRobot robot = prepared(given, stop);
@@ -401,7 +403,7 @@ void bind_job_functions(py::module_& m) {
   m.def(
       "load_job_trajectory",
       [](const std::filesystem::path& file, const JobOrFile& of) {
-        const swivel::Job job = to_core(of);
+        const swivel::Problem job = to_core(of);
         return interruptible([&](const std::stop_token& stop) {
           return load_rows(prepared(job, stop), job, file, Budget({}, nullptr, stop));
         });

@@ -23,8 +23,8 @@ py::object bodies_or_none(const std::optional<std::array<std::string, 2>>& bodie
   return py::make_tuple((*bodies)[0], (*bodies)[1]);
 }
 
-const std::string& name_of(const swivel::Job& job, const StrokeRun& run) {
-  return job.strokes[run.stroke].name;
+const std::string& name_of(const swivel::Problem& job, const StrokeRun& run) {
+  return job.arm().strokes[run.stroke].name;
 }
 /// Returns the name of a run for people.
 std::string run_words(const std::string& stroke, bool reversed) {
@@ -64,7 +64,7 @@ std::vector<JobRun> runs_of(const JobPlan& plan) {
 std::vector<LiftOffPlace> lift_offs_of(const JobPlan& plan) {
   std::vector<std::string> names;  // of the strokes of the job that was given
   std::vector<double> approaches;  // m; s of rows counts them as well
-  for (const swivel::Stroke& stroke : plan.job->strokes) {
+  for (const swivel::Stroke& stroke : plan.job->arm().strokes) {
     const std::string& name = stroke.piece ? stroke.piece->stroke : stroke.name;
     if (!names.empty() && names.back() == name) continue;
     names.push_back(name);
@@ -91,7 +91,7 @@ std::string part_words(const JobPart& part) {
 
 /// Returns the name of a part of a motion for people, by its number.
 std::string part_words(const JobMotion& motion, std::size_t part) {
-  const bool home = motion.job->home.has_value();
+  const bool home = motion.job->arm().home.has_value();
   const std::size_t run = home ? part / 2 : (part + 1) / 2;
   if (run >= motion.order.size()) return "transition home";
   const std::string name =
@@ -129,7 +129,7 @@ std::string plan_words(const JobPlan& plan) {
   std::string text = to_string(result.status);
   if (result.status == PlanStatus::kInfeasible) return text + ": " + infeasible_words(plan);
   if (result.parts.empty()) return text;
-  text += formatted(": %zu strokes", plan.job->strokes.size() - result.lift_offs.size()) +
+  text += formatted(": %zu strokes", plan.job->arm().strokes.size() - result.lift_offs.size()) +
           lift_words(result.lift_offs.size()) + formatted(", cost %.6g", result.cost);
   if (const auto gap = gap_of(result)) text += formatted(", %.3g %% above its bound", 100 * *gap);
   if (plan.plan->timing) text += "; " + motion_words(motion_of(plan));
@@ -145,7 +145,7 @@ std::string csv_of(const JobPlan& plan) {
 
 std::string motion_text(const JobMotion& motion, const std::filesystem::path& file) {
   return io::job_motion_text(*motion.motion(), *motion.job, motion.joint_names,
-                             motion.job->base_link, file);
+                             motion.job->arm().base_link, file);
 }
 
 // --- parts
@@ -467,7 +467,7 @@ void bind_event(py::module_& m) {
 std::vector<NamedEvent> events_of(const JobMotion& motion) {
   std::vector<NamedEvent> events;
   for (const ProcessEvent& event : motion.motion()->events)
-    events.push_back({event.t, event.s, motion.job->strokes[event.stroke].name, event.on});
+    events.push_back({event.t, event.s, motion.job->arm().strokes[event.stroke].name, event.on});
   return events;
 }
 
@@ -603,11 +603,13 @@ std::shared_ptr<const swivel::JobMotion> JobMotion::motion() const {
   return {timing, &*timing->motion};
 }
 
-std::shared_ptr<const swivel::Job> without_surroundings(const swivel::Job& job) {
-  auto rest = std::make_shared<swivel::Job>();
-  rest->base_link = job.base_link, rest->source = job.source;
-  rest->strokes = job.strokes;
-  rest->home = job.home, rest->order = job.order, rest->lift = job.lift;
+std::shared_ptr<const swivel::Problem> without_surroundings(const swivel::Problem& job) {
+  auto rest = std::make_shared<swivel::Problem>();
+  ArmTask& arm = rest->arm();
+  const ArmTask& given = job.arm();
+  arm.base_link = given.base_link, rest->source = job.source;
+  arm.strokes = given.strokes;
+  arm.home = given.home, arm.order = given.order, arm.lift = given.lift;
   return rest;
 }
 
@@ -619,7 +621,7 @@ std::vector<JobPart> parts_of(const JobPlan& plan, const std::vector<swivel::Job
     part.joint_names = plan.result().joint_names;
     if (one.run) {
       part.stroke = name_of(*plan.job, *one.run), part.reversed = one.run->reversed;
-      part.begin = s_of_piece(plan.job->strokes[one.run->stroke]);
+      part.begin = s_of_piece(plan.job->arm().strokes[one.run->stroke]);
     }
     part.cost = one.cost, part.barred_by = one.barred_by;
     part.process = process_of_rows(one, *plan.job);

@@ -46,17 +46,17 @@ struct JobPlan {
   std::shared_ptr<const JobMotionPlan> plan;
   /// The job's strokes, home and order, by which the answer is written; without robot and scene.
   /// Runs between lift-offs are strokes of their own.
-  std::shared_ptr<const swivel::Job> job;
+  std::shared_ptr<const swivel::Problem> job;
   std::optional<JobTimingOptions> timing = {};  ///< set where a motion was asked for
   /// The job as it was given, of which reports are made. Null after unpickling.
-  std::shared_ptr<const swivel::Job> given = nullptr;
+  std::shared_ptr<const swivel::Problem> given = nullptr;
   [[nodiscard]] const JobResult& result() const { return plan->result; }
 };
 
 struct JobMotion {
   std::shared_ptr<const JobTimingResult> timing;
-  std::shared_ptr<const swivel::Job> job;  ///< as JobPlan has it
-  std::vector<StrokeRun> order;            ///< of the runs
+  std::shared_ptr<const swivel::Problem> job;  ///< as JobPlan has it
+  std::vector<StrokeRun> order;                ///< of the runs
   io::JointNames joint_names;
   /// What the check of the motion found, for which it is none; empty: nothing.
   std::string fault;
@@ -70,7 +70,8 @@ struct JobCheck {
 };
 
 /// Returns what JobPlan::job holds of a job.
-[[nodiscard]] std::shared_ptr<const swivel::Job> without_surroundings(const swivel::Job& job);
+[[nodiscard]] std::shared_ptr<const swivel::Problem> without_surroundings(
+    const swivel::Problem& job);
 [[nodiscard]] std::vector<JobPart> parts_of(const JobPlan& plan,
                                             const std::vector<swivel::JobPart>& of);
 /// Returns the motion of a plan. Throws ValueError if it has none.

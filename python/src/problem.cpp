@@ -869,8 +869,13 @@ void bind_problem(py::module_& m) {
           "y z (m) roll pitch yaw (rad) in "
           "the\n"
           "base frame, about its own origin, with the joints of `hold` held there, rad or m.")
-      .def("episode", &episode_problem, py::arg("seed"), py::arg("episode"),
-           "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
+      .def(
+          "episode",
+          [](const PathProblem& problem, std::uint64_t seed, std::uint64_t episode) {
+            return episode_problem(problem, seed, episode);
+          },
+          py::arg("seed"), py::arg("episode"),
+          "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
       .def(
           "save",
           [](PathProblem problem, const std::filesystem::path& file) {
@@ -903,7 +908,7 @@ void bind_problem(py::module_& m) {
   m.def(
       "load_problem",
       [](const std::filesystem::path& file) {
-        return interruptible([&](const std::stop_token&) { return io::load_problem(file); });
+        return interruptible([&](const std::stop_token&) { return io::load_path_problem(file); });
       },
       py::arg("file"),
       "A problem file, docs/formats.md. Raises InputError, which names file and line.");

@@ -18,7 +18,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
@@ -417,53 +417,39 @@ class Cells {
   std::uint64_t seed_;
 };
 
-/// What is planned many times: a problem, a job or a workcell.
-using Planned = std::variant<PathProblem, swivel::Job, swivel::Workcell>;
-
-Planned to_planned(const PathProblem& problem) {
-  return problem;
+swivel::Problem to_planned(const PathProblem& problem) {
+  return one_path(problem);
 }
 /// Throws as to_core() does.
-Planned to_planned(const Job& job) {
+swivel::Problem to_planned(const Job& job) {
   return to_core(job);
 }
-
-Planned to_planned(const Workcell& cell) {
+swivel::Problem to_planned(const Workcell& cell) {
   return *cell.cell;
 }
 
-/// Returns a robot for all plans of a problem or a job; null for a workcell, each plan of which
-/// prepares both arms.
-std::shared_ptr<const PreparedRobot> prepare(const Planned& planned, const std::stop_token& stop) {
-  const Budget budget({}, nullptr, stop);
-  if (const auto* const job = std::get_if<swivel::Job>(&planned))
-    return std::make_shared<const PreparedRobot>(problem_of_run(*job, {0, false}), budget);
-  if (std::holds_alternative<swivel::Workcell>(planned)) return nullptr;
-  return std::make_shared<const PreparedRobot>(std::get<PathProblem>(planned), budget);
+/// Returns a robot for all plans of a problem of one arm; null for two arms, each plan of which
+/// prepares both.
+std::shared_ptr<const PreparedRobot> prepare(const swivel::Problem& planned,
+                                             const std::stop_token& stop) {
+  if (planned.arms.size() == 2) return nullptr;
+  return std::make_shared<const PreparedRobot>(problem_of_run(planned, {0, false}),
+                                               Budget({}, nullptr, stop));
 }
 
 /// Plans placements of one thing; of a problem with a planner that remembers earlier plans.
 class Placer {
  public:
-  Placer(Planned planned, Movable thing, std::vector<HeldRange> joints, const py::object& planner,
-         int threads, std::optional<double> timeout, bool prove)
+  Placer(swivel::Problem planned, Movable thing, std::vector<HeldRange> joints,
+         const py::object& planner, int threads, std::optional<double> timeout, bool prove)
       : planned_(std::move(planned)),
         thing_(std::move(thing)),
         joints_(std::move(joints)),
         options_(to_plan_options(planner, threads, timeout, prove)) {
-    if (const auto* const job = std::get_if<swivel::Job>(&planned_))
-      static_cast<void>(placed_job(*job, thing_, {}));
-    else if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
-      static_cast<void>(placed_workcell(*cell, thing_, {}));
-    else
-      static_cast<void>(placed_problem(std::get<PathProblem>(planned_), thing_, {}));
+    static_cast<void>(placed_problem(planned_, thing_, {}));
     for (const auto& [joint, low, high] : joints_)
       for (const double position : {low, high})
-        std::visit(
-            [&, &name = joint](const auto& what) {
-              static_cast<void>(held_as(what, {{name, position}}));
-            },
-            planned_);
+        static_cast<void>(held_as(planned_, {{joint, position}}));
   }
   Placements plan(const std::vector<std::uint64_t>& cells,
                   const py::array_t<double, py::array::c_style>& offsets, const py::object& each) {
@@ -489,12 +475,10 @@ class Placer {
         PlanOptions options = options_;
         options.stop = stop_.get_token();
         const auto robot = prepare(planned_, stop);
-        if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
-          planner_.emplace(*cell, thing_, options);
-        else if (const auto* const job = std::get_if<swivel::Job>(&planned_))
-          planner_.emplace(robot, *job, thing_, options);
+        if (robot)
+          planner_.emplace(robot, planned_, thing_, options);
         else
-          planner_.emplace(robot, std::get<PathProblem>(planned_), thing_, options);
+          planner_.emplace(planned_, thing_, options);
       }
       const std::stop_callback pass_on(stop, [&] { stop_.request_stop(); });
       return planner_->plan(wanted, done);
@@ -503,7 +487,7 @@ class Placer {
   [[nodiscard]] bool stopped() const { return planner_ && planner_->stopped(); }
 
  private:
-  Planned planned_;
+  swivel::Problem planned_;
   Movable thing_;
   std::vector<HeldRange> joints_;
   PlanOptions options_;
@@ -515,8 +499,8 @@ class Placer {
 /// Plans episodes of one campaign.
 class Campaigner {
  public:
-  Campaigner(Planned planned, std::uint64_t episodes, std::uint64_t seed, const py::object& planner,
-             int threads, bool prove)
+  Campaigner(swivel::Problem planned, std::uint64_t episodes, std::uint64_t seed,
+             const py::object& planner, int threads, bool prove)
       : planned_(std::move(planned)) {
     constexpr std::uint64_t kMost = 10'000'000;
     if (episodes < 1 || episodes > kMost)
@@ -527,8 +511,7 @@ class Campaigner {
     options_.plan = to_plan_options(planner, threads, {}, prove);
   }
   Episodes plan(const Shard& shard, const py::object& each) {
-    const std::vector<std::string> coordinates = varied_coordinates(std::visit(
-        [](const auto& what) -> const auto& { return what.vary; }, planned_));
+    const std::vector<std::string> coordinates = varied_coordinates(planned_.vary);
     return to_table(interruptible([&](const std::stop_token& stop) {
                       if (!robot_) robot_ = prepare(planned_, stop);
                       CampaignOptions options = options_;
@@ -541,19 +524,17 @@ class Campaigner {
                         const py::gil_scoped_acquire gil;
                         each(to_table(std::vector{row}, coordinates));
                       };
-                      if (const auto* const cell = std::get_if<swivel::Workcell>(&planned_))
-                        run_campaign(*cell, options, row_done);
-                      else if (const auto* const job = std::get_if<swivel::Job>(&planned_))
-                        run_campaign(*robot_, *job, options, row_done);
+                      if (robot_)
+                        run_campaign(*robot_, planned_, options, row_done);
                       else
-                        run_campaign(*robot_, std::get<PathProblem>(planned_), options, row_done);
+                        run_campaign(planned_, options, row_done);
                       return rows;
                     }),
                     coordinates);
   }
 
  private:
-  Planned planned_;
+  swivel::Problem planned_;
   CampaignOptions options_;
   std::shared_ptr<const PreparedRobot> robot_;
 };
@@ -605,12 +586,11 @@ void bind_parts(py::module_& m) {
              return self.plan({index, count}, each);
            });
   m.def("_load_problem_file", [](const std::filesystem::path& file) {
-    auto read = interruptible([&](const std::stop_token&) { return io::load_problem_file(file); });
-    if (auto* const cell = std::get_if<swivel::Workcell>(&read))
-      return py::cast(Workcell{std::make_shared<const swivel::Workcell>(std::move(*cell))});
-    if (auto* const job = std::get_if<swivel::Job>(&read))
-      return py::cast(from_core(std::move(*job)));
-    return py::cast(std::get<PathProblem>(std::move(read)));
+    auto read = interruptible([&](const std::stop_token&) { return io::load_problem(file); });
+    if (read.arms.size() == 2)
+      return py::cast(Workcell{std::make_shared<const swivel::Problem>(std::move(read))});
+    return is_path(read) ? py::cast(problem_of_run(read, {0, false}))
+                         : py::cast(from_core(std::move(read)));
   });
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double kLength = 0.5;  // m, the line of A and B
 
 PathProblem experiment(const std::string& name) {
-  return io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name + ".yaml");
+  return io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name + ".yaml");
 }
 
 PlanOptions lazy() {

@@ -11,7 +11,7 @@
 #include "reference.hpp"
 #include "seed.hpp"
 #include "support.hpp"
-#include "swivel/core/problem/vertex_numbers.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel {
 namespace {

@@ -75,7 +75,7 @@ TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
   for (const std::string name :
        {"panda_weld_seam", "xarm7_polish_raster", "gen3_glue_bead", "fetch_wipe_table",
         "kr6_weld_pipe", "ur5e_deburr_edge", "panda_polish_cover"}) {
-    PathProblem problem = io::load_problem(kData / "problems" / (name + ".yaml"));
+    PathProblem problem = io::load_path_problem(kData / "problems" / (name + ".yaml"));
     problem.resolution.ds = 0.02;
     const ArmModel arm = build_arm(*problem.model, problem.base_link, problem.tip_link,
                                    problem.hold, problem.tool, problem.roll);

@@ -10,7 +10,7 @@
 #include "robots.hpp"
 #include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/problems/workcell.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/io/workcells/workcell_csv.hpp"
@@ -256,8 +256,7 @@ std::vector<Reader> problem_readers(const TempFolder& folder) {
        {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml"),
         kJob, data("problems/sda10f_plate_workcell.yaml")},
        kYamlWords,
-       at(folder, "problems/p.yaml",
-          [](const fs::path& file) { (void)io::load_problem_file(file); })});
+       at(folder, "problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
   all.push_back(
       {"urdf",
        {io::test::arm_urdf(), data("robots/iiwa14.urdf")},
@@ -352,8 +351,8 @@ std::vector<Reader> motion_readers(const TempFolder& folder) {
 /// Returns the reader of the rows of a job of two strokes, with times and without.
 Reader job_reader(const TempFolder& folder) {
   const io::JointNames joints{"a", "b", "c", "d", "e", "f", "g"};
-  Job job;
-  job.lift.emplace();
+  Problem job;
+  job.arm().lift.emplace();
   JobMotion motion;
   PlanResult rows = short_plan(joints);
   JobResult result;
@@ -362,7 +361,7 @@ Reader job_reader(const TempFolder& folder) {
     JobPart& made = result.parts.emplace_back();
     made.rows = rows.trajectory;
     if (part % 2 == 0) {
-      Stroke& stroke = job.strokes.emplace_back();
+      Stroke& stroke = job.arm().strokes.emplace_back();
       stroke.name = part == 0 ? "left" : "right";
       stroke.waypoints.resize(2);
       stroke.waypoints[1].position.x() = 0.4;

@@ -27,10 +27,10 @@ TEST(Fuzz, WhatIsReadCanBePlanned) {
   const TempFolder folder;
   prepare(folder);
   const auto plan_problem = [&](const std::string& text) {
-    plan_coarsely(io::load_problem(folder.write("problems/p.yaml", text)));
+    plan_coarsely(io::load_path_problem(folder.write("problems/p.yaml", text)));
   };
   const auto plan_robot = [&](const std::string& text) {
-    PathProblem problem = io::load_problem(folder.path() / "problems" / "good.yaml");
+    PathProblem problem = io::load_path_problem(folder.path() / "problems" / "good.yaml");
     problem.model = io::load_robot(folder.write("robot.urdf", text));
     plan_coarsely(problem);
   };

@@ -22,7 +22,7 @@ class BadProblem : public testing::TestWithParam<Case> {};
 TEST_P(BadProblem, IsOneLineThatSaysWhatIsAllowed) {
   const ProblemFolder folder;
   const fs::path file = folder.write({{GetParam().section, GetParam().text}});
-  const std::string message = input_error([&] { (void)load_problem(file); });
+  const std::string message = input_error([&] { (void)load_path_problem(file); });
   expect_message(message, GetParam().needles);
   expect_message(message, {file.string() + ":"});
   const std::string prefix = file.string() + ":";
@@ -381,14 +381,14 @@ TEST(BadProblemFile, NegativeHalfWidth) {
   const ProblemFolder folder;
   const fs::path file =
       folder.write({{"scene", object("sphere: 1")}, {"vary", "[{object: a, rpy: [0, -1, 0]}]"}});
-  expect_message(input_error([&] { (void)load_problem(file); }), {"vary[0].rpy[1]", ">= 0"});
+  expect_message(input_error([&] { (void)load_path_problem(file); }), {"vary[0].rpy[1]", ">= 0"});
 }
 
 TEST(BadProblemFile, ObjectNamedLikeAnAttachedBody) {
   const ProblemFolder folder;
   const fs::path file = folder.write(
       {{"robot", robot_with("attached: [{name: a, sphere: 1}]")}, {"scene", object("sphere: 1")}});
-  expect_message(input_error([&] { (void)load_problem(file); }),
+  expect_message(input_error([&] { (void)load_path_problem(file); }),
                  {"scene[0].name", "'a'", "attached"});
 }
 
@@ -399,7 +399,7 @@ TEST(BadProblemFile, LineNumbers) {
       "file: weld.csv\n";
   const auto message = [&](const std::string& text) {
     const fs::path file = folder.folder().write("problems/problem.yaml", head + text);
-    return input_error([&] { (void)load_problem(file); });
+    return input_error([&] { (void)load_path_problem(file); });
   };
   expect_message(message("limits:\n  clearance: 0\n  joint_stp: 1\n"),
                  {"problem.yaml:9: limits.joint_stp"});
@@ -414,7 +414,7 @@ TEST(BadProblemFile, RowOfThePathFile) {
   const ProblemFolder folder;
   folder.folder().write("problems/weld.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,2,0,0,0\n");
   const fs::path file = folder.write({});
-  expect_message(input_error([&] { (void)load_problem(file); }),
+  expect_message(input_error([&] { (void)load_path_problem(file); }),
                  {"problem.yaml:1: path.file", "weld.csv:3: data row 2"});
 }
 
@@ -424,11 +424,12 @@ TEST(BadProblemFile, NotOneDocument) {
                            "? [a, b]\n: c\n", "&a [*a]\n", "\x01\x02\n", "robot: !!binary x\n"}) {
     SCOPED_TRACE(text);
     const fs::path file = folder.folder().write("problems/problem.yaml", text);
-    expect_message(input_error([&] { (void)load_problem(file); }), {file.string()});
+    expect_message(input_error([&] { (void)load_path_problem(file); }), {file.string()});
   }
-  expect_message(input_error([&] { (void)load_problem(folder.folder().path() / "none.yaml"); }),
-                 {"none.yaml"});
-  expect_message(input_error([&] { (void)load_problem(folder.folder().path()); }),
+  expect_message(
+      input_error([&] { (void)load_path_problem(folder.folder().path() / "none.yaml"); }),
+      {"none.yaml"});
+  expect_message(input_error([&] { (void)load_path_problem(folder.folder().path()); }),
                  {folder.folder().path().string(), "folder"});
 }
 
@@ -436,7 +437,7 @@ TEST(BadProblemFile, DeeplyNested) {
   const ProblemFolder folder;
   const fs::path file =
       folder.folder().write("problems/problem.yaml", "robot: " + std::string(100000, '['));
-  expect_message(input_error([&] { (void)load_problem(file); }), {file.string()});
+  expect_message(input_error([&] { (void)load_path_problem(file); }), {file.string()});
 }
 
 }  // namespace

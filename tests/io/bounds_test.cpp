@@ -25,11 +25,12 @@ constexpr double kSoon = 5;
 
 TEST(Bounds, DevicesAreNotRead) {
   const ProblemFolder folder;
-  expect_message(input_error([] { (void)load_problem("/dev/zero"); }), {"/dev/zero", "device"});
+  expect_message(input_error([] { (void)load_path_problem("/dev/zero"); }),
+                 {"/dev/zero", "device"});
   expect_message(input_error([] { (void)load_robot("/dev/zero"); }), {"/dev/zero", "device"});
   expect_message(input_error([] { (void)load_path("/dev/zero"); }), {"/dev/zero", "device"});
   expect_message(input_error([&] {
-                   (void)load_problem(folder.write({{"path", "{file: /dev/zero}"}}));
+                   (void)load_path_problem(folder.write({{"path", "{file: /dev/zero}"}}));
                  }),
                  {"path.file", "device"});
 }
@@ -51,7 +52,7 @@ TEST(Bounds, FilesAreOfBoundedSize) {
     fs::resize_file(file, mebibytes << 20);
     return file;
   };
-  expect_message(input_error([&] { (void)load_problem(large("a.yaml", 5)); }),
+  expect_message(input_error([&] { (void)load_path_problem(large("a.yaml", 5)); }),
                  {"a.yaml", "too large", "4 MiB"});
   expect_message(input_error([&] { (void)load_robot(large("a.urdf", 33)); }),
                  {"a.urdf", "too large", "32 MiB"});
@@ -81,7 +82,7 @@ TEST(Bounds, ManyKeysAreReadSoon) {
   for (int k = 0; k < 50'000; ++k) hold += "  k" + std::to_string(k) + ": 0\n";
   const fs::path file = folder.folder().write("problems/problem.yaml", hold);
   EXPECT_LT(seconds([&] {
-              expect_message(input_error([&] { (void)load_problem(file); }), {"unknown key"});
+              expect_message(input_error([&] { (void)load_path_problem(file); }), {"unknown key"});
             }),
             kSoon);
 }
@@ -114,7 +115,7 @@ TEST(Bounds, AliasesDoNotMultiply) {
     scene += "  - {name: o" + std::to_string(k) + ", sphere: 0.1, allow: *a}\n";
   const fs::path file = folder.write(
       {{"scene", "\n  - {name: o, sphere: 0.1, allow: &a [" + allow + "]}\n" + scene}});
-  expect_message(input_error([&] { (void)load_problem(file); }),
+  expect_message(input_error([&] { (void)load_path_problem(file); }),
                  {"problem.yaml:", "too many values"});
 }
 
@@ -123,13 +124,13 @@ TEST(Bounds, MessagesEnd) {
   const std::string key(60'000, 'k'), name = "box" + std::string(60'000, '-') + ".stl";
   for (const std::string& message :
        {input_error([&] {
-          (void)load_problem(folder.write({{"path", "{" + key + ": 1}"}}));
+          (void)load_path_problem(folder.write({{"path", "{" + key + ": 1}"}}));
         }),
         input_error([&] {
-          (void)load_problem(folder.write({{key, "1"}}));
+          (void)load_path_problem(folder.write({{key, "1"}}));
         }),
         input_error([&] {
-          (void)load_problem(folder.write({{"scene", "[{name: rail, mesh: " + name + "}]"}}));
+          (void)load_path_problem(folder.write({{"scene", "[{name: rail, mesh: " + name + "}]"}}));
         })}) {
     EXPECT_LE(message.size(), 4000u);
     expect_message(message, {".yaml", "allowed"});
@@ -141,15 +142,15 @@ TEST(Bounds, MisplacedCharactersOfYamlEnd) {
   for (const char* const text :
        {",", ",<", ", tool_angle", "]", "}", "a: 1\n, b", "a: 1\n--- \n,"}) {
     const std::string message =
-        input_error([&] { (void)load_problem(folder.write("p.yaml", text)); });
+        input_error([&] { (void)load_path_problem(folder.write("p.yaml", text)); });
     expect_message(message, {"p.yaml", "allowed"});
   }
   const ProblemFolder problems;
   for (const char* const more : {"\n, b", "\n]", "\n---\n", "\n--- ~\n---\nscene: []\n"}) {
     const fs::path file = problems.write({});
-    EXPECT_FALSE(load_problem(file).waypoints.empty());
+    EXPECT_FALSE(load_path_problem(file).waypoints.empty());
     std::ofstream(file, std::ios::app) << more;
-    expect_message(input_error([&] { (void)load_problem(file); }), {"problem.yaml"});
+    expect_message(input_error([&] { (void)load_path_problem(file); }), {"problem.yaml"});
   }
 }
 
@@ -271,7 +272,7 @@ TEST(Bounds, DeeplyNestedFiles) {
     for (const int depth : {400, 600, 5'000, 200'000}) {
       SCOPED_TRACE(open + std::to_string(depth));
       const fs::path file = folder.folder().write("problems/problem.yaml", nested(open, depth));
-      expect_message(input_error([&] { (void)load_problem(file); }), {"problem.yaml"});
+      expect_message(input_error([&] { (void)load_path_problem(file); }), {"problem.yaml"});
     }
   for (const char* open : {"<a>", "<node>", "<robot name='r'>"})
     for (const int depth : {400, 600, 5'000, 200'000}) {

@@ -27,8 +27,8 @@ class CamFolder {
     return input_error([&] { (void)load(name, text, keys); });
   }
   /// Loads a job with one stroke.
-  [[nodiscard]] Job load_job(const std::string& name, const std::string& text,
-                             const std::string& keys = "") const {
+  [[nodiscard]] Problem load_job(const std::string& name, const std::string& text,
+                                 const std::string& keys = "") const {
     folder_.folder().write("problems/" + name, text);
     const fs::path file = folder_.folder().write(
         "problems/job.yaml",
@@ -132,20 +132,20 @@ TEST(PathTable, UnitsOfPositionsAndFeeds) {
   const CamFolder folder;
   const std::string head = "x,y,z,qw,qx,qy,qz,feed\n",
                     text = head + "609.6,-1,2000,1,0,0,0,30\n10,20,30,1,0,0,0,60\n";
-  const Job mm = folder.load_job("p.csv", text, ", units: mm");
-  EXPECT_EQ(mm.strokes[0].waypoints[0].position, Vector3d(0.6096, -0.001, 2));
-  EXPECT_EQ(mm.strokes[0].feed, (std::vector<double>{0.03, 0.06}));
-  const Job inch =
+  const Problem mm = folder.load_job("p.csv", text, ", units: mm");
+  EXPECT_EQ(mm.arm().strokes[0].waypoints[0].position, Vector3d(0.6096, -0.001, 2));
+  EXPECT_EQ(mm.arm().strokes[0].feed, (std::vector<double>{0.03, 0.06}));
+  const Problem inch =
       folder.load_job("p.csv", head + "10,1,2,1,0,0,0,2\n1,2,3,1,0,0,0,4\n", ", units: inch");
-  expect_near(inch.strokes[0].waypoints[0].position, Vector3d(0.254, 0.0254, 0.0508));
-  EXPECT_NEAR(inch.strokes[0].feed[1], 0.1016, 1e-15);
-  const Job minute = folder.load_job(
+  expect_near(inch.arm().strokes[0].waypoints[0].position, Vector3d(0.254, 0.0254, 0.0508));
+  EXPECT_NEAR(inch.arm().strokes[0].feed[1], 0.1016, 1e-15);
+  const Problem minute = folder.load_job(
       "p.csv",
       "feed [mm/min],x [mm],y [mm],z [mm],qw,qx,qy,qz\n600,1,2,3,1,0,0,0\n900,9,2,3,1,0,0,0\n");
-  ASSERT_EQ(minute.strokes[0].feed.size(), 2u);
-  EXPECT_NEAR(minute.strokes[0].feed[0], 0.01, 1e-16);
-  EXPECT_NEAR(minute.strokes[0].feed[1], 0.015, 1e-16);
-  EXPECT_EQ(minute.strokes[0].waypoints[0].position, Vector3d(0.001, 0.002, 0.003));
+  ASSERT_EQ(minute.arm().strokes[0].feed.size(), 2u);
+  EXPECT_NEAR(minute.arm().strokes[0].feed[0], 0.01, 1e-16);
+  EXPECT_NEAR(minute.arm().strokes[0].feed[1], 0.015, 1e-16);
+  EXPECT_EQ(minute.arm().strokes[0].waypoints[0].position, Vector3d(0.001, 0.002, 0.003));
   expect_message(folder.refusal("p.csv", "x[mm],y[mm],z[mm],qw,qx,qy,qz\n", ", units: m"),
                  {"p.csv:1", "positions in mm", "`units: m`"});
   expect_message(folder.refusal("p.csv", text, ", units: cm"), {"path.units", "'cm'", "mm"});
@@ -314,7 +314,7 @@ TEST(Apt, StatementsThatAreRead) {
   EXPECT_TRUE(said(problem, "p.apt: rapid moves are left out: 2 before the cut, 1 behind it"));
   EXPECT_TRUE(said(problem, "p.apt:12: FEDRAT is not used"));
   // the feed of a move is that of the GOTO to which it leads
-  EXPECT_EQ(folder.load_job("p.apt", text).strokes[0].feed,
+  EXPECT_EQ(folder.load_job("p.apt", text).arm().strokes[0].feed,
             (std::vector<double>{0.01, 0.02, 0.02, 0.02, 0.02}));
   const PathProblem skipping = folder.load(
       "p.CLS", "UNITS/MM\nCOOLNT/ON\nSPINDL/1\nSPINDL/2\nGOTO/1,2,3\nGOTO/2,2,3\nEND\n");
@@ -332,17 +332,18 @@ TEST(Apt, UnitsAndFeeds) {
                  {"p.apt:1", "UNITS in mm", "`units: inch`"});
   expect_message(folder.refusal("p.apt", "UNITS/MM\nUNITS/IN\n"), {"p.apt:2", "line 1"});
   expect_message(folder.refusal("p.apt", "UNITS/CM\n"), {"p.apt:1", "UNITS/INCHES"});
-  const Stroke inch = folder.load_job("p.ncl", "UNITS/INCHES\n" + moves).strokes[0];
+  const Stroke inch = folder.load_job("p.ncl", "UNITS/INCHES\n" + moves).arm().strokes[0];
   EXPECT_NEAR(inch.waypoints[0].position.x(), 0.254, 1e-15);
   EXPECT_NEAR(inch.feed[0], 0.0127, 1e-15);
   const Stroke mixed = folder
                            .load_job("p.cl", "UNITS/INCHES\nFEDRAT/600,MMPM\n" +
                                                  moves.substr(0, 12) + "GOTO/2,0,0\n")
+                           .arm()
                            .strokes[0];
   EXPECT_EQ(mixed.feed, (std::vector<double>{0.01, 0.01}));
   // Feeds per turn of the spindle are said, and missing where other moves have one.
   const std::string per_turn = "UNITS/MM\nGOTO/0,0,0\nFEDRAT/0.2,MMPR\nGOTO/1,0,0\n";
-  EXPECT_TRUE(folder.load_job("p.apt", per_turn).strokes[0].feed.empty());
+  EXPECT_TRUE(folder.load_job("p.apt", per_turn).arm().strokes[0].feed.empty());
   EXPECT_TRUE(said(folder.load("p.apt", per_turn), "FEDRAT in MMPR"));
   expect_message(
       input_error([&] { (void)folder.load_job("p.apt", per_turn + "FEDRAT/9\nGOTO/2,0,0\n"); }),
@@ -380,18 +381,18 @@ TEST(Apt, StrokesTakeTheirCutsFromOneFile) {
     strokes += "  - {name: s" + x + ", path: {file: p.apt, cut: " + std::to_string(3 - k) + "}}\n";
   }
   folder.folder().write("problems/p.apt", text);
-  const Job job = load_job(folder.folder().write(
+  const Problem job = load_job(folder.folder().write(
       "problems/job.yaml",
       "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}\nstrokes:\n" +
           strokes));
-  ASSERT_EQ(job.strokes.size(), 3u);
+  ASSERT_EQ(job.arm().strokes.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(job.strokes[k].waypoints[1].position,
+    EXPECT_EQ(job.arm().strokes[k].waypoints[1].position,
               Vector3d(static_cast<double>(2 - k) / 1000, 0.001, 0));
-    EXPECT_EQ(job.strokes[k].feed.size(), 2u);
+    EXPECT_EQ(job.arm().strokes[k].feed.size(), 2u);
   }
-  EXPECT_EQ(job.model->warnings.size(), 1u);
-  EXPECT_TRUE(job.roll && job.roll->circle());
+  EXPECT_EQ(job.arm().model->warnings.size(), 1u);
+  EXPECT_TRUE(job.arm().roll && job.arm().roll->circle());
 }
 
 TEST(Apt, RefusedByLine) {

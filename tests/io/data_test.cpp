@@ -21,13 +21,9 @@ TEST(Data, EveryProblemLoads) {
     SCOPED_TRACE(entry.path().string());
     ++count;
     try {
-      const auto file = load_problem_file(entry.path());
-      if (const auto* problem = std::get_if<PathProblem>(&file))
-        EXPECT_GE(problem->waypoints.size(), 2u);
-      else if (const auto* job = std::get_if<Job>(&file))
-        EXPECT_NO_THROW(validate(*job));
-      else
-        EXPECT_NO_THROW(validate(std::get<Workcell>(file)));
+      const Problem problem = load_problem(entry.path());
+      EXPECT_NO_THROW(validate(problem));
+      if (is_path(problem)) EXPECT_GE(problem.arm().path().waypoints.size(), 2u);
     } catch (const InputError& error) {
       ADD_FAILURE() << error.what();
     }

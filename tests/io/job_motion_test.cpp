@@ -15,26 +15,26 @@ using swivel::test::Random;
 const JointNames kNames{"a", "b", "c", "d", "e", "f", "g"};
 
 /// A job of two strokes, with a home or without.
-Job two_strokes(bool home) {
-  Job job;
+Problem two_strokes(bool home) {
+  Problem job;
   job.source = "job.yaml";
   for (const char* const name : {"left", "right"}) {
-    Stroke& stroke = job.strokes.emplace_back();
+    Stroke& stroke = job.arm().strokes.emplace_back();
     stroke.name = name;
     stroke.waypoints.resize(2);
     stroke.waypoints[1].position.x() = 0.1;
   }
-  if (home) job.home = Config::Zero();
+  if (home) job.arm().home = Config::Zero();
   return job;
 }
 
 /// Returns a motion of two_strokes(), the second first. Its numbers are random. It
 /// has lines before and after the strokes where `lines` is true.
-JobMotion random_motion(Random& random, const Job& job, bool lines, bool rolls) {
+JobMotion random_motion(Random& random, const Problem& job, bool lines, bool rolls) {
   JobMotion motion;
   motion.rate = 250;
-  const std::size_t parts = job.home ? 5 : 3;
-  const std::size_t first_run = job.home ? 1 : 0;
+  const std::size_t parts = job.arm().home ? 5 : 3;
+  const std::size_t first_run = job.arm().home ? 1 : 0;
   const auto of_run = [&](std::size_t part) { return part % 2 == first_run; };
   for (std::size_t part = 0; part < parts; ++part) {
     const int count = 4 + static_cast<int>(random.below(5));
@@ -97,7 +97,7 @@ TEST(JobMotion, EveryBitIsReadAgain) {
   int rows = 0;
   for (int trial = 0; trial < swivel::test::trials(100); ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
-    const Job job = two_strokes(random.coin());
+    const Problem job = two_strokes(random.coin());
     const JobMotion motion = random_motion(random, job, random.coin(), random.coin());
     const fs::path file = folder.write("m.csv", to_job_motion_csv(motion, job, kNames));
     const JobMotionFile read = load_job_motion(file, job, kNames);
@@ -113,7 +113,7 @@ TEST(JobMotion, EveryBitIsReadAgain) {
 TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
   const TempFolder folder;
   Random random(5);
-  const Job job = two_strokes(true);
+  const Problem job = two_strokes(true);
   const JobMotion motion = random_motion(random, job, true, false);
   for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
     SCOPED_TRACE(name);
@@ -123,7 +123,7 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
     for (std::size_t k = 0; k < read.rows.size(); ++k)
       EXPECT_EQ(read.rows[k].q, motion.rows[k].row.q);
     for (const ProcessEvent& event : motion.events)
-      EXPECT_NE(text.find("\"stroke\": \"" + job.strokes[event.stroke].name + "\", \"s\": "),
+      EXPECT_NE(text.find("\"stroke\": \"" + job.arm().strokes[event.stroke].name + "\", \"s\": "),
                 std::string::npos);
   }
   const auto json = nlohmann::json::parse(job_motion_text(motion, job, kNames, "base", "m.json"));
@@ -144,7 +144,7 @@ TEST(JobMotion, OtherFormatsAreReadAgain) {
   Random random(swivel::test::seed("JobMotionMessages"));
   int files = 0;
   for (int trial = 0; trial < swivel::test::trials(100); ++trial) {
-    const Job job = two_strokes(random.coin());
+    const Problem job = two_strokes(random.coin());
     const JobMotion motion = random_motion(random, job, random.coin(), false);
     for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
       SCOPED_TRACE(std::string(name) + ", trial " + std::to_string(trial));
@@ -180,7 +180,7 @@ TEST(JobMotion, OtherFormatsAreReadAgain) {
 TEST(JobMotion, TrajectoryFilesRefuseRowsOfJobs) {
   const TempFolder folder;
   Random random(6);
-  const Job job = two_strokes(true);
+  const Problem job = two_strokes(true);
   const JobMotion motion = random_motion(random, job, true, false);
   const fs::path file = folder.write("m.csv", to_job_motion_csv(motion, job, kNames));
   expect_message(input_error([&] { (void)load_trajectory_file(file, kNames); }),
@@ -196,7 +196,7 @@ TEST(JobMotion, TrajectoryFilesRefuseRowsOfJobs) {
 
 TEST(JobMotion, StrokesBetweenTwoSamplesHaveNoRows) {
   Random random(7);
-  const Job job = two_strokes(true);
+  const Problem job = two_strokes(true);
   JobMotion motion = random_motion(random, job, true, false);
   motion.events[1].t = motion.events[0].t;
   for (const char* const name : {"m.csv", "m.json", "m.mcap"})
@@ -238,7 +238,7 @@ struct BadFile {
 /// transition; without a home it begins with row 4. Expects each to be refused.
 void expect_refused(bool home, const std::vector<BadFile>& files) {
   const TempFolder folder;
-  const Job job = two_strokes(home);
+  const Problem job = two_strokes(home);
   const std::string place = "0.0,0.5,3", none = ",,";
   std::string text =
       "t,s,phi,branch,a,b,c,d,e,f,g,a_v,b_v,c_v,d_v,e_v,f_v,g_v,a_a,b_a,c_a,d_a,e_a,f_a,g_a,"

@@ -15,18 +15,18 @@ using Json = nlohmann::ordered_json;
 const JointNames kNames{"a", "b", "c", "d", "e", "f", "g"};
 
 /// A job of two strokes of 0.1 m, the first between lines of 0.02 m and 0.03 m.
-Job two_strokes() {
-  Job job;
+Problem two_strokes() {
+  Problem job;
   for (const char* const name : {"left", "right"}) {
-    Stroke& stroke = job.strokes.emplace_back();
+    Stroke& stroke = job.arm().strokes.emplace_back();
     stroke.name = name;
     stroke.waypoints.resize(3);
     stroke.waypoints[1].position.x() = 0.05;
     stroke.waypoints[2].position.x() = 0.1;
   }
-  job.strokes[0].approach.z() = -0.02;
-  job.strokes[0].retract.z() = -0.03;
-  job.home = Config::Zero();
+  job.arm().strokes[0].approach.z() = -0.02;
+  job.arm().strokes[0].retract.z() = -0.03;
+  job.arm().home = Config::Zero();
   return job;
 }
 
@@ -93,7 +93,7 @@ TEST(JobTrajectory, ProcessIsOnTheStrokeItself) {
 }
 
 TEST(JobTrajectory, StrokesAreFoundByName) {
-  const Job job = two_strokes();
+  const Problem job = two_strokes();
   EXPECT_EQ(find_stroke(job, "left"), 0u);
   EXPECT_EQ(find_stroke(job, "right"), 1u);
   EXPECT_EQ(find_stroke(job, ""), std::nullopt);
@@ -123,7 +123,8 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
     std::size_t row = 0;
     for (std::size_t k = 0; k < plan.parts.size(); ++k) {
       const JobPart& part = plan.parts[k];
-      EXPECT_EQ(read.parts[k].stroke, part.run ? two_strokes().strokes[part.run->stroke].name : "");
+      EXPECT_EQ(read.parts[k].stroke,
+                part.run ? two_strokes().arm().strokes[part.run->stroke].name : "");
       EXPECT_EQ(read.parts[k].first_row, row);
       row += part.rows.size();
       ASSERT_EQ(read.parts[k].rows.size(), part.rows.size());
@@ -325,7 +326,7 @@ JobTimingResult timed_plan(bool executable) {
 }
 
 TEST(JobResult, Motions) {
-  const Job job = two_strokes();
+  const Problem job = two_strokes();
   EXPECT_TRUE(Json::parse(to_job_json(plan_of_two(), job))["motion"].is_null());
   const JobTimingResult good = timed_plan(true), bad = timed_plan(false);
   EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {&good}))["motion"],

@@ -23,7 +23,7 @@ class JobFolder {
     for (const auto& [name, text] : changes) sections[name] = text;
     return folder_.write(sections);
   }
-  [[nodiscard]] Job load(const Sections& changes) const { return load_job(write(changes)); }
+  [[nodiscard]] Problem load(const Sections& changes) const { return load_job(write(changes)); }
   /// Returns why a job is refused whose first stroke has these keys besides name and path.
   [[nodiscard]] std::string refusal(const std::string& keys) const {
     return input_error([&] { (void)load({{"strokes", one(keys)}}); });
@@ -44,17 +44,16 @@ class JobFolder {
 TEST(JobFile, Defaults) {
   const JobFolder folder;
   const fs::path file = folder.write({});
-  EXPECT_TRUE(is_job(file));
-  const Job job = load_job(file);
+  const Problem job = load_job(file);
   EXPECT_EQ(job.source, file.string());
-  EXPECT_EQ(job.tip_link, "link_7");
-  EXPECT_FALSE(job.home);
-  EXPECT_EQ(job.order, StrokeOrder::kGiven);
-  EXPECT_FALSE(job.process_speed);
-  EXPECT_EQ(job.rapid, 1);
-  EXPECT_FALSE(job.roll);
-  ASSERT_EQ(job.strokes.size(), 2u);
-  for (const Stroke& stroke : job.strokes) {
+  EXPECT_EQ(job.arm().tip_link, "link_7");
+  EXPECT_FALSE(job.arm().home);
+  EXPECT_EQ(job.arm().order, StrokeOrder::kGiven);
+  EXPECT_FALSE(job.arm().process_speed);
+  EXPECT_EQ(job.arm().rapid, 1);
+  EXPECT_FALSE(job.arm().roll);
+  ASSERT_EQ(job.arm().strokes.size(), 2u);
+  for (const Stroke& stroke : job.arm().strokes) {
     EXPECT_EQ(stroke.path_frame, "base_link");
     EXPECT_EQ(stroke.waypoints.size(), 2u);
     EXPECT_FALSE(stroke.reversible);
@@ -64,14 +63,14 @@ TEST(JobFile, Defaults) {
     EXPECT_TRUE(stroke.feed.empty());
     EXPECT_EQ(stroke.limits, Limits());
   }
-  EXPECT_EQ(job.strokes[0].name, "a");
-  EXPECT_EQ(job.strokes[1].name, "b");
+  EXPECT_EQ(job.arm().strokes[0].name, "a");
+  EXPECT_EQ(job.arm().strokes[1].name, "b");
   EXPECT_NO_THROW(validate(job));
 }
 
 TEST(JobFile, KeysOfTheJobAndOfStrokes) {
   const JobFolder folder;
-  const Job job = folder.load(
+  const Problem job = folder.load(
       {{"scene", "[{name: part, box: [0.1, 0.1, 0.1]}]"},
        {"home", "{joints: [0, 0.5, 0, 1, 0, 0.5, 0.1]}"},
        {"approach", "0.05"},
@@ -90,16 +89,16 @@ TEST(JobFile, KeysOfTheJobAndOfStrokes) {
                        ", reversible: true, approach: {xyz: [0, 0.03, 0]}, retract: 0, "
                        "process_speed: 0.3, limits: {clearance: 0.001, tool_path_error: null}}]"}});
   EXPECT_NO_THROW(validate(job));
-  ASSERT_TRUE(job.home);
-  EXPECT_EQ((*job.home)[6], 0.1);
-  EXPECT_EQ(job.order, StrokeOrder::kBest);
-  EXPECT_EQ(job.process_speed, 0.2);
-  EXPECT_EQ(job.approach_speed, 0.3);
-  EXPECT_EQ(job.limits.clearance, 0.004);
-  EXPECT_EQ(job.rapid, 0.5);
+  ASSERT_TRUE(job.arm().home);
+  EXPECT_EQ((*job.arm().home)[6], 0.1);
+  EXPECT_EQ(job.arm().order, StrokeOrder::kBest);
+  EXPECT_EQ(job.arm().process_speed, 0.2);
+  EXPECT_EQ(job.arm().approach_speed, 0.3);
+  EXPECT_EQ(job.arm().transition_limits.clearance, 0.004);
+  EXPECT_EQ(job.arm().rapid, 0.5);
   EXPECT_EQ(job.scene.size(), 1u);
   EXPECT_EQ(job.vary.size(), 1u);
-  const Stroke &a = job.strokes[0], &b = job.strokes[1];
+  const Stroke &a = job.arm().strokes[0], &b = job.arm().strokes[1];
   for (const Stroke* stroke : {&a, &b}) {
     EXPECT_EQ(stroke->resolution.ds, 0.01);
     EXPECT_EQ(stroke->cost.metric, CostMetric::kMax);
@@ -135,15 +134,16 @@ TEST(JobFile, RollIsShared) {
     return folder.load(
         {{"strokes", "[{name: a, path: " + first + "}, {name: b, path: " + second + "}]"}});
   };
-  const Job free = load(path("roll: free, ", ""), path("roll: free, ", ""));
-  EXPECT_EQ(free.roll, Roll{});
-  EXPECT_FALSE(free.strokes[1].cost.weights);
-  const Job windows =
+  const Problem free = load(path("roll: free, ", ""), path("roll: free, ", ""));
+  EXPECT_EQ(free.arm().roll, Roll{});
+  EXPECT_FALSE(free.arm().strokes[1].cost.weights);
+  const Problem windows =
       load(path("roll: free, ", ", roll: [-0.5, 0]"), path("roll: free, ", ", roll: [0.1, 0.7]"));
-  EXPECT_EQ(windows.roll, (Roll{-0.5, 0.7}));
+  EXPECT_EQ(windows.arm().roll, (Roll{-0.5, 0.7}));
   EXPECT_NO_THROW(validate(windows));
-  const Job one = load(path("roll: [-1, 1], ", ", roll: [-0.5, 0]"), path("roll: [-1, 1], ", ""));
-  EXPECT_EQ(one.roll, (Roll{-1, 1}));
+  const Problem one =
+      load(path("roll: [-1, 1], ", ", roll: [-0.5, 0]"), path("roll: [-1, 1], ", ""));
+  EXPECT_EQ(one.arm().roll, (Roll{-1, 1}));
   EXPECT_NO_THROW(validate(one));
   expect_message(input_error([&] { (void)load(path("roll: free, ", ""), path("", "")); }),
                  {"strokes[1].path", "another roll than strokes[0].path", "the same `roll`"});
@@ -156,12 +156,11 @@ TEST(JobFile, RollIsShared) {
 TEST(JobFile, OnePathIsAJobOfOneStroke) {
   const ProblemFolder folder;
   const fs::path file = folder.write({{"limits", "{clearance: 0.003}"}});
-  EXPECT_FALSE(is_job(file));
-  const Job job = load_job(file);
-  ASSERT_EQ(job.strokes.size(), 1u);
-  EXPECT_EQ(job.strokes[0].name, "path");
-  const PathProblem problem = load_problem(file);
-  EXPECT_EQ(static_cast<const Task&>(job.strokes[0]), static_cast<const Task&>(problem));
+  const Problem job = load_job(file);
+  ASSERT_EQ(job.arm().strokes.size(), 1u);
+  EXPECT_EQ(job.arm().strokes[0].name, "path");
+  const PathProblem problem = load_path_problem(file);
+  EXPECT_EQ(static_cast<const Task&>(job.arm().strokes[0]), static_cast<const Task&>(problem));
   for (const char* const key : {"start: {joints: [0, 0, 0, 0, 0, 0, 0]}", "start_at: 0.1"}) {
     const std::string text = key;
     const auto colon = text.find(':');
@@ -179,7 +178,7 @@ TEST(JobFile, OneOfPathAndStrokes) {
     expect_message(input_error(load), {"problem.yaml:", "path and strokes are both given"});
   };
   both([&] { (void)folder.load({{"path", "{file: weld.csv}"}}); });
-  both([&] { (void)load_problem(folder.write({{"path", "{file: weld.csv}"}})); });
+  both([&] { (void)load_path_problem(folder.write({{"path", "{file: weld.csv}"}})); });
   for (const char* const strokes : {"", "null"})
     expect_message(input_error([&] {
                      (void)folder.load({{"strokes", strokes}});
@@ -189,7 +188,7 @@ TEST(JobFile, OneOfPathAndStrokes) {
 
 TEST(JobFile, ProblemsAreNoJobs) {
   const JobFolder folder;
-  const std::string message = input_error([&] { (void)load_problem(folder.write({})); });
+  const std::string message = input_error([&] { (void)load_path_problem(folder.write({})); });
   expect_message(message, {"problem.yaml:2: strokes: makes this file a job",
                            "`swivel plan`, `check`, `time`, `campaign`, `place`", "a `path`"});
   const Sections keys{{"home", "{joints: [0, 0, 0, 0, 0, 0, 0]}"},
@@ -207,10 +206,10 @@ TEST(JobFile, ProblemsAreNoJobs) {
 
 TEST(JobFile, LiftOffs) {
   const JobFolder folder;
-  EXPECT_FALSE(folder.load({}).lift);
-  EXPECT_FALSE(folder.load({{"lift", "{allowed: false, cost: 2}"}}).lift);
-  EXPECT_EQ(folder.load({{"lift", "{allowed: true}"}}).lift, LiftOffs());
-  EXPECT_EQ(folder.load({{"lift", "{allowed: true, cost: 2, overlap: 0.01}"}}).lift,
+  EXPECT_FALSE(folder.load({}).arm().lift);
+  EXPECT_FALSE(folder.load({{"lift", "{allowed: false, cost: 2}"}}).arm().lift);
+  EXPECT_EQ(folder.load({{"lift", "{allowed: true}"}}).arm().lift, LiftOffs());
+  EXPECT_EQ(folder.load({{"lift", "{allowed: true, cost: 2, overlap: 0.01}"}}).arm().lift,
             (LiftOffs{2, 0.01}));
   expect_message(input_error([&] {
                    (void)folder.load({{"lift", "{allowed: true}"}, {"order", "best"}});
@@ -218,20 +217,18 @@ TEST(JobFile, LiftOffs) {
                  {"lift: is given with `order: best`", "`order: given`"});
   // one path with lift-offs is a job of one stroke
   const auto one = [&](const char* lift) { return folder.folder().write({{"lift", lift}}); };
-  const auto read = load_problem_or_job(one("{allowed: true}"));
-  ASSERT_TRUE(std::holds_alternative<Job>(read));
-  EXPECT_EQ(std::get<Job>(read).strokes.size(), 1u);
-  EXPECT_TRUE(is_job(one("{allowed: true}")));
-  EXPECT_FALSE(is_job(one("{allowed: false}")));
-  EXPECT_TRUE(std::holds_alternative<PathProblem>(load_problem_or_job(one("{allowed: false}"))));
-  expect_message(input_error([&] { (void)load_problem(one("{allowed: true}")); }),
+  const Problem read = load_problem(one("{allowed: true}"));
+  EXPECT_FALSE(is_path(read));
+  EXPECT_EQ(read.arm().strokes.size(), 1u);
+  EXPECT_TRUE(is_path(load_problem(one("{allowed: false}"))));
+  expect_message(input_error([&] { (void)load_path_problem(one("{allowed: true}")); }),
                  {"lift: makes this file a job", "no `lift`"});
 }
 
 TEST(JobFile, LoadedByItsKey) {
   const JobFolder folder;
-  EXPECT_TRUE(std::holds_alternative<Job>(load_problem_or_job(folder.write({}))));
-  EXPECT_TRUE(std::holds_alternative<PathProblem>(load_problem_or_job(folder.folder().write({}))));
+  EXPECT_FALSE(is_path(load_problem(folder.write({}))));
+  EXPECT_TRUE(is_path(load_problem(folder.folder().write({}))));
 }
 
 TEST(JobFile, WhatStrokesMayNotHave) {
@@ -324,7 +321,7 @@ TEST(JobFile, AtMostAThousandStrokes) {
       text += "{name: s" + std::to_string(k) + ", path: {file: weld.csv}}, ";
     return text + "]";
   };
-  EXPECT_EQ(folder.load({{"strokes", strokes(1000)}}).strokes.size(), 1000u);
+  EXPECT_EQ(folder.load({{"strokes", strokes(1000)}}).arm().strokes.size(), 1000u);
   expect_message(input_error([&] {
                    (void)folder.load({{"strokes", strokes(1001)}});
                  }),
@@ -338,7 +335,7 @@ TEST(JobFile, FeedOfWaypoints) {
     return folder.load({{"strokes", "[{name: a, path: {roll: [-1, 1], file: f.csv}}]"}});
   };
   const std::string rolls = "x,y,z,qw,qx,qy,qz,roll_min,roll_max,feed\n";
-  EXPECT_EQ(load(rolls + "0,0,0,1,0,0,0,0,1,0.5\n1,0,0,1,0,0,0,0,1,0.25\n").strokes[0].feed,
+  EXPECT_EQ(load(rolls + "0,0,0,1,0,0,0,0,1,0.5\n1,0,0,1,0,0,0,0,1,0.25\n").arm().strokes[0].feed,
             (std::vector<double>{0.5, 0.25}));
   for (const char* const feed : {"0", "-0.1"})
     expect_message(input_error([&] {

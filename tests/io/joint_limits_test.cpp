@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Limits and weights of joints by name, and MoveIt's joint_limits.yaml.
 #include "problem_support.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io::test {
 namespace {

@@ -512,7 +512,7 @@ TEST(Mutated, Problems) {
       text.insert(at, name + ": " + value + ", ");
     }
     const std::string message =
-        input_error([&] { (void)load_problem(folder.write("problems/problem.yaml", text)); });
+        input_error([&] { (void)load_path_problem(folder.write("problems/problem.yaml", text)); });
     EXPECT_NE(message.find("problem.yaml"), std::string::npos) << message << '\n' << text;
   }
   std::printf("%d misspelt, %d doubled\n", misspelt_keys, doubled);

@@ -25,10 +25,10 @@ Edited edited(const ProblemFolder& folder, const std::string& scene, const Offse
               const Movable& thing = {Movable::Kind::kObject, "part"},
               const std::string& path = "{file: weld.csv}") {
   const fs::path file = folder.write({{"scene", scene}, {"path", path}});
-  const PathProblem problem = load_problem(file);
+  const PathProblem problem = load_path_problem(file);
   Edited result{TempFolder::read(file), "", placed_problem(problem, thing, offset), {}};
   result.after = with_poses(result.before, problem, result.wanted);
-  result.read = load_problem(folder.folder().write("problems/placed.yaml", result.after));
+  result.read = load_path_problem(folder.folder().write("problems/placed.yaml", result.after));
   return result;
 }
 
@@ -86,7 +86,7 @@ TEST(WithPoses, LineEndsAndByteOrderMarksStay) {
             "robot: {urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_7}\r\npath: "
             "{file: "
             "weld.csv}\r\nscene:\r\n  - {name: part, sphere: 0.1, xyz: [1, 2, 3]}  # ö\r\n");
-    const PathProblem problem = load_problem(file),
+    const PathProblem problem = load_path_problem(file),
                       wanted = placed_problem(problem, {Movable::Kind::kObject, "part"}, kMoved);
     std::string expected = TempFolder::read(file);
     expected.replace(expected.find("[1, 2, 3]"), 9, "[1.05, 2, 2.9]");

@@ -33,7 +33,7 @@ class ProblemFolder {
     return folder_.write("problems/problem.yaml", yaml);
   }
   [[nodiscard]] PathProblem load(const Sections& changes) const {
-    return load_problem(write(changes));
+    return load_path_problem(write(changes));
   }
   [[nodiscard]] const TempFolder& folder() const { return folder_; }
 

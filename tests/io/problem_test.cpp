@@ -9,7 +9,7 @@ namespace {
 TEST(ProblemFile, Defaults) {
   const ProblemFolder folder;
   const fs::path file = folder.write({});
-  const PathProblem problem = load_problem(file);
+  const PathProblem problem = load_path_problem(file);
   const PathProblem fresh;
   EXPECT_EQ(problem.source, file.string());
   EXPECT_EQ(problem.model->links.size(), 9u);
@@ -317,7 +317,7 @@ PathProblem kr6_problem(const fs::path& folder, const std::string& joints) {
   text.insert(at + roll.size(), "\n  end: {joints: [" + joints + "]}");
   const fs::path file = folder / "kr6.yaml";
   write_file(file, text);
-  return load_problem(file);
+  return load_path_problem(file);
 }
 
 /// Of an arm of six joints the roll may be left out of an end: it is that of the last waypoint.
@@ -378,9 +378,10 @@ TEST(ProblemFile, ClosedPaths) {
       "/robots/kr6_like.urdf, base_link: base_link, tip_link: flange}\n"
       "path: {closed: true, roll: free, waypoints: [{xyz: [0.6, 0, 0.9], roll: [0, 1]}, "
       "{xyz: [0.6, 0.1, 0.9], roll: [0, 1]}, {xyz: [0.6, 0, 0.9], roll: [0, 2]}]}\n";
-  expect_message(
-      input_error([&] { (void)load_problem(folder.folder().write("problems/w.yaml", windows)); }),
-      {"w.yaml:2: path.closed", "the last waypoint allows other rolls than the first"});
+  expect_message(input_error([&] {
+                   (void)load_path_problem(folder.folder().write("problems/w.yaml", windows));
+                 }),
+                 {"w.yaml:2: path.closed", "the last waypoint allows other rolls than the first"});
 }
 
 TEST(ProblemFile, SectionsWithEverythingCommentedOut) {
@@ -400,7 +401,7 @@ TEST(ProblemFile, NamesAreRelativeToTheFileWhereverItIsReadFrom) {
   (void)folder.write({});
   const fs::path before = fs::current_path();
   fs::current_path(folder.folder().path() / "problems");
-  EXPECT_NO_THROW((void)load_problem("problem.yaml"));
+  EXPECT_NO_THROW((void)load_path_problem("problem.yaml"));
   fs::current_path(before);
 }
 

@@ -72,10 +72,10 @@ std::string changed(const ProblemFolder& folder, const std::string& text, const 
   const fs::path file = folder.folder().write("problems/problem.yaml", text),
                  saved = folder.folder().path() / target;
   fs::create_directories(saved.parent_path());
-  PathProblem problem = load_problem(file);
+  PathProblem problem = load_path_problem(file);
   change(problem);
   save_problem(problem, saved);
-  expect_equal(load_problem(saved), problem);
+  expect_equal(load_path_problem(saved), problem);
   return TempFolder::read(saved);
 }
 
@@ -197,7 +197,7 @@ TEST(SavedProblems, NamesOfFilesFollowTheFile) {
   expected = with(expected, "weld.csv", "../../problems/weld.csv");
   EXPECT_EQ(text, with(expected, "ds: 0.01", "ds: 0.02"));
   // Again, from there to the first folder.
-  PathProblem problem = load_problem(folder.folder().path() / "a/b/saved.yaml");
+  PathProblem problem = load_path_problem(folder.folder().path() / "a/b/saved.yaml");
   save_problem(problem, folder.folder().path() / "problems/back.yaml");
   EXPECT_EQ(TempFolder::read(folder.folder().path() / "problems/back.yaml"),
             with(kFile, "ds: 0.01", "ds: 0.02"));
@@ -221,7 +221,7 @@ TEST(SavedProblems, WholeOnesHaveNoDefaults) {
             "    - {xyz: [0, 0.1, 1], quat: [1, 0, 0, 0]}\n"
             "limits: {joint_margin: {joint_1: 0.1}, joints: {joint_2: [-1, 1]}, soft_limits: "
             "false}\n");
-  expect_equal(load_problem(file), problem);
+  expect_equal(load_path_problem(file), problem);
 }
 
 TEST(SavedProblems, RefuseWhatNoFileCanSay) {
@@ -231,7 +231,7 @@ TEST(SavedProblems, RefuseWhatNoFileCanSay) {
   const auto refused = [&](const std::string& text, const Change& change,
                            const std::vector<std::string>& words) {
     const fs::path file = folder.folder().write("problems/problem.yaml", text);
-    PathProblem problem = load_problem(file);
+    PathProblem problem = load_path_problem(file);
     change(problem);
     expect_message(input_error([&] { save_problem(problem, target); }), words);
     EXPECT_FALSE(fs::exists(target));
@@ -255,7 +255,7 @@ TEST(SavedProblems, RefuseWhatNoFileCanSay) {
           {"allow of 'post'", "some bodies have a depth"});
   refused(kFile, [](PathProblem& p) { p.source += "x"; }, {"problem.yamlx"});
   refused(kFile, [](PathProblem& p) { p.steps.assign(1, 3); }, {"path's layers"});
-  PathProblem varied = load_problem(folder.folder().write(
+  PathProblem varied = load_path_problem(folder.folder().write(
       "problems/problem.yaml", std::string(kFile) + "vary: [{object: post, xyz: [1, 1, 1]}]\n"));
   varied.scene.erase(varied.scene.begin());
   EXPECT_THROW(save_problem(varied, target), InvalidArgument);
@@ -271,7 +271,7 @@ TEST(SavedProblems, RefuseWhatNoFileCanSay) {
   const auto robot = folder.folder().path() / "robots/arm.urdf";
   const std::string urdf = TempFolder::read(robot);
   expect_message(input_error([&] {
-                   save_problem(load_problem(folder.folder().write("problems/p.yaml", kFile)),
+                   save_problem(load_path_problem(folder.folder().write("problems/p.yaml", kFile)),
                                 robot);
                  }),
                  {"arm.urdf", "robot.urdf"});
@@ -389,19 +389,19 @@ TEST(SavedProblems, RandomChangesOfOtherLayoutsAreReadBack) {
        {"experiment_c", "kr6_turntable_pipe", "panda_weld_seam", "panda_polish_cover"})
     for (const auto style : {YAML::EmitterStyle::Block, YAML::EmitterStyle::Flow}) {
       const fs::path data = fs::path(SWIVEL_DATA_DIR) / "problems" / (name + std::string(".yaml"));
-      const std::string text = laid_out(problem_text(load_problem(data), file), style);
+      const std::string text = laid_out(problem_text(load_path_problem(data), file), style);
       for (int k = 0; k < swivel::test::trials(10); ++k) {
         SCOPED_TRACE(data.string() + ", case " + std::to_string(cases));
         folder.write("problem.yaml", text);
         swivel::test::Random random(seed + static_cast<std::uint64_t>(cases++));
-        PathProblem problem = load_problem(file);
+        PathProblem problem = load_path_problem(file);
         change_limits(problem, random);
         change_scene(problem, random);
         change_path(problem, random);
         change_rest(problem, random);
         save_problem(problem, file);
         if (!problem.start) problem.start_tolerance = Task().start_tolerance;
-        expect_equal(load_problem(file), problem);
+        expect_equal(load_path_problem(file), problem);
       }
     }
   std::printf("%d cases\n", cases);
@@ -415,7 +415,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
   for (const auto& entry : fs::directory_iterator(fs::path(SWIVEL_DATA_DIR) / "problems")) {
     std::optional<PathProblem> loaded;
     try {
-      loaded = load_problem(entry.path());
+      loaded = load_path_problem(entry.path());
     } catch (const InputError&) {
       continue;  // a job or a workcell
     }
@@ -434,7 +434,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
       save_problem(problem, file);
       PathProblem expected = problem;
       if (!expected.start) expected.start_tolerance = Task().start_tolerance;
-      expect_equal(load_problem(file), expected);
+      expect_equal(load_path_problem(file), expected);
       // A list that is taken out takes the comments within it along.
       if (problem.source.empty() || problem.attached.empty()) continue;
       const std::string text = TempFolder::read(file);

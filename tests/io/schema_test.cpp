@@ -153,9 +153,9 @@ struct Walk {
 };
 
 PathProblem load(const ProblemFolder& folder, const Json& problem) {
-  return load_problem(folder.folder().write("problems/problem.yaml", problem.dump()));
+  return load_path_problem(folder.folder().write("problems/problem.yaml", problem.dump()));
 }
-Job load_as_job(const ProblemFolder& folder, const Json& problem) {
+Problem load_as_job(const ProblemFolder& folder, const Json& problem) {
   return load_job(folder.folder().write("problems/problem.yaml", problem.dump()));
 }
 
@@ -300,11 +300,11 @@ TEST(ProblemSchema, DefaultsOfJobs) {
   EXPECT_GE(keys, 40);
   for (const char* const key : {"approach", "retract", "order", "rapid"})
     EXPECT_TRUE(said.contains(key)) << key;
-  const Job plain = load_as_job(folder, whole_job()), explicitly = load_as_job(folder, said);
-  EXPECT_EQ(plain.order, explicitly.order);
-  EXPECT_EQ(plain.rapid, explicitly.rapid);
-  EXPECT_EQ(plain.lift, explicitly.lift);
-  Stroke without = plain.strokes[0], with = explicitly.strokes[0];
+  const Problem plain = load_as_job(folder, whole_job()), explicitly = load_as_job(folder, said);
+  EXPECT_EQ(plain.arm().order, explicitly.arm().order);
+  EXPECT_EQ(plain.arm().rapid, explicitly.arm().rapid);
+  EXPECT_EQ(plain.arm().lift, explicitly.arm().lift);
+  Stroke without = plain.arm().strokes[0], with = explicitly.arm().strokes[0];
   EXPECT_EQ(without.reversible, with.reversible);
   EXPECT_EQ(without.approach, with.approach);
   EXPECT_EQ(without.retract, with.retract);

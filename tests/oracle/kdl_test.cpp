@@ -120,7 +120,7 @@ TEST(Kdl, HasTheSameToolPosesAndJacobians) {
   int arms = 0, postures = 0;
   double apart = 0, turned = 0, column = 0;
   for (const auto& file : problem_files()) {
-    const PathProblem problem = io::load_problem(file);
+    const PathProblem problem = io::load_path_problem(file);
     const KdlArm kdl(problem);
     const Chain& chain = kdl.chain();
     ASSERT_EQ(chain.roll ? kDof - 1 : kDof, kdl.common_joints()) << file;
@@ -149,7 +149,7 @@ TEST(Kdl, FindsTheToolOfPlannedRowsOnThePath) {
   int plans = 0, rows = 0;
   double apart = 0, turned = 0;
   for (const auto& file : problem_files()) {
-    const PathProblem problem = io::load_problem(file);
+    const PathProblem problem = io::load_path_problem(file);
     const PlanResult result = plan(problem);
     if (result.status != PlanStatus::kSolved) continue;  // one problem shows what has no path
     const KdlArm kdl(problem);

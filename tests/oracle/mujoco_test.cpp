@@ -104,7 +104,8 @@ struct Sent {
 
 Sent sent_motion(const std::string& name) {
   Sent sent;
-  sent.problem = with_motion_defaults(io::load_problem(data_dir() / "problems" / (name + ".yaml")));
+  sent.problem =
+      with_motion_defaults(io::load_path_problem(data_dir() / "problems" / (name + ".yaml")));
   Planner planner(sent.problem);
   TimingOptions timing{.speed = 1};  // m/s: more than the joints can do
   timing.rate = sent.rate;

@@ -35,7 +35,7 @@ struct Drawn {
 
 Drawn draw(const std::string& name, PlannerKind planner, bool full) {
   Drawn drawn;
-  drawn.problem = io::load_problem(data_dir() / "problems" / (name + ".yaml"));
+  drawn.problem = io::load_path_problem(data_dir() / "problems" / (name + ".yaml"));
   drawn.problem.resolution.ds = 0.02;
   drawn.problem.resolution.dphi = 0.1;
   drawn.problem.limits.edges = EdgeMode::kNodes;
@@ -50,7 +50,7 @@ Drawn draw(const std::string& name, PlannerKind planner, bool full) {
 /// Returns the problem of a torch at a door, with windows of the roll that go along the path, or
 /// with all rolls and a ball in the scene.
 PathProblem problem_of_rolls(bool windows) {
-  PathProblem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems" / "torch_door.yaml");
   problem.resolution.droll = 0.25;
   problem.resolution.dphi = 0.2;
   if (!windows)
@@ -314,7 +314,8 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
                                          {"ur10e_rail_seam", "rail"},
                                          {"ur5e_deburr_edge", "roll"},
                                          {"kr6_weld_pipe", "roll"}}) {
-    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem =
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.05;
     Planner arm(problem);
     (void)arm.plan({});

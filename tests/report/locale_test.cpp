@@ -81,7 +81,7 @@ class DecimalComma {
 /// All that is read and written of a problem, by what it is.
 std::map<std::string, std::string> texts() {
   std::map<std::string, std::string> texts;
-  PathProblem problem = io::load_problem(data_dir() / "problems" / "experiment_c.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems" / "experiment_c.yaml");
   problem.resolution = {0.02, 0.2, 0.1};
   problem.limits.edges = EdgeMode::kNodes;
   for (const std::uint64_t episode : {0ull, 258ull}) {  // the post blocks the second

@@ -27,7 +27,7 @@ TEST(Names, OfBodiesStayWordsInEveryDrawing) {
                                  "Türgriff 扉", "%s%n", "$&@@DATA@@"}) {
     SCOPED_TRACE(name);
     PathProblem problem =
-        episode_problem(io::load_problem(data_dir() / "problems" / "experiment_c.yaml"), 1,
+        episode_problem(io::load_path_problem(data_dir() / "problems" / "experiment_c.yaml"), 1,
                         258);  // the post blocks it
     problem.source = name;
     problem.resolution = {0.02, 0.2, 0.1};

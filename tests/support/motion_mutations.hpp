@@ -84,7 +84,7 @@ inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int sma
   for (const char* name : {"iiwa14_bench", "iiwa14_deburr_in_hand", "kr6_weld_pipe",
                            "panda_weld_seam", "ur5e_deburr_edge"}) {
     const PathProblem problem =
-        io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     add(name, problem, timed || number % 2 == 1, 25, false);
     ++number;
   }

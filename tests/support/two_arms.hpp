@@ -6,7 +6,7 @@
 
 #include "robots.hpp"
 #include "seed.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::test {
 
@@ -60,14 +60,14 @@ inline std::array<ToolRun, 2> random_runs(double least_reach, double most_reach,
 }
 
 /// Returns a workcell whose two tools follow random_runs(). `robot` is sda10f or sda5f.
-inline Workcell random_workcell(const TestRobot& robot, Random& random) {
-  Workcell cell;
+inline Problem random_workcell(const TestRobot& robot, Random& random) {
+  Problem cell = two_arms();
   cell.source = "random workcell";
   const bool large = robot.name == "sda10f";
   const auto runs =
       large ? random_runs(0.55, 0.75, 1.0, random) : random_runs(0.6, 0.75, 0.9, random);
   for (std::size_t k = 0; k < 2; ++k) {
-    WorkcellArm& arm = cell.arms[k];
+    ArmTask& arm = cell.arms[k];
     arm.name = k == 0 ? "left" : "right";
     arm.model = robot.model;
     arm.base_link = robot.base_link;
@@ -81,13 +81,13 @@ inline Workcell random_workcell(const TestRobot& robot, Random& random) {
     tool.pose.translation() = Vector3d(0, 0, 0.048);
     arm.attached.push_back(tool);
     for (const Vector3d& position : {runs[k].from, runs[k].to}) {
-      Waypoint& waypoint = arm.waypoints.emplace_back();
+      Waypoint& waypoint = arm.path().waypoints.emplace_back();
       waypoint.position = position;
       waypoint.orientation = runs[k].orientation;
     }
-    arm.resolution.ds = 0.03;
-    arm.resolution.dphi = 0.25;
-    arm.limits.tool_path_error = 0.01;
+    arm.path().resolution.ds = 0.03;
+    arm.path().resolution.dphi = 0.25;
+    arm.path().limits.tool_path_error = 0.01;
   }
   return cell;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "swivel/core/problem/vertex_numbers.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel::detail {
 

@@ -3,11 +3,11 @@
 
 namespace swivel {
 
-std::vector<bool> process_of_rows(const JobPart& part, const Job& job) {
+std::vector<bool> process_of_rows(const JobPart& part, const Problem& job) {
   std::vector<bool> process(part.rows.size(), false);
   if (!part.run) return process;
   constexpr double kTolerance = 1e-9;  // m, of sums of lengths
-  const Stroke& stroke = job.strokes[part.run->stroke];
+  const Stroke& stroke = job.arm().strokes[part.run->stroke];
   const std::vector<Waypoint> waypoints = waypoints_of_run(stroke, part.run->reversed);
   const ProcessWaypoints range = process_waypoints(stroke);
   double s = 0, first = 0, last = 0;
@@ -21,7 +21,7 @@ std::vector<bool> process_of_rows(const JobPart& part, const Job& job) {
   return process;
 }
 
-Job executed_job(const Job& job, const JobResult& result) {
+Problem executed_job(const Problem& job, const JobResult& result) {
   return with_lift_offs(job, {result.lift_offs.begin(), result.lift_offs.end()});
 }
 

@@ -12,8 +12,8 @@ namespace swivel {
 
 namespace {
 
-std::string quoted_name(const Job& job, const StrokeRun& run) {
-  return "'" + job.strokes[run.stroke].name + "'" + (run.reversed ? " backwards" : "");
+std::string quoted_name(const Problem& job, const StrokeRun& run) {
+  return "'" + job.arm().strokes[run.stroke].name + "'" + (run.reversed ? " backwards" : "");
 }
 
 /// Returns the number of a text's characters, which is less than that of its bytes beyond ASCII.
@@ -51,8 +51,8 @@ std::string less_than(double cost, double bound) {
 }
 
 /// Returns how near a job's cost is to the least.
-std::string bounds_text(const JobResult& result, const Job& job) {
-  const bool other_orders = job.order == StrokeOrder::kBest && job.strokes.size() > 1;
+std::string bounds_text(const JobResult& result, const Problem& job) {
+  const bool other_orders = job.arm().order == StrokeOrder::kBest && job.arm().strokes.size() > 1;
   const std::string none =
       std::string("none costs less at this resolution") + (other_orders ? " in this order" : "");
   if (result.lattice_cost <= result.bound_any) return none + ", whatever the transitions";
@@ -64,7 +64,7 @@ std::string bounds_text(const JobResult& result, const Job& job) {
 }
 
 /// Returns a line for each run: what it costs in the job and by itself, and what it comes near to.
-std::string table_of_runs(const JobResult& result, const Job& job) {
+std::string table_of_runs(const JobResult& result, const Problem& job) {
   std::vector<std::vector<std::string>> lines{
       {"stroke", "layers", "cost", "least", "clearance mm", "tool off mm"}};
   for (const RunResult& one : result.runs) {
@@ -73,7 +73,7 @@ std::string table_of_runs(const JobResult& result, const Job& job) {
     if (part == result.parts.end()) continue;
     const Measures& measures = one.measures;
     lines.push_back(
-        {job.strokes[one.run.stroke].name + (one.run.reversed ? " (backwards)" : ""),
+        {job.arm().strokes[one.run.stroke].name + (one.run.reversed ? " (backwards)" : ""),
          std::to_string(one.lattice.layers), formatted("%.5g", part->cost),
          formatted("%.5g", one.least_cost),
          measures.min_clearance ? formatted("%.1f", 1e3 * *measures.min_clearance) : "-",
@@ -88,7 +88,7 @@ std::string table_of_runs(const JobResult& result, const Job& job) {
   return text;
 }
 
-std::string transitions_text(const JobResult& result, const Job& job) {
+std::string transitions_text(const JobResult& result, const Problem& job) {
   int all = 0, straight = 0;
   double cost = 0;
   for (const JobPart& part : result.parts) {
@@ -119,15 +119,15 @@ std::string transitions_text(const JobResult& result, const Job& job) {
 
 /// Returns a line for each stroke in several runs: where the tool lifts off, and why no run goes
 /// on.
-std::string lift_offs_text(const JobResult& result, const Job& job) {
+std::string lift_offs_text(const JobResult& result, const Problem& job) {
   std::string text;
   for (std::size_t k = 0, run = 0; k < result.lift_offs.size();) {
     const std::size_t stroke = result.lift_offs[k].stroke;
     std::size_t end = k;
     while (end < result.lift_offs.size() && result.lift_offs[end].stroke == stroke) ++end;
-    while (!job.strokes[run].piece) ++run;
-    const std::string& name = job.strokes[run].piece->stroke;
-    const double approach = job.strokes[run].approach.norm();  // s of rows counts it as well
+    while (!job.arm().strokes[run].piece) ++run;
+    const std::string& name = job.arm().strokes[run].piece->stroke;
+    const double approach = job.arm().strokes[run].approach.norm();  // s of rows counts it as well
     text += "  stroke '" + name + "': " + std::to_string(end - k) + " lift-off" +
             (end - k == 1 ? "" : "s") + ", at s";
     for (std::size_t i = k; i < end; ++i)
@@ -152,18 +152,18 @@ std::string lift_offs_text(const JobResult& result, const Job& job) {
 }
 
 /// Returns the answer where there is a motion.
-std::string motion_text(const JobResult& result, const Job& job) {
-  const std::size_t strokes = job.strokes.size() - result.lift_offs.size();
+std::string motion_text(const JobResult& result, const Problem& job) {
+  const std::size_t strokes = job.arm().strokes.size() - result.lift_offs.size();
   std::string text = formatted("solved: %zu stroke%s, cost %.6g: ", strokes,
                                strokes == 1 ? "" : "s", result.cost) +
                      bounds_text(result, job) +
                      (result.lift_offs.empty() ? "" : ", with the lift-offs at these places");
   if (!result.held.empty()) text += " | held: " + words(result.held);
   text += '\n';
-  if (job.order == StrokeOrder::kBest) {
+  if (job.arm().order == StrokeOrder::kBest) {
     text += "  order:";
     for (std::size_t k = 0; k < result.runs.size(); ++k)
-      text += (k == 0 ? " " : ", ") + job.strokes[result.runs[k].run.stroke].name +
+      text += (k == 0 ? " " : ", ") + job.arm().strokes[result.runs[k].run.stroke].name +
               (result.runs[k].run.reversed ? " (backwards)" : "");
     text += '\n';
   }
@@ -172,20 +172,20 @@ std::string motion_text(const JobResult& result, const Job& job) {
 }
 
 /// Returns why a run has no path by itself, with the lines of a problem's answer.
-std::string run_text(const JobResult& result, const RunResult& run, const Job& job) {
+std::string run_text(const JobResult& result, const RunResult& run, const Problem& job) {
   PlanResult alone;
   alone.status = PlanStatus::kInfeasible;
   alone.lattice = run.lattice;
   alone.diagnosis = *run.diagnosis;
   alone.held = result.held;
-  const bool either = job.strokes[run.run.stroke].reversible;
+  const bool either = job.arm().strokes[run.run.stroke].reversible;
   return "  stroke " + quoted_name(job, run.run) +
          (either ? ", which has no path backwards either: " : ": ") + answer_text(alone);
 }
 
 /// Returns what ends the paths of a run that has none, whatever the place and the figures: of two
 /// bodies the object of the scene alone.
-std::string ending_of(const Diagnosis& diagnosis, const Job& job) {
+std::string ending_of(const Diagnosis& diagnosis, const Problem& job) {
   std::string text;
   const auto add = [&](const Cause& cause) {
     std::string what = words(cause);
@@ -202,7 +202,7 @@ std::string ending_of(const Diagnosis& diagnosis, const Job& job) {
 
 /// Returns the verdicts on runs that have no path by themselves: one in full of those that one
 /// cause ends, and where the others end.
-std::string verdicts_by_cause(const JobResult& result, const Job& job) {
+std::string verdicts_by_cause(const JobResult& result, const Problem& job) {
   std::vector<std::string> endings, texts, likewise;
   for (const RunResult& run : result.runs) {
     if (run.status != PlanStatus::kInfeasible || !run.diagnosis) continue;
@@ -226,14 +226,15 @@ std::string verdicts_by_cause(const JobResult& result, const Job& job) {
   return text;
 }
 
-std::string infeasible_text(const JobResult& result, const Job& job) {
+std::string infeasible_text(const JobResult& result, const Problem& job) {
   const std::string text = verdicts_by_cause(result, job);
   const auto without =
       std::count_if(result.runs.begin(), result.runs.end(),
                     [](const RunResult& run) { return run.status == PlanStatus::kInfeasible; });
   if (without > 0)
-    return formatted("no job: %td of %zu strokes ha%s no path by %s\n", without, job.strokes.size(),
-                     without == 1 ? "s" : "ve", without == 1 ? "itself" : "themselves") +
+    return formatted("no job: %td of %zu strokes ha%s no path by %s\n", without,
+                     job.arm().strokes.size(), without == 1 ? "s" : "ve",
+                     without == 1 ? "itself" : "themselves") +
            text;
   if (!result.no_transition) return "no job found\n";
   std::vector<std::string> runs;
@@ -244,7 +245,7 @@ std::string infeasible_text(const JobResult& result, const Job& job) {
 
 }  // namespace
 
-std::string job_text(const JobResult& result, const Job& job) {
+std::string job_text(const JobResult& result, const Problem& job) {
   if (!result.parts.empty()) return motion_text(result, job);
   if (result.status == PlanStatus::kInfeasible) return infeasible_text(result, job);
   return std::string("stopped: ") + to_string(result.status) +
@@ -257,12 +258,12 @@ std::string job_text(const JobResult& result, const Job& job) {
 namespace {
 
 /// Returns the speed that a job's motion was asked for along its strokes, in words.
-std::string speed_words(const JobMotion& motion, const Job& job) {
+std::string speed_words(const JobMotion& motion, const Problem& job) {
   if (motion.runs.empty()) return "";
   double least = motion.runs.front().speed, most = least;
   for (const TimedPath& run : motion.runs)
     least = std::min(least, run.speed), most = std::max(most, run.speed);
-  const bool feeds = std::any_of(job.strokes.begin(), job.strokes.end(),
+  const bool feeds = std::any_of(job.arm().strokes.begin(), job.arm().strokes.end(),
                                  [](const Stroke& stroke) { return !stroke.feed.empty(); });
   return formatted(least < most || feeds ? " at up to %g mm/s" : " at %g mm/s", 1e3 * most);
 }
@@ -270,7 +271,7 @@ std::string speed_words(const JobMotion& motion, const Job& job) {
 }  // namespace
 
 std::string job_motion_text(const JobTimingResult& timing, const std::vector<JobPart>& parts,
-                            const Job& job) {
+                            const Problem& job) {
   if (const auto& failure = timing.failure) {
     const std::size_t k = timing.failed_part;
     std::string part = "transition home";

@@ -6,8 +6,6 @@
 #include <bit>
 #include <cstdint>
 
-#include "swivel/core/problem/vertex_numbers.hpp"
-
 namespace swivel {
 
 std::vector<int> vertex_numbers(const TriangleMesh& mesh) {

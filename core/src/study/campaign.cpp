@@ -55,15 +55,9 @@ PathProblem episode_problem(const PathProblem& problem, std::uint64_t seed, std:
   return result;
 }
 
-Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode) {
-  Job result = job;
-  draw_scene(job.vary, seed, episode, result.scene);
-  return result;
-}
-
-Workcell episode_workcell(const Workcell& cell, std::uint64_t seed, std::uint64_t episode) {
-  Workcell result = cell;
-  draw_scene(cell.vary, seed, episode, result.scene);
+Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
+  Problem result = problem;
+  draw_scene(problem.vary, seed, episode, result.scene);
   return result;
 }
 
@@ -108,7 +102,7 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const Pat
   }
 }
 
-EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Job& job)
+EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Problem& job)
     : episode(number),
       status(result.status),
       nodes_checked(result.counters.nodes_checked),
@@ -136,7 +130,7 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Job&
   }
 }
 
-EpisodeRow::EpisodeRow(std::uint64_t number, const WorkcellResult& result, const Workcell& cell)
+EpisodeRow::EpisodeRow(std::uint64_t number, const WorkcellResult& result, const Problem& cell)
     : episode(number), status(result.status) {
   for (const char* const stage : {"lattice", "search"})
     if (const auto time = result.time_ms.find(stage); time != result.time_ms.end())

@@ -80,7 +80,7 @@ void require_no_arm(const Movable& thing) {
 }
 
 /// Returns the number of the arm whose path alone is moved. Throws InvalidArgument.
-std::size_t moved_arm(const Workcell& cell, const Movable& thing) {
+std::size_t moved_arm(const Problem& cell, const Movable& thing) {
   for (std::size_t k = 0; k < 2; ++k) {
     if (cell.arms[k].name != thing.arm) continue;
     if (thing.kind != Movable::Kind::kPath)
@@ -96,17 +96,17 @@ std::size_t moved_arm(const Workcell& cell, const Movable& thing) {
 }
 
 /// Throws InvalidArgument for paths of a workcell that cannot be moved alike by `offset`.
-void require_paths_move(const Workcell& cell, const Offset& offset) {
+void require_paths_move(const Problem& cell, const Offset& offset) {
   std::vector<std::string> frames;
   for (std::size_t k = 0; k < 2; ++k) {
-    const WorkcellArm& arm = cell.arms[k];
+    const ArmTask& arm = cell.arms[k];
     if (cell.leader_of(k) >= 0 && !cell.arms[1 - k].given.empty())
       throw InvalidArgument("path: that of '" + arm.name + "' is on the tool of '" +
                             cell.arms[1 - k].name +
                             "', whose motion is given: allowed is to move that of '" + arm.name +
                             "' alone, an object or the base");
     if (cell.leader_of(k) < 0 && arm.given.empty())
-      frames.push_back(arm.path_frame.empty() ? arm.base_link : arm.path_frame);
+      frames.push_back(arm.path().path_frame.empty() ? arm.base_link : arm.path().path_frame);
   }
   if (frames.size() == 2 && frames[0] != frames[1] && motion_of(offset).turns)
     throw InvalidArgument(
@@ -118,9 +118,9 @@ void require_paths_move(const Workcell& cell, const Offset& offset) {
 
 /// Returns the waypoints of an arm's path, moved about the origin of its frame. That of a follower
 /// is moved in the frame of its leader's tool, any other along the axes of the base frame.
-std::vector<Waypoint> moved_path(const Workcell& cell, std::size_t k, const Offset& offset) {
+std::vector<Waypoint> moved_path(const Problem& cell, std::size_t k, const Offset& offset) {
   PathProblem arm;
-  static_cast<Task&>(arm) = cell.arms[k];
+  static_cast<Task&>(arm) = cell.arms[k].path();
   arm.scene = cell.scene;
   if (cell.leader_of(k) >= 0) arm.path_frame.clear();
   arm.base_link = cell.arms[k].base_link;
@@ -197,8 +197,8 @@ void hold_joints(Robot& robot, const HeldPositions& positions) {
                             "' where it is held: allowed is a problem that holds one of both");
 }
 
-void hold_joints(Workcell& cell, const HeldPositions& positions) {
-  for (WorkcellArm& arm : cell.arms) hold_joints(arm, positions);
+void hold_joints(Problem& problem, const HeldPositions& positions) {
+  for (ArmTask& arm : problem.arms) hold_joints(arm, positions);
 }
 
 PathProblem placed_problem(const PathProblem& problem, const Movable& thing, const Offset& offset) {
@@ -238,38 +238,36 @@ PathProblem placed_problem(const PathProblem& problem, const Movable& thing, con
   return result;
 }
 
-Job placed_job(const Job& job, const Movable& thing, const Offset& offset) {
-  Job result = job;
-  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
-    PathProblem stroke;
-    static_cast<Robot&>(stroke) = job;
-    static_cast<Task&>(stroke) = job.strokes[k];
-    stroke.scene = job.scene;
-    PathProblem placed = placed_problem(stroke, thing, offset);
-    result.strokes[k].waypoints = std::move(placed.waypoints);
-    if (k == 0) result.scene = std::move(placed.scene);
-  }
-  return result;
+namespace {
+
+/// Returns the problem that a path of an arm poses by itself.
+PathProblem path_of(const Problem& problem, const ArmTask& arm, const Task& path) {
+  PathProblem alone;
+  static_cast<Robot&>(alone) = arm;
+  static_cast<Task&>(alone) = path;
+  alone.scene = problem.scene;
+  return alone;
 }
 
-Workcell placed_workcell(const Workcell& cell, const Movable& thing, const Offset& offset) {
+}  // namespace
+
+Problem placed_problem(const Problem& problem, const Movable& thing, const Offset& offset) {
   require_thing(thing, offset);
-  Workcell result = cell;
-  if (!thing.arm.empty()) {
-    const std::size_t k = moved_arm(cell, thing);
-    result.arms[k].waypoints = moved_path(cell, k, offset);
+  Problem result = problem;
+  if (problem.arms.size() == 2 && !thing.arm.empty()) {
+    const std::size_t k = moved_arm(problem, thing);
+    result.arms[k].path().waypoints = moved_path(problem, k, offset);
     return result;
   }
-  if (thing.kind == Movable::Kind::kPath) require_paths_move(cell, offset);
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (cell.leader_of(k) >= 0) continue;
-    PathProblem arm;
-    static_cast<Robot&>(arm) = cell.arms[k];
-    static_cast<Task&>(arm) = cell.arms[k];
-    arm.scene = cell.scene;
-    PathProblem placed = placed_problem(arm, thing, offset);
-    result.arms[k].waypoints = std::move(placed.waypoints);
-    result.scene = std::move(placed.scene);
+  if (problem.arms.size() == 2 && thing.kind == Movable::Kind::kPath)
+    require_paths_move(problem, offset);
+  for (std::size_t k = 0; k < problem.arms.size(); ++k) {
+    if (problem.leader_of(k) >= 0) continue;
+    for (Stroke& stroke : result.arms[k].strokes) {
+      PathProblem placed = placed_problem(path_of(problem, problem.arms[k], stroke), thing, offset);
+      stroke.waypoints = std::move(placed.waypoints);
+      result.scene = std::move(placed.scene);
+    }
   }
   return result;
 }

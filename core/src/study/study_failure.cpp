@@ -11,8 +11,8 @@ namespace swivel {
 
 namespace {
 
-std::string run_words(const Job& job, const StrokeRun& run) {
-  return "stroke '" + job.strokes[run.stroke].name + "'" + (run.reversed ? " backwards" : "");
+std::string run_words(const Problem& job, const StrokeRun& run) {
+  return "stroke '" + job.arm().strokes[run.stroke].name + "'" + (run.reversed ? " backwards" : "");
 }
 
 /// Fills in what ends every path of one stroke or arm. `who` is its name in words.
@@ -42,7 +42,7 @@ std::string meeting_words(const WorkcellResult& result) {
 
 }  // namespace
 
-StudyFailure failure_of(const JobResult& result, const Job& job) {
+StudyFailure failure_of(const JobResult& result, const Problem& job) {
   StudyFailure failure;
   const auto failed = std::find_if(result.runs.begin(), result.runs.end(), [](const auto& run) {
     return run.status == PlanStatus::kInfeasible && run.diagnosis;
@@ -61,7 +61,7 @@ StudyFailure failure_of(const JobResult& result, const Job& job) {
   return failure;
 }
 
-StudyFailure failure_of(const WorkcellResult& result, const Workcell& cell) {
+StudyFailure failure_of(const WorkcellResult& result, const Problem& cell) {
   StudyFailure failure;
   for (std::size_t k = 0; k < 2; ++k)
     if (!std::isfinite(result.least_costs[k])) {

@@ -48,18 +48,19 @@ std::vector<std::string> job_header(const JointNames& joint_names, bool roll) {
 
 }  // namespace
 
-std::string to_job_csv(const JobResult& result, const Job& job) {
+std::string to_job_csv(const JobResult& result, const Problem& job) {
   std::string text;
   const bool roll = any_rolls(result);
   for (const std::string& name : job_header(result.joint_names, roll))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (const JobPart& part : result.parts) {
-    const std::string stroke = part.run ? csv_line_field(job.strokes[part.run->stroke].name) : "";
+    const std::string stroke =
+        part.run ? csv_line_field(job.arm().strokes[part.run->stroke].name) : "";
     const std::vector<bool> process = process_of_rows(part, job);
     for (std::size_t k = 0; k < part.rows.size(); ++k) {
       TrajectoryRow row = part.rows[k];
-      if (part.run) row.s += s_of_piece(job.strokes[part.run->stroke]);
+      if (part.run) row.s += s_of_piece(job.arm().strokes[part.run->stroke]);
       text += part.run ? trajectory_fields(row, roll) : placeless_fields(row, roll);
       text += ',' + stroke + (process[k] ? ",1\n" : ",0\n");
     }

@@ -14,10 +14,11 @@
 
 namespace swivel::io {
 
-std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion, const Job& job) {
+std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion,
+                                                         const Problem& job) {
   std::vector<std::optional<std::size_t>> strokes;
   if (!motion.part.empty()) strokes.resize(motion.part.back() + 1);
-  std::size_t part = job.home ? 1 : 0;
+  std::size_t part = job.arm().home ? 1 : 0;
   for (const ProcessEvent& event : motion.events) {
     if (!event.on) continue;
     if (part < strokes.size()) strokes[part] = event.stroke;
@@ -26,15 +27,15 @@ std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion
   return strokes;
 }
 
-void require_samples_of_strokes(const JobMotion& motion, const Job& job) {
+void require_samples_of_strokes(const JobMotion& motion, const Problem& job) {
   for (std::size_t k = 1; k < motion.events.size(); ++k)
     if (motion.events[k].t <= motion.events[k - 1].t)
-      throw InputError(job.source, "stroke '" + job.strokes[motion.events[k].stroke].name +
+      throw InputError(job.source, "stroke '" + job.arm().strokes[motion.events[k].stroke].name +
                                        "' begins and ends between two samples: allowed are more "
                                        "samples a second");
 }
 
-std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job) {
+std::vector<EventMessage> event_messages(const JobMotion& motion, const Problem& job) {
   require_samples_of_strokes(motion, job);
   // Returns the fields of the run to which a part leads: its begin and its end, in time and place.
   const auto run_of = [&](std::size_t part, double piece) {
@@ -47,9 +48,9 @@ std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job
            format_double(from.row.s + piece) + ", " + format_double(to.row.s + piece) + "]}";
   };
   std::vector<EventMessage> messages;
-  std::size_t part = job.home ? 1 : 0;
+  std::size_t part = job.arm().home ? 1 : 0;
   for (const ProcessEvent& event : motion.events) {
-    const Stroke& stroke = job.strokes[event.stroke];
+    const Stroke& stroke = job.arm().strokes[event.stroke];
     const double piece = s_of_piece(stroke);
     messages.push_back({event.t, "{\"t\": " + format_double(event.t) +
                                      ", \"stroke\": " + nlohmann::json(stroke.name).dump() +

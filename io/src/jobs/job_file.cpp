@@ -20,7 +20,7 @@ bool has_times(const FileRows& read) {
 /// Finds where the tool lifts off from the rows of a job.
 class LiftOffRows {
  public:
-  LiftOffRows(const FileRows& read, const Job& job) : file_(read), job_(job) {}
+  LiftOffRows(const FileRows& read, const Problem& job) : file_(read), job_(job) {}
 
   std::vector<LiftOff> lift_offs() {
     const std::vector<RowOfJob>& rows = file_.job;
@@ -52,9 +52,9 @@ class LiftOffRows {
                         file_.job[first - 1].placed;
     const double s = s_of(shared ? first - 1 : first);
     if (number_ > 1) {
-      const Stroke& of = job_.strokes[*stroke];
+      const Stroke& of = job_.arm().strokes[*stroke];
       const double end = end_ - of.approach.norm() - of.retract.norm(),
-                   most = std::max(0.0, end - job_.lift->overlap);
+                   most = std::max(0.0, end - job_.arm().lift->overlap);
       if (s > most + kSamePlace)
         bad_input(
             file_.where(first) + ": s",
@@ -76,7 +76,7 @@ class LiftOffRows {
 
   static constexpr double kSamePlace = 1e-9;  // m
   const FileRows& file_;
-  const Job& job_;
+  const Problem& job_;
   std::size_t number_ = 0;
   std::optional<std::size_t> stroke_;
   double end_ = 0;
@@ -84,8 +84,8 @@ class LiftOffRows {
 };
 
 /// Returns the job whose strokes the rows of a file are: with its lift-offs, where it has any.
-Job job_of_rows(const FileRows& read, const Job& job) {
-  if (!job.lift) return job;
+Problem job_of_rows(const FileRows& read, const Problem& job) {
+  if (!job.arm().lift) return job;
   try {
     return with_lift_offs(job, LiftOffRows(read, job).lift_offs());
   } catch (const InvalidArgument& error) {
@@ -94,19 +94,19 @@ Job job_of_rows(const FileRows& read, const Job& job) {
 }
 
 /// Lets s of rows begin at 0 in each run, as it does in the problem of the run.
-void begin_at_runs(JobTrajectory& read, const Job& job) {
+void begin_at_runs(JobTrajectory& read, const Problem& job) {
   if (!read.stated.s) return;
   for (JobTrajectoryPart& part : read.parts)
     if (const auto stroke = find_stroke(job, part.stroke))
-      for (TrajectoryRow& row : part.rows) row.s -= s_of_piece(job.strokes[*stroke]);
+      for (TrajectoryRow& row : part.rows) row.s -= s_of_piece(job.arm().strokes[*stroke]);
 }
-void begin_at_runs(JobMotionFile& read, const Job& job) {
+void begin_at_runs(JobMotionFile& read, const Problem& job) {
   JobMotion& motion = read.motion;
-  for (ProcessEvent& event : motion.events) event.s -= s_of_piece(job.strokes[event.stroke]);
+  for (ProcessEvent& event : motion.events) event.s -= s_of_piece(job.arm().strokes[event.stroke]);
   if (!read.stated.s) return;
   const auto begin_of = [&](std::size_t part) -> double {
-    if ((part % 2 == 1) != job.home.has_value()) return 0;
-    return s_of_piece(job.strokes[read.strokes.at(part / 2)]);
+    if ((part % 2 == 1) != job.arm().home.has_value()) return 0;
+    return s_of_piece(job.arm().strokes[read.strokes.at(part / 2)]);
   };
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const bool begins = k + 1 < motion.rows.size() && motion.part[k + 1] != motion.part[k];
@@ -123,14 +123,14 @@ JobTrajectory load_job_trajectory(const std::filesystem::path& csv, const JointN
   return trajectory_of(read);
 }
 
-JobMotionFile load_job_motion(const std::filesystem::path& file, const Job& job,
+JobMotionFile load_job_motion(const std::filesystem::path& file, const Problem& job,
                               const JointNames& joint_names) {
   const FileRows read = read_rows_of_job(file, joint_names);
   if (!has_times(read)) bad_input(read.file, "lacks the column t", "the motion of a job");
   return motion_of(read, job, joint_names);
 }
 
-ExecutedJobRows load_executed_rows(const std::filesystem::path& file, const Job& job,
+ExecutedJobRows load_executed_rows(const std::filesystem::path& file, const Problem& job,
                                    const JointNames& joint_names) {
   const FileRows rows = read_rows_of_job(file, joint_names);
   ExecutedJobRows read{job_of_rows(rows, job), {}};
@@ -143,7 +143,7 @@ ExecutedJobRows load_executed_rows(const std::filesystem::path& file, const Job&
 }
 
 std::variant<JobTrajectory, JobMotionFile> load_job_rows(const std::filesystem::path& file,
-                                                         const Job& job,
+                                                         const Problem& job,
                                                          const JointNames& joint_names) {
   return load_executed_rows(file, job, joint_names).rows;
 }

@@ -37,7 +37,7 @@ std::vector<bool> process_of_motion(const JobMotion& motion) {
 
 }  // namespace
 
-std::string to_job_motion_csv(const JobMotion& motion, const Job& job,
+std::string to_job_motion_csv(const JobMotion& motion, const Problem& job,
                               const JointNames& joint_names) {
   const std::vector<std::optional<std::size_t>> strokes = strokes_of_parts(motion, job);
   require_samples_of_strokes(motion, job);
@@ -57,11 +57,12 @@ std::string to_job_motion_csv(const JobMotion& motion, const Job& job,
     const TimedRow& row = motion.rows[k];
     text += format_double(row.t) + ',';
     TrajectoryRow place = row.row;
-    if (placed(k)) place.s += s_of_piece(job.strokes[stroke(k) ? *stroke(k) : *stroke(k + 1)]);
+    if (placed(k))
+      place.s += s_of_piece(job.arm().strokes[stroke(k) ? *stroke(k) : *stroke(k + 1)]);
     text += placed(k) ? trajectory_fields(place, roll) : placeless_fields(place, roll);
     for (const Config* values : {&row.v, &row.a})
       for (const double value : *values) text += ',' + format_double(value);
-    text += ',' + (stroke(k) ? csv_line_field(job.strokes[*stroke(k)].name) : "");
+    text += ',' + (stroke(k) ? csv_line_field(job.arm().strokes[*stroke(k)].name) : "");
     text += process[k] ? ",1\n" : ",0\n";
   }
   return text;
@@ -72,14 +73,14 @@ namespace {
 /// Makes a motion of the rows of a job.
 class JobMotionRows {
  public:
-  JobMotionRows(const FileRows& read, const Job& job, const JointNames& joint_names)
+  JobMotionRows(const FileRows& read, const Problem& job, const JointNames& joint_names)
       : file_(read),
         of_job_(read.job),
         rows_(read.arms.front().timed),
         job_(job),
         roll_(may_lack_last(joint_names)) {
-    for (std::size_t k = 0; k < job.strokes.size(); ++k)
-      strokes_.emplace(csv_line_field(job.strokes[k].name), k);
+    for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
+      strokes_.emplace(csv_line_field(job.arm().strokes[k].name), k);
   }
 
   JobMotionFile motion() {
@@ -90,10 +91,10 @@ class JobMotionRows {
     const std::string& last_stroke = of_job_.back().stroke;
     if (order_.empty())
       bad_input(file_.file, "has no row of a stroke", "rows of the job's strokes");
-    if (job_.home && !last_stroke.empty())
+    if (job_.arm().home && !last_stroke.empty())
       bad_input(file_.file, "ends with stroke '" + last_stroke + "', though the job has a home",
                 "rows of the way home behind it");
-    if (!job_.home && last_stroke.empty())
+    if (!job_.arm().home && last_stroke.empty())
       bad_input(file_.file, "ends with a transition, though the job has no home",
                 "a stroke at the end");
     JobMotionFile read;
@@ -121,7 +122,7 @@ class JobMotionRows {
   void begin_part(std::size_t k) {
     const std::string at = file_.where(k) + ": stroke", &stroke = of_job_[k].stroke;
     if (stroke.empty()) {
-      if (k == 0 && !job_.home)
+      if (k == 0 && !job_.arm().home)
         bad_input(at, "is empty, though the job has no home", "the name of the first stroke");
     } else {
       const auto known = strokes_.find(stroke);
@@ -129,7 +130,7 @@ class JobMotionRows {
         bad_input(at, "'" + stroke + "' is no stroke of the job", "the names of its strokes");
       if (std::find(order_.begin(), order_.end(), known->second) != order_.end())
         bad_input(at, "'" + stroke + "' comes twice", "the rows of a stroke together");
-      if (k == 0 && job_.home)
+      if (k == 0 && job_.arm().home)
         bad_input(at, "is '" + stroke + "' in the first row, though the job has a home",
                   "an empty one: rows of the way from home");
       if (k > 0 && !of_job_[k - 1].stroke.empty())
@@ -172,7 +173,7 @@ class JobMotionRows {
   }
   void add_events(std::size_t stroke, std::size_t first, std::size_t end,
                   std::vector<ProcessEvent>& events) const {
-    const std::string name = "stroke '" + job_.strokes[stroke].name + "'";
+    const std::string name = "stroke '" + job_.arm().strokes[stroke].name + "'";
     const auto process = [&](std::size_t k) { return of_job_[k].process; };
     std::size_t on = first;
     while (on < end && !process(on)) ++on;
@@ -196,7 +197,7 @@ class JobMotionRows {
   const FileRows& file_;
   const std::vector<RowOfJob>& of_job_;
   const std::vector<TimedRow>& rows_;
-  const Job& job_;
+  const Problem& job_;
   bool roll_;
   std::map<std::string, std::size_t> strokes_;  // by name
   std::vector<std::size_t> part_, order_;
@@ -205,7 +206,7 @@ class JobMotionRows {
 
 }  // namespace
 
-JobMotionFile motion_of(const FileRows& read, const Job& job, const JointNames& joint_names) {
+JobMotionFile motion_of(const FileRows& read, const Problem& job, const JointNames& joint_names) {
   return JobMotionRows(read, job, joint_names).motion();
 }
 

@@ -5,8 +5,9 @@
 
 namespace swivel::io {
 
-std::string job_motion_text(const JobMotion& motion, const Job& job, const JointNames& joint_names,
-                            const std::string& frame_id, const std::filesystem::path& file) {
+std::string job_motion_text(const JobMotion& motion, const Problem& job,
+                            const JointNames& joint_names, const std::string& frame_id,
+                            const std::filesystem::path& file) {
   require_motion_format(file);
   const std::string format = file.extension().string();
   if (format == ".csv") return to_job_motion_csv(motion, job, joint_names);

@@ -20,11 +20,11 @@ namespace swivel::io {
 
 /// Returns for each part of a job's motion the index of its stroke; none for transitions.
 [[nodiscard]] std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion,
-                                                                       const Job& job);
+                                                                       const Problem& job);
 /// Throws InputError if a stroke begins and ends between two samples of a motion.
-void require_samples_of_strokes(const JobMotion& motion, const Job& job);
+void require_samples_of_strokes(const JobMotion& motion, const Problem& job);
 /// Returns the events of a job's motion as messages. Throws as require_samples_of_strokes() does.
-[[nodiscard]] std::vector<EventMessage> event_messages(const JobMotion& motion, const Job& job);
+[[nodiscard]] std::vector<EventMessage> event_messages(const JobMotion& motion, const Problem& job);
 
 /// Reads the rows of a job from a file of any format. Rows of messages get from their events what
 /// those of a table state by themselves: stroke and process, and s where a run begins, where its
@@ -36,7 +36,7 @@ void require_samples_of_strokes(const JobMotion& motion, const Job& job);
 /// does.
 [[nodiscard]] JobTrajectory trajectory_of(const FileRows& read);
 /// Returns the motion that rows with times are. Throws InputError as load_job_motion() does.
-[[nodiscard]] JobMotionFile motion_of(const FileRows& read, const Job& job,
+[[nodiscard]] JobMotionFile motion_of(const FileRows& read, const Problem& job,
                                       const JointNames& joint_names);
 
 }  // namespace swivel::io

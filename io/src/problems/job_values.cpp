@@ -29,12 +29,12 @@ YAML::Node offset_node(const Vector3d& offset) {
 /// Makes the values of one job.
 class JobValues {
  public:
-  JobValues(const Job& job, const fs::path& folder, const JobLayout& layout,
+  JobValues(const Problem& job, const fs::path& folder, const JobLayout& layout,
             const std::string& file)
       : job_(job), folder_(folder), layout_(layout), file_(file) {
-    static_cast<Robot&>(shared_) = job;
-    if (!job.strokes.empty()) static_cast<Task&>(shared_) = job.strokes.front();
-    shared_.limits = job.limits;
+    static_cast<Robot&>(shared_) = job.arm();
+    if (!job.arm().strokes.empty()) static_cast<Task&>(shared_) = job.arm().strokes.front();
+    shared_.limits = job.arm().transition_limits;
     shared_.scene = job.scene;
     shared_.vary = job.vary;
   }
@@ -47,9 +47,9 @@ class JobValues {
     YAML::Node root;
     root["robot"] = of_all["robot"];
     if (layout_.path)
-      root["path"] = path(job_.strokes.front());
+      root["path"] = path(job_.arm().strokes.front());
     else
-      for (const Stroke& one : job_.strokes) root["strokes"].push_back(stroke(one));
+      for (const Stroke& one : job_.arm().strokes) root["strokes"].push_back(stroke(one));
     for (const char* const section : {"scene", "resolution", "limits", "cost", "refine", "vary"})
       if (of_all[section].IsDefined()) root[section] = of_all[section];
     add_motion_between(root);
@@ -59,19 +59,20 @@ class JobValues {
  private:
   void add_motion_between(YAML::Node& root) const {
     if (!layout_.path) {
-      if (job_.home)
-        for (const double joint : *job_.home) root["home"]["joints"].push_back(csv_number(joint));
-      root["order"] = job_.order == StrokeOrder::kBest ? "best" : "given";
-      root["rapid"] = scalar(job_.rapid);
+      if (job_.arm().home)
+        for (const double joint : *job_.arm().home)
+          root["home"]["joints"].push_back(csv_number(joint));
+      root["order"] = job_.arm().order == StrokeOrder::kBest ? "best" : "given";
+      root["rapid"] = scalar(job_.arm().rapid);
       if (approach_) root["approach"] = offset_node(*approach_);
       if (retract_) root["retract"] = offset_node(*retract_);
-      if (job_.process_speed) root["process_speed"] = scalar(*job_.process_speed);
-      if (job_.approach_speed) root["approach_speed"] = scalar(*job_.approach_speed);
+      if (job_.arm().process_speed) root["process_speed"] = scalar(*job_.arm().process_speed);
+      if (job_.arm().approach_speed) root["approach_speed"] = scalar(*job_.arm().approach_speed);
     }
-    if (!job_.lift) return;
+    if (!job_.arm().lift) return;
     root["lift"]["allowed"] = "true";
-    root["lift"]["cost"] = scalar(job_.lift->cost);
-    root["lift"]["overlap"] = scalar(job_.lift->overlap);
+    root["lift"]["cost"] = scalar(job_.arm().lift->cost);
+    root["lift"]["overlap"] = scalar(job_.arm().lift->overlap);
   }
 
   /// Returns the offset that most strokes have which do not state one of their own in the file;
@@ -80,10 +81,10 @@ class JobValues {
                                                       const std::set<std::string>& own) const {
     std::optional<Vector3d> most;
     std::ptrdiff_t count = 0;
-    for (const Stroke& one : job_.strokes) {
+    for (const Stroke& one : job_.arm().strokes) {
       if (own.contains(one.name)) continue;
-      const auto alike =
-          std::count_if(job_.strokes.begin(), job_.strokes.end(), [&](const Stroke& other) {
+      const auto alike = std::count_if(
+          job_.arm().strokes.begin(), job_.arm().strokes.end(), [&](const Stroke& other) {
             return !own.contains(other.name) && other.*offset == one.*offset;
           });
       if (alike > count) most = one.*offset, count = alike;
@@ -93,7 +94,7 @@ class JobValues {
 
   [[nodiscard]] PathProblem problem_of(const Stroke& stroke) const {
     PathProblem problem;
-    static_cast<Robot&>(problem) = job_;
+    static_cast<Robot&>(problem) = job_.arm();
     problem.attached.clear();
     static_cast<Task&>(problem) = stroke;
     return problem;
@@ -120,7 +121,7 @@ class JobValues {
     return section;
   }
 
-  const Job& job_;
+  const Problem& job_;
   const fs::path& folder_;
   const JobLayout& layout_;
   const std::string& file_;
@@ -131,7 +132,7 @@ class JobValues {
 
 }  // namespace
 
-YAML::Node job_values(const Job& job, const fs::path& folder, const JobLayout& layout,
+YAML::Node job_values(const Problem& job, const fs::path& folder, const JobLayout& layout,
                       const std::string& file) {
   return JobValues(job, folder, layout, file).all();
 }

@@ -7,7 +7,6 @@
 #include "schema/schema.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/io/problems/job.hpp"
 #include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
@@ -26,7 +25,7 @@ class JobReader : ProblemReader {
     feeds_.emplace();
   }
 
-  Job read() {
+  Problem read() {
     for (const char* const key : {"start", "start_at", "start_tolerance"})
       if (const auto value = root_.find_filled(key))
         value->fail("is of problems with one path", "`home`, of a job");
@@ -35,11 +34,11 @@ class JobReader : ProblemReader {
     for (Place& place : places_) read_path_of(place);
     problem_.roll = shared_roll();
     read_shared_task();
-    for (std::size_t k = 0; k < places_.size(); ++k) complete(places_[k], job_.strokes[k]);
+    for (std::size_t k = 0; k < places_.size(); ++k) complete(places_[k], job_.arm().strokes[k]);
     read_motion_between();
     read_vary();
-    static_cast<Robot&>(job_) = problem_;
-    job_.limits = shared_.limits;
+    static_cast<Robot&>(job_.arm()) = problem_;
+    job_.arm().transition_limits = shared_.limits;
     job_.source = problem_.source;
     job_.scene = std::move(problem_.scene);
     job_.vary = std::move(problem_.vary);
@@ -62,7 +61,7 @@ class JobReader : ProblemReader {
   void list_strokes() {
     if (!root_.find_filled("strokes")) {
       places_.push_back({std::nullopt, root_.require("path")});
-      job_.strokes.emplace_back().name = "path";
+      job_.arm().strokes.emplace_back().name = "path";
       return;
     }
     const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
@@ -74,7 +73,7 @@ class JobReader : ProblemReader {
     for (const YamlValue& item : items) {
       const YamlSection section = item.section();
       const YamlValue name = section.require("name");
-      Stroke& stroke = job_.strokes.emplace_back();
+      Stroke& stroke = job_.arm().strokes.emplace_back();
       stroke.name = name_of_stroke(name);
       if (!names.insert(stroke.name).second)
         name.fail("'" + stroke.name + "' is the name of another stroke", "a name of its own");
@@ -100,7 +99,7 @@ class JobReader : ProblemReader {
     read_path(place.path);
     place.roll = path_roll_;
     place.used = problem_.roll;
-    Stroke& stroke = job_.strokes[static_cast<std::size_t>(&place - places_.data())];
+    Stroke& stroke = job_.arm().strokes[static_cast<std::size_t>(&place - places_.data())];
     static_cast<Task&>(stroke) = problem_;
     stroke.feed = *feeds_;
     waypoints_ += stroke.waypoints.size();
@@ -120,7 +119,7 @@ class JobReader : ProblemReader {
       if (places_[k].roll != roll)
         places_[k].path.fail("has another roll than " + places_.front().path.key(),
                              "the same `roll` in the paths of all strokes");
-      if (!job_.strokes[k].waypoints.front().roll) continue;
+      if (!job_.arm().strokes[k].waypoints.front().roll) continue;
       ++with_windows;
       used = {std::min(used.lower, places_[k].used->lower),
               std::max(used.upper, places_[k].used->upper)};
@@ -228,24 +227,24 @@ class JobReader : ProblemReader {
   /// Reads the keys of the job that are of no single stroke.
   void read_motion_between() {
     if (const auto home = root_.find_filled("home")) {
-      job_.home = home_of(home->section().require("joints"));
+      job_.arm().home = home_of(home->section().require("joints"));
     }
     if (const auto order = root_.find("order"))
-      job_.order = word(*order, {StrokeOrder::kGiven, StrokeOrder::kBest});
-    if (const auto value = root_.find("process_speed")) job_.process_speed = speed(*value);
-    if (const auto value = root_.find("approach_speed")) job_.approach_speed = speed(*value);
-    if (const auto rapid = root_.find("rapid")) job_.rapid = rapid->number();
+      job_.arm().order = word(*order, {StrokeOrder::kGiven, StrokeOrder::kBest});
+    if (const auto value = root_.find("process_speed")) job_.arm().process_speed = speed(*value);
+    if (const auto value = root_.find("approach_speed")) job_.arm().approach_speed = speed(*value);
+    if (const auto rapid = root_.find("rapid")) job_.arm().rapid = rapid->number();
     read_lift();
   }
 
   void read_lift() {
     const auto lift = root_.find_filled("lift");
-    job_.lift = lift_offs_of(root_);
-    if (!job_.lift) return;
-    if (job_.order != StrokeOrder::kGiven)
+    job_.arm().lift = lift_offs_of(root_);
+    if (!job_.arm().lift) return;
+    if (job_.arm().order != StrokeOrder::kGiven)
       lift->fail("is given with `order: best`, and strokes in several runs are ordered as given",
                  "`order: given`, or no lift-offs");
-    for (const Stroke& stroke : job_.strokes) {
+    for (const Stroke& stroke : job_.arm().strokes) {
       if (stroke.name.find('/') != std::string::npos)
         lift->fail("is given with a stroke named '" + stroke.name +
                        "', and runs of strokes are named by a slash and a number",
@@ -257,7 +256,7 @@ class JobReader : ProblemReader {
     }
   }
 
-  Job job_;
+  Problem job_;
   std::vector<Place> places_;
   std::size_t waypoints_ = 0;
   Task shared_;
@@ -271,7 +270,7 @@ YamlSection load_root(const fs::path& yaml) {
 
 }  // namespace
 
-Job read_job(const fs::path& file, YamlSection root) {
+Problem read_job(const fs::path& file, YamlSection root) {
   return JobReader(file, std::move(root)).read();
 }
 
@@ -286,19 +285,8 @@ std::optional<LiftOffs> lift_offs_of(const YamlSection& root) {
   return allowed ? std::optional(read) : std::nullopt;
 }
 
-bool is_job(const fs::path& yaml) {
-  const YamlSection root = load_root(yaml);
-  return root.find_filled("strokes").has_value() || lift_offs_of(root);
-}
-
-Job load_job(const fs::path& yaml) {
+Problem load_job(const fs::path& yaml) {
   return read_job(yaml, load_root(yaml));
-}
-
-std::variant<PathProblem, Job> load_problem_or_job(const fs::path& yaml) {
-  YamlSection root = load_root(yaml);
-  if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));
-  return ProblemReader(yaml, std::move(root)).read();
 }
 
 }  // namespace swivel::io

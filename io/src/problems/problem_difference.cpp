@@ -136,16 +136,17 @@ std::string difference(const PathProblem& a, const PathProblem& b) {
   return same_lists(a.vary, b.vary, same_variation) ? "" : "vary";
 }
 
-std::string difference(const Job& a, const Job& b) {
+std::string difference(const Problem& before, const Problem& after) {
+  const ArmTask &a = before.arm(), &b = after.arm();
   if (std::string robot = difference_of_robots(a, b); !robot.empty()) return robot;
   if (a.strokes.size() != b.strokes.size()) return "number of strokes";
   for (std::size_t k = 0; k < a.strokes.size(); ++k)
     if (std::string stroke = difference_of_strokes(a.strokes[k], b.strokes[k], a.base_link);
         !stroke.empty())
       return stroke + " of stroke '" + a.strokes[k].name + "'";
-  if (!same_lists(a.scene, b.scene, same_object)) return "scene";
-  if (!same_lists(a.vary, b.vary, same_variation)) return "vary";
-  if (a.limits != b.limits) return "limits";
+  if (!same_lists(before.scene, after.scene, same_object)) return "scene";
+  if (!same_lists(before.vary, after.vary, same_variation)) return "vary";
+  if (a.transition_limits != b.transition_limits) return "limits";
   if (a.home != b.home) return "home";
   if (a.order != b.order) return "order";
   if (a.process_speed != b.process_speed) return "process_speed";

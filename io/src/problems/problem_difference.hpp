@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/path_problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io {
 
@@ -12,6 +12,6 @@ namespace swivel::io {
 /// the tolerance of a start that there is not. Rotations may differ by 4e-15.
 [[nodiscard]] std::string difference(const PathProblem& a, const PathProblem& b);
 /// Returns the first thing in which two jobs differ, likewise.
-[[nodiscard]] std::string difference(const Job& a, const Job& b);
+[[nodiscard]] std::string difference(const Problem& a, const Problem& b);
 
 }  // namespace swivel::io

@@ -15,8 +15,8 @@
 #include "swivel/core/lattice/kinds/unused_keys.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/robot_key_error.hpp"
-#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/path_problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 
 namespace swivel::io {
@@ -211,6 +211,6 @@ class ProblemReader {
 /// Returns what a problem file says of lift-offs, which makes it a job; none where it allows none.
 [[nodiscard]] std::optional<LiftOffs> lift_offs_of(const YamlSection& root);
 /// Reads the root of a job's file, which has `strokes` or a path. Throws InputError.
-[[nodiscard]] Job read_job(const std::filesystem::path& file, YamlSection root);
+[[nodiscard]] Problem read_job(const std::filesystem::path& file, YamlSection root);
 
 }  // namespace swivel::io

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/path_problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io {
 
@@ -39,7 +39,7 @@ struct JobLayout {
   std::set<std::string> with_approach, with_retract;
 };
 /// Returns all keys of the file of a job, as problem_values() does. Throws InputError alike.
-[[nodiscard]] YAML::Node job_values(const Job& job, const std::filesystem::path& folder,
+[[nodiscard]] YAML::Node job_values(const Problem& job, const std::filesystem::path& folder,
                                     const JobLayout& layout, const std::string& file);
 
 /// Returns the values without those that hold where a file does not state them.

@@ -771,7 +771,7 @@ void ProblemReader::set(const YamlSection& section, const char* key,
   std::copy(values.begin(), values.end(), target->begin());
 }
 
-PathProblem load_problem(const fs::path& yaml) {
+PathProblem load_path_problem(const fs::path& yaml) {
   return ProblemReader(yaml, load_yaml(yaml, problem_schema()).section()).read();
 }
 

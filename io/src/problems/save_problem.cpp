@@ -14,9 +14,9 @@
 #include "schema/yaml_edit.hpp"
 #include "schema/yaml_text.hpp"
 #include "schema/yaml_value.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/io/files/files.hpp"
-#include "swivel/io/problems/job.hpp"
 #include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
@@ -28,7 +28,7 @@ namespace {
 void read_text(const std::string& text, const fs::path& file, PathProblem& problem) {
   problem = ProblemReader(file, parse_yaml(text, file.string(), problem_schema()).section()).read();
 }
-void read_text(const std::string& text, const fs::path& file, Job& job) {
+void read_text(const std::string& text, const fs::path& file, Problem& job) {
   job = read_job(file, parse_yaml(text, file.string(), problem_schema()).section());
 }
 
@@ -99,7 +99,7 @@ YAML::Node values_of(const PathProblem& problem, const fs::path& folder, const Y
                      const std::string& file) {
   return problem_values(problem, folder, names_in_scene(root), file);
 }
-YAML::Node values_of(const Job& job, const fs::path& folder, const YAML::Node& root,
+YAML::Node values_of(const Problem& job, const fs::path& folder, const YAML::Node& root,
                      const std::string& file) {
   const JobLayout layout{root["path"].IsDefined(), names_in_scene(root),
                          strokes_with(root, "approach"), strokes_with(root, "retract")};
@@ -140,12 +140,21 @@ std::string changed_file(const Subject& subject, const std::string& text, const 
   return changed_text(text, source.string(), was, is, problem_schema());
 }
 
+/// Returns the robot of the one arm of a problem.
+const Robot& robot_of(const PathProblem& problem) {
+  return problem;
+}
+const Robot& robot_of(const Problem& problem) {
+  return problem.arm();
+}
+
 template <class Subject>
 std::string text_of(const Subject& subject, const fs::path& file) {
   const fs::path folder = file.parent_path();
   if (subject.source.empty())
-    return document_text(without_defaults(
-        values_of(subject, folder, YAML::Node(YAML::NodeType::Map), file.string()), subject));
+    return document_text(
+        without_defaults(values_of(subject, folder, YAML::Node(YAML::NodeType::Map), file.string()),
+                         robot_of(subject)));
   const fs::path source = subject.source;
   const std::string text =
       read_file(source, "problem file, from which the problem was loaded", kMostYamlBytes);
@@ -186,15 +195,18 @@ std::string proved_text(const Subject& subject, const fs::path& file) {
 std::string problem_text(const PathProblem& problem, const fs::path& file) {
   return proved_text(problem, file);
 }
-std::string problem_text(const Job& job, const fs::path& file) {
-  return proved_text(job, file);
+std::string problem_text(const Problem& problem, const fs::path& file) {
+  if (problem.arms.size() == 2)
+    throw InvalidArgument("arms: a problem of two arms: allowed to be written are those of one");
+  return is_path(problem) ? problem_text(problem_of_run(problem, {0, false}), file)
+                          : proved_text(problem, file);
 }
 
 void save_problem(const PathProblem& problem, const fs::path& file) {
   write_file(file, problem_text(problem, file));
 }
-void save_problem(const Job& job, const fs::path& file) {
-  write_file(file, problem_text(job, file));
+void save_problem(const Problem& problem, const fs::path& file) {
+  write_file(file, problem_text(problem, file));
 }
 
 }  // namespace swivel::io

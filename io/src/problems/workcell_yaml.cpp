@@ -7,7 +7,7 @@
 #include "problems/problem_reader.hpp"
 #include "robots/joints_to.hpp"
 #include "schema/schema.hpp"
-#include "swivel/io/problems/workcell.hpp"
+#include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
 
@@ -19,7 +19,7 @@ class WorkcellReader : ProblemReader {
   WorkcellReader(const std::filesystem::path& file, YamlSection root)
       : ProblemReader(file, std::move(root)) {}
 
-  Workcell read() {
+  Problem read() {
     const auto [key, arms] = *root_.chosen("path");  // throws where there is another as well
     require_keys_beside();
     for (const char* const other : {"start", "start_at", "start_tolerance"})
@@ -30,6 +30,7 @@ class WorkcellReader : ProblemReader {
     sections_ = arms.items();
     if (sections_.size() != 2)
       arms.fail("has " + std::to_string(sections_.size()) + " arms", "a list of two");
+    cell_ = two_arms();
     read_robot_of_both();
     list_arms();
     require_scene_in_base();
@@ -78,7 +79,7 @@ class WorkcellReader : ProblemReader {
   void list_arms() {
     for (std::size_t k = 0; k < 2; ++k) {
       const YamlSection section = sections_[k].section();
-      WorkcellArm& arm = cell_.arms[k];
+      ArmTask& arm = cell_.arms[k];
       const YamlValue name = section.require("name");
       arm.name = name.name();
       if (arm.name.find_first_of(",\"'\n\r ") != std::string::npos)
@@ -97,7 +98,7 @@ class WorkcellReader : ProblemReader {
   }
 
   void read_arm(std::size_t k) {
-    WorkcellArm& arm = cell_.arms[k];
+    ArmTask& arm = cell_.arms[k];
     const YamlSection section = sections_[k].section();
     static_cast<Robot&>(problem_) = arm;
     static_cast<Task&>(problem_) = Task();
@@ -139,7 +140,7 @@ class WorkcellReader : ProblemReader {
       smooth->fail("is given for a follower, which is not supported yet",
                    "no such key here: the follower keeps to the leader's curve");
     static_cast<Robot&>(arm) = problem_;
-    static_cast<Task&>(arm) = problem_;
+    static_cast<Task&>(arm.path()) = problem_;
     if (cell_.leader_of(k) >= 0 && k == 1 && cell_.leader_of(0) >= 0)
       path.fail("leads the arm that leads it", "one arm in the frame of the other");
   }
@@ -183,7 +184,7 @@ class WorkcellReader : ProblemReader {
 
   /// Reads an arm whose motion is given. The other arm has been read.
   void read_given_arm(std::size_t k) {
-    WorkcellArm& arm = cell_.arms[k];
+    ArmTask& arm = cell_.arms[k];
     const YamlSection section = sections_[k].section();
     const YamlValue file = section.require("trajectory");
     if (sections_[1 - k].section().find_filled("trajectory"))
@@ -209,14 +210,15 @@ class WorkcellReader : ProblemReader {
     arm.given = with_key(file, resolve(file), [&](const std::filesystem::path& path) {
       return load_given_rows(path, k, six_joints, {cell_.arms[0].name, cell_.arms[1].name}, joints);
     });
-    static_cast<Task&>(arm) = problem_;
+    static_cast<Task&>(arm.path()) = problem_;
   }
 
   /// Reads at which rows of the given motion the waypoints of the other arm are.
   void read_steps(std::size_t given) {
     const YamlSection section = sections_[1 - given].section();
-    WorkcellArm& arm = cell_.arms[1 - given];
-    const std::size_t rows = cell_.arms[given].given.size(), waypoints = arm.waypoints.size();
+    ArmTask& arm = cell_.arms[1 - given];
+    const std::size_t rows = cell_.arms[given].given.size(),
+                      waypoints = arm.path().waypoints.size();
     const auto at_rows = section.find_filled("at_rows");
     if (!at_rows) {
       if (waypoints != 2 && waypoints != rows)
@@ -243,15 +245,15 @@ class WorkcellReader : ProblemReader {
                                           std::to_string(at.back())),
                     "one for each of the " + std::to_string(waypoints) +
                         " waypoints, from 0 to the last, " + std::to_string(rows - 1));
-    for (std::size_t k = 1; k < at.size(); ++k) arm.steps.push_back(at[k] - at[k - 1]);
+    for (std::size_t k = 1; k < at.size(); ++k) arm.path().steps.push_back(at[k] - at[k - 1]);
   }
 
   void require_equal_lengths() const {
     for (const YamlValue& section : sections_)
       if (const auto at_rows = section.section().find_filled("at_rows"))
         at_rows->fail("is given, and no arm has a `trajectory`", "no such key here");
-    const std::size_t first = cell_.arms[0].waypoints.size(),
-                      second = cell_.arms[1].waypoints.size();
+    const std::size_t first = cell_.arms[0].path().waypoints.size(),
+                      second = cell_.arms[1].path().waypoints.size();
     if (first != second)
       sections_[1].section().require("path").fail(
           "has " + std::to_string(second) + " waypoints, and that of '" + cell_.arms[0].name +
@@ -274,7 +276,7 @@ class WorkcellReader : ProblemReader {
       }
     }
   }
-  static void require_body_of(const WorkcellArm& arm, const YamlValue& value) {
+  static void require_body_of(const ArmTask& arm, const YamlValue& value) {
     const std::string name = value.text();
     const bool is_attached =
         std::any_of(arm.attached.begin(), arm.attached.end(),
@@ -284,26 +286,26 @@ class WorkcellReader : ProblemReader {
                  "a link of arm '" + arm.name + "' or the name of a body attached to it");
   }
 
-  Workcell cell_;
+  Problem cell_;
   std::vector<YamlValue> sections_;               // of the arms
   std::array<std::vector<UnusedKey>, 2> unused_;  // of the arms that are planned
 };
 
 }  // namespace
 
-Workcell load_workcell(const std::filesystem::path& yaml) {
+Problem load_workcell(const std::filesystem::path& yaml) {
   YamlSection root = load_yaml(yaml, problem_schema()).section();
   static_cast<void>(root.chosen("path"));
   if (!root.find_filled("arms"))
-    root.self().fail("has no `arms`", "a file with `arms`; io::load_problem_file() takes any");
+    root.self().fail("has no `arms`", "a file with `arms`; io::load_problem() takes any");
   return WorkcellReader(yaml, std::move(root)).read();
 }
 
-std::variant<PathProblem, Job, Workcell> load_problem_file(const std::filesystem::path& yaml) {
+Problem load_problem(const std::filesystem::path& yaml) {
   YamlSection root = load_yaml(yaml, problem_schema()).section();
   if (root.find_filled("arms")) return WorkcellReader(yaml, std::move(root)).read();
   if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));
-  return ProblemReader(yaml, std::move(root)).read();
+  return one_path(ProblemReader(yaml, std::move(root)).read());
 }
 
 }  // namespace swivel::io

@@ -12,7 +12,7 @@ namespace {
 /// Writes the result of a job.
 class JobWriter {
  public:
-  JobWriter(const JobResult& result, const Job& job, const JobExtras& extras)
+  JobWriter(const JobResult& result, const Problem& job, const JobExtras& extras)
       : result_(result),
         job_(job),
         extras_(extras),
@@ -61,7 +61,7 @@ class JobWriter {
   }
 
   [[nodiscard]] const std::string& name(const StrokeRun& run) const {
-    return job_.strokes[run.stroke].name;
+    return job_.arm().strokes[run.stroke].name;
   }
   /// Returns the name of the run that a transition leads from or to; null for the home.
   [[nodiscard]] Json name_or_home(std::size_t part) const {
@@ -88,7 +88,7 @@ class JobWriter {
   [[nodiscard]] std::vector<TrajectoryRow> rows_of(const JobPart& part) const {
     std::vector<TrajectoryRow> rows = part.rows;
     if (part.run)
-      for (TrajectoryRow& row : rows) row.s += s_of_piece(job_.strokes[part.run->stroke]);
+      for (TrajectoryRow& row : rows) row.s += s_of_piece(job_.arm().strokes[part.run->stroke]);
     return rows;
   }
 
@@ -131,15 +131,16 @@ class JobWriter {
     std::size_t part = 0, stroke = 0;
     for (const LiftOffResult& lift : result_.lift_offs) {
       for (; stroke < lift.stroke; ++stroke) {
-        const auto& piece = job_.strokes[part].piece;
+        const auto& piece = job_.arm().strokes[part].piece;
         const std::string whole = piece ? piece->stroke : "";
         ++part;
-        while (piece && job_.strokes[part].piece && job_.strokes[part].piece->stroke == whole)
+        while (piece && job_.arm().strokes[part].piece &&
+               job_.arm().strokes[part].piece->stroke == whole)
           ++part;
       }
       // s of rows counts the approach as well
-      const double approach = job_.strokes[part].approach.norm();
-      list.push_back({{"stroke", job_.strokes[part].piece->stroke},
+      const double approach = job_.arm().strokes[part].approach.norm();
+      list.push_back({{"stroke", job_.arm().strokes[part].piece->stroke},
                       {"s", approach + lift.end},
                       {"resumed_s", approach + lift.resumed},
                       {"reached_s", approach + lift.reached},
@@ -195,8 +196,8 @@ class JobWriter {
     json["events"] = Json::array();
     for (const ProcessEvent& event : motion.events)
       json["events"].push_back({{"t", event.t},
-                                {"stroke", job_.strokes[event.stroke].name},
-                                {"s", event.s + s_of_piece(job_.strokes[event.stroke])},
+                                {"stroke", job_.arm().strokes[event.stroke].name},
+                                {"s", event.s + s_of_piece(job_.arm().strokes[event.stroke])},
                                 {"process", event.on ? "on" : "off"}});
     json["warnings"] = motion.warnings;
     return json;
@@ -220,14 +221,14 @@ class JobWriter {
   }
 
   const JobResult& result_;
-  const Job& job_;
+  const Problem& job_;
   const JobExtras& extras_;
   const bool solved_, roll_;
 };
 
 }  // namespace
 
-std::string to_job_json(const JobResult& result, const Job& job, const JobExtras& extras) {
+std::string to_job_json(const JobResult& result, const Problem& job, const JobExtras& extras) {
   return document_of(JobWriter(result, job, extras).write());
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "schema/schema.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io {
 
@@ -437,7 +437,7 @@ Keys job_keys() {
         "starts and where it returns to"},
        {"order", one_of({"given", "best"}), "", otherwise("given"),
         "of the strokes: as listed, or the cheapest that is found"},
-       {"rapid", number(kShare), "", otherwise(Job().rapid),
+       {"rapid", number(kShare), "", otherwise(ArmTask().rapid),
         "share of the joints' speeds in transitions"}},
       keys_of_strokes(nullptr));
   for (Schema::Key& key : keys) key.beside = "strokes";

@@ -26,7 +26,7 @@ constexpr std::size_t kMostLines = 20;  // of failures
 class JobCheck {
  public:
   /// Prepares the check of a job's parts; `timed` holds their rows with times, or is null.
-  JobCheck(const PreparedRobot& robot, const Job& job, const std::vector<JobPart>& parts,
+  JobCheck(const PreparedRobot& robot, const Problem& job, const std::vector<JobPart>& parts,
            const CheckOptions& options, const std::vector<std::vector<TimedRow>>* timed = nullptr)
       : robot_(robot),
         chain_(robot.arm().chain),
@@ -48,7 +48,8 @@ class JobCheck {
     if (examine_order())
       for (std::size_t k = 0; k < parts_.size(); ++k)
         parts_[k].run ? examine_run(k) : examine_transition(k);
-    if (job_.lift) result_.cost += static_cast<double>(lift_off_count(job_)) * job_.lift->cost;
+    if (job_.arm().lift)
+      result_.cost += static_cast<double>(lift_off_count(job_)) * job_.arm().lift->cost;
     result_.passed = result_.failure_count == 0;
     return std::move(result_);
   }
@@ -60,9 +61,9 @@ class JobCheck {
   }
   /// Returns the name of a part for messages.
   [[nodiscard]] std::string name(std::size_t k) const {
-    if (parts_[k].run) return "stroke '" + job_.strokes[parts_[k].run->stroke].name + "'";
+    if (parts_[k].run) return "stroke '" + job_.arm().strokes[parts_[k].run->stroke].name + "'";
     if (k + 1 < parts_.size() && parts_[k + 1].run)
-      return "transition to '" + job_.strokes[parts_[k + 1].run->stroke].name + "'";
+      return "transition to '" + job_.arm().strokes[parts_[k + 1].run->stroke].name + "'";
     return "transition home";
   }
 
@@ -72,33 +73,34 @@ class JobCheck {
     bool alternate = true;
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       const bool transition = !parts_[k].run;
-      alternate = alternate && transition == ((k % 2 == 0) == job_.home.has_value());
+      alternate = alternate && transition == ((k % 2 == 0) == job_.arm().home.has_value());
       if (transition) continue;
-      if (parts_[k].run->stroke >= job_.strokes.size()) {
+      if (parts_[k].run->stroke >= job_.arm().strokes.size()) {
         fail("part " + std::to_string(k + 1) + ": the job has no such stroke");
         return false;
       }
       runs.push_back(*parts_[k].run);
     }
     if (parts_.empty() || (parts_.size() % 2 == 1) == false || !alternate) {
-      fail(job_.home ? "parts: allowed are a transition, a stroke, a transition, ..., a transition"
-                     : "parts: allowed are a stroke, a transition, a stroke, ..., a stroke");
+      fail(job_.arm().home
+               ? "parts: allowed are a transition, a stroke, a transition, ..., a transition"
+               : "parts: allowed are a stroke, a transition, a stroke, ..., a stroke");
       return false;
     }
-    std::vector<int> times(job_.strokes.size());
+    std::vector<int> times(job_.arm().strokes.size());
     for (std::size_t k = 0; k < runs.size(); ++k) {
-      const Stroke& stroke = job_.strokes[runs[k].stroke];
+      const Stroke& stroke = job_.arm().strokes[runs[k].stroke];
       ++times[runs[k].stroke];
       if (runs[k].reversed && !stroke.reversible)
         fail("stroke '" + stroke.name + "' is run backwards: allowed is its own direction");
-      if (job_.order == StrokeOrder::kGiven && runs[k].stroke != k)
+      if (job_.arm().order == StrokeOrder::kGiven && runs[k].stroke != k)
         fail("stroke '" + stroke.name + "' is number " + std::to_string(k + 1) +
              ": allowed is the given order, in which it is number " +
              std::to_string(runs[k].stroke + 1));
     }
     for (std::size_t k = 0; k < times.size(); ++k)
       if (times[k] != 1)
-        fail("stroke '" + job_.strokes[k].name + "' is run " + std::to_string(times[k]) +
+        fail("stroke '" + job_.arm().strokes[k].name + "' is run " + std::to_string(times[k]) +
              " times: allowed is once");
     return true;
   }
@@ -148,8 +150,8 @@ class JobCheck {
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (!rows[i].q.allFinite())
         return fail(name(k) + ": row " + std::to_string(i) + ": joints are not finite");
-    examine_end(k, rows.front().q, k > 0 ? before(k) : job_.home, "begins");
-    examine_end(k, rows.back().q, k + 1 < parts_.size() ? after(k) : job_.home, "ends");
+    examine_end(k, rows.front().q, k > 0 ? before(k) : job_.arm().home, "begins");
+    examine_end(k, rows.back().q, k + 1 < parts_.size() ? after(k) : job_.arm().home, "ends");
     for (std::size_t i = 0; i < rows.size(); ++i) examine_limits(k, i);
     for (std::size_t i = 1; i < rows.size(); ++i) {
       const auto pair = edge_blocked(*query_, rule_, rows[i - 1].q, rows[i].q, options_.budget);
@@ -165,13 +167,13 @@ class JobCheck {
   }
   /// Examines the rates of a timed transition.
   void examine_times(std::size_t k) {
-    Limits limits = job_.limits;
+    Limits limits = job_.arm().transition_limits;
     limits.tool_speed.reset();
     limits.tool_turn_speed.reset();
     const JointRates rates = joint_rates(chain_, limits, job_.source);
     limits.joint_speed.emplace();
     for (std::size_t j = 0; j < kDof; ++j)
-      (*limits.joint_speed)[j] = job_.rapid * rates.speed[static_cast<Eigen::Index>(j)];
+      (*limits.joint_speed)[j] = job_.arm().rapid * rates.speed[static_cast<Eigen::Index>(j)];
     std::vector<Pose> tools;
     for (const TimedRow& row : (*timed_)[k]) tools.push_back(chain_.tool(row.row.q));
     static_cast<void>(examine_rates(chain_, limits, job_.source, (*timed_)[k], tools,
@@ -217,7 +219,7 @@ class JobCheck {
   }
   /// Returns what the moves of a transition cost. The roll of a six-joint arm costs nothing.
   [[nodiscard]] double cost_of(const std::vector<TrajectoryRow>& rows) const {
-    const Cost& cost = job_.strokes.front().cost;
+    const Cost& cost = job_.arm().strokes.front().cost;
     const std::array<double, kDof> weights = joint_weights(cost, chain_);
     double sum = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -238,7 +240,7 @@ class JobCheck {
 
   const PreparedRobot& robot_;
   const Chain& chain_;
-  const Job& job_;
+  const Problem& job_;
   const std::vector<JobPart>& parts_;
   const std::vector<std::vector<TimedRow>>* timed_;  // by part
   const CheckOptions& options_;
@@ -251,7 +253,7 @@ class JobCheck {
 
 }  // namespace
 
-JobCheckResult check_job(const PreparedRobot& robot, const Job& job,
+JobCheckResult check_job(const PreparedRobot& robot, const Problem& job,
                          const std::vector<JobPart>& parts, const CheckOptions& options) {
   validate(job);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
@@ -261,17 +263,17 @@ JobCheckResult check_job(const PreparedRobot& robot, const Job& job,
 namespace {
 
 /// Says what is wrong with the events of a timed job, if anything is.
-std::optional<std::string> fault_of_events(const Job& job, const std::vector<StrokeRun>& order,
+std::optional<std::string> fault_of_events(const Problem& job, const std::vector<StrokeRun>& order,
                                            const JobMotion& motion) {
   std::vector<ProcessEvent> expected;
   std::size_t next = 0;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const std::size_t part = job.home ? 2 * k + 1 : 2 * k;
+    const std::size_t part = job.arm().home ? 2 * k + 1 : 2 * k;
     while (next < motion.rows.size() && motion.part[next] < part) ++next;
     std::size_t end = next;
     while (end < motion.rows.size() && motion.part[end] == part) ++end;
     const std::size_t first = next > 0 ? next - 1 : 0;  // the part begins at rest, where it was
-    if (first == end) return "stroke '" + job.strokes[order[k].stroke].name + "' has no rows";
+    if (first == end) return "stroke '" + job.arm().strokes[order[k].stroke].name + "' has no rows";
     const auto events = events_of_run(job, order[k], problem_of_run(job, order[k]),
                                       std::span(motion.rows).subspan(first, end - first));
     expected.insert(expected.end(), events.begin(), events.end());
@@ -280,7 +282,7 @@ std::optional<std::string> fault_of_events(const Job& job, const std::vector<Str
     return formatted("%zu events: allowed are %zu", motion.events.size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) {
     const ProcessEvent &is = motion.events[k], &should = expected[k];
-    const std::string& name = job.strokes[should.stroke].name;
+    const std::string& name = job.arm().strokes[should.stroke].name;
     if (is.stroke != should.stroke || is.on != should.on || std::abs(is.t - should.t) > 1e-9 ||
         std::abs(is.s - should.s) > 1e-9)
       return formatted("event %zu: allowed is process %s of stroke '%s' at t = %.9g s", k + 1,
@@ -291,16 +293,17 @@ std::optional<std::string> fault_of_events(const Job& job, const std::vector<Str
 
 }  // namespace
 
-JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& given,
+JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given,
                                 const std::vector<StrokeRun>& order, const JobMotion& motion,
                                 const CheckOptions& options) {
   validate(given);
   robot.require_prepared_for(problem_of_run(given, {0, false}));
-  const Job job = with_motion_defaults(given);
-  const std::size_t count = job.home ? 2 * order.size() + 1 : 2 * order.size() - 1;
+  const Problem job = with_motion_defaults(given);
+  const std::size_t count = job.arm().home ? 2 * order.size() + 1 : 2 * order.size() - 1;
   std::vector<JobPart> parts(count);
   std::vector<std::vector<TimedRow>> timed(count);
-  for (std::size_t k = 0; k < order.size(); ++k) parts[job.home ? 2 * k + 1 : 2 * k].run = order[k];
+  for (std::size_t k = 0; k < order.size(); ++k)
+    parts[job.arm().home ? 2 * k + 1 : 2 * k].run = order[k];
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const std::size_t part = motion.part[k];
     if (part >= count || (k > 0 && part < motion.part[k - 1]))
@@ -319,14 +322,14 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& given,
   return result;
 }
 
-void check_process(const Job& job, const std::vector<JobPart>& parts,
+void check_process(const Problem& job, const std::vector<JobPart>& parts,
                    const std::vector<std::vector<bool>>& process, JobCheckResult& result) {
   if (process.size() != parts.size())
     throw InvalidArgument(formatted("process: of %zu parts: allowed is one item for each of %zu",
                                     process.size(), parts.size()));
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const std::vector<bool>& is = process[k];
-    if (!parts[k].run || parts[k].run->stroke >= job.strokes.size() || is.empty()) continue;
+    if (!parts[k].run || parts[k].run->stroke >= job.arm().strokes.size() || is.empty()) continue;
     const std::vector<bool> should = process_of_rows(parts[k], job);
     if (is.size() != should.size())
       throw InvalidArgument(
@@ -335,7 +338,7 @@ void check_process(const Job& job, const std::vector<JobPart>& parts,
     const auto first = std::mismatch(is.begin(), is.end(), should.begin()).first;
     if (first == is.end()) continue;
     const auto row = static_cast<std::size_t>(first - is.begin());
-    result.failures.push_back("stroke '" + job.strokes[parts[k].run->stroke].name +
+    result.failures.push_back("stroke '" + job.arm().strokes[parts[k].run->stroke].name +
                               formatted("': row %zu: process is %d: allowed is %d", row,
                                         static_cast<int>(is[row]), static_cast<int>(!is[row])));
     ++result.failure_count;
@@ -348,7 +351,7 @@ void require_passed(const JobCheckResult& result) {
     throw std::logic_error("the job does not pass its own check: " + result.failures.at(0));
 }
 
-bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job, std::size_t stroke,
+bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
                              const std::vector<TrajectoryRow>& rows) {
   if (rows.empty() || !rows.front().q.allFinite()) return false;
   const Pose tool = robot.arm().chain.tool(rows.front().q);
@@ -362,12 +365,12 @@ bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job, std::si
   return backward.second < forward.second;
 }
 
-std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Job& job,
+std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Problem& job,
                                       const std::vector<std::size_t>& strokes,
                                       const JobMotion& motion) {
   std::vector<StrokeRun> runs;
   for (std::size_t k = 0; k < strokes.size(); ++k) {
-    const std::size_t part = job.home ? 2 * k + 1 : 2 * k;
+    const std::size_t part = job.arm().home ? 2 * k + 1 : 2 * k;
     const auto own = std::find(motion.part.begin(), motion.part.end(), part);
     // A run begins with the last row of the transition before it.
     const auto row = static_cast<std::size_t>(own - motion.part.begin());

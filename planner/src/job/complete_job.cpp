@@ -19,11 +19,11 @@ namespace {
 
 /// Calls `work` on a run and puts the name of its stroke before the message of an InputError.
 template <class Work>
-auto in_the_name_of(const Job& job, const StrokeRun& run, const Work& work) {
+auto in_the_name_of(const Problem& job, const StrokeRun& run, const Work& work) {
   try {
     return work(problem_of_run(job, run));
   } catch (const InputError& error) {
-    throw InputError("stroke '" + job.strokes[run.stroke].name + "'", error.what());
+    throw InputError("stroke '" + job.arm().strokes[run.stroke].name + "'", error.what());
   }
 }
 
@@ -45,15 +45,15 @@ std::vector<Range> ranges_of(const JobMotion& motion) {
 }
 
 /// Returns the run that a part of a motion is; none for a transition.
-std::optional<StrokeRun> run_of_part(const Job& job, const std::vector<StrokeRun>& order,
+std::optional<StrokeRun> run_of_part(const Problem& job, const std::vector<StrokeRun>& order,
                                      std::size_t part) {
-  const bool is_run = (part % 2 == 1) == job.home.has_value();
+  const bool is_run = (part % 2 == 1) == job.arm().home.has_value();
   if (!is_run || part / 2 >= order.size()) return std::nullopt;
   return order[part / 2];
 }
 
-double roll_at_home(const Job& job) {
-  return job.home ? (*job.home)[kDof - 1] : 0;
+double roll_at_home(const Problem& job) {
+  return job.arm().home ? (*job.arm().home)[kDof - 1] : 0;
 }
 
 /// Lets the roll of a six-joint arm turn in a transition as the other joints move: from one value
@@ -104,7 +104,7 @@ std::vector<TrajectoryRow> corners_of(const std::vector<TrajectoryRow>& rows) {
 
 }  // namespace
 
-std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Job& job,
+std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Problem& job,
                                     std::vector<JobPart> parts, const Stated& stated,
                                     const Budget& budget) {
   if (stated.rows()) return parts;
@@ -126,7 +126,7 @@ std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Job& job,
   return parts;
 }
 
-JobMotion complete_job_motion(const PreparedRobot& robot, const Job& job,
+JobMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
                               const std::vector<StrokeRun>& order, JobMotion motion,
                               const Stated& stated, const Budget& budget) {
   const std::vector<Range> ranges = ranges_of(motion);
@@ -172,10 +172,10 @@ JobMotion complete_job_motion(const PreparedRobot& robot, const Job& job,
   return motion;
 }
 
-std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Job& job,
+std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Problem& job,
                                      const std::vector<StrokeRun>& order, const JobMotion& motion,
                                      const Budget& budget) {
-  const Job completed = with_motion_defaults(job);
+  const Problem completed = with_motion_defaults(job);
   std::vector<JobPart> parts;
   for (const Range& range : ranges_of(motion)) {
     JobPart& part = parts.emplace_back();

@@ -35,9 +35,9 @@ void note_other_turn(const Lattice& lattice, const Config& q, const Config& want
 
 }  // namespace
 
-Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice, const Job& job) {
+Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice, const Problem& job) {
   Lattice::Joints off{};
-  std::optional<Config> end = job.home;
+  std::optional<Config> end = job.arm().home;
   for (JobPart& part : parts) {
     // the run itself leaves the limits, whatever its turn
     if (part.rows.empty()) return bounded_circles(lattice);
@@ -53,10 +53,10 @@ Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice, const 
     }
     end = last;
     if (!part.run) continue;
-    if (const auto& given = job.strokes[part.run->stroke].end)
+    if (const auto& given = job.arm().strokes[part.run->stroke].end)
       note_other_turn(lattice, last, *given, off);
   }
-  if (job.home) note_other_turn(lattice, *end, *job.home, off);
+  if (job.arm().home) note_other_turn(lattice, *end, *job.arm().home, off);
   return off;
 }
 

@@ -5,7 +5,7 @@
 
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -15,6 +15,6 @@ namespace swivel {
 /// then leave their limits, do not come back to `home`, or are not at the given end of a stroke
 /// (Stroke::end); the parts mean nothing if there are any.
 [[nodiscard]] Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice,
-                                   const Job& job);
+                                   const Problem& job);
 
 }  // namespace swivel

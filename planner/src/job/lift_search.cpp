@@ -22,11 +22,11 @@ constexpr double kSameLength = 1e-9;    // m
 
 /// Returns the problem of a stroke without approach and retract, whose corners stay sharp: where
 /// they are rounded, a run that ends at a corner ends beside the curve.
-PathProblem bare_problem(const Job& job, std::size_t stroke) {
-  Job bare = job;
-  bare.strokes[stroke].smooth.reset();
-  bare.strokes[stroke].approach.setZero();
-  bare.strokes[stroke].retract.setZero();
+PathProblem bare_problem(const Problem& job, std::size_t stroke) {
+  Problem bare = job;
+  bare.arm().strokes[stroke].smooth.reset();
+  bare.arm().strokes[stroke].approach.setZero();
+  bare.arm().strokes[stroke].retract.setZero();
   return problem_of_run(bare, {stroke, false});
 }
 
@@ -47,7 +47,7 @@ void require_cuttable(const PreparedRobot& robot, const PathProblem& problem,
 
 }  // namespace
 
-LiftSearch::LiftSearch(const PreparedRobot& robot, const Job& job, std::size_t stroke,
+LiftSearch::LiftSearch(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
                        DistanceProofs proofs, int threads, const Budget& budget)
     : robot_(&robot),
       job_(&job),
@@ -64,7 +64,7 @@ LiftSearch::LiftSearch(const PreparedRobot& robot, const Job& job, std::size_t s
   CollisionValidity validity(*lattice_, world_, world_.edge_rule(robot.radii()),
                              problem_.limits.edges, proofs_, executor_, 0, budget_);
   program_.emplace(*lattice_, validity, budget_);
-  find_places(job.lift->overlap);
+  find_places(job.arm().lift->overlap);
   begin_known_.resize(places_.size());
   end_known_.resize(places_.size());
   find_lines(0, path_.size() - 1);
@@ -98,7 +98,7 @@ void LiftSearch::find_places(double overlap) {
 /// Finds what the approach costs at the layer `begin` and the retract at the layer `end`. Returns
 /// false if both were known.
 bool LiftSearch::find_lines(int begin, int end) {
-  const Stroke& stroke = job_->strokes[stroke_];
+  const Stroke& stroke = job_->arm().strokes[stroke_];
   const auto b = static_cast<std::size_t>(begin), e = static_cast<std::size_t>(end);
   bool found = false;
   if (begin_known_[b] == 0 && !stroke.approach.isZero(0)) {
@@ -137,8 +137,8 @@ std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
     // The stroke beyond the line says how the tool's frame is carried along its axis.
     line.waypoints.insert(line.waypoints.begin(), line.waypoints.front());
   } else if (layer + 1 < path_.size()) {
-    const Job cut = with_lift_offs(*job_, {{stroke_, s, s}});
-    line.waypoints = cut.strokes[stroke_].waypoints;
+    const Problem cut = with_lift_offs(*job_, {{stroke_, s, s}});
+    line.waypoints = cut.arm().strokes[stroke_].waypoints;
   }
   if (layer > 0) line.waypoints.push_back(line.waypoints.back());
   const auto beyond = layer > 0 ? line.waypoints.end() - 1 : line.waypoints.begin() + 1;

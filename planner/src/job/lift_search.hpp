@@ -7,7 +7,7 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/graph/eager/cut_program.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -22,8 +22,8 @@ class LiftSearch {
   /// Asks about all nodes and edges of the stroke's lattice. Both references must outlive this.
   /// Throws InputError for an arm whose roll and arm angle are both free and for a stroke of more
   /// than 5000 layers, and Stopped.
-  LiftSearch(const PreparedRobot& robot, const Job& job, std::size_t stroke, DistanceProofs proofs,
-             int threads, const Budget& budget);
+  LiftSearch(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
+             DistanceProofs proofs, int threads, const Budget& budget);
 
   /// Returns the least number of lift-offs; none where no number suffices.
   [[nodiscard]] std::optional<int> least() const { return least_; }
@@ -52,7 +52,7 @@ class LiftSearch {
   [[nodiscard]] bool turns_on_the_spot(int layer) const;
 
   const PreparedRobot* robot_;
-  const Job* job_;
+  const Problem* job_;
   std::size_t stroke_;
   DistanceProofs proofs_;
   Budget budget_;

@@ -125,7 +125,7 @@ struct PlannedRun {
 /// in. Jobs in several orders share them.
 class JobRuns {
  public:
-  JobRuns(const PreparedRobot& robot, const Job& job, const Budget& budget)
+  JobRuns(const PreparedRobot& robot, const Problem& job, const Budget& budget)
       : robot_(robot), job_(job), budget_(budget) {}
 
   /// Returns the world of the job's bodies with some limits. Runs with equal limits share it.
@@ -150,9 +150,9 @@ class JobRuns {
     std::vector<std::shared_ptr<PlannedRun>> made(missing.size());
     executor.for_each(static_cast<int>(missing.size()), [&](int k, int) {
       const auto i = static_cast<std::size_t>(k);
-      made[i] =
-          std::make_shared<PlannedRun>(missing[i].first, job_.strokes[missing[i].first.stroke],
-                                       std::move(missing[i].second), robot_, *worlds[i], budget_);
+      made[i] = std::make_shared<PlannedRun>(
+          missing[i].first, job_.arm().strokes[missing[i].first.stroke],
+          std::move(missing[i].second), robot_, *worlds[i], budget_);
     });
     known_.insert(known_.end(), made.begin(), made.end());
     std::vector<std::shared_ptr<PlannedRun>> runs;
@@ -162,8 +162,8 @@ class JobRuns {
   /// Returns a run like `run` with another lattice, which is no other job's.
   [[nodiscard]] std::shared_ptr<PlannedRun> with_lattice(const PlannedRun& run,
                                                          std::unique_ptr<Lattice> lattice) const {
-    auto other = std::make_shared<PlannedRun>(run.run, job_.strokes[run.run.stroke], run.problem,
-                                              robot_, *run.world, budget_);
+    auto other = std::make_shared<PlannedRun>(run.run, job_.arm().strokes[run.run.stroke],
+                                              run.problem, robot_, *run.world, budget_);
     other->lattice = std::move(lattice);
     return other;
   }
@@ -175,7 +175,7 @@ class JobRuns {
     return nullptr;
   }
   const PreparedRobot& robot_;
-  const Job& job_;
+  const Problem& job_;
   const Budget& budget_;
   std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
   std::vector<std::shared_ptr<PlannedRun>> known_;
@@ -186,7 +186,7 @@ class JobPlan {
   /// Prepares the plan of a job in an order of its strokes, reversible ones in the cheaper
   /// direction. With `one_branch`, no run of an S-R-S arm changes its
   /// branch.
-  JobPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+  JobPlan(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
           const Budget& budget, std::shared_ptr<JobRuns> shared, std::vector<std::size_t> order,
           bool one_branch)
       : robot_(robot),
@@ -264,12 +264,12 @@ class JobPlan {
   }
 
   void lay_out() {
-    require_joints_that_move(robot_, job_);
+    require_joints_that_move(robot_, job_.arm());
     require_home_within_limits();
     std::vector<StrokeRun> all;
     for (const std::size_t stroke : order_)
       for (const bool reversed : {false, true})
-        if (!reversed || job_.strokes[stroke].reversible) all.push_back({stroke, reversed});
+        if (!reversed || job_.arm().strokes[stroke].reversible) all.push_back({stroke, reversed});
     for (auto& run : shared_->in_order(all, executor_)) {
       if (!run->run.reversed) directions_.emplace_back();
       directions_.back().push_back(std::move(run));
@@ -283,7 +283,7 @@ class JobPlan {
   /// Notes the warnings and the special pairs of all runs and of the transitions.
   void describe() {
     SpecialPairs pairs;
-    add_lines(robot_warnings(robot_, job_), result_.warnings);
+    add_lines(robot_warnings(robot_, job_.arm()), result_.warnings);
     for (const auto& run : runs_) {
       add_lines(unused_key_warnings(unused_keys(chain_, robot_.arm_class()), run->problem),
                 result_.warnings);
@@ -397,7 +397,7 @@ class JobPlan {
       for (std::size_t j = 0; j < kDof; ++j) off[j] = off[j] || here[j];
       if (!note.empty()) continue;
       note = turns_note(*run.lattice, path, here, run.problem, "job");
-      if (!note.empty()) note = "stroke '" + job_.strokes[run.run.stroke].name + "': " + note;
+      if (!note.empty()) note = "stroke '" + job_.arm().strokes[run.run.stroke].name + "': " + note;
     }
     return off;
   }
@@ -406,9 +406,9 @@ class JobPlan {
   }
   /// Throws InputError if home is outside of the joints' limits.
   void require_home_within_limits() const {
-    if (!job_.home) return;
+    if (!job_.arm().home) return;
     for (std::size_t j = 0; j < kDof; ++j) {
-      const double x = (*job_.home)[static_cast<Eigen::Index>(j)];
+      const double x = (*job_.arm().home)[static_cast<Eigen::Index>(j)];
       const JointLimit& limit = chain_.limit[j];
       bool none = limit.continuous || limit.wide() || (chain_.roll && j + 1 == kDof);
       const double lower = limit.lower + transition_limits_.joint_margin,
@@ -423,8 +423,8 @@ class JobPlan {
   }
   /// Returns true if the arm comes too near to something at home, and notes to what.
   bool home_is_barred(JobTransitions& transitions) {
-    if (!job_.home) return false;
-    if (const auto bodies = transitions.barred(*job_.home))
+    if (!job_.arm().home) return false;
+    if (const auto bodies = transitions.barred(*job_.arm().home))
       result_.no_transition = {.to = 0, .where = NoTransition::Where::kHome, .bodies = bodies};
     return result_.no_transition.has_value();
   }
@@ -452,7 +452,7 @@ class JobPlan {
     options.paths.batch = 8;
     options.work = work();
     options.most_cost = most_cost_;
-    return search_job(searched, transitions, job_.home, options);
+    return search_job(searched, transitions, job_.arm().home, options);
   }
 
   /// Notes what a search did and found.
@@ -513,7 +513,7 @@ class JobPlan {
   /// Returns the parts of the job that was found, with joints as the lattices have them.
   std::vector<JobPart> parts_of(const JobOutcome& outcome, JobTransitions& transitions) {
     std::vector<JobPart> parts;
-    std::optional<Config> end = job_.home;
+    std::optional<Config> end = job_.arm().home;
     std::size_t next_cost = 0;
     const auto add_transition = [&](std::size_t k, const Config& to) {
       JobPart part;
@@ -539,7 +539,7 @@ class JobPlan {
       parts.push_back(std::move(part));
       end = *lattice.exact_config(lattice.layers() - 1, path.back());
     }
-    if (job_.home) add_transition(runs_.size(), *job_.home);
+    if (job_.arm().home) add_transition(runs_.size(), *job_.arm().home);
     if (chain_.roll) join_rolls(parts);
     return parts;
   }
@@ -614,7 +614,7 @@ class JobPlan {
   std::shared_ptr<JobRuns> shared_;
   std::vector<std::size_t> order_;  // of strokes
   const Chain& chain_;
-  const Job& job_;
+  const Problem& job_;
   Limits transition_limits_;
   const PlanOptions& options_;
   Budget budget_;
@@ -630,9 +630,9 @@ class JobPlan {
   JobResult result_;
 };
 
-std::vector<StrokeRun> given_order(const Job& job) {
+std::vector<StrokeRun> given_order(const Problem& job) {
   std::vector<StrokeRun> order;
-  for (std::size_t k = 0; k < job.strokes.size(); ++k) order.push_back({k, false});
+  for (std::size_t k = 0; k < job.arm().strokes.size(); ++k) order.push_back({k, false});
   return order;
 }
 
@@ -647,7 +647,7 @@ std::vector<std::size_t> strokes_of(const std::vector<StrokeRun>& order) {
 class OrderSearch {
  public:
   /// Keeps the plan of the best job for `view`, unless that is null.
-  OrderSearch(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+  OrderSearch(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
               const Budget& budget, bool one_branch, JobView* view)
       : robot_(robot),
         job_(job),
@@ -659,7 +659,7 @@ class OrderSearch {
 
   JobResult plan() {
     double order_ms = 0;
-    if (job_.order == StrokeOrder::kBest) {
+    if (job_.arm().order == StrokeOrder::kBest) {
       try {
         Stopwatch watch;
         estimate();
@@ -674,7 +674,7 @@ class OrderSearch {
     JobResult found = best_->finish();
     found.counters = counters_;
     found.transitions = transitions_;
-    if (job_.order == StrokeOrder::kBest) found.time_ms["order"] = order_ms;
+    if (job_.arm().order == StrokeOrder::kBest) found.time_ms["order"] = order_ms;
     if (view_ != nullptr) view_->runs = best_->views(), view_->owner = best_;
     return found;
   }
@@ -737,7 +737,7 @@ class OrderSearch {
   }
 
   const PreparedRobot& robot_;
-  const Job& job_;
+  const Problem& job_;
   const PlanOptions& options_;
   const Budget& budget_;
   bool one_branch_;
@@ -752,7 +752,7 @@ class OrderSearch {
   TransitionCounters transitions_;
 };
 
-JobResult plan_in_order(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+JobResult plan_in_order(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
                         const Budget& budget, JobView* view, bool one_branch = false) {
   return OrderSearch(robot, job, options, budget, one_branch, view).plan();
 }
@@ -765,8 +765,8 @@ bool any_changes_branch(const JobResult& job) {
 
 /// Plans a job of which motions are to be made: the cheapest, or the cheapest whose runs do not
 /// change branch if the cheapest does and there is one.
-JobResult plan_executable(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
-                          const Budget& budget, JobView* view) {
+JobResult plan_executable(const PreparedRobot& robot, const Problem& job,
+                          const PlanOptions& options, const Budget& budget, JobView* view) {
   JobResult found = plan_in_order(robot, job, options, budget, view);
   if (found.parts.empty() || !robot.arm_class().srs || !any_changes_branch(found)) return found;
   JobView other_view;
@@ -783,40 +783,40 @@ JobResult plan_executable(const PreparedRobot& robot, const Job& job, const Plan
 
 }  // namespace
 
-JobResult plan_job(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+JobResult plan_job(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
                    JobView* view) {
   validate(job);
   require_supported(options, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   const Budget budget = options.budget();
   return plan_with_lift_offs(robot, job, options, budget, view,
-                             [&](const Job& one, JobView* its_view) {
+                             [&](const Problem& one, JobView* its_view) {
                                return plan_in_order(robot, one, options, budget, its_view);
                              });
 }
 
-JobResult plan_job(const Job& job, const PlanOptions& options) {
+JobResult plan_job(const Problem& job, const PlanOptions& options) {
   validate(job);
   require_supported(options, "jobs");
   return plan_job(PreparedRobot(problem_of_run(job, {0, false})), job, options);
 }
 
-JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
+JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Problem& job,
                               const PlanOptions& options, const JobTimingOptions& timing,
                               JobView* view) {
   validate(job);
   require_supported(options, "jobs");
   require_speeds(job, timing);
-  const Job completed = with_motion_defaults(job);
+  const Problem completed = with_motion_defaults(job);
   robot.require_prepared_for(problem_of_run(completed, {0, false}));
   const Budget budget = options.budget();
   JobMotionPlan plan;
   plan.result = plan_with_lift_offs(robot, completed, options, budget, view,
-                                    [&](const Job& one, JobView* its_view) {
+                                    [&](const Problem& one, JobView* its_view) {
                                       return plan_executable(robot, one, options, budget, its_view);
                                     });
   if (plan.result.parts.empty()) return plan;
-  const Job executed = executed_job(completed, plan.result);
+  const Problem executed = executed_job(completed, plan.result);
   try {
     Stopwatch watch;
     plan.timing = time_job(robot, executed, plan.result.parts, timing, budget);

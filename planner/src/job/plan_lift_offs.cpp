@@ -32,19 +32,19 @@ struct CutStroke {
 
 class LiftPlan {
  public:
-  LiftPlan(const PreparedRobot& robot, const Job& job, const PlanOptions& options,
+  LiftPlan(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
            const Budget& budget, JobView* view,
-           const std::function<JobResult(const Job&, JobView*)>& plan)
+           const std::function<JobResult(const Problem&, JobView*)>& plan)
       : robot_(robot), job_(job), options_(options), budget_(budget), view_(view), plan_(plan) {}
 
   JobResult run() {
-    uncut_ = std::make_shared<Job>(job_);
-    uncut_->lift.reset();
+    uncut_ = std::make_shared<Problem>(job_);
+    uncut_->arm().lift.reset();
     JobResult first = plan_(*uncut_, view_);
     keep(uncut_);
-    const bool cut = std::any_of(job_.strokes.begin(), job_.strokes.end(),
+    const bool cut = std::any_of(job_.arm().strokes.begin(), job_.arm().strokes.end(),
                                  [](const Stroke& stroke) { return stroke.piece.has_value(); });
-    if (!job_.lift || cut || first.status != PlanStatus::kInfeasible) return first;
+    if (!job_.arm().lift || cut || first.status != PlanStatus::kInfeasible) return first;
     bool stopped = false;
     try {
       Stopwatch watch;
@@ -65,10 +65,11 @@ class LiftPlan {
 
  private:
   /// Lets a view live as long as the job to which it refers.
-  void keep(const std::shared_ptr<Job>& job) {
+  void keep(const std::shared_ptr<Problem>& job) {
     if (view_ != nullptr)
-      view_->owner = std::make_shared<std::pair<std::shared_ptr<Job>, std::shared_ptr<const void>>>(
-          job, view_->owner);
+      view_->owner =
+          std::make_shared<std::pair<std::shared_ptr<Problem>, std::shared_ptr<const void>>>(
+              job, view_->owner);
   }
   /// Finds the least number of lift-offs of each stroke that has no path by itself. Returns false,
   /// and says so in the result, where one cannot be done in any number of runs.
@@ -84,7 +85,7 @@ class LiftPlan {
       stroke.count = std::max(1, least.value_or(1));
       const auto places = least ? stroke.search->next(stroke.count) : std::nullopt;
       if (!places) {
-        first.warnings.push_back("stroke '" + job_.strokes[run.run.stroke].name +
+        first.warnings.push_back("stroke '" + job_.arm().strokes[run.run.stroke].name +
                                  "': no number of lift-offs suffices: some place on it cannot be "
                                  "passed by any run");
         return false;
@@ -103,7 +104,7 @@ class LiftPlan {
   /// Plans the job with the places chosen now, and keeps it if it is the best so far.
   JobResult evaluate() {
     const std::vector<LiftOff> places = lift_offs();
-    const auto job = std::make_shared<Job>(with_lift_offs(job_, places));
+    const auto job = std::make_shared<Problem>(with_lift_offs(job_, places));
     JobView view;
     JobResult found = plan_(*job, view_ == nullptr ? nullptr : &view);
     add_counters(found.counters, counters_);
@@ -124,7 +125,7 @@ class LiftPlan {
   /// Chooses the places of a stroke: plans the job with the cheapest ones, as long as others may be
   /// cheaper with their moves around obstacles.
   void choose(CutStroke& stroke) {
-    const bool alone = job_.strokes.size() == 1 && !job_.home;
+    const bool alone = job_.arm().strokes.size() == 1 && !job_.arm().home;
     std::optional<double> rest;  // cost of everything but the stroke
     std::optional<LiftSearch::Places> kept;
     double least = std::numeric_limits<double>::infinity();
@@ -156,17 +157,17 @@ class LiftPlan {
   [[nodiscard]] std::vector<std::size_t> faults_of(const JobResult& found,
                                                    const CutStroke& stroke) const {
     std::set<std::size_t> faults;
-    const Job job = with_lift_offs(job_, lift_offs());
-    const std::string& name = job_.strokes[stroke.places.lift_offs.front().stroke].name;
+    const Problem job = with_lift_offs(job_, lift_offs());
+    const std::string& name = job_.arm().strokes[stroke.places.lift_offs.front().stroke].name;
     const auto count = static_cast<std::size_t>(stroke.count);
     // number of the run among those of this stroke
     const auto number = [&](std::size_t run) -> std::optional<std::size_t> {
-      if (run >= job.strokes.size() || !job.strokes[run].piece ||
-          job.strokes[run].piece->stroke != name)
+      if (run >= job.arm().strokes.size() || !job.arm().strokes[run].piece ||
+          job.arm().strokes[run].piece->stroke != name)
         return std::nullopt;
       std::size_t before = 0;
-      while (before < run && job.strokes[run - 1 - before].piece &&
-             job.strokes[run - 1 - before].piece->stroke == name)
+      while (before < run && job.arm().strokes[run - 1 - before].piece &&
+             job.arm().strokes[run - 1 - before].piece->stroke == name)
         ++before;
       return before;
     };
@@ -186,13 +187,13 @@ class LiftPlan {
   }
   /// Returns by how much the transitions of a stroke's lift-offs are dearer than straight ones.
   [[nodiscard]] double detours(const JobResult& found, const CutStroke& stroke) const {
-    const Job job = with_lift_offs(job_, lift_offs());
-    const std::string& name = job_.strokes[stroke.places.lift_offs.front().stroke].name;
+    const Problem job = with_lift_offs(job_, lift_offs());
+    const std::string& name = job_.arm().strokes[stroke.places.lift_offs.front().stroke].name;
     double sum = 0;
     for (std::size_t part = 1; part + 1 < found.parts.size(); ++part) {
       if (found.parts[part].run) continue;
-      const auto &before = job.strokes[found.parts[part - 1].run->stroke].piece,
-                 &after = job.strokes[found.parts[part + 1].run->stroke].piece;
+      const auto &before = job.arm().strokes[found.parts[part - 1].run->stroke].piece,
+                 &after = job.arm().strokes[found.parts[part + 1].run->stroke].piece;
       if (!before || !after || before->stroke != name || after->stroke != name) continue;
       const std::vector<TrajectoryRow>& rows = found.parts[part].rows;
       sum += found.parts[part].cost - stroke.search->distance(rows.front().q, rows.back().q);
@@ -203,7 +204,7 @@ class LiftPlan {
   /// Returns the best job with what its lift-offs cost and why each is there.
   JobResult finish(JobResult first) {
     JobResult found = std::move(*best_);
-    const double cost = static_cast<double>(best_lift_offs_.size()) * job_.lift->cost;
+    const double cost = static_cast<double>(best_lift_offs_.size()) * job_.arm().lift->cost;
     found.cost += cost;
     found.lattice_cost += cost;
     found.bound += cost;
@@ -234,14 +235,15 @@ class LiftPlan {
     // The cause is that of this place only if the run by itself, whose nodes may differ, ends here.
     constexpr double kSamePlace = 1e-6;  // m
     if (!diagnosis || !diagnosis->reached_s) return lift;
-    const double there = begin + *diagnosis->reached_s - job_.strokes[lift.stroke].approach.norm();
+    const double there =
+        begin + *diagnosis->reached_s - job_.arm().strokes[lift.stroke].approach.norm();
     if (std::abs(there - lift.reached) <= kSamePlace) lift.cause = diagnosis->cause;
     return lift;
   }
   /// Returns what ends every run that begins at lift-off number k and goes on to the stroke's end.
   [[nodiscard]] std::optional<Diagnosis> diagnosis_after(std::size_t k) const {
     const LiftOff& begin = best_lift_offs_[k];
-    const Job job = with_lift_offs(job_, {begin});
+    const Problem job = with_lift_offs(job_, {begin});
     PlanOptions alone = options_;
     alone.check = false;
     Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot_),
@@ -252,12 +254,12 @@ class LiftPlan {
   }
 
   const PreparedRobot& robot_;
-  const Job& job_;
+  const Problem& job_;
   const PlanOptions& options_;
   const Budget& budget_;
   JobView* view_;
-  const std::function<JobResult(const Job&, JobView*)>& plan_;
-  std::shared_ptr<Job> uncut_;
+  const std::function<JobResult(const Problem&, JobView*)>& plan_;
+  std::shared_ptr<Problem> uncut_;
   std::vector<CutStroke> strokes_;
   std::optional<JobResult> best_;
   std::vector<LiftOff> best_lift_offs_;
@@ -266,10 +268,10 @@ class LiftPlan {
 
 }  // namespace
 
-JobResult plan_with_lift_offs(const PreparedRobot& robot, const Job& job,
+JobResult plan_with_lift_offs(const PreparedRobot& robot, const Problem& job,
                               const PlanOptions& options, const Budget& budget, JobView* view,
-                              const std::function<JobResult(const Job&, JobView*)>& plan) {
-  if (!job.lift) return plan(job, view);
+                              const std::function<JobResult(const Problem&, JobView*)>& plan) {
+  if (!job.arm().lift) return plan(job, view);
   return LiftPlan(robot, job, options, budget, view, plan).run();
 }
 

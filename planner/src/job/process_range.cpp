@@ -13,12 +13,12 @@ std::vector<double> waypoint_distances(const PathProblem& problem) {
   return s;
 }
 
-std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
+std::array<ProcessEvent, 2> events_of_run(const Problem& job, const StrokeRun& run,
                                           const PathProblem& problem,
                                           std::span<const TimedRow> rows) {
   constexpr double kSame = 1e-6;  // m; waypoints on a straight line are merged
   const std::vector<double> s = waypoint_distances(problem);
-  const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
+  const ProcessWaypoints process = process_waypoints(job.arm().strokes[run.stroke]);
   const auto event = [&](std::size_t waypoint, bool on) {
     auto found = std::find_if(rows.begin(), rows.end(), [&](const TimedRow& row) {
       return row.row.s >= s[waypoint] - kSame;
@@ -31,12 +31,12 @@ std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
   return {event(process.first, true), event(process.last, false)};
 }
 
-std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run,
+std::optional<RunSpeeds> speeds_of_run(const Problem& job, const StrokeRun& run,
                                        const PathProblem& problem, std::optional<double> speed) {
-  const Stroke& stroke = job.strokes[run.stroke];
+  const Stroke& stroke = job.arm().strokes[run.stroke];
   std::optional<double> usual;  // where the waypoints have no feed
   for (const std::optional<double>& said :
-       {speed, stroke.process_speed, job.process_speed, stroke.limits.tool_speed})
+       {speed, stroke.process_speed, job.arm().process_speed, stroke.limits.tool_speed})
     if (said && !usual) usual = said;
   // If nothing but feeds states a speed, the lines of approach and retract have the first of them.
   if (!usual && !stroke.feed.empty()) usual = stroke.feed.front();
@@ -44,7 +44,7 @@ std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run,
   const std::vector<double> s = waypoint_distances(problem);
   const ProcessWaypoints process = process_waypoints(stroke);
   RunSpeeds speeds;
-  speeds.first = stroke.approach_speed.value_or(job.approach_speed.value_or(*usual));
+  speeds.first = stroke.approach_speed.value_or(job.arm().approach_speed.value_or(*usual));
   const std::size_t count = stroke.waypoints.size();
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const bool fed = !speed && !stroke.feed.empty();

@@ -7,7 +7,7 @@
 
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -17,7 +17,7 @@ namespace swivel {
 /// Returns the moments at which the process is switched on and off in a timed run: at the first of
 /// its rows at or after the stroke's first waypoint, and at or after its last one, turns there
 /// included.
-[[nodiscard]] std::array<ProcessEvent, 2> events_of_run(const Job& job, const StrokeRun& run,
+[[nodiscard]] std::array<ProcessEvent, 2> events_of_run(const Problem& job, const StrokeRun& run,
                                                         const PathProblem& problem,
                                                         std::span<const TimedRow> rows);
 
@@ -29,7 +29,7 @@ struct RunSpeeds {
   double first = 0;               ///< m/s, before the first of `from`
   std::vector<SpeedFrom> from{};  ///< as TimingOptions::speeds
 };
-[[nodiscard]] std::optional<RunSpeeds> speeds_of_run(const Job& job, const StrokeRun& run,
+[[nodiscard]] std::optional<RunSpeeds> speeds_of_run(const Problem& job, const StrokeRun& run,
                                                      const PathProblem& problem,
                                                      std::optional<double> speed);
 

@@ -22,10 +22,10 @@ namespace swivel {
 namespace {
 
 /// Returns speeds_of_run(). Throws InputError if the stroke has no speed at all.
-RunSpeeds required_speeds(const Job& job, const StrokeRun& run, const PathProblem& problem,
+RunSpeeds required_speeds(const Problem& job, const StrokeRun& run, const PathProblem& problem,
                           const JobTimingOptions& options) {
   if (auto speeds = speeds_of_run(job, run, problem, options.speed)) return *std::move(speeds);
-  throw InputError(job.source, "stroke '" + job.strokes[run.stroke].name +
+  throw InputError(job.source, "stroke '" + job.arm().strokes[run.stroke].name +
                                    "' has no speed: allowed are process_speed, a column feed of "
                                    "its path, limits.tool_speed, or one speed for all (--speed)");
 }
@@ -33,7 +33,7 @@ RunSpeeds required_speeds(const Job& job, const StrokeRun& run, const PathProble
 /// Joins timed parts to one motion.
 class JobTimer {
  public:
-  JobTimer(const PreparedRobot& robot, const Job& job, const std::vector<JobPart>& parts,
+  JobTimer(const PreparedRobot& robot, const Problem& job, const std::vector<JobPart>& parts,
            const JobTimingOptions& options, const Budget& budget)
       : robot_(robot),
         chain_(robot.arm().chain),
@@ -41,7 +41,7 @@ class JobTimer {
         parts_(parts),
         options_(options),
         budget_(budget),
-        rates_(joint_rates(chain_, job.limits, job.source)) {}
+        rates_(joint_rates(chain_, job.arm().transition_limits, job.source)) {}
 
   JobTimingResult run() {
     JobTimingResult result;
@@ -85,7 +85,7 @@ class JobTimer {
   std::optional<NoMotion> add_transition(std::size_t k) {
     std::vector<Config> corners;
     for (const TrajectoryRow& row : parts_[k].rows) corners.push_back(row.q);
-    std::vector<TimedRow> rows = time_joint_moves(corners, rates_, job_.rapid, options_.rate);
+    std::vector<TimedRow> rows = time_joint_moves(corners, rates_, job_.arm().rapid, options_.rate);
     // Where nothing moves the arm rests for a sample, so that each part has a row of its own.
     if (rows.size() == 1) rows.push_back(rows.front());
     append(k, rows);
@@ -104,7 +104,8 @@ class JobTimer {
     for (const std::string& warning : timed.motion->warnings) {
       const auto said_of_job = [&](const std::string& line) { return warning.starts_with(line); };
       if (std::none_of(motion_.warnings.begin(), motion_.warnings.end(), said_of_job))
-        motion_.warnings.push_back("stroke '" + job_.strokes[run.stroke].name + "': " + warning);
+        motion_.warnings.push_back("stroke '" + job_.arm().strokes[run.stroke].name +
+                                   "': " + warning);
     }
     timed.motion->rows.clear();
     timed.motion->speed = fastest_of(run, problem);
@@ -126,7 +127,7 @@ class JobTimer {
   [[nodiscard]] double fastest_of(const StrokeRun& run, const PathProblem& problem) const {
     // Each waypoint but the last begins a stretch; where the tool retracts, one more follows.
     const std::vector<SpeedFrom> speeds = required_speeds(job_, run, problem, options_).from;
-    const std::size_t stretches = job_.strokes[run.stroke].waypoints.size() - 1;
+    const std::size_t stretches = job_.arm().strokes[run.stroke].waypoints.size() - 1;
     double fastest = 0;
     for (std::size_t k = 0; k < stretches; ++k) fastest = std::max(fastest, speeds[k].speed);
     return std::min(fastest, problem.limits.tool_speed.value_or(fastest));
@@ -140,7 +141,7 @@ class JobTimer {
 
   const PreparedRobot& robot_;
   const Chain& chain_;
-  const Job& job_;
+  const Problem& job_;
   const std::vector<JobPart>& parts_;
   const JobTimingOptions& options_;
   const Budget& budget_;
@@ -150,16 +151,17 @@ class JobTimer {
 
 }  // namespace
 
-void require_speeds(const Job& job, const JobTimingOptions& options) {
-  for (std::size_t k = 0; k < job.strokes.size(); ++k)
+void require_speeds(const Problem& job, const JobTimingOptions& options) {
+  for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
     static_cast<void>(required_speeds(job, {k, false}, problem_of_run(job, {k, false}), options));
   if (!options.speed) return;
-  require_tool_speed(
-      build_arm(*job.model, job.base_link, job.tip_link, job.hold, job.tool, job.roll).chain,
-      *options.speed, "speed");
+  require_tool_speed(build_arm(*job.arm().model, job.arm().base_link, job.arm().tip_link,
+                               job.arm().hold, job.arm().tool, job.arm().roll)
+                         .chain,
+                     *options.speed, "speed");
 }
 
-JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
+JobTimingResult time_job(const PreparedRobot& robot, const Problem& job,
                          const std::vector<JobPart>& parts, const JobTimingOptions& options,
                          const Budget& budget) {
   const TraceSpan span("time job");
@@ -168,7 +170,7 @@ JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
   require_speeds(job, options);
   if (!(options.rate > 0 && std::isfinite(options.rate)))
     throw InvalidArgument("rate: allowed are numbers above 0, samples a second");
-  const Job completed = with_motion_defaults(job);
+  const Problem completed = with_motion_defaults(job);
   return JobTimer(robot, completed, parts, options, budget).run();
 }
 

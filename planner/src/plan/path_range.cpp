@@ -7,7 +7,7 @@
 
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -40,13 +40,13 @@ PathProblem problem_of_range(const PathProblem& problem, const PathRange& range)
   found.start_at.reset();
   found.end.reset();
   found.closed = false;
-  Job job;
-  static_cast<Task&>(job.strokes.emplace_back()) = found;
+  Problem job;
+  static_cast<Task&>(job.arm().strokes.emplace_back()) = found;
   std::vector<LiftOff> cuts;
   if (range.from > kSameLength) cuts.push_back({0, range.from, range.from});
   if (to < length - kSameLength) cuts.push_back({0, to, to});
   const std::size_t stretch = range.from > kSameLength ? 1 : 0;
-  found.waypoints = with_lift_offs(job, cuts).strokes[stretch].waypoints;
+  found.waypoints = with_lift_offs(job, cuts).arm().strokes[stretch].waypoints;
   return found;
 }
 

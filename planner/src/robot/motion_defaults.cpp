@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/planner/robot/motion_defaults.hpp"
 
+#include "swivel/core/messages/input_error.hpp"
+
 namespace swivel {
 
 void keep_clearance_between_layers(Limits& limits) {
@@ -13,25 +15,20 @@ PathProblem with_motion_defaults(PathProblem problem) {
   return problem;
 }
 
-Job with_motion_defaults(Job job) {
-  for (Stroke& stroke : job.strokes) {
-    if (!stroke.smooth) stroke.smooth.emplace();
-    keep_clearance_between_layers(stroke.limits);
+Problem with_motion_defaults(Problem problem) {
+  if (const auto given = problem.given_arm())
+    throw InputError(problem.source,
+                     "arm '" + problem.arms[*given].name +
+                         "': its motion is given, of which no motion in time is made yet: allowed "
+                         "are two arms that are planned");
+  for (std::size_t k = 0; k < problem.arms.size(); ++k) {
+    for (Stroke& stroke : problem.arms[k].strokes) {
+      if (!stroke.smooth && problem.leader_of(k) < 0) stroke.smooth.emplace();
+      keep_clearance_between_layers(stroke.limits);
+    }
+    keep_clearance_between_layers(problem.arms[k].transition_limits);
   }
-  keep_clearance_between_layers(job.limits);
-  return job;
-}
-
-Workcell with_motion_defaults(Workcell cell) {
-  if (const auto given = cell.given_arm())
-    throw InputError(cell.source, "arm '" + cell.arms[*given].name +
-                                      "': its motion is given, of which no motion in time is made "
-                                      "yet: allowed are two arms that are planned");
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (!cell.arms[k].smooth && cell.leader_of(k) < 0) cell.arms[k].smooth.emplace();
-    keep_clearance_between_layers(cell.arms[k].limits);
-  }
-  return cell;
+  return problem;
 }
 
 }  // namespace swivel

@@ -21,7 +21,7 @@ constexpr double kLengths[] = {0.02, 0.05, 0.1};  // of lines that are tried, m
 /// Plans changed jobs within one time-out.
 class JobTrials {
  public:
-  JobTrials(const PreparedRobot& robot, const Job& job, const JobResult& result,
+  JobTrials(const PreparedRobot& robot, const Problem& job, const JobResult& result,
             const PlanOptions& options)
       : robot_(robot),
         job_(job),
@@ -53,7 +53,7 @@ class JobTrials {
     return std::chrono::duration<double>(until_ - Clock::now()).count();
   }
   [[nodiscard]] const std::string& name(std::size_t stroke) const {
-    return job_.strokes[stroke].name;
+    return job_.arm().strokes[stroke].name;
   }
 
   void advise_on_strokes(const std::vector<std::size_t>& without) {
@@ -89,9 +89,9 @@ class JobTrials {
     if (!lengthened) lengthen(JobAdvice::Change::kLines, all_strokes());
     if (none.where == Where::kHome || from_home || to_home) move_home();
     if (none.where == Where::kHome) return;
-    if (job_.order == StrokeOrder::kGiven && runs > 1) {
-      Job changed = job_;
-      changed.order = StrokeOrder::kBest;
+    if (job_.arm().order == StrokeOrder::kGiven && runs > 1) {
+      Problem changed = job_;
+      changed.arm().order = StrokeOrder::kBest;
       add({.change = JobAdvice::Change::kBestOrder, .strokes = {}}, changed);
     }
     std::vector<std::size_t> beside;
@@ -102,7 +102,7 @@ class JobTrials {
   }
 
   /// Notes what planning a changed job gives.
-  Advice::Outcome add(JobAdvice advice, const Job& changed) {
+  Advice::Outcome add(JobAdvice advice, const Problem& changed) {
     const double seconds = seconds_left();
     if (seconds > 0) {
       PlanOptions options = options_;
@@ -125,26 +125,27 @@ class JobTrials {
 
   void leave_out(std::vector<std::size_t> strokes) {
     std::sort(strokes.begin(), strokes.end());
-    if (strokes.size() == job_.strokes.size()) return;
+    if (strokes.size() == job_.arm().strokes.size()) return;
     JobAdvice advice{.change = JobAdvice::Change::kWithoutStrokes, .strokes = {}};
     for (const std::size_t stroke : strokes) advice.strokes.push_back(name(stroke));
-    Job changed = job_;
+    Problem changed = job_;
     for (std::size_t k = strokes.size(); k-- > 0;)
-      changed.strokes.erase(changed.strokes.begin() + static_cast<std::ptrdiff_t>(strokes[k]));
+      changed.arm().strokes.erase(changed.arm().strokes.begin() +
+                                  static_cast<std::ptrdiff_t>(strokes[k]));
     add(std::move(advice), changed);
   }
 
   /// Tries a stroke from its last waypoint to its first, unless it is reversible. By
   /// itself it has a path either way unless the lines of approach and retract differ.
   void reverse(std::size_t stroke) {
-    const Stroke& of = job_.strokes[stroke];
+    const Stroke& of = job_.arm().strokes[stroke];
     const bool alone = result_.runs.size() == 1 ||
                        std::any_of(result_.runs.begin(), result_.runs.end(), [&](const auto& run) {
                          return run.run.stroke == stroke && run.status == PlanStatus::kInfeasible;
                        });
     if (of.reversible || of.end || (alone && of.approach == of.retract)) return;
-    Job changed = job_;
-    Stroke& turned = changed.strokes[stroke];
+    Problem changed = job_;
+    Stroke& turned = changed.arm().strokes[stroke];
     std::reverse(turned.waypoints.begin(), turned.waypoints.end());
     // a feed holds from its waypoint to the next
     if (turned.feed.size() > 1) std::reverse(turned.feed.begin(), turned.feed.end() - 1);
@@ -152,7 +153,7 @@ class JobTrials {
   }
 
   [[nodiscard]] std::vector<std::size_t> all_strokes() const {
-    std::vector<std::size_t> all(job_.strokes.size());
+    std::vector<std::size_t> all(job_.arm().strokes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     return all;
   }
@@ -160,7 +161,7 @@ class JobTrials {
   /// Returns true if one does.
   bool lengthen(JobAdvice::Change change, const std::vector<std::size_t>& strokes) {
     for (const double length : kLengths) {
-      Job changed = job_;
+      Problem changed = job_;
       bool any = false;
       const auto extend = [&](Vector3d& line) {
         if (line.norm() >= length) return;
@@ -170,11 +171,11 @@ class JobTrials {
       JobAdvice advice{.change = change, .strokes = {}, .length = length};
       for (const std::size_t stroke : strokes) {
         // the lines of a closed stroke are equal
-        if (job_.strokes[stroke].closed && change != JobAdvice::Change::kLines) continue;
-        if (change != JobAdvice::Change::kRetract) extend(changed.strokes[stroke].approach);
+        if (job_.arm().strokes[stroke].closed && change != JobAdvice::Change::kLines) continue;
+        if (change != JobAdvice::Change::kRetract) extend(changed.arm().strokes[stroke].approach);
         // a given end stands where the retract ends
-        if (change != JobAdvice::Change::kApproach && !job_.strokes[stroke].end)
-          extend(changed.strokes[stroke].retract);
+        if (change != JobAdvice::Change::kApproach && !job_.arm().strokes[stroke].end)
+          extend(changed.arm().strokes[stroke].retract);
         if (change != JobAdvice::Change::kLines) advice.strokes.push_back(name(stroke));
       }
       if (!any) continue;
@@ -188,8 +189,8 @@ class JobTrials {
   /// Tries the home at which the cheapest job without one begins.
   void move_home() {
     JobAdvice advice{.change = JobAdvice::Change::kHome, .strokes = {}};
-    Job changed = job_;
-    changed.home.reset();
+    Problem changed = job_;
+    changed.arm().home.reset();
     PlanOptions options = options_;
     options.timeout_s = seconds_left();
     if (*options.timeout_s > 0) {
@@ -197,7 +198,7 @@ class JobTrials {
       if (!found.parts.empty()) {
         Config home = found.parts.front().rows.front().q;
         for (double& joint : home) joint = std::round(1e4 * joint) / 1e4;
-        changed.home = advice.home = home;
+        changed.arm().home = advice.home = home;
         add(std::move(advice), changed);
         return;
       }
@@ -207,7 +208,7 @@ class JobTrials {
   }
 
   const PreparedRobot& robot_;
-  const Job& job_;
+  const Problem& job_;
   const JobResult& result_;
   PlanOptions options_;
   Clock::time_point until_;
@@ -216,7 +217,7 @@ class JobTrials {
 
 }  // namespace
 
-AdviceOnJob advise_job(const PreparedRobot& robot, const Job& job, const JobResult& result,
+AdviceOnJob advise_job(const PreparedRobot& robot, const Problem& job, const JobResult& result,
                        PlanOptions options) {
   if (result.status != PlanStatus::kInfeasible) return {};
   return JobTrials(robot, job, result, options).advise();

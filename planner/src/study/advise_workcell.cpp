@@ -22,8 +22,8 @@ namespace swivel {
 namespace {
 
 /// Makes the follower lead: both tools pass the same poses at their waypoints.
-void let_follower_lead(Workcell& cell, std::size_t follower) {
-  WorkcellArm &leads = cell.arms[follower], &follows = cell.arms[1 - follower];
+void let_follower_lead(Problem& cell, std::size_t follower) {
+  Task &leads = cell.arms[follower].path(), &follows = cell.arms[1 - follower].path();
   for (std::size_t k = 0; k < leads.waypoints.size(); ++k) {
     Waypoint &on_tool = leads.waypoints[k], &tool = follows.waypoints[k];
     const Quaterniond turn = on_tool.orientation.normalized();
@@ -35,38 +35,38 @@ void let_follower_lead(Workcell& cell, std::size_t follower) {
     tool.orientation = turn.conjugate();
   }
   leads.path_frame = follows.path_frame;
-  follows.path_frame = leads.name;
+  follows.path_frame = cell.arms[follower].name;
   std::swap(leads.smooth, follows.smooth);
 }
 
 /// Moves the paths that are given in the base frame or in that of an object, or the one of the arm
 /// that the advice names, by its offset in the base frame.
-void move_paths(Workcell& cell, const WorkcellAdvice& advice) {
+void move_paths(Problem& cell, const WorkcellAdvice& advice) {
   for (std::size_t k = 0; k < 2; ++k) {
-    WorkcellArm& arm = cell.arms[k];
+    ArmTask& arm = cell.arms[k];
     if (cell.leader_of(k) >= 0 || (!advice.arm.empty() && arm.name != advice.arm)) continue;
     Vector3d in_frame = advice.offset;
     for (const SceneObject& object : cell.scene)
-      if (object.name == arm.path_frame)
+      if (object.name == arm.path().path_frame)
         in_frame = object.pose.linear().transpose() * advice.offset;
-    for (Waypoint& waypoint : arm.waypoints) waypoint.position += in_frame;
+    for (Waypoint& waypoint : arm.path().waypoints) waypoint.position += in_frame;
   }
 }
 
 /// Makes the change of the arms that it is about, where it is no change of paths.
-void change_arms(Workcell& cell, const WorkcellAdvice& advice) {
-  for (WorkcellArm& arm : cell.arms) {
+void change_arms(Problem& cell, const WorkcellAdvice& advice) {
+  for (ArmTask& arm : cell.arms) {
     if (!advice.arm.empty() && arm.name != advice.arm) continue;
     // a limit of both arms is the stricter one of either: the other one may be relaxed already
-    const bool relaxed =
-        advice.arm.empty() && advice.to && *place_of(advice.change).get(arm.limits) <= *advice.to;
-    if (!relaxed) change_arm(advice, arm, arm);
+    const bool relaxed = advice.arm.empty() && advice.to &&
+                         *place_of(advice.change).get(arm.path().limits) <= *advice.to;
+    if (!relaxed) change_arm(advice, arm, arm.path());
   }
 }
 
 /// Returns the workcell with the change.
-Workcell changed_workcell(const Workcell& cell, const WorkcellAdvice& advice) {
-  Workcell changed = cell;
+Problem changed_workcell(const Problem& cell, const WorkcellAdvice& advice) {
+  Problem changed = cell;
   if (is_of_scene(advice.change))
     change_scene(advice, changed.scene, changed.vary);
   else if (advice.change == Advice::Change::kMovePaths)
@@ -81,7 +81,7 @@ Workcell changed_workcell(const Workcell& cell, const WorkcellAdvice& advice) {
 /// Plans changed workcells within one time-out.
 class WorkcellTrials {
  public:
-  WorkcellTrials(const Workcell& cell, const WorkcellResult& result, const PlanOptions& options)
+  WorkcellTrials(const Problem& cell, const WorkcellResult& result, const PlanOptions& options)
       : cell_(cell),
         options_(options),
         end_(Clock::now() +
@@ -114,16 +114,16 @@ class WorkcellTrials {
 
   /// Where both arms have a path by themselves: what lets either of them give way.
   void advise_on_conflict() {
-    for (const WorkcellArm& arm : cell_.arms) {
+    for (const ArmTask& arm : cell_.arms) {
       if (!arm.given.empty()) continue;
-      if (arm.start && !arm.start_at) propose_of_arm(arm, Change::kFreeStart);
-      if (arm.end) propose_of_arm(arm, Change::kFreeEnd);
-      if (arm.roll && !arm.roll->circle() && !arm.start && !arm.end)
+      if (arm.path().start && !arm.path().start_at) propose_of_arm(arm, Change::kFreeStart);
+      if (arm.path().end) propose_of_arm(arm, Change::kFreeEnd);
+      if (arm.roll && !arm.roll->circle() && !arm.path().start && !arm.path().end)
         propose_of_arm(arm, Change::kFreeRoll);
     }
     relax_both(Change::kClearance);
-    for (const WorkcellArm& arm : cell_.arms)
-      if (arm.given.empty()) relax(Change::kJointMargin, arm.name, arm.limits.joint_margin);
+    for (const ArmTask& arm : cell_.arms)
+      if (arm.given.empty()) relax(Change::kJointMargin, arm.name, arm.path().limits.joint_margin);
     for (std::size_t k = 0; k < 2; ++k)
       if (!is_given() && cell_.leader_of(0) < 0 && cell_.leader_of(1) < 0 && !on_one_object())
         propose_moved_paths(cell_.arms[k].name);
@@ -131,7 +131,9 @@ class WorkcellTrials {
   /// Proposes a limit of both arms relaxed, of which the stricter one holds.
   void relax_both(Change change) {
     const LimitPlace place = place_of(change);
-    relax(change, "", std::max(*place.get(cell_.arms[0].limits), *place.get(cell_.arms[1].limits)));
+    relax(
+        change, "",
+        std::max(*place.get(cell_.arms[0].path().limits), *place.get(cell_.arms[1].path().limits)));
   }
   void relax(Change change, const std::string& arm, double from) {
     if (!(from > 0)) return;
@@ -143,9 +145,9 @@ class WorkcellTrials {
   }
   /// Returns true if both paths are given in the frame of one object.
   [[nodiscard]] bool on_one_object() const {
-    return cell_.arms[0].path_frame == cell_.arms[1].path_frame &&
+    return cell_.arms[0].path().path_frame == cell_.arms[1].path().path_frame &&
            std::any_of(cell_.scene.begin(), cell_.scene.end(), [&](const SceneObject& object) {
-             return object.name == cell_.arms[0].path_frame;
+             return object.name == cell_.arms[0].path().path_frame;
            });
   }
 
@@ -228,17 +230,18 @@ class WorkcellTrials {
   }
   [[nodiscard]] bool carries_path(const std::string& object) const {
     return std::any_of(cell_.arms.begin(), cell_.arms.end(),
-                       [&](const WorkcellArm& arm) { return arm.path_frame == object; });
+                       [&](const ArmTask& arm) { return arm.path().path_frame == object; });
   }
   /// Returns true if a start, an end or a motion is given, which stays where paths are moved.
   [[nodiscard]] bool is_given() const {
     return cell_.given_arm() ||
            std::any_of(cell_.arms.begin(), cell_.arms.end(),
-                       [](const WorkcellArm& arm) { return arm.start || arm.end; });
+                       [](const ArmTask& arm) { return arm.path().start || arm.path().end; });
   }
   [[nodiscard]] bool may_lead(std::size_t follower) const {
-    const WorkcellArm &arm = cell_.arms[follower], &leader = cell_.arms[1 - follower];
-    return !cell_.given_arm() && !arm.roll && !leader.roll && !arm.start_at && !leader.start_at;
+    const ArmTask &arm = cell_.arms[follower], &leader = cell_.arms[1 - follower];
+    return !cell_.given_arm() && !arm.roll && !leader.roll && !arm.path().start_at &&
+           !leader.path().start_at;
   }
 
   void propose(const WorkcellAdvice& advice, Trial trial) {
@@ -251,7 +254,7 @@ class WorkcellTrials {
     advice_.cell.push_back(advice);
     trials_.push_back(trial);
   }
-  void propose_of_arm(const WorkcellArm& arm, Change change) {
+  void propose_of_arm(const ArmTask& arm, Change change) {
     WorkcellAdvice advice;
     advice.change = change;
     advice.arm = arm.name;
@@ -277,7 +280,7 @@ class WorkcellTrials {
     return std::chrono::duration<double>(end - Clock::now()).count();
   }
   /// Returns the workcell prepared; nothing if the time is up before.
-  [[nodiscard]] std::optional<PreparedWorkcell> prepare(const Workcell& cell,
+  [[nodiscard]] std::optional<PreparedWorkcell> prepare(const Problem& cell,
                                                         Clock::time_point end) const {
     PlanOptions options = options_;
     options.timeout_s = seconds_until(end);
@@ -327,7 +330,7 @@ class WorkcellTrials {
                        [this](WorkcellAdvice& one) { plan_changed(one); });
   }
 
-  const Workcell& cell_;
+  const Problem& cell_;
   PlanOptions options_;
   Clock::time_point end_, trial_end_;
   std::vector<std::size_t> without_path_;  // arms that have none by themselves
@@ -337,7 +340,7 @@ class WorkcellTrials {
 
 }  // namespace
 
-AdviceOnWorkcell advise_workcell(const Workcell& cell, const WorkcellResult& result,
+AdviceOnWorkcell advise_workcell(const Problem& cell, const WorkcellResult& result,
                                  PlanOptions options) {
   require_supported(options, "workcells");
   if (result.status != PlanStatus::kInfeasible) return {};

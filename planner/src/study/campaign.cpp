@@ -162,7 +162,7 @@ class ProblemEpisodes : public EpisodePlanner {
 
 class JobEpisodes : public EpisodePlanner {
  public:
-  JobEpisodes(const PreparedRobot& robot, const Job& job, const CampaignOptions& options,
+  JobEpisodes(const PreparedRobot& robot, const Problem& job, const CampaignOptions& options,
               const std::function<void(const EpisodeRow&)>& row_done)
       : EpisodePlanner(job.vary, options, row_done), robot_(robot), job_(job) {}
 
@@ -171,7 +171,7 @@ class JobEpisodes : public EpisodePlanner {
     std::optional<EpisodeRow> failed;
     const Budget budget = single_.budget();
     const auto result = answer_of(episode, failed, [&] {
-      return plan_job(robot_, episode_job(job_, options_.seed, episode), single_);
+      return plan_job(robot_, episode_problem(job_, options_.seed, episode), single_);
     });
     if (!result) return failed;
     if (!answered(*result, budget)) return std::nullopt;
@@ -180,12 +180,12 @@ class JobEpisodes : public EpisodePlanner {
   }
 
   const PreparedRobot& robot_;
-  const Job& job_;
+  const Problem& job_;
 };
 
 class WorkcellEpisodes : public EpisodePlanner {
  public:
-  WorkcellEpisodes(const Workcell& cell, const CampaignOptions& options,
+  WorkcellEpisodes(const Problem& cell, const CampaignOptions& options,
                    const std::function<void(const EpisodeRow&)>& row_done)
       : EpisodePlanner(cell.vary, options, row_done), cell_(cell) {}
 
@@ -195,7 +195,7 @@ class WorkcellEpisodes : public EpisodePlanner {
     const Budget budget = single_.budget();
     try {
       const auto found = answer_of(episode, failed, [&] {
-        return plan_studied(episode_workcell(cell_, options_.seed, episode), single_, budget);
+        return plan_studied(episode_problem(cell_, options_.seed, episode), single_, budget);
       });
       if (!found) return failed;
       if (!found->fault && !answered(found->result, budget)) return std::nullopt;
@@ -208,7 +208,7 @@ class WorkcellEpisodes : public EpisodePlanner {
     }
   }
 
-  const Workcell& cell_;
+  const Problem& cell_;
 };
 
 /// Returns how many episodes of the shard are to be planned. Throws InputError for a campaign that
@@ -240,9 +240,13 @@ void run_campaign(const PreparedRobot& robot, const PathProblem& problem,
   executor.for_each(count, [&](int, int worker) { planner.plan_next(worker); });
 }
 
-void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOptions& options,
+void run_campaign(const PreparedRobot& robot, const Problem& job, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
   validate(job);
+  if (is_path(job)) {
+    run_campaign(robot, problem_of_run(job, {0, false}), options, row_done);
+    return;
+  }
   require_supported(options.plan, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   const int count = episodes_to_plan(job.source, job.vary, options);
@@ -252,9 +256,13 @@ void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOpti
   executor.for_each(count, [&](int, int worker) { planner.plan_next(worker); });
 }
 
-void run_campaign(const Workcell& cell, const CampaignOptions& options,
+void run_campaign(const Problem& cell, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
   validate(cell);
+  if (cell.arms.size() == 1) {
+    run_campaign(PreparedRobot(problem_of_run(cell, {0, false})), cell, options, row_done);
+    return;
+  }
   require_supported(options.plan, "workcells");
   const int count = episodes_to_plan(cell.source, cell.vary, options);
   if (count == 0) return;

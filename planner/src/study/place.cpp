@@ -274,29 +274,29 @@ struct PlacementPlanner::JobPlacements : Impl {
   /// A job with its joints held as in one cell, and its robot.
   struct Held {
     std::shared_ptr<const PreparedRobot> robot;
-    Job job;
+    Problem job;
     HeldPositions hold;
   };
   std::shared_ptr<const PreparedRobot> robot;
-  Job job;
+  Problem job;
   Movable thing;
   std::vector<Held> workers;  ///< what each thread planned last
 
-  JobPlacements(std::shared_ptr<const PreparedRobot> r, Job j, Movable t,
+  JobPlacements(std::shared_ptr<const PreparedRobot> r, Problem j, Movable t,
                 const PlanOptions& options)
       : Impl(options), robot(std::move(r)), job(std::move(j)), thing(std::move(t)) {
     single.evidence.postures = true;  // clearances
     validate(job);
     require_supported(single, "jobs");
     robot->require_prepared_for(problem_of_run(job, {0, false}));
-    static_cast<void>(placed_job(job, thing, {}));
+    static_cast<void>(placed_problem(job, thing, {}));
     workers.assign(static_cast<std::size_t>(executor.threads()), Held{robot, job, {}});
   }
 
   const Held& held(int worker, const HeldPositions& hold, const Budget& budget) {
     Held& last = workers[static_cast<std::size_t>(worker)];
     if (last.hold == hold) return last;
-    Job changed = job;
+    Problem changed = job;
     hold_joints(changed, hold);
     auto prepared =
         std::make_shared<const PreparedRobot>(problem_of_run(changed, {0, false}), budget);
@@ -307,7 +307,7 @@ struct PlacementPlanner::JobPlacements : Impl {
     const Budget budget = options_now().budget();
     const Held& with = held(worker, row.hold, budget);
     const JobResult result =
-        plan_job(*with.robot, placed_job(with.job, thing, row.offset), options_now());
+        plan_job(*with.robot, placed_problem(with.job, thing, row.offset), options_now());
     if (!answered(result, budget)) return false;
     row.status = result.status;
     if (result.status == PlanStatus::kSolved) {
@@ -324,21 +324,21 @@ struct PlacementPlanner::JobPlacements : Impl {
 };
 
 struct PlacementPlanner::WorkcellPlacements : Impl {
-  Workcell cell;
+  Problem cell;
   Movable thing;
 
-  WorkcellPlacements(Workcell c, Movable t, const PlanOptions& options)
+  WorkcellPlacements(Problem c, Movable t, const PlanOptions& options)
       : Impl(options), cell(std::move(c)), thing(std::move(t)) {
     single.evidence.postures = true;  // clearances
     validate(cell);
     require_supported(single, "workcells");
-    static_cast<void>(placed_workcell(cell, thing, {}));
+    static_cast<void>(placed_problem(cell, thing, {}));
   }
 
   bool fill(PlacementRow& row, int /*worker*/) override {
     const PlanOptions options = options_now();
     const Budget budget = options.budget();
-    Workcell placed = placed_workcell(cell, thing, row.offset);
+    Problem placed = placed_problem(cell, thing, row.offset);
     hold_joints(placed, row.hold);
     const StudiedWorkcell found = plan_studied(placed, options, budget);
     const WorkcellResult& result = found.result;
@@ -362,12 +362,26 @@ PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, P
                                    Movable thing, PlanOptions options)
     : impl_(std::make_unique<ProblemPlacements>(robot, std::move(problem), std::move(thing),
                                                 options)) {}
-PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Job job,
-                                   Movable thing, PlanOptions options)
-    : impl_(std::make_unique<JobPlacements>(std::move(robot), std::move(job), std::move(thing),
-                                            options)) {}
-PlacementPlanner::PlacementPlanner(Workcell cell, Movable thing, PlanOptions options)
-    : impl_(std::make_unique<WorkcellPlacements>(std::move(cell), std::move(thing), options)) {}
+PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem,
+                                   Movable thing, PlanOptions options) {
+  if (is_path(problem))
+    impl_ = std::make_unique<ProblemPlacements>(
+        std::move(robot), problem_of_run(problem, {0, false}), std::move(thing), options);
+  else
+    impl_ = std::make_unique<JobPlacements>(std::move(robot), std::move(problem), std::move(thing),
+                                            options);
+}
+PlacementPlanner::PlacementPlanner(Problem problem, Movable thing, PlanOptions options) {
+  if (problem.arms.size() == 2) {
+    impl_ = std::make_unique<WorkcellPlacements>(std::move(problem), std::move(thing), options);
+    return;
+  }
+  auto robot = std::make_shared<const PreparedRobot>(problem_of_run(problem, {0, false}));
+  *this =
+      PlacementPlanner(std::move(robot), std::move(problem), std::move(thing), std::move(options));
+}
+PlacementPlanner::PlacementPlanner(PlacementPlanner&&) noexcept = default;
+PlacementPlanner& PlacementPlanner::operator=(PlacementPlanner&&) noexcept = default;
 PlacementPlanner::~PlacementPlanner() = default;
 
 bool PlacementPlanner::stopped() const {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "swivel/core/answer/workcell_result.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/core/study/study_failure.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -19,14 +19,14 @@ struct StudiedWorkcell {
   /// Where the motion that is given does not keep its limits here: why. `result` says no more then
   /// than that there is no plan.
   std::optional<StudyFailure> fault{};
-  [[nodiscard]] StudyFailure failure(const Workcell& cell) const {
+  [[nodiscard]] StudyFailure failure(const Problem& cell) const {
     return fault ? *fault : failure_of(result, cell);
   }
 };
 
 /// Plans a workcell whose objects or paths were moved. Throws as plan_workcell() does, but for a
 /// given motion that is barred by an object where it now stands; Stopped.
-inline StudiedWorkcell plan_studied(const Workcell& cell, const PlanOptions& options,
+inline StudiedWorkcell plan_studied(const Problem& cell, const PlanOptions& options,
                                     const Budget& budget) {
   const PreparedWorkcell prepared(cell, budget);
   if (const auto fault = fault_of_given_motion(prepared, budget)) {

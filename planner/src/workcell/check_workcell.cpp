@@ -260,7 +260,7 @@ WorkcellCheckResult check_workcell_motion(const PreparedWorkcell& prepared, cons
   return WorkcellCheck(prepared, world, rows_of(rows), options, &rows).run();
 }
 
-WorkcellCheckResult check_workcell(const Workcell& cell, const TwoTrajectories& rows,
+WorkcellCheckResult check_workcell(const Problem& cell, const TwoTrajectories& rows,
                                    const CheckOptions& options) {
   return check_workcell(PreparedWorkcell(cell, options.budget), rows, options);
 }

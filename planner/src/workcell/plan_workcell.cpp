@@ -429,7 +429,7 @@ WorkcellResult decide_workcell(const PreparedWorkcell& prepared, const PlanOptio
   return WorkcellPlan(prepared, options, budget, nullptr).plan(false);
 }
 
-WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options) {
+WorkcellResult plan_workcell(const Problem& cell, const PlanOptions& options) {
   require_supported(options, "workcells");
   return plan_workcell(PreparedWorkcell(cell), options);
 }

@@ -116,13 +116,13 @@ CertificateCheck verdict_on(const PathProblem& problem, const InfeasibilityCerti
 /// the job does not have.
 CertificateCheck verdict_on_stroke(const Job& of, const InfeasibilityCertificate& certificate,
                                    std::optional<double> timeout) {
-  const swivel::Job job = to_core(of);
+  const swivel::Problem job = to_core(of);
   const auto stroke = find_stroke(job, certificate.stroke);
   if (!stroke)
     throw InputError("certificate", "stroke: '" + certificate.stroke +
                                         "' is none of the job: allowed are the names of its "
                                         "strokes");
-  if (certificate.reversed && !job.strokes[*stroke].reversible)
+  if (certificate.reversed && !job.arm().strokes[*stroke].reversible)
     throw InputError("certificate", "reversed: stroke '" + certificate.stroke +
                                         "' is not `reversible`: allowed is a certificate of it "
                                         "forwards");
@@ -165,7 +165,7 @@ WorkcellCertificateCheck verdict_on_workcell(
     std::optional<double> timeout) {
   const auto* const made = std::get_if<const Workcell*>(&workcell);
   const auto cell = made != nullptr ? (*made)->cell
-                                    : std::make_shared<const swivel::Workcell>(io::load_workcell(
+                                    : std::make_shared<const swivel::Problem>(io::load_workcell(
                                           std::get<std::filesystem::path>(workcell)));
   const auto* const known = std::get_if<const WorkcellCertificate*>(&certificate);
   const WorkcellCertificate proof =

@@ -117,7 +117,7 @@ std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
   return interruptible([&](const std::stop_token& stop) {
     options.stop = stop;
     const Budget budget({}, nullptr, stop);
-    const swivel::Workcell cell = completed(plan, given);
+    const swivel::Problem cell = completed(plan, given);
     const PreparedWorkcell prepared(cell, budget);
     WorkcellView view;
     const WorkcellMotionPlan again =

@@ -22,14 +22,14 @@ namespace {
 
 /// Returns the job that a plan is of as it was planned: `given`, or the one that the plan keeps.
 /// Throws ValueError if there is none, and for plans without a verdict.
-swivel::Job completed(const JobPlan& plan, const Job* given) {
+swivel::Problem completed(const JobPlan& plan, const Job* given) {
   const PlanStatus status = plan.result().status;
   if ((status != PlanStatus::kSolved && status != PlanStatus::kInfeasible) || plan.plan->stopped)
     throw py::value_error("the plan was stopped: allowed are plans that were not");
   if (given == nullptr && !plan.given)
     throw py::value_error(
         "job: a plan that was unpickled has none: allowed is the job that was planned");
-  swivel::Job job = given != nullptr ? to_core(*given) : *plan.given;
+  swivel::Problem job = given != nullptr ? to_core(*given) : *plan.given;
   return plan.timing ? with_motion_defaults(std::move(job)) : job;
 }
 
@@ -46,8 +46,8 @@ bool same_parts(const JobResult& a, const JobResult& b) {
 }
 
 /// Plans a job again, and fills `view`. Throws ValueError if another answer is found, and Stopped.
-JobMotionPlan planned_again(const JobPlan& plan, const PreparedRobot& robot, const swivel::Job& job,
-                            PlanOptions options, JobView& view) {
+JobMotionPlan planned_again(const JobPlan& plan, const PreparedRobot& robot,
+                            const swivel::Problem& job, PlanOptions options, JobView& view) {
   for (const auto& [name, kind] : EnumNames<PlannerKind>::names)
     if (name == plan.result().planner) options.planner = kind;
   options.check = true;
@@ -66,7 +66,7 @@ JobMotionPlan planned_again(const JobPlan& plan, const PreparedRobot& robot, con
 /// Returns the page of a job's plan.
 std::string page_of(const JobPlan& plan, const Job* given) {
   require_pages();
-  const swivel::Job job = completed(plan, given);
+  const swivel::Problem job = completed(plan, given);
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget({}, nullptr, stop);
     PlanOptions options;
@@ -76,10 +76,10 @@ std::string page_of(const JobPlan& plan, const Job* given) {
     JobView view;
     const JobMotionPlan again = planned_again(plan, robot, job, options, view);
     const auto& [result, timing, stopped] = again;
-    const swivel::Job executed = executed_job(job, result);
+    const swivel::Problem executed = executed_job(job, result);
     std::string text = job_text(result, executed);
     if (timing) text += swivel::job_motion_text(*timing, result.parts, executed);
-    const io::VisualRobot visual = io::load_visuals(*job.model);
+    const io::VisualRobot visual = io::load_visuals(*job.arm().model);
     return to_job_page(
         {robot, executed, result, view, timing && timing->motion ? &*timing->motion : nullptr},
         io::to_job_json(result, executed, {timing ? &*timing : nullptr, stopped, nullptr}), budget,
@@ -95,7 +95,7 @@ InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
     throw py::value_error(
         "a certificate is of the job as it is: allowed is a plan without speed, turn_speed and "
         "rate");
-  const swivel::Job job = completed(plan, given);
+  const swivel::Problem job = completed(plan, given);
   const std::vector<RunResult>& runs = plan.result().runs;
   const auto run = std::find_if(runs.begin(), runs.end(), [](const RunResult& one) {
     return one.status == PlanStatus::kInfeasible;
@@ -103,8 +103,8 @@ InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
   if (run == runs.end())
     throw py::value_error(
         "no stroke is known to have no path by itself: allowed is a plan with such a stroke");
-  if (job.strokes[run->run.stroke].reversible)
-    throw py::value_error("stroke '" + job.strokes[run->run.stroke].name +
+  if (job.arm().strokes[run->run.stroke].reversible)
+    throw py::value_error("stroke '" + job.arm().strokes[run->run.stroke].name +
                           "' is reversible, and a certificate is of one direction: allowed are "
                           "strokes that are not reversible");
   return interruptible([&](const std::stop_token& stop) {
@@ -117,7 +117,7 @@ InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
     static_cast<void>(planned_again(plan, robot, job, options, view));
     InfeasibilityCertificate proof =
         prove_infeasible(view.runs.at(static_cast<std::size_t>(run - runs.begin())), budget);
-    proof.stroke = job.strokes[run->run.stroke].name;
+    proof.stroke = job.arm().strokes[run->run.stroke].name;
     proof.reversed = run->run.reversed;
     return proof;
   });

@@ -14,7 +14,7 @@
 #include "runs.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -33,8 +33,8 @@ struct WorkcellCheck {
   WorkcellCheckResult result;
 };
 
-Workcell shared(swivel::Workcell cell) {
-  return {std::make_shared<const swivel::Workcell>(std::move(cell))};
+Workcell shared(swivel::Problem cell) {
+  return {std::make_shared<const swivel::Problem>(std::move(cell))};
 }
 
 /// Returns true if two scenes have objects of the same names at the same places.
@@ -47,7 +47,7 @@ bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObjec
 
 /// Gives an arm the rows of a motion; limits, resolution and cost are those of `like`. Throws
 /// ValueError for rows of other joints.
-void give(WorkcellArm& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
+void give(ArmTask& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
   static_cast<Robot&>(arm) = robot;
   if (arm.roll) arm.roll = Roll{};  // the rows say how the tool stands turned
   const auto names =
@@ -56,9 +56,9 @@ void give(WorkcellArm& arm, const Robot& robot, const Trajectory& motion, const 
   if (!std::equal(names.begin(), names.end(), motion.joint_names.begin(), motion.joint_names.end()))
     throw py::value_error("arms: the trajectory of '" + arm.name +
                           "' has other joints than its robot: allowed are rows of this robot");
-  arm.limits = like.limits;
-  arm.resolution = like.resolution;
-  arm.cost = like.cost;
+  arm.path().limits = like.limits;
+  arm.path().resolution = like.resolution;
+  arm.path().cost = like.cost;
   for (const TrajectoryRow& row : *motion.rows) arm.given.push_back(row.q);
 }
 
@@ -78,17 +78,17 @@ Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::s
   if (arms.size() != 2)
     throw py::value_error("arms: has " + std::to_string(arms.size()) +
                           " entries: allowed are two, name -> Problem");
-  auto cell = std::make_shared<swivel::Workcell>();
+  auto cell = std::make_shared<swivel::Problem>(two_arms());
   std::size_t k = 0;
   const PathProblem* first_problem = nullptr;
   for (const auto& [name, value] : arms) {
-    WorkcellArm& arm = cell->arms[k++];
+    ArmTask& arm = cell->arms[k++];
     arm.name = py::str(name);
     if (py::isinstance<py::tuple>(value)) continue;  // its motion is given
     const auto& problem = value.cast<const PathProblem&>();
     static_cast<Robot&>(arm) = problem;
-    static_cast<Task&>(arm) = problem;
-    if (!at_rows.empty()) arm.steps = steps_of(at_rows);
+    static_cast<Task&>(arm.path()) = problem;
+    if (!at_rows.empty()) arm.path().steps = steps_of(at_rows);
     if (first_problem == nullptr) {
       first_problem = &problem;
       cell->scene = problem.scene;
@@ -104,7 +104,7 @@ Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::s
     throw py::value_error("arms: both motions are given: allowed is one Problem at least");
   k = 0;
   for (const auto& [name, value] : arms) {
-    WorkcellArm& arm = cell->arms[k++];
+    ArmTask& arm = cell->arms[k++];
     if (!py::isinstance<py::tuple>(value)) continue;
     const auto& [robot, motion] = value.cast<std::pair<const Robot*, const Trajectory*>>();
     give(arm, *robot, *motion, *first_problem);
@@ -126,7 +126,7 @@ std::size_t number_of(const std::array<std::string, 2>& names, const std::string
   throw py::key_error("'" + name + "': allowed are '" + names[0] + "' and '" + names[1] + "'");
 }
 
-std::array<std::string, 2> names_of(const swivel::Workcell& cell) {
+std::array<std::string, 2> names_of(const swivel::Problem& cell) {
   return {cell.arms[0].name, cell.arms[1].name};
 }
 
@@ -238,9 +238,9 @@ void bind_cell(py::module_& m) {
           [](const Workcell& w, const Offset& offset, const std::optional<std::string>& object,
              bool path, bool base, const std::optional<std::string>& arm,
              const HeldPositions& hold) {
-            return shared(placed_workcell(held_as(*w.cell, hold),
-                                          to_movable(object, path, base, !hold.empty(), arm),
-                                          offset));
+            return shared(placed_problem(held_as(*w.cell, hold),
+                                         to_movable(object, path, base, !hold.empty(), arm),
+                                         offset));
           },
           py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
           py::arg("base") = false, py::arg("arm") = py::none(), py::arg("hold") = HeldPositions(),
@@ -252,7 +252,7 @@ void bind_cell(py::module_& m) {
       .def(
           "episode",
           [](const Workcell& w, std::uint64_t seed, std::uint64_t episode) {
-            return shared(episode_workcell(*w.cell, seed, episode));
+            return shared(episode_problem(*w.cell, seed, episode));
           },
           py::arg("seed"), py::arg("episode"),
           "The workcell of this episode of a campaign: objects moved as the file's `vary` says.")
@@ -260,7 +260,7 @@ void bind_cell(py::module_& m) {
       .def("__repr__", [](const Workcell& w) {
         const std::size_t of = w.cell->given_arm() == 0u ? 1 : 0;
         return formatted("<Workcell of '%s' and '%s', %zu waypoints>", w.cell->arms[0].name.c_str(),
-                         w.cell->arms[1].name.c_str(), w.cell->arms[of].waypoints.size());
+                         w.cell->arms[1].name.c_str(), w.cell->arms[of].path().waypoints.size());
       });
   m.def(
       "load_workcell",
@@ -492,9 +492,9 @@ void bind_advice(py::module_& m) {
 
 }  // namespace
 
-std::shared_ptr<const swivel::Workcell> to_core(const WorkcellOrFile& cell) {
+std::shared_ptr<const swivel::Problem> to_core(const WorkcellOrFile& cell) {
   if (const auto* made = std::get_if<const Workcell*>(&cell)) return (*made)->cell;
-  return std::make_shared<const swivel::Workcell>(
+  return std::make_shared<const swivel::Problem>(
       io::load_workcell(std::get<std::filesystem::path>(cell)));
 }
 
@@ -513,14 +513,14 @@ io::WorkcellRows rows_of(const py::dict& rows, const std::array<std::string, 2>&
   return all;
 }
 
-swivel::Workcell completed(const WorkcellPlan& plan, const Workcell* given) {
+swivel::Problem completed(const WorkcellPlan& plan, const Workcell* given) {
   if (given == nullptr && !plan.cell)
     throw py::value_error(
         "workcell: a plan that was unpickled has none: allowed is the workcell that was planned");
-  const swivel::Workcell& cell = given != nullptr ? *given->cell : *plan.cell;
-  swivel::Workcell whole = plan.timing ? with_motion_defaults(cell) : cell;
-  for (WorkcellArm& arm : whole.arms)
-    if (plan.refined) keep_clearance_between_layers(arm.limits);
+  const swivel::Problem& cell = given != nullptr ? *given->cell : *plan.cell;
+  swivel::Problem whole = plan.timing ? with_motion_defaults(cell) : cell;
+  for (ArmTask& arm : whole.arms)
+    if (plan.refined) keep_clearance_between_layers(arm.path().limits);
   return whole;
 }
 

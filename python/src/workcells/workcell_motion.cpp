@@ -19,12 +19,13 @@ namespace {
 
 /// Returns the timing that keywords ask for; without a speed, that of the arm whose tool may move
 /// least fast. Throws ValueError.
-TimingOptions timing_of(const swivel::Workcell& cell, std::optional<double> speed,
+TimingOptions timing_of(const swivel::Problem& cell, std::optional<double> speed,
                         std::optional<double> turn_speed, double rate) {
   std::optional<double> least;
-  for (const WorkcellArm& arm : cell.arms)
-    if (arm.limits.tool_speed)
-      least = std::min(*arm.limits.tool_speed, least.value_or(*arm.limits.tool_speed));
+  for (const ArmTask& arm : cell.arms)
+    if (arm.path().limits.tool_speed)
+      least =
+          std::min(*arm.path().limits.tool_speed, least.value_or(*arm.path().limits.tool_speed));
   if (!speed && !least)
     throw py::value_error(
         "speed: is not given, nor limits.tool_speed: allowed is the speed of the tool in m/s");
@@ -43,7 +44,7 @@ TimingOptions timing_of(const swivel::Workcell& cell, std::optional<double> spee
 /// `prepared` is that of the workcell with_motion_defaults(). Throws InputError, and ValueError for
 /// motions that are no files and for a plan without trajectories.
 std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const PreparedWorkcell& prepared,
-                                                       const swivel::Workcell& cell,
+                                                       const swivel::Problem& cell,
                                                        const std::filesystem::path& file,
                                                        const Budget& budget) {
   io::WorkcellRows read = io::load_workcell_rows(

@@ -11,7 +11,7 @@
 #include "bindings.hpp"
 #include "job.hpp"
 #include "results.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/workcells/workcell_csv.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
 
@@ -20,14 +20,14 @@ namespace swivel::python {
 struct WorkcellPlan {
   std::shared_ptr<const WorkcellMotionPlan> plan;  // shared with trajectories
   std::optional<TimingOptions> timing = {};
-  bool refined = false;                               ///< a refinement was asked for
-  std::string frame = {};                             ///< name of the base link
-  std::shared_ptr<const swivel::Workcell> cell = {};  ///< as it was given; null once pickled
+  bool refined = false;                              ///< a refinement was asked for
+  std::string frame = {};                            ///< name of the base link
+  std::shared_ptr<const swivel::Problem> cell = {};  ///< as it was given; null once pickled
 };
 
 /// Returns the workcell that a plan is of as it was planned, with what motions and refinements
 /// need: `given`, or the one that the plan keeps. Throws ValueError if there is none.
-[[nodiscard]] swivel::Workcell completed(const WorkcellPlan& plan, const Workcell* given);
+[[nodiscard]] swivel::Problem completed(const WorkcellPlan& plan, const Workcell* given);
 
 /// The motion of both arms in time, or why there is none.
 struct WorkcellMotion {
@@ -48,7 +48,7 @@ struct WorkcellMotion {
 
 /// A workcell, or the name of its file.
 using WorkcellOrFile = std::variant<const Workcell*, std::filesystem::path>;
-[[nodiscard]] std::shared_ptr<const swivel::Workcell> to_core(const WorkcellOrFile& cell);
+[[nodiscard]] std::shared_ptr<const swivel::Problem> to_core(const WorkcellOrFile& cell);
 
 /// The trajectories of both arms: a plan, name -> Trajectory, or the name of a CSV file.
 using WorkcellTrajectories = std::variant<WorkcellPlan, py::dict, std::filesystem::path>;

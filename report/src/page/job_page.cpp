@@ -33,7 +33,8 @@ class JobPage {
         budget_(budget),
         json_(Json::parse(result_json)) {
     for (const RunResult& run : result_.runs) order_.push_back(run.run);
-    for (std::size_t k = 0; order_.size() < job_.strokes.size(); ++k) order_.push_back({k, false});
+    for (std::size_t k = 0; order_.size() < job_.arm().strokes.size(); ++k)
+      order_.push_back({k, false});
     if (motion_ == nullptr) return;
     std::size_t run = 0;
     for (std::size_t part = 0; part < result_.parts.size(); ++part) {
@@ -47,7 +48,8 @@ class JobPage {
   /// Returns the data of the page. Throws Stopped.
   Json data(const std::string& name, const PageWords& words) {
     Bodies bodies(world_, job_.scene);
-    if (words.visual != nullptr) bodies.add_visual(*words.visual, *job_.model, {{robot_.arm()}});
+    if (words.visual != nullptr)
+      bodies.add_visual(*words.visual, *job_.arm().model, {{robot_.arm()}});
     Json strokes = Json::array();
     for (std::size_t k = 0; k < order_.size(); ++k) strokes.push_back(stroke(k));
     Json parts = result_.parts.empty() ? partial_parts() : parts_of_job();
@@ -57,7 +59,7 @@ class JobPage {
             {"answer", words.answer},
             {"result", std::move(json_)},
             {"chain", chain_json(chain_)},
-            {"ground", ground_json(*job_.model, robot_.arm())},
+            {"ground", ground_json(*job_.arm().model, robot_.arm())},
             {"bodies", std::move(bodies.bodies)},
             {"visual", std::move(bodies.visual)},
             {"unread", words.unread},
@@ -90,8 +92,8 @@ class JobPage {
   /// Returns a stroke in its direction: where the tool goes, its rows, map, and where its paths
   /// end. A run between lift-offs counts s along the whole of its stroke.
   Json stroke(std::size_t k) {
-    const std::string& name = job_.strokes[order_[k].stroke].name;
-    const double begin = s_of_piece(job_.strokes[order_[k].stroke]);
+    const std::string& name = job_.arm().strokes[order_[k].stroke].name;
+    const double begin = s_of_piece(job_.arm().strokes[order_[k].stroke]);
     Json json = {{"name", name}, {"reversed", order_[k].reversed}, {"rows", Json::array()}};
     if (runs_.empty()) {
       json["beside"] = Json::array();
@@ -133,7 +135,7 @@ class JobPage {
                                                  const LatticeMap& map) const {
     std::vector<TrajectoryRow> rows = result_.parts[part].rows;
     if (motion_) rows = passed_rows(std::move(rows), samples_of(part), places_[part]);
-    const bool piece = job_.strokes[result_.parts[part].run->stroke].piece.has_value();
+    const bool piece = job_.arm().strokes[result_.parts[part].run->stroke].piece.has_value();
     const double turned =
         piece ? wrap_angle(view.lattice.phi(0, view.path.front()) - rows.front().phi) : 0;
     for (TrajectoryRow& row : rows) row.phi += turned;
@@ -174,10 +176,10 @@ class JobPage {
 
   /// Returns the joints at home, and the two bodies that come too near there.
   [[nodiscard]] Json home() const {
-    if (!job_.home) return nullptr;
+    if (!job_.arm().home) return nullptr;
     const std::optional<NoTransition>& none = result_.no_transition;
     const bool barred = none && none->where == NoTransition::Where::kHome && none->bodies;
-    return {{"q", std::vector<double>(job_.home->begin(), job_.home->end())},
+    return {{"q", std::vector<double>(job_.arm().home->begin(), job_.arm().home->end())},
             {"pair", barred ? Json(*none->bodies) : Json(nullptr)}};
   }
 
@@ -196,13 +198,14 @@ class JobPage {
     const auto& rows = motion_->rows;
     for (std::size_t k = 1; k < rows.size(); ++k)
       if (motion_->part[k] != motion_->part[k - 1]) begin[motion_->part[k]] = rows[k - 1].t;
-    Json json = motion_json(rows, motion_->rate, joint_rates(chain_, job_.limits, job_.source),
-                            chain_, places);
+    Json json =
+        motion_json(rows, motion_->rate,
+                    joint_rates(chain_, job_.arm().transition_limits, job_.source), chain_, places);
     json["begin"] = begin;
     return json;
   }
 
-  const Job& job_;
+  const Problem& job_;
   const JobResult& result_;
   const std::vector<PlanView>& runs_;
   const JobMotion* motion_;

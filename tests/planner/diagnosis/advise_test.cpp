@@ -274,7 +274,7 @@ TEST(Advise, ATorsoHeldElsewhereHelps) {
 
 /// Joint 5 stands at its limit at the given start: without the start there is a path.
 TEST(Advise, ExperimentAFromItsStartNeedsAnother) {
-  Planner planner(io::load_problem(data_dir() / "problems" / "experiment_a_start.yaml"));
+  Planner planner(io::load_path_problem(data_dir() / "problems" / "experiment_a_start.yaml"));
   const PlanResult result = planner.plan();
   if (result.status == PlanStatus::kSolved) GTEST_SKIP() << "the start is a good one";
   const std::vector<Advice> advice = advise(planner, result, for_seconds(20));
@@ -286,7 +286,7 @@ TEST(Advise, ExperimentAFromItsStartNeedsAnother) {
 /// The torch stands turned so that the arm cannot follow; turned as it likes it can.
 TEST(Advise, ATorchMayTurnAboutItsAxis) {
   for (const Roll& roll : {Roll{-0.3, -0.2}, Roll{0.4, 0.5}}) {
-    PathProblem problem = io::load_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml");
+    PathProblem problem = io::load_path_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml");
     problem.roll = roll;
     Planner planner(problem);
     const PlanResult result = planner.plan();
@@ -300,13 +300,13 @@ TEST(Advise, ATorchMayTurnAboutItsAxis) {
     EXPECT_EQ(follow.status, PlanStatus::kSolved);
     EXPECT_EQ(follow.cost, free->cost);
   }
-  Planner planner(io::load_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml"));
+  Planner planner(io::load_path_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml"));
   EXPECT_EQ(planner.plan().status, PlanStatus::kSolved);  // whose roll is free
 }
 
 /// A wall across the path, which nothing but its removal helps against.
 TEST(Advise, AWallMustGo) {
-  PathProblem problem = io::load_problem(data_dir() / "problems" / "experiment_a.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems" / "experiment_a.yaml");
   SceneObject& wall = problem.scene.emplace_back();
   wall.name = "wall";
   wall.shape = Box{{0.3, 0.02, 0.3}};
@@ -319,7 +319,7 @@ TEST(Advise, AWallMustGo) {
   EXPECT_EQ(words(advice[0]), "no 'wall'");
   for (std::size_t k = 1; k < advice.size(); ++k)
     EXPECT_NE(advice[k].outcome, Outcome::kSolved) << words(advice[k]);
-  Planner solved(io::load_problem(data_dir() / "problems" / "experiment_a.yaml"));
+  Planner solved(io::load_path_problem(data_dir() / "problems" / "experiment_a.yaml"));
   EXPECT_TRUE(advise(solved, solved.plan(), for_seconds(1)).empty());
 }
 

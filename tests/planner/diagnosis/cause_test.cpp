@@ -150,7 +150,8 @@ TEST(Cause, OfADiagnosisThatEndsBeforeItIsKnownSaysSo) {
 }
 
 TEST(Cause, OfExperimentAFromItsGivenStartIsTheLimitOfJoint5) {
-  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  const PathProblem problem =
+      io::load_path_problem(data_dir() / "problems/experiment_a_start.yaml");
   const PlanResult result = plan(problem);
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   const Diagnosis& d = result.diagnosis;

@@ -148,7 +148,7 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
 
 /// A straight line that leaves the reach of the arm.
 PathProblem leaving(double to) {
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_a.yaml");
   problem.waypoints[1].position = problem.waypoints[0].position + Vector3d(to, 0, 0);
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   return problem;

@@ -501,7 +501,7 @@ class RefusesHalf final : public StateCheck {
 };
 
 TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
-  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  const PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_a.yaml");
   PathProblem coarse = problem;
   coarse.resolution = {.ds = 0.02, .dphi = 0.2};
   const auto robot = std::make_shared<const PreparedRobot>(coarse);
@@ -530,7 +530,8 @@ TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
 
 /// A certificate says nothing about a lattice that is laid out otherwise.
 TEST(InfeasibilityCertificate, OfAnotherLayoutIsBadInput) {
-  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  const PathProblem problem =
+      io::load_path_problem(data_dir() / "problems/experiment_a_start.yaml");
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   Planner planner(robot, problem);
   ASSERT_EQ(planner.plan().status, PlanStatus::kInfeasible);

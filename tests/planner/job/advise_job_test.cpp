@@ -6,7 +6,7 @@
 
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
@@ -17,10 +17,10 @@ namespace {
 using Change = JobAdvice::Change;
 
 /// The first strokes of the car door's job, on coarse lattices.
-Job door_of(std::size_t strokes) {
-  Job job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
-  job.strokes.resize(strokes);
-  for (Stroke& stroke : job.strokes) {
+Problem door_of(std::size_t strokes) {
+  Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
+  job.arm().strokes.resize(strokes);
+  for (Stroke& stroke : job.arm().strokes) {
     stroke.resolution.ds = 0.02;
     stroke.resolution.dphi = 0.1;
   }
@@ -29,7 +29,7 @@ Job door_of(std::size_t strokes) {
 
 /// A job, its verdict and what is advised.
 struct Advised {
-  explicit Advised(const Job& job)
+  explicit Advised(const Problem& job)
       : robot(problem_of_run(job, {0, false})),
         result(plan_job(robot, job)),
         advice(advise_job(robot, job, result, thirty_seconds())) {}
@@ -48,7 +48,7 @@ struct Advised {
   AdviceOnJob advice;
 };
 
-void expect_solved(const JobAdvice* advice, const PreparedRobot& robot, const Job& changed) {
+void expect_solved(const JobAdvice* advice, const PreparedRobot& robot, const Problem& changed) {
   ASSERT_NE(advice, nullptr);
   ASSERT_EQ(advice->outcome, Advice::Outcome::kSolved) << words(*advice);
   const JobResult found = plan_job(robot, changed);
@@ -57,31 +57,31 @@ void expect_solved(const JobAdvice* advice, const PreparedRobot& robot, const Jo
 }
 
 TEST(AdviseJob, LeavesOutStrokesThatHaveNoPath) {
-  Job job = door_of(3);
-  for (Waypoint& waypoint : job.strokes[1].waypoints) waypoint.position.x() += 3;
+  Problem job = door_of(3);
+  for (Waypoint& waypoint : job.arm().strokes[1].waypoints) waypoint.position.x() += 3;
   const Advised advised(job);
   ASSERT_EQ(advised.result.status, PlanStatus::kInfeasible);
   EXPECT_FALSE(advised.result.no_transition);
   const JobAdvice* without = advised.find(Change::kWithoutStrokes);
   ASSERT_NE(without, nullptr);
-  EXPECT_EQ(without->strokes, std::vector<std::string>{job.strokes[1].name});
-  Job changed = job;
-  changed.strokes.erase(changed.strokes.begin() + 1);
+  EXPECT_EQ(without->strokes, std::vector<std::string>{job.arm().strokes[1].name});
+  Problem changed = job;
+  changed.arm().strokes.erase(changed.arm().strokes.begin() + 1);
   expect_solved(without, advised.robot, changed);
   EXPECT_EQ(advised.find(Change::kReversed), nullptr);  // it has no path either way
   ASSERT_EQ(advised.advice.strokes.size(), 1u);
-  EXPECT_EQ(advised.advice.strokes.front().stroke, job.strokes[1].name);
+  EXPECT_EQ(advised.advice.strokes.front().stroke, job.arm().strokes[1].name);
   EXPECT_FALSE(advised.advice.strokes.front().advice.empty());
 }
 
 TEST(AdviseJob, MovesAHomeThatIsBarred) {
-  Job job = door_of(1);
-  (*job.home)[0] -= 0.6;  // away from the door, so that the stroke is free
+  Problem job = door_of(1);
+  (*job.arm().home)[0] -= 0.6;  // away from the door, so that the stroke is free
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   SceneObject ball;
   ball.name = "ball";
   ball.shape = Sphere{0.03};
-  ball.pose = robot.arm().chain.tool(*job.home);
+  ball.pose = robot.arm().chain.tool(*job.arm().home);
   job.scene.push_back(ball);
   const Advised advised(job);
   ASSERT_TRUE(advised.result.no_transition);
@@ -91,18 +91,18 @@ TEST(AdviseJob, MovesAHomeThatIsBarred) {
   const JobAdvice* home = advised.find(Change::kHome);
   ASSERT_NE(home, nullptr);
   ASSERT_TRUE(home->home);
-  Job changed = job;
-  changed.home = home->home;
+  Problem changed = job;
+  changed.arm().home = home->home;
   expect_solved(home, advised.robot, changed);
 }
 
 /// Strokes may come nearer to the door than transitions: their ends are told once, not pair by
 /// pair, and longer lines help.
 TEST(AdviseJob, LengthensLinesWhereEndsAreTooNear) {
-  Job job = door_of(2);
-  job.limits.clearance = 0.06;
-  job.limits.self_clearance = 0.005;
-  for (Stroke& stroke : job.strokes) stroke.approach = stroke.retract = Vector3d::Zero();
+  Problem job = door_of(2);
+  job.arm().transition_limits.clearance = 0.06;
+  job.arm().transition_limits.self_clearance = 0.005;
+  for (Stroke& stroke : job.arm().strokes) stroke.approach = stroke.retract = Vector3d::Zero();
   const Advised advised(job);
   ASSERT_EQ(advised.result.status, PlanStatus::kInfeasible);
   ASSERT_TRUE(advised.result.no_transition);
@@ -115,8 +115,8 @@ TEST(AdviseJob, LengthensLinesWhereEndsAreTooNear) {
   ASSERT_NE(lines, nullptr);
   ASSERT_TRUE(lines->length);
   EXPECT_EQ(&advised.advice.job.front(), lines);  // what helps comes first
-  Job changed = job;
-  for (Stroke& stroke : changed.strokes)
+  Problem changed = job;
+  for (Stroke& stroke : changed.arm().strokes)
     stroke.approach = stroke.retract = Vector3d(0, 0, -*lines->length);
   expect_solved(lines, advised.robot, changed);
   EXPECT_NE(advice_text(advised.advice).find("would help: approach and retract of "),
@@ -124,7 +124,7 @@ TEST(AdviseJob, LengthensLinesWhereEndsAreTooNear) {
 }
 
 TEST(AdviseJob, NothingWhereThereIsAJob) {
-  const Job job = door_of(1);
+  const Problem job = door_of(1);
   const Advised advised(job);
   EXPECT_EQ(advised.result.status, PlanStatus::kSolved);
   EXPECT_TRUE(advised.advice.job.empty());

@@ -26,17 +26,17 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Draws a job of two or three rings, some from a home and back, some with a line before and after
 /// each ring.
-Job ring_job(const RingArm& arm, Random& random) {
+Problem ring_job(const RingArm& arm, Random& random) {
   const PathProblem first = coarse_ring(arm, random, random.coin(0.08));
-  Job job;
-  static_cast<Robot&>(job) = first;
+  Problem job;
+  static_cast<Robot&>(job.arm()) = first;
   job.source = "rings";
-  job.limits = first.limits;
+  job.arm().transition_limits = first.limits;
   if (random.coin()) job.scene = first.scene;
   const int count = 2 + random.below(2);
   for (int k = 0; k < count; ++k) {
     PathProblem ring = k == 0 ? first : coarse_ring(arm, random, random.coin(0.08));
-    Stroke& stroke = job.strokes.emplace_back();
+    Stroke& stroke = job.arm().strokes.emplace_back();
     static_cast<Task&>(stroke) = ring;
     stroke.cost = first.cost;
     stroke.name = "ring " + std::to_string(k);
@@ -46,9 +46,10 @@ Job ring_job(const RingArm& arm, Random& random) {
     if (random.coin(0.3)) stroke.approach = stroke.retract = Vector3d(0, 0, -0.01);
   }
   if (random.coin(0.6)) {
-    job.home = random_config(PreparedRobot(problem_of_run(job, {0, false})).arm().chain, random);
-    if (job.roll) (*job.home)[kDof - 1] = 0;
-    keep_ring_inside(PreparedRobot(problem_of_run(job, {0, false})).arm().chain, *job.home);
+    job.arm().home =
+        random_config(PreparedRobot(problem_of_run(job, {0, false})).arm().chain, random);
+    if (job.arm().roll) (*job.arm().home)[kDof - 1] = 0;
+    keep_ring_inside(PreparedRobot(problem_of_run(job, {0, false})).arm().chain, *job.arm().home);
   }
   return job;
 }
@@ -65,7 +66,8 @@ struct PlainRing {
   std::vector<Seam> seams;
 };
 
-PlainRing plain_ring(const PreparedRobot& robot, const Job& job, std::size_t k, RingNodes nodes) {
+PlainRing plain_ring(const PreparedRobot& robot, const Problem& job, std::size_t k,
+                     RingNodes nodes) {
   const PathProblem problem = problem_of_run(job, {k, false});
   const World world(robot.world(), problem);
   const ToolPath path = problem_path(problem, robot.arm().chain);
@@ -81,7 +83,7 @@ PlainRing plain_ring(const PreparedRobot& robot, const Job& job, std::size_t k, 
 /// The straight moves between strokes of a job.
 class PlainMoves {
  public:
-  PlainMoves(const PreparedRobot& robot, const Job& job, const Lattice& metric)
+  PlainMoves(const PreparedRobot& robot, const Problem& job, const Lattice& metric)
       : metric_(&metric), world_(robot.world(), between(job)), query_(world_) {
     rule_ = world_.edge_rule(robot.radii());
   }
@@ -102,7 +104,7 @@ class PlainMoves {
   }
 
  private:
-  static PathProblem between(const Job& job) {
+  static PathProblem between(const Problem& job) {
     PathProblem problem = problem_of_run(job, {0, false});
     problem.limits = limits_of_transitions(job);
     return problem;
@@ -121,13 +123,14 @@ struct PlainJob {
 
 /// Finds the cheapest job in an order by a plain program over all seams and all straight moves
 /// between them.
-PlainJob plain_job(const Job& job, const std::vector<PlainRing>& rings,
+PlainJob plain_job(const Problem& job, const std::vector<PlainRing>& rings,
                    const std::vector<std::size_t>& order, const PlainMoves& moves) {
-  const std::vector<Seam> home(job.home ? 1 : 0, Seam{job.home.value_or(Config::Zero()), 0});
+  const std::vector<Seam> home(job.arm().home ? 1 : 0,
+                               Seam{job.arm().home.value_or(Config::Zero()), 0});
   std::vector<std::vector<Seam>> stages;
-  if (job.home) stages.push_back(home);
+  if (job.arm().home) stages.push_back(home);
   for (const std::size_t k : order) stages.push_back(rings[k].seams);
-  if (job.home) stages.push_back(home);
+  if (job.arm().home) stages.push_back(home);
   std::vector<std::vector<std::size_t>> next(stages.size());
   for (std::size_t k = stages.size() - 1; k-- > 0;)
     for (Seam& seam : stages[k]) {
@@ -172,8 +175,8 @@ void expect_laps(const Chain& chain, const JobResult& found, const std::string& 
   }
 }
 
-void expect_spoilt_end_refused(const PreparedRobot& robot, const Job& job, const JobResult& found,
-                               const std::string& what) {
+void expect_spoilt_end_refused(const PreparedRobot& robot, const Problem& job,
+                               const JobResult& found, const std::string& what) {
   std::vector<JobPart> parts = found.parts;
   const auto part =
       std::find_if(parts.begin(), parts.end(), [](const JobPart& p) { return p.run; });
@@ -203,11 +206,11 @@ void expect_verdict(const JobResult& found, const std::vector<PlainRing>& rings,
   ASSERT_GE(named, 1) << what;
 }
 
-void expect_plain_job(const RingArm& arm, const Job& job, bool any_order, const std::string& what,
-                      JobCounts& counts) {
+void expect_plain_job(const RingArm& arm, const Problem& job, bool any_order,
+                      const std::string& what, JobCounts& counts) {
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   std::vector<PlainRing> rings;
-  for (std::size_t k = 0; k < job.strokes.size(); ++k)
+  for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
     rings.push_back(plain_ring(robot, job, k, arm.nodes));
   const JobResult found = plan_job(robot, job);
   if (found.no_transition) {  // home is barred, or no way was found
@@ -233,7 +236,7 @@ void expect_plain_job(const RingArm& arm, const Job& job, bool any_order, const 
     const auto part = std::find_if(found.parts.begin(), found.parts.end(),
                                    [&](const JobPart& p) { return p.run && p.run->stroke == k; });
     counts.dearer += part->cost > rings[k].truth.cost + rounding;
-    counts.lines += job.strokes[k].approach != Vector3d::Zero();
+    counts.lines += job.arm().strokes[k].approach != Vector3d::Zero();
   }
   const JobCheckResult check = check_job(robot, job, found.parts);
   ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
@@ -244,8 +247,8 @@ void expect_plain_job(const RingArm& arm, const Job& job, bool any_order, const 
   double best = plain.cost;
   while (std::next_permutation(order.begin(), order.end()))
     best = std::min(best, plain_job(job, rings, order, moves).cost);
-  Job ordered = job;
-  ordered.order = StrokeOrder::kBest;
+  Problem ordered = job;
+  ordered.arm().order = StrokeOrder::kBest;
   const JobResult in_best = plan_job(robot, ordered);
   ASSERT_LE(in_best.lattice_cost, found.lattice_cost + rounding) << what;
   ASSERT_GE(in_best.lattice_cost, best - rounding) << what;
@@ -281,8 +284,8 @@ TEST(ClosedStrokes, CostWhatAPlainProgramOverAllStartsSays) {
 
 TEST(ClosedStrokes, AreDoneInOneRunWithOneLine) {
   Random random(seed("ClosedStrokes.Refused"));
-  Job job = ring_job(ring_arms(random).front(), random);
-  const auto refused = [](const Job& bad) {
+  Problem job = ring_job(ring_arms(random).front(), random);
+  const auto refused = [](const Problem& bad) {
     try {
       validate(bad);
     } catch (const InvalidArgument& error) {
@@ -291,15 +294,15 @@ TEST(ClosedStrokes, AreDoneInOneRunWithOneLine) {
     return std::string("nothing");
   };
   EXPECT_EQ(refused(job), "nothing");
-  Job bad = job;
-  bad.strokes[1].approach = Vector3d(0, 0, -0.02);
+  Problem bad = job;
+  bad.arm().strokes[1].approach = Vector3d(0, 0, -0.02);
   EXPECT_NE(refused(bad).find("'ring 1': closed"), std::string::npos) << refused(bad);
   bad = job;
-  bad.lift.emplace();
+  bad.arm().lift.emplace();
   EXPECT_NE(refused(bad).find("lift: stroke 'ring 0' is closed"), std::string::npos)
       << refused(bad);
   bad = job;
-  bad.strokes[0].end = Config::Zero();
+  bad.arm().strokes[0].end = Config::Zero();
   EXPECT_NE(refused(bad).find("closed"), std::string::npos) << refused(bad);
 }
 

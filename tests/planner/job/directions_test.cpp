@@ -12,7 +12,7 @@
 #include "seed.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -24,24 +24,24 @@ using namespace test;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-Job load(const std::string& name) {
+Problem load(const std::string& name) {
   return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
 }
 
 /// Draws a job of a few strokes of another, in any order, at another placement.
-Job random_job(const Job& of, Random& random) {
-  Job job = of;
+Problem random_job(const Problem& of, Random& random) {
+  Problem job = of;
   const auto episode = static_cast<std::uint64_t>(random.below(1000));
   if (!job.vary.empty())
     job.scene = episode_problem(problem_of_run(job, {0, false}), 1, episode).scene;
-  for (std::size_t k = job.strokes.size(); k > 1; --k)
-    std::swap(job.strokes[k - 1],
-              job.strokes[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+  for (std::size_t k = job.arm().strokes.size(); k > 1; --k)
+    std::swap(job.arm().strokes[k - 1],
+              job.arm().strokes[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
   const auto count = static_cast<std::size_t>(1 + random.below(3));
-  while (job.strokes.size() > count) job.strokes.pop_back();
-  job.order = StrokeOrder::kGiven;
-  if (random.coin(0.3)) job.home.reset();
-  for (Stroke& stroke : job.strokes) {
+  while (job.arm().strokes.size() > count) job.arm().strokes.pop_back();
+  job.arm().order = StrokeOrder::kGiven;
+  if (random.coin(0.3)) job.arm().home.reset();
+  for (Stroke& stroke : job.arm().strokes) {
     stroke.reversible = random.coin(0.8);
     stroke.approach = random.coin() ? Vector3d(0, 0, -0.02) : Vector3d::Zero();
     stroke.retract = random.coin() ? Vector3d(0, 0, -0.03) : Vector3d::Zero();
@@ -55,10 +55,10 @@ Job random_job(const Job& of, Random& random) {
 
 /// Returns the job with strokes written in the directions that the bits of `turned` say, none of
 /// them reversible; nothing where a stroke that is not reversible would be turned.
-std::optional<Job> written(const Job& of, unsigned turned) {
-  Job job = of;
-  for (std::size_t k = 0; k < job.strokes.size(); ++k) {
-    Stroke& stroke = job.strokes[k];
+std::optional<Problem> written(const Problem& of, unsigned turned) {
+  Problem job = of;
+  for (std::size_t k = 0; k < job.arm().strokes.size(); ++k) {
+    Stroke& stroke = job.arm().strokes[k];
     if ((turned >> k & 1) != 0) {
       if (!stroke.reversible) return std::nullopt;
       std::reverse(stroke.waypoints.begin(), stroke.waypoints.end());
@@ -74,9 +74,9 @@ bool is_straight(const JobResult& job) {
 }
 
 /// Returns a job whose runs are those of other jobs, with straight moves between them.
-std::vector<JobPart> joined(const Job& job, const std::vector<const JobPart*>& runs) {
+std::vector<JobPart> joined(const Problem& job, const std::vector<const JobPart*>& runs) {
   std::vector<JobPart> parts;
-  std::optional<Config> at = job.home;
+  std::optional<Config> at = job.arm().home;
   const auto go_to = [&](const Config& q) {
     if (!at) return;
     JobPart& move = parts.emplace_back();
@@ -91,7 +91,7 @@ std::vector<JobPart> joined(const Job& job, const std::vector<const JobPart*>& r
     parts.push_back(*run);
     at = run->rows.back().q;
   }
-  if (job.home) go_to(*job.home);
+  if (job.arm().home) go_to(*job.arm().home);
   return parts;
 }
 
@@ -100,14 +100,14 @@ struct Met {
 };
 
 /// Holds a job against all directions of its strokes, each written by hand.
-void expect_cheapest(const PreparedRobot& robot, const Job& job, const std::string& what,
+void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::string& what,
                      Random& random, Met& met) {
   const JobResult found = plan_job(robot, job);
-  std::vector<std::vector<JobPart>> runs(job.strokes.size());  // by stroke, of all directions
+  std::vector<std::vector<JobPart>> runs(job.arm().strokes.size());  // by stroke, of all directions
   double least = kNone;
   bool straight = is_straight(found);
-  for (unsigned turned = 0; turned < 1U << job.strokes.size(); ++turned) {
-    const std::optional<Job> by_hand = written(job, turned);
+  for (unsigned turned = 0; turned < 1U << job.arm().strokes.size(); ++turned) {
+    const std::optional<Problem> by_hand = written(job, turned);
     if (!by_hand) continue;
     JobResult other = plan_job(robot, *by_hand);
     if (other.parts.empty()) continue;
@@ -153,7 +153,7 @@ TEST(Directions, AreTheCheapestOfAllInTheGivenOrder) {
   Met met;
   for (const char* const name : {"door_job.yaml", "iiwa14_bench_job.yaml",
                                  "ur5e_deburr_plate_job.yaml", "kr6_weld_pipe_job.yaml"}) {
-    const Job of = load(name);
+    const Problem of = load(name);
     const PreparedRobot robot(problem_of_run(of, {0, false}));
     for (int trial = 0; trial < trials(50); ++trial) {
       const std::string what = std::string(name) + " trial " + std::to_string(trial);
@@ -172,10 +172,10 @@ TEST(Directions, AreTheCheapestOfAllInTheGivenOrder) {
 
 /// A stroke that only its last waypoint lets the arm begin has a path backwards alone.
 TEST(Directions, TheOneWithAPathIsTakenWhereTheOtherHasNone) {
-  Job job = load("door_job.yaml");
-  job.strokes.resize(1);
-  job.home.reset();
-  Stroke& stroke = job.strokes.front();
+  Problem job = load("door_job.yaml");
+  job.arm().strokes.resize(1);
+  job.arm().home.reset();
+  Stroke& stroke = job.arm().strokes.front();
   stroke.reversible = true;
   stroke.approach = Vector3d(0, 0, -3);  // out of reach, before whichever waypoint comes first
   EXPECT_EQ(plan_job(job).status, PlanStatus::kInfeasible);

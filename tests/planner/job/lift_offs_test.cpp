@@ -19,7 +19,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
@@ -31,7 +31,7 @@ namespace {
 
 using namespace test;
 
-Job bench() {
+Problem bench() {
   return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/iiwa14_bench_job.yaml");
 }
 
@@ -59,13 +59,13 @@ Stroke ring(const Stroke& like, double turns, double radius, double tilt, double
 
 /// Returns a job of one ring, coarse, with the last joint's range and the ring drawn. The scene is
 /// a bench, and a post beside the ring in some.
-Job random_ring(const Job& like, Random& random, double most_turns) {
-  Job job = like;
-  auto model = std::make_shared<RobotModel>(*like.model);
+Problem random_ring(const Problem& like, Random& random, double most_turns) {
+  Problem job = like;
+  auto model = std::make_shared<RobotModel>(*like.arm().model);
   Joint& last = model->joints[static_cast<std::size_t>(model->find_joint("joint_a7"))];
   last.upper = random.coin() ? random.uniform(2.4, 3.05) : random.uniform(1.3, 2.4);
   last.lower = -last.upper;
-  job.model = model;
+  job.arm().model = model;
   job.scene.clear();
   for (const SceneObject& object : like.scene)
     if (object.name == "bench" || object.name == "casting") job.scene.push_back(object);
@@ -76,19 +76,19 @@ Job random_ring(const Job& like, Random& random, double most_turns) {
         job.scene.back().pose.translation() =
             Vector3d(random.uniform(0.3, 0.45), random.uniform(-0.35, 0.35), 0.45);
       }
-  job.strokes = {ring(like.strokes.front(), random.uniform(0.6, most_turns),
-                      random.uniform(0.05, 0.1), random.uniform(0.1, 0.5),
-                      random.uniform(0.1, 0.2))};
-  Stroke& stroke = job.strokes.front();
+  job.arm().strokes = {ring(like.arm().strokes.front(), random.uniform(0.6, most_turns),
+                            random.uniform(0.05, 0.1), random.uniform(0.1, 0.5),
+                            random.uniform(0.1, 0.2))};
+  Stroke& stroke = job.arm().strokes.front();
   stroke.resolution.ds = 0.04;
   stroke.resolution.dphi = 0.2;
   stroke.resolution.dalpha = 0.5;
   stroke.limits.tool_path_error.reset();
   stroke.limits.clearance = 0.002;
   stroke.limits.edges = EdgeMode::kNodes;
-  job.home.reset();
-  job.order = StrokeOrder::kGiven;
-  job.lift = LiftOffs{random.coin() ? 1.5 : 0.0, random.coin() ? 0.03 : 0.0};
+  job.arm().home.reset();
+  job.arm().order = StrokeOrder::kGiven;
+  job.arm().lift = LiftOffs{random.coin() ? 1.5 : 0.0, random.coin() ? 0.03 : 0.0};
   return job;
 }
 
@@ -101,7 +101,7 @@ PlanOptions with_check() {
 /// Every node and edge of the lattice of a job's only stroke, each asked about by itself.
 class Plain {
  public:
-  Plain(const PreparedRobot& robot, const Job& job)
+  Plain(const PreparedRobot& robot, const Problem& job)
       : problem_(problem_of_run(job, {0, false})),
         world_(robot.world(), problem_),
         path_(problem_path(problem_, robot.arm().chain)),
@@ -191,14 +191,14 @@ class Plain {
 // check, its runs overlap as asked, and each begins where the one before ended or before it.
 TEST(LiftOffs, LeastNumberAgainstAllCuts) {
   Random random(seed("LiftOffs.LeastNumberAgainstAllCuts"));
-  const Job like = bench();
+  const Problem like = bench();
   const int count = trials(100);
   int one = 0, two = 0, more = 0, none = 0;
   for (int trial = 0; one + two + more < count && trial < 4 * count; ++trial) {
-    const Job job = random_ring(like, random, trial % 2 == 0 ? 1.4 : 2.6);
+    const Problem job = random_ring(like, random, trial % 2 == 0 ? 1.4 : 2.6);
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     const Plain plain(robot, job);
-    const auto least = plain.least_runs(job.lift->overlap);
+    const auto least = plain.least_runs(job.arm().lift->overlap);
     const JobResult found = plan_job(robot, job, with_check());
     SCOPED_TRACE("trial " + std::to_string(trial));
     if (!least) {
@@ -210,12 +210,12 @@ TEST(LiftOffs, LeastNumberAgainstAllCuts) {
     ASSERT_EQ(found.status, PlanStatus::kSolved);
     ASSERT_EQ(static_cast<int>(found.lift_offs.size()) + 1, *least);
     EXPECT_TRUE(found.checked);
-    const Job executed = executed_job(job, found);
+    const Problem executed = executed_job(job, found);
     const JobCheckResult check = check_job(robot, executed, found.parts);
     EXPECT_TRUE(check.passed);
     EXPECT_NEAR(check.cost, found.cost, 1e-6 * found.cost);
     for (const LiftOffResult& lift : found.lift_offs) {
-      EXPECT_LE(lift.resumed, std::max(0.0, lift.end - job.lift->overlap) + 1e-9);
+      EXPECT_LE(lift.resumed, std::max(0.0, lift.end - job.arm().lift->overlap) + 1e-9);
       EXPECT_GE(lift.reached, lift.end - 1e-9);
     }
   }
@@ -226,7 +226,7 @@ TEST(LiftOffs, LeastNumberAgainstAllCuts) {
 }
 
 /// Returns the least cost of a job of one stroke over all places of a number of lift-offs.
-double best_of_all_places(const PreparedRobot& robot, const Job& job, const Plain& plain,
+double best_of_all_places(const PreparedRobot& robot, const Problem& job, const Plain& plain,
                           int lift_offs, int& tried) {
   double least = std::numeric_limits<double>::infinity();
   std::vector<int> ends;
@@ -235,7 +235,7 @@ double best_of_all_places(const PreparedRobot& robot, const Job& job, const Plai
       if (plain.reach(begin) + 1 < plain.layers()) return;
       std::vector<LiftOff> places;
       for (const int end : ends)
-        places.push_back({0, plain.s(end), plain.s(plain.resumed(end, job.lift->overlap))});
+        places.push_back({0, plain.s(end), plain.s(plain.resumed(end, job.arm().lift->overlap))});
       const JobResult found = plan_job(robot, with_lift_offs(job, places));
       ++tried;
       if (!found.parts.empty()) least = std::min(least, found.cost);
@@ -244,7 +244,7 @@ double best_of_all_places(const PreparedRobot& robot, const Job& job, const Plai
     for (int end = std::max(begin + 1, ends.empty() ? 1 : ends.back() + 1);
          end <= plain.reach(begin) && end + 1 < plain.layers(); ++end) {
       ends.push_back(end);
-      add(plain.resumed(end, job.lift->overlap));
+      add(plain.resumed(end, job.arm().lift->overlap));
       ends.pop_back();
     }
   };
@@ -256,20 +256,20 @@ double best_of_all_places(const PreparedRobot& robot, const Job& job, const Plai
 // planned as a job of its own.
 TEST(LiftOffs, PlacesAgainstAllPlaces) {
   Random random(seed("LiftOffs.PlacesAgainstAllPlaces"));
-  const Job like = bench();
+  const Problem like = bench();
   const int count = trials(24);
   int two = 0, more = 0, tried = 0;
   double worst = 1;
   for (int trial = 0; two + more < count && trial < 10 * count; ++trial) {
-    const Job job = random_ring(like, random, trial % 4 == 0 ? 2.2 : 1.4);
+    const Problem job = random_ring(like, random, trial % 4 == 0 ? 2.2 : 1.4);
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     const Plain plain(robot, job);
-    const auto runs = plain.least_runs(job.lift->overlap);
+    const auto runs = plain.least_runs(job.arm().lift->overlap);
     if (!runs || *runs < 2 || *runs > 3) continue;
     ++(*runs == 2 ? two : more);
     const JobResult found = plan_job(robot, job);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
-    const double lifts = job.lift->cost * (*runs - 1);
+    const double lifts = job.arm().lift->cost * (*runs - 1);
     const double best = best_of_all_places(robot, job, plain, *runs - 1, tried) + lifts;
     EXPECT_LE(found.cost, 1.01 * best) << "trial " << trial;
     worst = std::max(worst, found.cost / best);
@@ -284,12 +284,12 @@ TEST(LiftOffs, PlacesAgainstAllPlaces) {
 // and is the same on one thread and on two.
 TEST(LiftOffs, LinesAndObstacles) {
   Random random(seed("LiftOffs.LinesAndObstacles"));
-  const Job like = bench();
+  const Problem like = bench();
   const int count = trials(12);
   int solved = 0, lift_offs = 0;
   for (int trial = 0; trial < 8 * count && solved < count; ++trial) {
-    Job job = random_ring(like, random, 1.5);
-    Stroke& stroke = job.strokes.front();
+    Problem job = random_ring(like, random, 1.5);
+    Stroke& stroke = job.arm().strokes.front();
     stroke.approach = Vector3d(0, 0, -random.uniform(0.02, 0.06));
     stroke.retract = Vector3d(0, 0, -random.uniform(0.02, 0.06));
     stroke.limits.edges = EdgeMode::kContinuous;
@@ -316,33 +316,34 @@ TEST(LiftOffs, LinesAndObstacles) {
 
 // The ring of the data folder, in time: its motion passes its check, rounded corners included.
 TEST(LiftOffs, RingInTime) {
-  Job job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/iiwa14_ring_job.yaml");
-  job.strokes.front().resolution.ds = 0.01;
-  job.strokes.front().resolution.dphi = 0.1;
+  Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/iiwa14_ring_job.yaml");
+  job.arm().strokes.front().resolution.ds = 0.01;
+  job.arm().strokes.front().resolution.dphi = 0.1;
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   const JobMotionPlan plan = plan_job_motion(robot, job, with_check(), {.speed = 0.05});
   ASSERT_EQ(plan.result.lift_offs.size(), 1u);
   ASSERT_TRUE(plan.timing && plan.timing->motion);
-  const Job executed = executed_job(with_motion_defaults(job), plan.result);
-  ASSERT_EQ(executed.strokes.size(), 2u);
-  EXPECT_EQ(executed.strokes[1].name, "ring/2");
-  EXPECT_EQ(s_of_piece(executed.strokes[1]), plan.result.lift_offs[0].resumed);
+  const Problem executed = executed_job(with_motion_defaults(job), plan.result);
+  ASSERT_EQ(executed.arm().strokes.size(), 2u);
+  EXPECT_EQ(executed.arm().strokes[1].name, "ring/2");
+  EXPECT_EQ(s_of_piece(executed.arm().strokes[1]), plan.result.lift_offs[0].resumed);
   EXPECT_TRUE(
       check_job_motion(robot, executed, {{0, false}, {1, false}}, *plan.timing->motion).passed);
 }
 
 TEST(LiftOffs, WhatIsRefused) {
-  Job job = bench();
-  job.lift.emplace();
+  Problem job = bench();
+  job.arm().lift.emplace();
   EXPECT_NO_THROW(validate(job));
-  const auto refused = [](const Job& wrong) { EXPECT_THROW(validate(wrong), InvalidArgument); };
-  Job best = job, negative = job, slash = job;
-  best.order = StrokeOrder::kBest;
-  negative.lift->overlap = -0.01;
-  slash.strokes[2].name = "a/1";
-  for (const Job* wrong : {&best, &negative, &slash}) refused(*wrong);
+  const auto refused = [](const Problem& wrong) { EXPECT_THROW(validate(wrong), InvalidArgument); };
+  Problem best = job, negative = job, slash = job;
+  best.arm().order = StrokeOrder::kBest;
+  negative.arm().lift->overlap = -0.01;
+  slash.arm().strokes[2].name = "a/1";
+  for (const Problem* wrong : {&best, &negative, &slash}) refused(*wrong);
   const double length = 0.21;
-  EXPECT_EQ(with_lift_offs(job, {{1, 0.1, 0.08}}).strokes.size(), job.strokes.size() + 1);
+  EXPECT_EQ(with_lift_offs(job, {{1, 0.1, 0.08}}).arm().strokes.size(),
+            job.arm().strokes.size() + 1);
   for (const LiftOff& wrong : {LiftOff{1, 0.1, 0.11}, LiftOff{1, -0.1, -0.1}, LiftOff{1, 0, 0},
                                LiftOff{1, length, length}, LiftOff{99, 0.1, 0.1}})
     EXPECT_THROW((void)with_lift_offs(job, {wrong}), InvalidArgument);

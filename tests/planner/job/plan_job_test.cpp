@@ -20,7 +20,7 @@
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
@@ -32,7 +32,7 @@ namespace {
 
 using namespace test;
 
-Job load(const char* name) {
+Problem load(const char* name) {
   return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
 }
 
@@ -40,28 +40,28 @@ Job load(const char* name) {
 struct JobCase {
   explicit JobCase(const char* name) : job(load(name)), robot(problem_of_run(job, {0, false})) {}
   /// Returns the job with its scene as in an episode of a campaign.
-  [[nodiscard]] Job episode(std::uint64_t k) const {
-    Job moved = job;
+  [[nodiscard]] Problem episode(std::uint64_t k) const {
+    Problem moved = job;
     moved.scene = episode_problem(problem_of_run(job, {0, false}), 1, k).scene;
     return moved;
   }
-  Job job;
+  Problem job;
   PreparedRobot robot;
 };
 
 /// Draws a job of the door with other placements, lines of approach and retract, and order.
-Job random_job(const JobCase& of, Random& random) {
-  Job job = of.episode(static_cast<std::uint64_t>(random.below(1000)));
-  while (job.strokes.size() > 2 && random.coin(0.4)) job.strokes.pop_back();
-  if (random.coin(0.3)) job.home.reset();
-  for (Stroke& stroke : job.strokes) {
+Problem random_job(const JobCase& of, Random& random) {
+  Problem job = of.episode(static_cast<std::uint64_t>(random.below(1000)));
+  while (job.arm().strokes.size() > 2 && random.coin(0.4)) job.arm().strokes.pop_back();
+  if (random.coin(0.3)) job.arm().home.reset();
+  for (Stroke& stroke : job.arm().strokes) {
     stroke.reversible = random.coin();
     if (random.coin(0.4)) stroke.approach = Vector3d(0, 0, -0.02);
     if (random.coin(0.4)) stroke.retract = Vector3d(0, 0, -0.03);
     stroke.resolution.ds = 0.02;
     stroke.resolution.dphi = 0.1;
   }
-  job.order = random.coin(0.3) ? StrokeOrder::kBest : StrokeOrder::kGiven;
+  job.arm().order = random.coin(0.3) ? StrokeOrder::kBest : StrokeOrder::kGiven;
   return job;
 }
 
@@ -87,7 +87,7 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what = "trial " + std::to_string(trial);
-    const Job job = random_job(door, random);
+    const Problem job = random_job(door, random);
     PlanOptions options;
     options.threads = 1;
     const JobResult found = plan_job(door.robot, job, options);
@@ -99,7 +99,7 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
     }
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
-    best += job.order == StrokeOrder::kBest;
+    best += job.arm().order == StrokeOrder::kBest;
     ASSERT_LE(found.bound, found.cost) << what;
     ASSERT_LE(found.bound_any, found.bound) << what;
     const JobCheckResult check = check_job(door.robot, job, found.parts);
@@ -117,23 +117,24 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
 /// Joints 1 and 7 of two turns are circles, unless a step may move them by half a turn; no step of
 /// these jobs does, so that the cost is the same.
 TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
-  const Job door = load("door_job.yaml");
+  const Problem door = load("door_job.yaml");
   const PathProblem first = problem_of_run(door, {0, false});
-  const TestRobot wide =
-      with_limits({"door", door.model, first.base_link, first.tip_link}, [](int number, Joint& j) {
-        if (number == 0 || number == 6) j.lower = -kTwoPi, j.upper = kTwoPi;
-      });
+  const TestRobot wide = with_limits({"door", door.arm().model, first.base_link, first.tip_link},
+                                     [](int number, Joint& j) {
+                                       if (number == 0 || number == 6)
+                                         j.lower = -kTwoPi, j.upper = kTwoPi;
+                                     });
   Random random(seed("PlanJob.Wide"));
   int solved = 0, told_apart = 0;
   const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what = "trial " + std::to_string(trial);
-    Job job = door;
-    job.model = wide.model;
+    Problem job = door;
+    job.arm().model = wide.model;
     job.scene = episode_problem(first, 1, static_cast<std::uint64_t>(trial)).scene;
-    while (job.strokes.size() > 2 && random.coin()) job.strokes.pop_back();
-    if (random.coin()) job.home.reset();
-    for (Stroke& stroke : job.strokes) {
+    while (job.arm().strokes.size() > 2 && random.coin()) job.arm().strokes.pop_back();
+    if (random.coin()) job.arm().home.reset();
+    for (Stroke& stroke : job.arm().strokes) {
       stroke.resolution.ds = 0.03;
       stroke.resolution.dphi = 0.25;
       stroke.limits.tool_path_error = 0.02;
@@ -149,8 +150,8 @@ TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
     std::array<int, 2> windings{};
     for (std::size_t apart = 0; apart < 2; ++apart) {
       // one stroke that moves joints by half a turn tells them apart in all
-      for (Stroke& stroke : job.strokes) stroke.limits.joint_step = 3.0;
-      if (apart == 1) job.strokes.back().limits.joint_step = 3.2;
+      for (Stroke& stroke : job.arm().strokes) stroke.limits.joint_step = 3.0;
+      if (apart == 1) job.arm().strokes.back().limits.joint_step = 3.2;
       found[apart] = plan_job(job, {});
       ASSERT_FALSE(found[apart].runs.empty()) << what;
       windings[apart] = found[apart].runs[0].lattice.grid->windings;
@@ -185,7 +186,7 @@ TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
   const int count = trials(20);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what = "trial " + std::to_string(trial);
-    const Job job = random_job(door, random);
+    const Problem job = random_job(door, random);
     JobView view;
     const JobResult found = plan_job(door.robot, job, {}, &view);
     expect_same(found, plan_job(door.robot, job), what);
@@ -216,11 +217,11 @@ TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
   for (const char* const name : {"door_job.yaml", "iiwa14_bench_job.yaml", "kr6_weld_pipe_job.yaml",
                                  "ur5e_deburr_plate_job.yaml"}) {
     SCOPED_TRACE(name);
-    const Job job = with_motion_defaults(load(name));
+    const Problem job = with_motion_defaults(load(name));
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     const JobMotionPlan plan = plan_job_motion(robot, job, {}, {.rate = 50});
     ASSERT_TRUE(plan.timing && plan.timing->motion);
-    EXPECT_EQ(plan.timing->motion->events.size(), 2 * job.strokes.size());
+    EXPECT_EQ(plan.timing->motion->events.size(), 2 * job.arm().strokes.size());
     std::vector<StrokeRun> order;
     for (const RunResult& run : plan.result.runs) order.push_back(run.run);
     const JobCheckResult check =
@@ -236,15 +237,15 @@ TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
   double most = 0, sum = 0;
   const int count = trials(12);
   for (int k = 0; k < count; ++k) {
-    Job job = door.episode(static_cast<std::uint64_t>(k));
-    for (Stroke& stroke : job.strokes) {
+    Problem job = door.episode(static_cast<std::uint64_t>(k));
+    for (Stroke& stroke : job.arm().strokes) {
       stroke.reversible = true;
       stroke.resolution.ds = 0.02;
       stroke.resolution.dphi = 0.1;
     }
-    std::swap(job.strokes[1], job.strokes[4]);
+    std::swap(job.arm().strokes[1], job.arm().strokes[4]);
     const JobResult given = plan_job(door.robot, job, {});
-    job.order = StrokeOrder::kBest;
+    job.arm().order = StrokeOrder::kBest;
     const JobResult best = plan_job(door.robot, job, {});
     if (given.status != PlanStatus::kSolved) continue;
     ASSERT_EQ(best.status, PlanStatus::kSolved);
@@ -259,16 +260,16 @@ TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
 }
 
 TEST(PlanJob, TriesOrdersWhereTheRollCosts) {
-  Job job = load("ur5e_deburr_plate_job.yaml");
-  for (Stroke& stroke : job.strokes) {
+  Problem job = load("ur5e_deburr_plate_job.yaml");
+  for (Stroke& stroke : job.arm().strokes) {
     stroke.cost.roll = 2;
     stroke.resolution.ds = 0.03;
     stroke.resolution.arc = 0.35;
     stroke.limits.tool_path_error = 0.02;
   }
-  job.order = StrokeOrder::kGiven;
+  job.arm().order = StrokeOrder::kGiven;
   const JobResult given = plan_job(job);
-  job.order = StrokeOrder::kBest;
+  job.arm().order = StrokeOrder::kBest;
   const JobResult best = plan_job(job);
   ASSERT_EQ(given.status, PlanStatus::kSolved);
   ASSERT_EQ(best.status, PlanStatus::kSolved);
@@ -280,8 +281,8 @@ TEST(PlanJob, TriesOrdersWhereTheRollCosts) {
 }
 
 /// Returns a problem's path cut in two strokes at its middle waypoint, without a start.
-Job halves(const char* name) {
-  PathProblem whole = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+Problem halves(const char* name) {
+  PathProblem whole = io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
   whole.start.reset();
   if (whole.waypoints.size() == 2) {
     Waypoint middle = whole.waypoints[0];
@@ -289,26 +290,26 @@ Job halves(const char* name) {
     middle.orientation = middle.orientation.slerp(0.5, whole.waypoints[1].orientation);
     whole.waypoints.insert(whole.waypoints.begin() + 1, middle);
   }
-  Job job;
-  static_cast<Robot&>(job) = whole;
+  Problem job;
+  static_cast<Robot&>(job.arm()) = whole;
   job.source = name;
   job.scene = whole.scene;
-  job.limits = whole.limits;
+  job.arm().transition_limits = whole.limits;
   const auto middle =
       whole.waypoints.begin() + static_cast<std::ptrdiff_t>(whole.waypoints.size() / 2);
   for (const bool second : {false, true}) {
-    Stroke& stroke = job.strokes.emplace_back();
+    Stroke& stroke = job.arm().strokes.emplace_back();
     static_cast<Task&>(stroke) = whole;
     stroke.name = second ? "second" : "first";
     stroke.waypoints = second ? std::vector<Waypoint>(middle, whole.waypoints.end())
                               : std::vector<Waypoint>(whole.waypoints.begin(), middle + 1);
   }
-  job.process_speed = 0.05;
+  job.arm().process_speed = 0.05;
   return job;
 }
 
 /// Draws a home within the joints' limits at which nothing is near.
-std::optional<Config> random_home(const PreparedRobot& robot, const Job& job, Random& random) {
+std::optional<Config> random_home(const PreparedRobot& robot, const Problem& job, Random& random) {
   const Chain& chain = robot.arm().chain;
   const World world(robot.world(), problem_of_run(job, {0, false}));
   World::Query query(world);
@@ -332,14 +333,14 @@ TEST(PlanJob, TakesEveryClassOfArm) {
   for (const char* name :
        {"experiment_a.yaml", "iiwa14_bench.yaml", "kr6_weld_pipe.yaml", "panda_weld_seam.yaml",
         "ur5e_deburr_edge.yaml", "gen3_glue_bead.yaml"}) {
-    Job job = halves(name);
+    Problem job = halves(name);
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     for (int trial = 0; trial < trials(3); ++trial) {
-      if (trial > 0) job.home = random_home(robot, job, random);
+      if (trial > 0) job.arm().home = random_home(robot, job, random);
       const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
       if (plan.result.status != PlanStatus::kSolved) continue;
       ++solved;
-      const Job completed = with_motion_defaults(job);
+      const Problem completed = with_motion_defaults(job);
       const JobCheckResult check =
           check_job(robot, completed, plan.result.parts, {.margins = false});
       ASSERT_TRUE(check.passed) << name << " trial " << trial << ": " << check.failures.front();
@@ -375,11 +376,12 @@ TEST(PlanJob, ADeadlineEndsItWithWhatIsKnown) {
 
 TEST(PlanJob, TellsWhichStrokeHasNoPath) {
   const JobCase door("door_job.yaml");
-  Job job = door.job;
-  for (Waypoint& waypoint : job.strokes[3].waypoints) waypoint.position.y() += 2;  // out of reach
+  Problem job = door.job;
+  for (Waypoint& waypoint : job.arm().strokes[3].waypoints)
+    waypoint.position.y() += 2;  // out of reach
   const JobResult found = plan_job(door.robot, job, {});
   ASSERT_EQ(found.status, PlanStatus::kInfeasible);
-  ASSERT_EQ(found.runs.size(), job.strokes.size());
+  ASSERT_EQ(found.runs.size(), job.arm().strokes.size());
   for (std::size_t k = 0; k < found.runs.size(); ++k) {
     EXPECT_EQ(found.runs[k].status, k == 3 ? PlanStatus::kInfeasible : PlanStatus::kSolved);
     EXPECT_EQ(found.runs[k].diagnosis.has_value(), k == 3);
@@ -407,11 +409,12 @@ std::array<double, 3> greatest_shares(const std::vector<TimedRow>& rows, const J
 }
 
 /// Expects a job's motion to keep rates, clearances and its strokes, judged from outside.
-void expect_executable(const JobCase& of, const Job& job, const JobMotionPlan& plan,
+void expect_executable(const JobCase& of, const Problem& job, const JobMotionPlan& plan,
                        const std::string& what) {
   const JobMotion& motion = *plan.timing->motion;
   const Chain& chain = of.robot.arm().chain;
-  const auto shares = greatest_shares(motion.rows, joint_rates(chain, job.limits, ""), motion.rate);
+  const auto shares = greatest_shares(
+      motion.rows, joint_rates(chain, job.arm().transition_limits, ""), motion.rate);
   for (const double share : shares) ASSERT_LE(share, 1 + 1e-6) << what;
   PathProblem problem = problem_of_run(with_motion_defaults(job), {0, false});
   const World world(of.robot.world(), problem);
@@ -423,7 +426,7 @@ void expect_executable(const JobCase& of, const Job& job, const JobMotionPlan& p
       const auto clearance = query.clearance(q);
       ASSERT_TRUE(clearance && clearance->margin() >= -6e-5) << what << " row " << k;
     }
-  ASSERT_EQ(motion.events.size(), 2 * job.strokes.size()) << what;
+  ASSERT_EQ(motion.events.size(), 2 * job.arm().strokes.size()) << what;
   for (std::size_t k = 0; k < motion.events.size(); ++k) {
     const ProcessEvent& event = motion.events[k];
     ASSERT_EQ(event.on, k % 2 == 0) << what;
@@ -432,7 +435,7 @@ void expect_executable(const JobCase& of, const Job& job, const JobMotionPlan& p
     // the tool is at the stroke's end within one sample
     const auto row = static_cast<std::size_t>(std::llround(event.t * motion.rate));
     const PathProblem path = problem_of_run(job, run);
-    const ProcessWaypoints process = process_waypoints(job.strokes[run.stroke]);
+    const ProcessWaypoints process = process_waypoints(job.arm().strokes[run.stroke]);
     const Vector3d end = waypoints_in_base(path)[event.on ? process.first : process.last].position;
     const Vector3d at = chain.tool(motion.rows[row].row.q).translation();
     const Vector3d before = chain.tool(motion.rows[row > 0 ? row - 1 : 0].row.q).translation();
@@ -445,10 +448,11 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
   int timed = 0;
   for (const JobCase* of : {&door, &bench})
     for (int k = 0; k < trials(8); ++k) {
-      Job job = of->episode(static_cast<std::uint64_t>(k));
-      for (Stroke& stroke : job.strokes) stroke.retract = stroke.approach = Vector3d(0, 0, -0.02);
-      job.approach_speed = 0.1;
-      job.rapid = 0.5;
+      Problem job = of->episode(static_cast<std::uint64_t>(k));
+      for (Stroke& stroke : job.arm().strokes)
+        stroke.retract = stroke.approach = Vector3d(0, 0, -0.02);
+      job.arm().approach_speed = 0.1;
+      job.arm().rapid = 0.5;
       const std::string what = job.source + " episode " + std::to_string(k);
       PlanOptions options;
       const JobMotionPlan plan = plan_job_motion(of->robot, job, options, {});
@@ -471,15 +475,15 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
 /// motion has a row of the transition nevertheless.
 TEST(JobMotion, StrokesThatMeetAreTimed) {
   const JobCase door("door_job.yaml");
-  Job job = door.job;
-  job.home.reset();
-  job.strokes.resize(1);
+  Problem job = door.job;
+  job.arm().home.reset();
+  job.arm().strokes.resize(1);
   JobResult there = plan_job(door.robot, with_motion_defaults(job));
   ASSERT_EQ(there.parts.size(), 1u);
-  job.strokes.push_back(job.strokes.front());
-  std::vector<Waypoint>& waypoints = job.strokes[1].waypoints;
+  job.arm().strokes.push_back(job.arm().strokes.front());
+  std::vector<Waypoint>& waypoints = job.arm().strokes[1].waypoints;
   std::reverse(waypoints.begin(), waypoints.end());
-  job.strokes[1].name = "back";
+  job.arm().strokes[1].name = "back";
   JobPart back = there.parts[0], rest;
   back.run = StrokeRun{1, false};
   std::reverse(back.rows.begin(), back.rows.end());
@@ -496,13 +500,13 @@ TEST(JobMotion, StrokesThatMeetAreTimed) {
 
 TEST(JobMotion, SpeedsAreStatedBeforePlanning) {
   const JobCase door("door_job.yaml");
-  Job job = door.job;
-  job.strokes.resize(1);
-  job.process_speed.reset();
+  Problem job = door.job;
+  job.arm().strokes.resize(1);
+  job.arm().process_speed.reset();
   PlanOptions none;
   none.timeout_s = 1e-9;
   EXPECT_THROW(static_cast<void>(plan_job_motion(door.robot, job, none, {})), InputError);
-  job.strokes[0].feed.assign(job.strokes[0].waypoints.size(), 0.04);
+  job.arm().strokes[0].feed.assign(job.arm().strokes[0].waypoints.size(), 0.04);
   EXPECT_EQ(plan_job_motion(door.robot, job, none, {}).result.status, PlanStatus::kTimeout);
   const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
   ASSERT_TRUE(plan.timing && plan.timing->motion);
@@ -590,9 +594,9 @@ Ways ways_to_spoil_parts() {
 TEST(CheckJob, RefusesSpoiltAnswers) {
   Random random(seed("CheckJob"));
   const JobCase door("door_job.yaml");
-  Job job = door.job;
-  job.strokes.resize(3);
-  for (Stroke& stroke : job.strokes) {
+  Problem job = door.job;
+  job.arm().strokes.resize(3);
+  for (Stroke& stroke : job.arm().strokes) {
     stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
     stroke.resolution.ds = 0.02;
     stroke.resolution.dphi = 0.1;
@@ -618,9 +622,9 @@ TEST(CheckJob, RefusesSpoiltAnswers) {
 TEST(CheckJob, RefusesEventsThatLie) {
   Random random(seed("CheckJob events"));
   const JobCase door("door_job.yaml");
-  Job job = door.job;
-  job.strokes.resize(2);
-  for (Stroke& stroke : job.strokes) stroke.approach = Vector3d(0, 0, -0.02);
+  Problem job = door.job;
+  job.arm().strokes.resize(2);
+  for (Stroke& stroke : job.arm().strokes) stroke.approach = Vector3d(0, 0, -0.02);
   const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
   ASSERT_TRUE(plan.timing && plan.timing->motion);
   std::vector<StrokeRun> order;
@@ -654,9 +658,9 @@ TEST(CheckJob, RefusesEventsThatLie) {
 TEST(CheckJob, HoldsTheProcessAgainstTheStroke) {
   Random random(seed("CheckJob process"));
   const JobCase door("door_job.yaml");
-  Job job = door.job;
-  job.strokes.resize(3);
-  for (Stroke& stroke : job.strokes) {
+  Problem job = door.job;
+  job.arm().strokes.resize(3);
+  for (Stroke& stroke : job.arm().strokes) {
     stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
     stroke.resolution.ds = 0.02;
     stroke.resolution.dphi = 0.1;
@@ -688,7 +692,7 @@ TEST(CheckJob, HoldsTheProcessAgainstTheStroke) {
     }
     ASSERT_EQ(said.size(), 1u);
     const int is = spoilt[k][row];
-    EXPECT_EQ(said.front(), "stroke '" + job.strokes[parts[k].run->stroke].name + "': row " +
+    EXPECT_EQ(said.front(), "stroke '" + job.arm().strokes[parts[k].run->stroke].name + "': row " +
                                 std::to_string(row) + ": process is " + std::to_string(is) +
                                 ": allowed is " + std::to_string(1 - is));
     ++refused;
@@ -705,12 +709,12 @@ TEST(CheckJob, FindsTheDirectionsOfRunsInMotions) {
   const JobCase door("door_job.yaml");
   int backwards = 0;
   for (const bool home : {true, false}) {
-    Job job = door.job;
-    if (!home) job.home.reset();
-    job.strokes.resize(4);
-    job.order = StrokeOrder::kBest;
-    for (Stroke& stroke : job.strokes) {
-      stroke.reversible = &stroke != &job.strokes.front();  // so that one runs forwards
+    Problem job = door.job;
+    if (!home) job.arm().home.reset();
+    job.arm().strokes.resize(4);
+    job.arm().order = StrokeOrder::kBest;
+    for (Stroke& stroke : job.arm().strokes) {
+      stroke.reversible = &stroke != &job.arm().strokes.front();  // so that one runs forwards
       stroke.approach = Vector3d(0, 0, -0.02);
     }
     const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});

@@ -11,7 +11,7 @@
 
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
@@ -20,16 +20,16 @@
 namespace swivel {
 namespace {
 
-Job load(const char* name) {
+Problem load(const char* name) {
   return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
 }
 
 /// Returns a job of one stroke, a hole of 33 mm above a casting: the tool goes along its own axis,
 /// as it does on the approach.
-Job drilling(bool reversible) {
-  Job job = load("iiwa14_bench_job.yaml");
-  job.strokes.resize(1);
-  Stroke& stroke = job.strokes.front();
+Problem drilling(bool reversible) {
+  Problem job = load("iiwa14_bench_job.yaml");
+  job.arm().strokes.resize(1);
+  Stroke& stroke = job.arm().strokes.front();
   stroke.reversible = reversible;
   stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
   stroke.resolution.ds = 0.02;
@@ -40,7 +40,7 @@ Job drilling(bool reversible) {
 }
 
 TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) {
-  const Job job = drilling(false);
+  const Problem job = drilling(false);
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
   ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
@@ -67,8 +67,8 @@ TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) 
 
 /// Both directions of both ends, and strokes that bend or whose waypoints are one line.
 TEST(ProcessRange, EndsOfStrokesAreLayers) {
-  Job job = drilling(true);
-  Stroke& stroke = job.strokes.front();
+  Problem job = drilling(true);
+  Stroke& stroke = job.arm().strokes.front();
   const auto layers = [&](bool reversed) {
     const PathProblem problem = problem_of_run(job, {0, reversed});
     const ToolPath path(problem.waypoints, problem.resolution, "", {}, {}, false, problem.steps);
@@ -103,17 +103,17 @@ void speed_up(JobMotion& motion, double factor) {
 /// A job of one slow stroke.
 struct SlowJob {
   SlowJob() : job(load("iiwa14_bench_job.yaml")), robot(problem_of_run(job, {0, false})) {
-    job.strokes.resize(1);
-    job.strokes.front().reversible = false;
-    job.rapid = 0.1;
-    job.process_speed = 0.02;
-    job.approach_speed = 0.03;
+    job.arm().strokes.resize(1);
+    job.arm().strokes.front().reversible = false;
+    job.arm().rapid = 0.1;
+    job.arm().process_speed = 0.02;
+    job.arm().approach_speed = 0.03;
   }
   [[nodiscard]] JobCheckResult check(const JobMotion& motion,
                                      std::optional<double> speed = {}) const {
     return check_job_motion(robot, job, {{0, false}}, motion, {.margins = false, .speed = speed});
   }
-  Job job;
+  Problem job;
   PreparedRobot robot;
 };
 
@@ -143,9 +143,9 @@ TEST(ToolSpeed, IsThatOfThePlaceOrTheOneGivenForAll) {
   EXPECT_FALSE(slow.check(*fast.timing->motion).passed);
   EXPECT_TRUE(slow.check(*fast.timing->motion, 0.04).passed);
   // A feed stands in place of the job's speed, along the stroke alone.
-  slow.job.strokes.front().feed = {0.05, 0.05};
+  slow.job.arm().strokes.front().feed = {0.05, 0.05};
   EXPECT_TRUE(slow.check(*fast.timing->motion).passed);
-  slow.job.approach_speed = 0.01;
+  slow.job.arm().approach_speed = 0.01;
   EXPECT_FALSE(slow.check(*fast.timing->motion).passed);
 }
 

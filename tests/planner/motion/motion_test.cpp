@@ -155,7 +155,7 @@ TEST(Refine, IsValidOnWhatUsersHave) {
 
 TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
   PathProblem problem =
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml");
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml");
   const Waypoint first = problem.waypoints[0];
   problem.waypoints.clear();
   constexpr int kCount = 5000;
@@ -189,7 +189,7 @@ TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
 
 TEST(Refine, TheResolutionStopsMattering) {
   PathProblem problem =
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml");
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml");
   keep_clearance_between_layers(problem.limits);
   double dearest_before = 0;
   for (const auto& [ds, dphi] : {std::pair(0.02, 0.2), std::pair(0.01, 0.1), std::pair(0.005, 0.05),
@@ -220,7 +220,7 @@ PlanResult planned(const PreparedRobot& robot, const PathProblem& problem) {
 /// (bench/basin_benchmark data/problems/experiment_c.yaml --episodes 1 --first 4).
 TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
   const PathProblem base = with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   const PreparedRobot robot(base);
   for (const auto& [episode, fine_lattice] :
        {std::pair(4u, 1.98137), std::pair(73u, 3.35499), std::pair(83u, 2.22246)}) {
@@ -238,7 +238,7 @@ TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
 /// distance costs a turn of the outer joints, and bends that no smoothing takes away.
 TEST(Refine, CrossesSingularitiesStraight) {
   const PathProblem base = with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   const PreparedRobot robot(base);
   for (const unsigned episode : {60u, 88u}) {
     SCOPED_TRACE(episode);
@@ -502,7 +502,7 @@ std::string said_of_postures(const TimedPath& motion) {
 /// The lattice's path runs along the limit of a joint, which leaves it between two layers.
 TEST(Motion, IsLedThroughOtherPosturesWhereItIsAtFaultBetweenLayers) {
   const PathProblem base = with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   Planner planner(episode_problem(base, 1, 25));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
@@ -569,7 +569,7 @@ TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
 
 TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
   const PathProblem base = with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   int jumps = 0;
   for (const std::uint64_t episode : {60u, 88u}) {
     Planner planner(episode_problem(base, 1, episode));
@@ -601,7 +601,7 @@ TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
 /// The path bends sharply in the joints at s = 0.16 m; the tool can pass there at 240 of 250 mm/s.
 TEST(Motion, SlowsDownNoMoreThanBendsAsk) {
   Planner planner(with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   const MotionPlan plan = plan_motion(planner, options, true,
@@ -615,7 +615,7 @@ TEST(Motion, SlowsDownNoMoreThanBendsAsk) {
 
 TEST(Motion, SlowsDownWhereTheToolWouldStrayBetweenSamples) {
   Planner planner(with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   const auto motion = [&](double rate, std::optional<double> chord) {
@@ -646,7 +646,7 @@ TEST(Motion, SlowsDownWhereTheToolWouldStrayBetweenSamples) {
 
 TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
   const PathProblem problem = with_motion_defaults(
-      io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
+      io::load_path_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
   // Stopped as soon as the lattice's path is known.
   std::stop_source stop;
   PlanOptions options;

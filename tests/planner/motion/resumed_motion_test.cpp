@@ -20,7 +20,7 @@ namespace {
 PathProblem coarse(const std::string& name) {
   std::string file = SWIVEL_DATA_DIR;
   file += "/problems/" + name + ".yaml";
-  PathProblem problem = io::load_problem(file);
+  PathProblem problem = io::load_path_problem(file);
   problem.resolution.ds = 0.02;
   problem.resolution.dphi = 0.2;
   problem.resolution.arc = 0.35;

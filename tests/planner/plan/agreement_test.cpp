@@ -254,7 +254,8 @@ TEST(Agreement, FclAloneGivesTheSameAnswersOnOtherLattices) {
   std::int64_t more = 0;
   for (const char* name :
        {"panda_weld_seam", "kr6_weld_pipe", "torch_door", "iiwa14_deburr_in_hand"}) {
-    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem =
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.02;
     problem.resolution.dphi = 0.2;
     problem.resolution.arc = problem.resolution.droll = 0.4;
@@ -469,7 +470,7 @@ class Experiments : public testing::TestWithParam<const char*> {};
 
 TEST_P(Experiments, FourPlannersAgreeAtTheCoarseResolution) {
   PathProblem problem =
-      io::load_problem(data_dir() / "problems" / (std::string(GetParam()) + ".yaml"));
+      io::load_path_problem(data_dir() / "problems" / (std::string(GetParam()) + ".yaml"));
   problem.resolution.ds = 0.02;
   problem.resolution.dphi = 0.2;
   problem.limits.edges = EdgeMode::kNodes;

@@ -48,7 +48,8 @@ void count_questions(const std::vector<Timeline::Event>& events, Questions& aske
 
 #ifndef __SANITIZE_THREAD__
 TEST(Parallel, QuestionsThatTheCallerDoesNotAskAreAskedInTbbsArena) {
-  const PathProblem problem = io::load_problem(data_dir() / "problems/xarm7_polish_raster.yaml");
+  const PathProblem problem =
+      io::load_path_problem(data_dir() / "problems/xarm7_polish_raster.yaml");
   const PreparedRobot robot(problem);
   PlanOptions options;
   options.planner = PlannerKind::kParallel;

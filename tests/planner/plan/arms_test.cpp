@@ -302,7 +302,8 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
 /// check_trajectory() passes it, and the tool has the waypoints' poses apart from its roll.
 TEST(Arms, SixJointsAndTheRollOfTheTool) {
   for (const char* const name : {"kr6_weld_pipe", "ur5e_deburr_edge"}) {
-    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem =
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     ASSERT_TRUE(problem.roll) << name;
     problem.resolution.ds = 0.02;
     problem.resolution.arc = 0.4;
@@ -542,7 +543,8 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
 
 TEST(Arms, AStartThatDoesNotFitIsBadInput) {
   for (const char* const name : {"panda_weld_seam", "ur5e_deburr_edge"}) {
-    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem =
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     const PlanResult whole = plan(problem);
     ASSERT_EQ(whole.status, PlanStatus::kSolved) << name;
     const auto message = [&](const Config& start) -> std::string {

@@ -27,7 +27,7 @@ namespace {
 using namespace test;
 
 PathProblem experiment(const std::string& name) {
-  return io::load_problem(data_dir() / "problems" / (name + ".yaml"));
+  return io::load_path_problem(data_dir() / "problems" / (name + ".yaml"));
 }
 
 /// Experiment A with a plate before the tool half way: no path, for a cause that must be searched

@@ -21,7 +21,7 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/plan_job.hpp"
@@ -469,37 +469,37 @@ std::vector<Config> ends_of(const JobResult& result, std::size_t strokes) {
 /// Strokes end where they are told to, in that very turn of joints of more than a turn.
 TEST(End, StrokesOfAJobEndThere) {
   for (const char* name : {"kr6_weld_pipe_job.yaml", "iiwa14_bench_job.yaml"}) {
-    Job job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
+    Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     const Chain& chain = robot.arm().chain;
-    job.order = StrokeOrder::kGiven;
-    Job elsewhere = job;
-    for (Stroke& stroke : elsewhere.strokes) {
+    job.arm().order = StrokeOrder::kGiven;
+    Problem elsewhere = job;
+    for (Stroke& stroke : elsewhere.arm().strokes) {
       stroke.resolution.dphi *= 1.3;
       stroke.resolution.arc *= 0.7;
     }
     const JobResult first = plan_job(robot, elsewhere);
     ASSERT_EQ(first.status, PlanStatus::kSolved) << name;
-    const std::vector<Config> wanted = ends_of(first, job.strokes.size());
+    const std::vector<Config> wanted = ends_of(first, job.arm().strokes.size());
     for (std::size_t k = 0; k < wanted.size(); k += 2) {
-      job.strokes[k].end = wanted[k];
-      job.strokes[k].reversible = false;
+      job.arm().strokes[k].end = wanted[k];
+      job.arm().strokes[k].reversible = false;
     }
     const JobResult found = plan_job(robot, job);
     ASSERT_EQ(found.status, PlanStatus::kSolved) << name;
     const JobCheckResult check = check_job(robot, job, found.parts);
     ASSERT_TRUE(check.passed) << name << ": " << check.failures.front();
-    const std::vector<Config> ends = ends_of(found, job.strokes.size());
+    const std::vector<Config> ends = ends_of(found, job.arm().strokes.size());
     for (std::size_t k = 0; k < ends.size(); k += 2)
       for (Eigen::Index j = 0; j < kDof; ++j) {
-        const double off = ends[k][j] - (*job.strokes[k].end)[j];
+        const double off = ends[k][j] - (*job.arm().strokes[k].end)[j];
         const bool bounded = !chain.limit[static_cast<std::size_t>(j)].continuous;
         EXPECT_NEAR(bounded ? off : std::remainder(off, kTwoPi), 0, 1e-9) << name << ' ' << j;
       }
-    (*job.strokes[0].end)[1] += 1e-5;
+    (*job.arm().strokes[0].end)[1] += 1e-5;
     EXPECT_FALSE(check_job(robot, job, found.parts).passed) << name;
     EXPECT_THROW(static_cast<void>(plan_job(robot, job)), InputError) << name;
-    job.strokes[0].reversible = true;
+    job.arm().strokes[0].reversible = true;
     EXPECT_THROW(static_cast<void>(plan_job(robot, job)), InvalidArgument) << name;
   }
 }

@@ -159,8 +159,8 @@ TEST(FreeRoll, CountsAxesAloneInStrokes) {
     std::vector<double> costs;
     for (std::size_t way = 0; way < kWays.size(); ++way) {
       const PathProblem problem = free_problem(srs);
-      Job job;
-      static_cast<Robot&>(job) = problem;
+      Problem job;
+      static_cast<Robot&>(job.arm()) = problem;
       job.source = problem.source;
       for (const Raster* raster : {&first, &second}) {
         Stroke stroke;
@@ -168,7 +168,7 @@ TEST(FreeRoll, CountsAxesAloneInStrokes) {
         stroke.name = raster == &first ? "first" : "second";
         stroke.waypoints = raster->written(way);
         stroke.approach = stroke.retract = Vector3d(0, 0, -0.02);
-        job.strokes.push_back(stroke);
+        job.arm().strokes.push_back(stroke);
       }
       const PreparedRobot robot(problem_of_run(job, {0, false}));
       const JobResult result = plan_job(robot, job, lazily());

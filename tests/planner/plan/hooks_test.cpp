@@ -507,7 +507,8 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
 }
 
 PathProblem experiment(const char* name, double ds, double dphi) {
-  PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+  PathProblem problem =
+      io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
   problem.resolution.ds = ds;
   problem.resolution.dphi = dphi;
   return problem;

@@ -120,7 +120,8 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
 
 TEST(Order, ShippedArmsBeginInTheTurnNearestToTheMiddle) {
   for (const char* const name : {"ur5e_deburr_edge", "xarm7_polish_raster"}) {
-    PathProblem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    PathProblem problem =
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.02;
     const PreparedRobot robot(problem);
     const PlanResult result = plan(robot, problem);

@@ -234,7 +234,7 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
 }
 
 TEST(Planner, StopsAndGoesOn) {
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.005, .dphi = 0.1};
   problem = episode_problem(problem, 1, 17);
   PlanOptions options;
@@ -280,7 +280,7 @@ TEST(Planner, StopsAndGoesOn) {
 }
 
 TEST(Planner, RefusesWhatNoProblemMayHaveAndStaysAsItWas) {
-  Planner planner(io::load_problem(data_dir() / "problems/experiment_c.yaml"));
+  Planner planner(io::load_path_problem(data_dir() / "problems/experiment_c.yaml"));
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   EXPECT_THROW((void)planner.view(), InvalidArgument);
@@ -305,7 +305,7 @@ TEST(Planner, RefusesWhatNoProblemMayHaveAndStaysAsItWas) {
 }
 
 TEST(Planner, ClonesShareNothingThatIsWritten) {
-  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  const PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   Planner planner(problem);

@@ -29,7 +29,7 @@ TEST(RollCost, IsThatOfTheRowsFromFilesAndFromMemory) {
   for (const char* name :
        {"torch_door", "iiwa14_deburr_in_hand", "kr6_weld_pipe", "ur5e_deburr_edge"}) {
     const PathProblem of_file =
-        io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     PathProblem of_memory = of_file;
     of_memory.cost = Cost();
     const PreparedRobot robot(of_file);

@@ -392,7 +392,7 @@ TEST(RollLattice, JointSevenRests) {
 /// A URDF or a tool that rounds pi, or writes lengths to a tenth of a millimetre, does not hide
 /// that the tool turns about joint 7's axis.
 TEST(RollLattice, JointSevenRestsUnderARoundedTool) {
-  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.attached.clear();
   problem.resolution.droll = 0.3;
   problem.resolution.dphi = 0.3;
@@ -438,7 +438,7 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
    private:
     double liked_;
   };
-  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.tool = Eigen::Translation3d(0, 0, 0.2) * Pose::Identity();
   problem.attached.clear();
   problem.resolution.droll = 0.3;
@@ -469,7 +469,7 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
 /// Values after removals, few and many at once, are those of a sweep over what is left.
 TEST(RollLattice, RepairsAreSweeps) {
   const std::uint64_t base = seed("RollLattice.RepairsAreSweeps");
-  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.25;
   problem.resolution.dphi = 0.3;
   const PreparedRobot robot(problem);
@@ -589,7 +589,7 @@ void expect_timed(const PathProblem& episode, const PreparedRobot& robot, const 
 /// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll
 /// that was chosen.
 TEST(RollLattice, PathsAreRefinedAndTimed) {
-  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.1;
   problem.resolution.dphi = 0.2;
   Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
@@ -681,7 +681,7 @@ TEST(RollLattice, AsksTheCallersCheckBetween) {
     const Chain* chain_;
     double x_;
   };
-  PathProblem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.4;
   problem.resolution.dphi = 0.4;
   Planner planner(problem);

@@ -302,7 +302,7 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
 }
 
 PathProblem experiment_a() {
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_a.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.1};
   return problem;
 }

@@ -80,7 +80,7 @@ TEST(Threads, SameResultAndCountsAtAnyThreadCount) {
 
 /// Postures of long paths, of which most is kept from one to the next, and batches that fail.
 TEST(Threads, KeptClearancesCountTheSame) {
-  PathProblem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem base = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.dphi = 0.2;
   const PreparedRobot robot(base);
   int compared = 0, repaired = 0;
@@ -102,7 +102,7 @@ TEST(Threads, KeptClearancesCountTheSame) {
 /// Plans on lattices so large that neighbours of failed nodes are asked about while those before
 /// them are dealt with.
 TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
-  PathProblem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem base = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.ds = 0.003;
   base.resolution.dphi = 0.04;
   const PreparedRobot robot(base);
@@ -136,7 +136,7 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
 TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
   constexpr int kThreads = 8;
   const std::uint64_t base = seed("Planner.Clones");
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const int each = std::max(1, trials(800) / kThreads), kinds = std::min(each, 100);
   struct Step {
@@ -182,7 +182,7 @@ TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
 }
 
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
-  const PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  const PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);
   for (const PlannerKind planner :
        {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {

@@ -311,11 +311,11 @@ TEST(Windings, TellHowFarAJointWouldTurn) {
                       "range is 720 deg",
                       found.joint_names[6].c_str(), (most - least) * 180 / kPi));
   // in a job the stroke is named
-  Job job;
-  static_cast<Robot&>(job) = problem;
-  job.limits = problem.limits;
-  static_cast<Task&>(job.strokes.emplace_back()) = problem;
-  job.strokes[0].name = "screw";
+  Problem job;
+  static_cast<Robot&>(job.arm()) = problem;
+  job.arm().transition_limits = problem.limits;
+  static_cast<Task&>(job.arm().strokes.emplace_back()) = problem;
+  job.arm().strokes[0].name = "screw";
   const JobResult strokes = plan_job(job);
   EXPECT_EQ(strokes.status, PlanStatus::kInfeasible);
   EXPECT_EQ(turns_note_of(strokes.warnings),

@@ -103,8 +103,8 @@ std::string row(const Work& w) {
 }
 
 Work measured(const Work& expected) {
-  PathProblem problem =
-      io::load_problem(test::data_dir() / "problems" / (std::string(expected.problem) + ".yaml"));
+  PathProblem problem = io::load_path_problem(test::data_dir() / "problems" /
+                                              (std::string(expected.problem) + ".yaml"));
   problem.limits.edges = expected.edges;
   if (expected.planner == kEager || expected.planner == kEagerDp)
     problem.resolution.ds = 0.02;  // tests are to be quick
@@ -148,7 +148,8 @@ TEST(Work, IsWhatTheTableSays) {
 
 /// The inner loop of every search: asking about a posture or a motion that distance proofs decide.
 TEST(Work, AskingAboutAPostureAllocatesNothing) {
-  const PathProblem problem = io::load_problem(test::data_dir() / "problems/experiment_c.yaml");
+  const PathProblem problem =
+      io::load_path_problem(test::data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);
   const World& world = robot.world();
   world.make_ready([] { return false; });

@@ -11,7 +11,7 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -245,10 +245,10 @@ TEST(HeldJoint, RefusesByLine) {
 
 /// A job with its torso held elsewhere, alone and with its door moved.
 TEST(HeldJoint, RowsOfJobsAreSinglePlans) {
-  Job job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
-  job.strokes.resize(2);
-  job.home.reset();
-  for (Stroke& stroke : job.strokes) stroke.resolution = {.ds = 0.02, .dphi = 0.1};
+  Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
+  job.arm().strokes.resize(2);
+  job.arm().home.reset();
+  for (Stroke& stroke : job.arm().strokes) stroke.resolution = {.ds = 0.02, .dphi = 0.1};
   const auto robot = std::make_shared<const PreparedRobot>(problem_of_run(job, {0, false}));
   std::vector<PlacementCell> cells;
   for (const double at : {-0.15, -0.05, 0.05})
@@ -263,8 +263,8 @@ TEST(HeldJoint, RowsOfJobsAreSinglePlans) {
     const auto rows = planner.plan(cells);
     ASSERT_EQ(rows.size(), cells.size());
     for (std::size_t k = 0; k < cells.size(); ++k) {
-      Job placed = placed_job(job, door, cells[k].offset);
-      placed.hold["torso_joint_b1"] = cells[k].hold.at("torso_joint_b1");
+      Problem placed = placed_problem(job, door, cells[k].offset);
+      placed.arm().hold["torso_joint_b1"] = cells[k].hold.at("torso_joint_b1");
       const JobResult alone =
           plan_job(PreparedRobot(problem_of_run(placed, {0, false})), placed, {});
       EXPECT_EQ(rows[k].status, alone.status) << k;

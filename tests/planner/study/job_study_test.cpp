@@ -11,7 +11,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/study_failure.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
@@ -26,13 +26,13 @@ using namespace test;
 /// instant.
 struct DoorJob {
   DoorJob() {
-    job.strokes.resize(2);
-    for (Stroke& stroke : job.strokes) stroke.resolution = {.ds = 0.02, .dphi = 0.1};
+    job.arm().strokes.resize(2);
+    for (Stroke& stroke : job.arm().strokes) stroke.resolution = {.ds = 0.02, .dphi = 0.1};
     job.vary[0].xyz *= 2.5;
-    job.strokes[1].reversible = true;
-    job.strokes[1].approach = Vector3d(0, 0, -0.02);
+    job.arm().strokes[1].reversible = true;
+    job.arm().strokes[1].approach = Vector3d(0, 0, -0.02);
   }
-  Job job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
+  Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
   std::shared_ptr<const PreparedRobot> robot =
       std::make_shared<const PreparedRobot>(problem_of_run(job, {0, false}));
 };
@@ -80,7 +80,7 @@ TEST(JobCampaign, EachRowIsThatOfItsJobAtAnyThreadCount) {
   std::map<PlanStatus, int> met;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     expect_same(others[k], rows[k]);
-    const Job job = episode_job(door.job, 5, k);
+    const Problem job = episode_problem(door.job, 5, k);
     EXPECT_EQ(job.scene[0].pose.matrix(),
               episode_problem(problem_of_run(door.job, {0, false}), 5, k).scene[0].pose.matrix());
     PlanOptions alone;
@@ -125,7 +125,7 @@ TEST(JobCampaign, RefusesWhatMakesNoSenseAndStops) {
   options.plan.planner = PlannerKind::kLazy;
   door.job.vary.clear();
   EXPECT_THROW(campaign(door, options), InputError);
-  door.job.strokes.clear();
+  door.job.arm().strokes.clear();
   EXPECT_THROW(campaign(door, options), InvalidArgument);
 }
 
@@ -134,7 +134,8 @@ PlacementRow row_alone(const DoorJob& door, const Movable& thing, const Placemen
   PlacementRow row{.cell = cell.cell, .offset = cell.offset};
   PlanOptions options;
   options.evidence.postures = true;
-  const JobResult result = plan_job(*door.robot, placed_job(door.job, thing, cell.offset), options);
+  const JobResult result =
+      plan_job(*door.robot, placed_problem(door.job, thing, cell.offset), options);
   row.status = result.status;
   if (result.status != PlanStatus::kSolved) {
     const StudyFailure failure = failure_of(result, door.job);
@@ -214,8 +215,8 @@ TEST(JobPlacements, StopsInTime) {
 /// included.
 TEST(PlacedJob, MovesEachStrokeAsItsProblem) {
   DoorJob door;
-  door.job.strokes[0].path_frame.clear();
-  door.job.strokes[0].retract = Vector3d(0.01, 0, -0.03);
+  door.job.arm().strokes[0].path_frame.clear();
+  door.job.arm().strokes[0].retract = Vector3d(0.01, 0, -0.03);
   Random random(seed("placed job"));
   int compared = 0;
   for (int trial = 0; trial < 60; ++trial) {
@@ -225,9 +226,9 @@ TEST(PlacedJob, MovesEachStrokeAsItsProblem) {
     Offset offset{};
     for (double& value : offset)
       if (random.coin()) value = random.uniform(-1, 1);
-    const Job placed = placed_job(door.job, thing, offset);
-    EXPECT_EQ(placed.home, door.job.home);
-    for (std::size_t k = 0; k < placed.strokes.size(); ++k) {
+    const Problem placed = placed_problem(door.job, thing, offset);
+    EXPECT_EQ(placed.arm().home, door.job.arm().home);
+    for (std::size_t k = 0; k < placed.arm().strokes.size(); ++k) {
       const PathProblem is = problem_of_run(placed, {k, false}),
                         should =
                             placed_problem(problem_of_run(door.job, {k, false}), thing, offset);
@@ -247,7 +248,8 @@ TEST(PlacedJob, MovesEachStrokeAsItsProblem) {
 
 TEST(StudyFailure, NamesTheTransitionThatHasNoWay) {
   DoorJob door;
-  door.job.limits.clearance = 0.3;  // of transitions: the arm is nearer to things at home
+  door.job.arm().transition_limits.clearance =
+      0.3;  // of transitions: the arm is nearer to things at home
   const JobResult result = plan_job(*door.robot, door.job);
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   ASSERT_TRUE(result.no_transition && result.no_transition->bodies);

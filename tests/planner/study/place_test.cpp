@@ -404,7 +404,7 @@ TEST(Place, WrittenAnglesReadBackBitForBit) {
 }
 
 TEST(Place, StopsWithWhatIsKnown) {
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   std::vector<PlacementCell> cells;
@@ -430,7 +430,7 @@ TEST(Place, StopsWithWhatIsKnown) {
 }
 
 TEST(Place, AStartThatThePathLeavesIsBadInput) {
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_a_start.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   PlacementPlanner planner(std::make_shared<const PreparedRobot>(problem), problem,
                            {Movable::Kind::kPath, ""}, {});

@@ -33,10 +33,10 @@ SceneObject object(const std::string& name, const Shape& shape, const Vector3d& 
 }
 
 /// Puts the path of the left arm into the frame of the table.
-void put_on_table(Workcell& cell) {
+void put_on_table(Problem& cell) {
   const Matrix3d back = cell.scene[0].pose.linear().transpose();
-  cell.arms[0].path_frame = "table";
-  for (Waypoint& waypoint : cell.arms[0].waypoints) {
+  cell.arms[0].path().path_frame = "table";
+  for (Waypoint& waypoint : cell.arms[0].path().waypoints) {
     waypoint.position = back * (waypoint.position - cell.scene[0].pose.translation());
     waypoint.orientation = Quaterniond(back) * waypoint.orientation;
   }
@@ -44,8 +44,8 @@ void put_on_table(Workcell& cell) {
 
 /// Returns a random workcell with a post before the robot and a small table beyond the paths, which
 /// carries the left one. `follows`: the left tool carries the path of the right one.
-Workcell cell_with_scene(Random& random, bool follows) {
-  Workcell cell = random_workcell(data_robot("sda10f"), random);
+Problem cell_with_scene(Random& random, bool follows) {
+  Problem cell = random_workcell(data_robot("sda10f"), random);
   cell.scene.push_back(object("table", Box{Vector3d(0.05, 0.05, 0.02)},
                               Vector3d(1.1, random.uniform(-0.1, 0.1), 0.6)));
   cell.scene[0].pose.linear() = from_rpy({0.1, -0.2, 0.3}).toRotationMatrix();
@@ -54,13 +54,13 @@ Workcell cell_with_scene(Random& random, bool follows) {
   if (follows) {
     const Vector3d middle(random.uniform(0.62, 0.72), random.uniform(0.15, 0.25), 1.05);
     const double width = random.uniform(0.35, 0.45);
-    cell.arms[1].path_frame = "left";
+    cell.arms[1].path().path_frame = "left";
     for (std::size_t k = 0; k < 2; ++k) {
       const double side = k == 0 ? -1 : 1;
-      cell.arms[0].waypoints[k].position = middle + side * Vector3d(0, 0.02, 0.05);
-      cell.arms[0].waypoints[k].orientation = Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY());
-      cell.arms[1].waypoints[k].position = Vector3d(0.02 * side, -width, 0);
-      cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
+      cell.arms[0].path().waypoints[k].position = middle + side * Vector3d(0, 0.02, 0.05);
+      cell.arms[0].path().waypoints[k].orientation = Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY());
+      cell.arms[1].path().waypoints[k].position = Vector3d(0.02 * side, -width, 0);
+      cell.arms[1].path().waypoints[k].orientation = Quaterniond::Identity();
     }
   }
   put_on_table(cell);
@@ -70,12 +70,12 @@ Workcell cell_with_scene(Random& random, bool follows) {
 }
 
 /// Returns the row that a plan of the placed workcell alone gives.
-PlacementRow row_alone(const Workcell& cell, const Movable& thing, const PlacementCell& at) {
+PlacementRow row_alone(const Problem& cell, const Movable& thing, const PlacementCell& at) {
   PlacementRow row{.cell = at.cell, .offset = at.offset, .hold = at.hold};
   PlanOptions options;
   options.evidence.postures = true;
-  Workcell placed = placed_workcell(cell, thing, at.offset);
-  for (WorkcellArm& arm : placed.arms)
+  Problem placed = placed_problem(cell, thing, at.offset);
+  for (ArmTask& arm : placed.arms)
     for (const auto& [joint, position] : at.hold) arm.hold[joint] = position;
   const WorkcellResult result = plan_workcell(placed, options);
   row.status = result.status;
@@ -117,7 +117,7 @@ void expect_same(const PlacementRow& a, const PlacementRow& b) {
   EXPECT_EQ(a.reason, b.reason);
 }
 
-std::vector<PlacementRow> rows_of(const Workcell& cell, const Movable& thing,
+std::vector<PlacementRow> rows_of(const Problem& cell, const Movable& thing,
                                   const std::vector<PlacementCell>& cells, int threads) {
   PlanOptions options;
   options.threads = threads;
@@ -131,16 +131,17 @@ std::vector<PlacementRow> rows_of(const Workcell& cell, const Movable& thing,
 }
 
 /// Checks that the path of one arm was moved by an offset without turns, and nothing else.
-void expect_path_moved(const Workcell& cell, const Workcell& placed, std::size_t arm,
+void expect_path_moved(const Problem& cell, const Problem& placed, std::size_t arm,
                        const Offset& offset) {
-  EXPECT_EQ(placed.arms[1 - arm].waypoints, cell.arms[1 - arm].waypoints);
+  EXPECT_EQ(placed.arms[1 - arm].path().waypoints, cell.arms[1 - arm].path().waypoints);
   for (std::size_t k = 0; k < cell.scene.size(); ++k)
     EXPECT_EQ(placed.scene[k].pose.matrix(), cell.scene[k].pose.matrix());
   Matrix3d frame = Matrix3d::Identity();  // of a follower that of the leader's tool
   for (const SceneObject& object : cell.scene)
-    if (object.name == cell.arms[arm].path_frame) frame = object.pose.linear();
-  for (std::size_t k = 0; k < cell.arms[arm].waypoints.size(); ++k) {
-    const Waypoint &before = cell.arms[arm].waypoints[k], &after = placed.arms[arm].waypoints[k];
+    if (object.name == cell.arms[arm].path().path_frame) frame = object.pose.linear();
+  for (std::size_t k = 0; k < cell.arms[arm].path().waypoints.size(); ++k) {
+    const Waypoint &before = cell.arms[arm].path().waypoints[k],
+                   &after = placed.arms[arm].path().waypoints[k];
     EXPECT_LT(
         (frame * (after.position - before.position) - Vector3d(offset[0], offset[1], offset[2]))
             .norm(),
@@ -158,7 +159,7 @@ TEST(WorkcellPlacements, OneArmsPathAndTheTorso) {
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
     const bool follows = trial % 4 >= 2;
-    const Workcell cell = cell_with_scene(random, follows);
+    const Problem cell = cell_with_scene(random, follows);
     const auto arm = static_cast<std::size_t>(trial % 2);
     const Movable thing = trial % 5 == 4 ? Movable{Movable::Kind::kNothing, ""}
                                          : Movable{Movable::Kind::kPath, "", cell.arms[arm].name};
@@ -168,7 +169,7 @@ TEST(WorkcellPlacements, OneArmsPathAndTheTorso) {
       PlacementCell& at = cells.emplace_back(PlacementCell{k});
       for (std::size_t c = 0; moves && c < 3; ++c) at.offset[c] = random.uniform(-0.1, 0.1);
       if (holds) at.hold["torso_joint_b1"] = random.uniform(-0.2, 0.2);
-      if (moves) expect_path_moved(cell, placed_workcell(cell, thing, at.offset), arm, at.offset);
+      if (moves) expect_path_moved(cell, placed_problem(cell, thing, at.offset), arm, at.offset);
     }
     const auto rows = rows_of(cell, thing, cells, 1), others = rows_of(cell, thing, cells, 3);
     ASSERT_EQ(rows.size(), cells.size());
@@ -191,10 +192,10 @@ TEST(WorkcellPlacements, OneArmsPathAndTheTorso) {
 
 TEST(WorkcellPlacements, AnArmIsRefusedByLine) {
   Random random(seed("WorkcellPlacements.Refused"));
-  const Workcell cell = cell_with_scene(random, false);
+  const Problem cell = cell_with_scene(random, false);
   const auto refused = [&](const Movable& thing, const char* words) {
     try {
-      static_cast<void>(placed_workcell(cell, thing, {}));
+      static_cast<void>(placed_problem(cell, thing, {}));
       ADD_FAILURE() << words;
     } catch (const InvalidArgument& error) {
       const std::string message = error.what();
@@ -204,9 +205,9 @@ TEST(WorkcellPlacements, AnArmIsRefusedByLine) {
   };
   refused({Movable::Kind::kPath, "", "middle"}, "unknown arm 'middle'");
   refused({Movable::Kind::kBase, "", "left"}, "both arms are of one robot");
-  EXPECT_THROW(static_cast<void>(placed_workcell(cell, {Movable::Kind::kNothing, ""}, {0.1})),
+  EXPECT_THROW(static_cast<void>(placed_problem(cell, {Movable::Kind::kNothing, ""}, {0.1})),
                InvalidArgument);
-  Workcell planned = cell;
+  Problem planned = cell;
   EXPECT_THROW(hold_joints(planned, {{"arm_left_joint_1_s", 0}}), InvalidArgument);
   PathProblem one;
   EXPECT_THROW(static_cast<void>(placed_problem(one, {Movable::Kind::kPath, "", "left"}, {})),
@@ -220,7 +221,7 @@ TEST(WorkcellPlacements, EachRowIsThatOfThePlacedWorkcellAtAnyThreadCount) {
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
     const bool follows = trial % 4 >= 2;
-    const Workcell cell = cell_with_scene(random, follows);
+    const Problem cell = cell_with_scene(random, follows);
     const Movable thing =
         kThings[static_cast<std::size_t>(trial % 4 == 0 ? random.below(4) : trial % 4)];
     // paths in two frames are not turned alike
@@ -249,12 +250,13 @@ TEST(WorkcellPlacements, EachRowIsThatOfThePlacedWorkcellAtAnyThreadCount) {
 
 TEST(WorkcellPlacements, TellsThatTheArmsMeet) {
   Random random(1);
-  Workcell cell = random_workcell(data_robot("sda10f"), random);
+  Problem cell = random_workcell(data_robot("sda10f"), random);
   const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t i = 0; i < 2; ++i) {
       const double side = k == 0 ? 0.01 : -0.01, up = i == 0 ? 1.0 : 1.1;
-      cell.arms[k].waypoints[i] = {.position = Vector3d(0.72, side, up), .orientation = forward};
+      cell.arms[k].path().waypoints[i] = {.position = Vector3d(0.72, side, up),
+                                          .orientation = forward};
     }
   const auto rows = rows_of(cell, kPaths, {{0, {}}}, 1);
   ASSERT_EQ(rows.size(), 1u);
@@ -283,12 +285,12 @@ Pose pose_of(const Waypoint& waypoint) {
 }
 
 /// Returns the waypoints of an arm in the base frame, or on its leader's tool.
-std::vector<Pose> in_base(const Workcell& cell, std::size_t arm) {
+std::vector<Pose> in_base(const Problem& cell, std::size_t arm) {
   Pose frame = Pose::Identity();
   for (const SceneObject& one : cell.scene)
-    if (one.name == cell.arms[arm].path_frame) frame = one.pose;
+    if (one.name == cell.arms[arm].path().path_frame) frame = one.pose;
   std::vector<Pose> poses;
-  for (const Waypoint& waypoint : cell.arms[arm].waypoints)
+  for (const Waypoint& waypoint : cell.arms[arm].path().waypoints)
     poses.push_back(frame * pose_of(waypoint));
   return poses;
 }
@@ -303,13 +305,13 @@ TEST(PlacedWorkcell, MovesWhatGoesWithTheThing) {
   for (int trial = 0; trial < 120; ++trial) {
     SCOPED_TRACE(trial);
     const bool follows = random.coin();
-    const Workcell cell = cell_with_scene(random, follows);
+    const Problem cell = cell_with_scene(random, follows);
     const Movable thing = kThings[static_cast<std::size_t>(random.below(4))];
     Offset offset{};
     const int turns = thing.kind == Movable::Kind::kPath && !follows ? 3 : 6;
     for (int k = 0; k < turns; ++k)
       if (random.coin()) offset[static_cast<std::size_t>(k)] = random.uniform(-1, 1);
-    const Workcell placed = placed_workcell(cell, thing, offset);
+    const Problem placed = placed_problem(cell, thing, offset);
     const Vector3d table = cell.scene[0].pose.translation();
     Pose robot = Pose::Identity();  // where it stands now
     if (thing.kind == Movable::Kind::kBase) robot = moved(robot, offset, Vector3d::Zero());
@@ -323,7 +325,7 @@ TEST(PlacedWorkcell, MovesWhatGoesWithTheThing) {
     for (std::size_t k = 0; k < 2; ++k) {
       const auto was = in_base(cell, k), is = in_base(placed, k);
       ASSERT_EQ(is.size(), was.size());
-      const bool on_table = cell.arms[k].path_frame == "table", on_tool = k == 1 && follows;
+      const bool on_table = cell.arms[k].path().path_frame == "table", on_tool = k == 1 && follows;
       const bool moves =
           !on_tool && (thing.kind == Movable::Kind::kPath || (thing.object == "table" && on_table));
       const Vector3d origin = on_table ? table : Vector3d(0, 0, 0);
@@ -331,7 +333,7 @@ TEST(PlacedWorkcell, MovesWhatGoesWithTheThing) {
         const Pose stays = on_tool ? was[i] : seen(was[i]);
         expect_near(is[i], moves ? moved(was[i], offset, origin) : stays, "waypoint");
         if (on_tool) {
-          EXPECT_EQ(placed.arms[k].waypoints[i], cell.arms[k].waypoints[i]);
+          EXPECT_EQ(placed.arms[k].path().waypoints[i], cell.arms[k].path().waypoints[i]);
         }
       }
     }
@@ -341,19 +343,19 @@ TEST(PlacedWorkcell, MovesWhatGoesWithTheThing) {
 
 TEST(PlacedWorkcell, RefusesPathsThatCannotBeMovedAlike) {
   Random random(2);
-  Workcell cell = cell_with_scene(random, false);
-  EXPECT_NO_THROW(static_cast<void>(placed_workcell(cell, kPaths, {0.1, 0, 0, 0, 0, 0})));
-  EXPECT_THROW(static_cast<void>(placed_workcell(cell, kPaths, {0, 0, 0, 0, 0, 0.1})),
+  Problem cell = cell_with_scene(random, false);
+  EXPECT_NO_THROW(static_cast<void>(placed_problem(cell, kPaths, {0.1, 0, 0, 0, 0, 0})));
+  EXPECT_THROW(static_cast<void>(placed_problem(cell, kPaths, {0, 0, 0, 0, 0, 0.1})),
                InvalidArgument);
-  EXPECT_THROW(static_cast<void>(placed_workcell(cell, {Movable::Kind::kObject, "tabel"}, {})),
+  EXPECT_THROW(static_cast<void>(placed_problem(cell, {Movable::Kind::kObject, "tabel"}, {})),
                InvalidArgument);
   EXPECT_THROW(PlacementPlanner(cell, {Movable::Kind::kObject, "left"}, {}), InvalidArgument);
   cell = cell_with_scene(random, true);
   cell.arms[0].given.resize(2, Config::Zero());
-  cell.arms[0].waypoints.clear();
-  cell.arms[0].path_frame.clear();
-  EXPECT_THROW(static_cast<void>(placed_workcell(cell, kPaths, {})), InvalidArgument);
-  EXPECT_NO_THROW(static_cast<void>(placed_workcell(cell, kBase, {0.1, 0, 0, 0, 0, 0})));
+  cell.arms[0].path().waypoints.clear();
+  cell.arms[0].path().path_frame.clear();
+  EXPECT_THROW(static_cast<void>(placed_problem(cell, kPaths, {})), InvalidArgument);
+  EXPECT_NO_THROW(static_cast<void>(placed_problem(cell, kBase, {0.1, 0, 0, 0, 0, 0})));
   PlanOptions options;
   options.planner = PlannerKind::kEager;
   EXPECT_THROW(PlacementPlanner(cell_with_scene(random, false), kBase, options), InvalidArgument);
@@ -367,13 +369,13 @@ TEST(WorkcellPlacements, TellThatAGivenMotionIsBarred) {
   const int count = trials(16);
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    Workcell cell = random_workcell(data_robot("sda10f"), random);
+    Problem cell = random_workcell(data_robot("sda10f"), random);
     const WorkcellResult both = plan_workcell(cell);
     if (both.status != PlanStatus::kSolved) continue;
-    WorkcellArm& left = cell.arms[0];
-    const Vector3d at = left.waypoints[0].position;
+    ArmTask& left = cell.arms[0];
+    const Vector3d at = left.path().waypoints[0].position;
     for (const TrajectoryRow& row : both.arms[0].trajectory) left.given.push_back(row.q);
-    left.waypoints.clear();
+    left.path().waypoints.clear();
     cell.scene.push_back(object("post", Sphere{0.05}, at + Vector3d(0, 0, -0.6)));
     std::vector<PlacementCell> cells;
     for (std::uint64_t k = 0; k < 4; ++k) cells.push_back({k, {0, 0, 0.2 * double(k), 0, 0, 0}});
@@ -414,7 +416,7 @@ TEST(WorkcellPlacements, StopsInTime) {
   EXPECT_TRUE(planner.stopped());
 }
 
-std::vector<EpisodeRow> campaign(const Workcell& cell, const CampaignOptions& options) {
+std::vector<EpisodeRow> campaign(const Problem& cell, const CampaignOptions& options) {
   std::vector<EpisodeRow> rows;
   run_campaign(cell, options, [&](const EpisodeRow& row) { rows.push_back(row); });
   return rows;
@@ -442,7 +444,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
   const int count = trials(4);
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    const Workcell cell = cell_with_scene(random, trial % 2 == 1);
+    const Problem cell = cell_with_scene(random, trial % 2 == 1);
     CampaignOptions options;
     options.episodes = 12;
     options.seed = 5;
@@ -464,7 +466,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
       PathProblem problem;
       problem.scene = cell.scene;
       problem.vary = cell.vary;
-      const Workcell drawn = episode_workcell(cell, 5, k);
+      const Problem drawn = episode_problem(cell, 5, k);
       for (std::size_t i = 0; i < 2; ++i)
         EXPECT_EQ(drawn.scene[i].pose.matrix(),
                   episode_problem(problem, 5, k).scene[i].pose.matrix());
@@ -499,7 +501,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
 
 TEST(WorkcellCampaign, RefusesWhatMakesNoSenseAndStops) {
   Random random(4);
-  Workcell cell = cell_with_scene(random, false);
+  Problem cell = cell_with_scene(random, false);
   CampaignOptions options;
   options.episodes = 2;
   const std::atomic<bool> cancelled{true};
@@ -514,7 +516,7 @@ TEST(WorkcellCampaign, RefusesWhatMakesNoSenseAndStops) {
   options.plan.planner = PlannerKind::kLazy;
   cell.vary.clear();
   EXPECT_THROW(campaign(cell, options), InputError);
-  cell.arms[1].waypoints.clear();
+  cell.arms[1].path().waypoints.clear();
   EXPECT_THROW(campaign(cell, options), InvalidArgument);
 }
 

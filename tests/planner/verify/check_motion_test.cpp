@@ -148,7 +148,7 @@ TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
   int passed = 0, slowed = 0, refused = 0;
   for (const char* name : {"kr6_weld_pipe", "ur5e_deburr_edge", "iiwa14_bench"}) {
     const PathProblem problem =
-        io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     for (const double rate : {2.0, 3.0, 5.0, 7.0, 10.0}) {
       Planner planner(with_motion_defaults(problem));
       const MotionPlan plan = plan_motion(

@@ -15,7 +15,7 @@
 #include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/motion/job_text.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/job/plan_job.hpp"
@@ -36,7 +36,7 @@ using namespace test;
 /// A disc is led along a plate, `deep` beneath its surface.
 PathProblem polishing(double deep, std::optional<double> allowed = {}) {
   static const PathProblem loaded =
-      io::load_problem(data_dir() / "problems" / "xarm7_polish_raster.yaml");
+      io::load_path_problem(data_dir() / "problems" / "xarm7_polish_raster.yaml");
   PathProblem problem = loaded;
   problem.waypoints.resize(2);
   problem.waypoints[1].position.y() = 0;
@@ -330,15 +330,15 @@ TEST(Contact, ThatWasNotMeasuredIsToldFromContactThatIsNone) {
 
 TEST(Contact, ThatWasNotMeasuredOfAJobIsSaidOfEachRun) {
   const PathProblem problem = polishing(0.001);
-  Job job;
-  static_cast<Robot&>(job) = problem;
+  Problem job;
+  static_cast<Robot&>(job.arm()) = problem;
   job.scene = problem.scene;
-  job.limits = problem.limits;
+  job.arm().transition_limits = problem.limits;
   for (const char* const name : {"first", "second"}) {
     Stroke stroke;
     static_cast<Task&>(stroke) = problem;
     stroke.name = name;
-    job.strokes.push_back(stroke);
+    job.arm().strokes.push_back(stroke);
   }
   const auto stopped = stopped_while_measuring(
       [&](const PlanOptions& options) { return plan_job(job, options); }, 0);
@@ -365,7 +365,7 @@ TEST(Contact, ThatWasNotMeasuredOfAJobIsSaidOfEachRun) {
 TEST(Contact, ThatWasNotMeasuredOfTwoArmsIsSaidOfBoth) {
   Random random(71);
   for (int tried = 0; tried < 20; ++tried) {
-    Workcell cell = random_workcell(data_robot("sda10f"), random);
+    Problem cell = random_workcell(data_robot("sda10f"), random);
     const auto stopped = stopped_while_measuring(
         [&](const PlanOptions& options) { return plan_workcell(cell, options); }, 0);
     if (!stopped) continue;  // this one has no plan

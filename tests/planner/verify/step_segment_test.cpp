@@ -202,11 +202,11 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
     const PathProblem problem = problem_for(robot);
     const Chain chain = planning_arm(problem).model.chain;
     const Config q = inner_posture(chain, random);
-    std::array<Job, 2> jobs;
-    for (Job& job : jobs) {
-      static_cast<swivel::Robot&>(job) = problem;
+    std::array<Problem, 2> jobs;
+    for (Problem& job : jobs) {
+      static_cast<swivel::Robot&>(job.arm()) = problem;
       job.source = robot.name;
-      job.strokes.resize(2);
+      job.arm().strokes.resize(2);
     }
     for (std::size_t k = 0; k < 2; ++k) {
       Stroke stroke;
@@ -218,11 +218,11 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
       begin.translation() += random_vector(random, 0.05);
       const auto paths = short_waypoints(begin, random);
       for (std::size_t noisy : {0, 1})
-        stroke.waypoints = paths[noisy], jobs[noisy].strokes[k] = stroke;
+        stroke.waypoints = paths[noisy], jobs[noisy].arm().strokes[k] = stroke;
     }
     std::array<PlanStatus, 2> status{};
     for (const std::size_t noisy : {0, 1}) {
-      const Job& job = jobs[noisy];
+      const Problem& job = jobs[noisy];
       const PreparedRobot prepared(problem_of_run(job, {0, false}));
       const JobResult found = plan_job(prepared, job, with_errors());
       status[noisy] = found.status;
@@ -238,8 +238,8 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
                                  found.runs[run].measures, check.runs[run], what, tally);
         ++run;
       }
-      Job other = jobs[1 - noisy];
-      for (Stroke& stroke : other.strokes) loosen(stroke);
+      Problem other = jobs[1 - noisy];
+      for (Stroke& stroke : other.arm().strokes) loosen(stroke);
       EXPECT_EQ(plan_job(prepared, other, with_errors()).status, PlanStatus::kSolved)
           << what << " " << noisy;
     }
@@ -261,18 +261,18 @@ TEST(StepSegment, TwoArmsHaveTheErrorsOfPaths) {
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Random random(base + static_cast<std::uint64_t>(trial));
-    std::array<Workcell, 2> cells;
+    std::array<Problem, 2> cells;
     cells[0] = random_workcell(robot, random);
     Pose begin;
-    begin.translation() = cells[0].arms[0].waypoints[0].position;
-    begin.linear() = cells[0].arms[0].waypoints[0].orientation.toRotationMatrix();
-    draw_limits(cells[0].arms[0].limits, random);
+    begin.translation() = cells[0].arms[0].path().waypoints[0].position;
+    begin.linear() = cells[0].arms[0].path().waypoints[0].orientation.toRotationMatrix();
+    draw_limits(cells[0].arms[0].path().limits, random);
     auto paths = short_waypoints(begin, random);
     cells[1] = cells[0];
     for (const std::size_t noisy : {0, 1}) {
       paths[noisy].resize(2);  // waypoints of both arms belong together
-      cells[noisy].arms[0].waypoints = paths[noisy];
-      cells[noisy].arms[0].resolution.dalpha = 0.2;
+      cells[noisy].arms[0].path().waypoints = paths[noisy];
+      cells[noisy].arms[0].path().resolution.dalpha = 0.2;
     }
     std::array<PlanStatus, 2> status{};
     for (const std::size_t noisy : {0, 1}) {
@@ -288,8 +288,8 @@ TEST(StepSegment, TwoArmsHaveTheErrorsOfPaths) {
       for (std::size_t k = 0; k < 2; ++k)
         expect_errors_as_outside(prepared.robot(k), prepared.problem(k), found.arms[k].trajectory,
                                  found.arms[k], check.arms[k], what, tally);
-      Workcell other = cells[1 - noisy];
-      for (WorkcellArm& arm : other.arms) loosen(arm);
+      Problem other = cells[1 - noisy];
+      for (ArmTask& arm : other.arms) loosen(arm.path());
       EXPECT_EQ(plan_workcell(PreparedWorkcell(other), with_errors()).status, PlanStatus::kSolved)
           << what << " " << noisy;
     }

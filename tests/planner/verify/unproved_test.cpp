@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "swivel/io/io.hpp"
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -24,21 +24,21 @@ namespace {
 using namespace test;
 
 PathProblem short_path() {
-  PathProblem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_a.yaml");
   problem.resolution = {.ds = 0.02, .dphi = 0.2};
   return problem;
 }
-Job short_job() {
-  Job job = io::load_job(data_dir() / "problems/door_job.yaml");
-  for (Stroke& stroke : job.strokes) stroke.resolution = {.ds = 0.02, .dphi = 0.1};
+Problem short_job() {
+  Problem job = io::load_job(data_dir() / "problems/door_job.yaml");
+  for (Stroke& stroke : job.arm().strokes) stroke.resolution = {.ds = 0.02, .dphi = 0.1};
   return job;
 }
 /// Returns two arms that have a plan.
-Workcell short_workcell() {
+Problem short_workcell() {
   Random random(seed("Unproved.Workcell"));
   const auto robot = data_robot("sda10f");
   for (;;) {
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     if (plan_workcell(cell).status == PlanStatus::kSolved) return cell;
   }
 }
@@ -112,7 +112,7 @@ void expect_none_unproved(const Plan& plan, const std::string& what) {
 TEST(Unproved, OfEveryKindIsPartial) {
   const PathProblem problem = short_path();
   expect_none_unproved([&](const PlanOptions& options) { return plan(problem, options); }, "path");
-  Job job = short_job();
+  Problem job = short_job();
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   expect_none_unproved([&](const PlanOptions& options) { return plan_job(robot, job, options); },
                        "job");
@@ -123,8 +123,8 @@ TEST(Unproved, OfEveryKindIsPartial) {
 
 /// An order that was proved stays the answer where time ends while others are tried.
 TEST(Unproved, TheBestOrderThatWasProvedStays) {
-  Job job = short_job();
-  job.order = StrokeOrder::kBest;
+  Problem job = short_job();
+  job.arm().order = StrokeOrder::kBest;
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   std::stop_source source;
   PlanOptions options;
@@ -144,8 +144,8 @@ TEST(Unproved, TheBestOrderThatWasProvedStays) {
 /// A job that has none without lift-offs is not said to have none where time ended before lift-offs
 /// were tried.
 TEST(Unproved, LiftOffsThatWereNotTriedAreNoVerdict) {
-  Job job = io::load_job(data_dir() / "problems/iiwa14_ring_job.yaml");
-  ASSERT_TRUE(job.lift);
+  Problem job = io::load_job(data_dir() / "problems/iiwa14_ring_job.yaml");
+  ASSERT_TRUE(job.arm().lift);
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   std::stop_source source;
   PlanOptions options;

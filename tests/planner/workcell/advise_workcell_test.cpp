@@ -35,7 +35,7 @@ PlanOptions long_enough(int threads) {
 /// What makes a random workcell hard to plan.
 enum class Hard { kClearance, kMargin, kPost, kGivenEnd, kRightFollows, kNear };
 
-void add_post(Workcell& cell, Random& random) {
+void add_post(Problem& cell, Random& random) {
   SceneObject post;
   post.name = "post";
   post.shape = Cylinder{0.03, 0.6};
@@ -47,48 +47,49 @@ void add_post(Workcell& cell, Random& random) {
 }
 
 /// Gives the left arm a random node of its lattice as its start or its end, if there is one.
-void add_start_or_end(Workcell& cell, Random& random) {
+void add_start_or_end(Problem& cell, Random& random) {
   const PreparedWorkcell prepared(cell);
   const PlainArm arm(prepared.problem(0), prepared.robot(0));
   const bool first = random.coin();
   const std::vector<Lattice::Node>& nodes = arm.nodes(first ? 0 : arm.layers() - 1);
   if (nodes.empty()) return;
   const Config q = nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].q;
-  (first ? cell.arms[0].start : cell.arms[0].end) = q;
+  (first ? cell.arms[0].path().start : cell.arms[0].path().end) = q;
 }
 
 /// Lets both hands point forward and carry a bar that turns, which the left one leads.
-void carry_turning_bar(Workcell& cell, Random& random) {
+void carry_turning_bar(Problem& cell, Random& random) {
   const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
   const double width = random.uniform(0.15, 0.45);
   const Vector3d middle(random.uniform(0.6, 0.8), random.uniform(-0.1, 0.1),
                         random.uniform(0.9, 1.2));
-  for (std::size_t k = 0; k < cell.arms[0].waypoints.size(); ++k) {
-    Waypoint& waypoint = cell.arms[0].waypoints[k];
+  for (std::size_t k = 0; k < cell.arms[0].path().waypoints.size(); ++k) {
+    Waypoint& waypoint = cell.arms[0].path().waypoints[k];
     const Vector3d moved(0, width / 2 + random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
     waypoint.position = middle + moved;
     waypoint.orientation =
         Quaterniond(Eigen::AngleAxisd(random.uniform(-0.6, 0.6), Vector3d::UnitX())) * forward;
-    cell.arms[1].waypoints[k].position = Vector3d(0, -width, 0);
-    cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
+    cell.arms[1].path().waypoints[k].position = Vector3d(0, -width, 0);
+    cell.arms[1].path().waypoints[k].orientation = Quaterniond::Identity();
   }
-  cell.arms[1].path_frame = "left";
+  cell.arms[1].path().path_frame = "left";
 }
 
 /// Brings the right tool's path near to the left one's.
-void bring_near(Workcell& cell, Random& random) {
-  const Vector3d apart = cell.arms[0].waypoints[0].position - cell.arms[1].waypoints[0].position;
+void bring_near(Problem& cell, Random& random) {
+  const Vector3d apart =
+      cell.arms[0].path().waypoints[0].position - cell.arms[1].path().waypoints[0].position;
   const double share = random.uniform(0.4, 1);
-  for (Waypoint& waypoint : cell.arms[1].waypoints) waypoint.position += share * apart;
+  for (Waypoint& waypoint : cell.arms[1].path().waypoints) waypoint.position += share * apart;
 }
 
-Workcell hard_workcell(const TestRobot& robot, Hard hard, Random& random) {
-  Workcell cell = random_workcell(robot, random);
+Problem hard_workcell(const TestRobot& robot, Hard hard, Random& random) {
+  Problem cell = random_workcell(robot, random);
   if (hard == Hard::kRightFollows) carry_turning_bar(cell, random);
   if (hard == Hard::kNear) bring_near(cell, random);
-  for (WorkcellArm& arm : cell.arms) {
-    if (hard == Hard::kMargin) arm.limits.joint_margin = random.uniform(0.05, 0.6);
-    if (hard == Hard::kClearance) arm.limits.clearance = random.uniform(0.01, 0.05);
+  for (ArmTask& arm : cell.arms) {
+    if (hard == Hard::kMargin) arm.path().limits.joint_margin = random.uniform(0.05, 0.6);
+    if (hard == Hard::kClearance) arm.path().limits.clearance = random.uniform(0.01, 0.05);
   }
   if (hard == Hard::kPost || hard == Hard::kRightFollows || random.coin(0.3))
     add_post(cell, random);
@@ -109,36 +110,37 @@ void set_pose(Waypoint& waypoint, const Pose& pose) {
 }
 
 /// Makes `leads` lead, which follows the other arm so far.
-void swap_leader(WorkcellArm& leads, WorkcellArm& follows) {
-  for (std::size_t k = 0; k < leads.waypoints.size(); ++k) {
-    const Pose tool = pose_of(follows.waypoints[k]), on_tool = pose_of(leads.waypoints[k]);
-    set_pose(leads.waypoints[k], tool * on_tool);
-    set_pose(follows.waypoints[k], on_tool.inverse());
+void swap_leader(ArmTask& leads, ArmTask& follows) {
+  for (std::size_t k = 0; k < leads.path().waypoints.size(); ++k) {
+    const Pose tool = pose_of(follows.path().waypoints[k]),
+               on_tool = pose_of(leads.path().waypoints[k]);
+    set_pose(leads.path().waypoints[k], tool * on_tool);
+    set_pose(follows.path().waypoints[k], on_tool.inverse());
   }
-  leads.path_frame = "";
-  follows.path_frame = leads.name;
+  leads.path().path_frame = "";
+  follows.path().path_frame = leads.name;
 }
 
 /// Returns the workcell as somebody changes it who reads the advice. `stricter`: how far back a
 /// limit is, of the way from `to` to `from`.
-Workcell as_advised(Workcell cell, const WorkcellAdvice& advice, double stricter = 0) {
+Problem as_advised(Problem cell, const WorkcellAdvice& advice, double stricter = 0) {
   const double to = advice.to ? *advice.to + stricter * (advice.from.value_or(0) - *advice.to) : 0;
   for (std::size_t k = 0; k < 2; ++k) {
-    WorkcellArm& arm = cell.arms[k];
+    ArmTask& arm = cell.arms[k];
     if (!advice.arm.empty() && advice.arm != arm.name) continue;
-    Limits& limits = arm.limits;
+    Limits& limits = arm.path().limits;
     switch (advice.change) {
       case Change::kFreeStart:
-        arm.start.reset();
+        arm.path().start.reset();
         break;
       case Change::kFreeEnd:
-        arm.end.reset();
+        arm.path().end.reset();
         break;
       case Change::kFiner:
-        for (double* step : {&arm.resolution.ds, &arm.resolution.dphi, &arm.resolution.dalpha,
-                             &arm.resolution.arc})
+        for (double* step : {&arm.path().resolution.ds, &arm.path().resolution.dphi,
+                             &arm.path().resolution.dalpha, &arm.path().resolution.arc})
           *step /= 2;
-        arm.resolution.arcs = true;
+        arm.path().resolution.arcs = true;
         break;
       case Change::kClearance:
         limits.clearance = advice.arm.empty() ? std::min(limits.clearance, to) : to;
@@ -163,7 +165,7 @@ Workcell as_advised(Workcell cell, const WorkcellAdvice& advice, double stricter
         return cell;
       case Change::kMovePaths:
         if (cell.leader_of(k) < 0)
-          for (Waypoint& waypoint : arm.waypoints) waypoint.position += advice.offset;
+          for (Waypoint& waypoint : arm.path().waypoints) waypoint.position += advice.offset;
         break;
       default:
         break;
@@ -182,7 +184,7 @@ Workcell as_advised(Workcell cell, const WorkcellAdvice& advice, double stricter
 }
 
 /// Returns what both paths cost; nothing where there is no plan, or no such workcell.
-std::optional<double> cost_of(const Workcell& cell) {
+std::optional<double> cost_of(const Problem& cell) {
   try {
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
@@ -200,7 +202,7 @@ bool is_limit(Change change) {
 }
 
 /// Expects what the advice says of its change. Returns true if it helps.
-bool holds(const Workcell& cell, const WorkcellAdvice& advice) {
+bool holds(const Problem& cell, const WorkcellAdvice& advice) {
   SCOPED_TRACE(words(advice));
   EXPECT_NE(advice.outcome, Outcome::kUnknown);
   EXPECT_NE(advice.outcome, Outcome::kFurther);
@@ -239,7 +241,7 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    const Workcell cell =
+    const Problem cell =
         hard_workcell(robots[random.coin() ? 0 : 1], static_cast<Hard>(trial % 6), random);
     WorkcellResult result;
     try {
@@ -296,18 +298,18 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
 /// it goes straight between the same two poses, and passes beside the ball.
 TEST(AdviseWorkcell, LetsTheFollowerLead) {
   Random random(1);
-  Workcell cell = random_workcell(data_robot("sda10f"), random);
+  Problem cell = random_workcell(data_robot("sda10f"), random);
   const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
   const double turn = 0.7, width = 0.45;
   for (std::size_t k = 0; k < 2; ++k) {
-    Waypoint& left = cell.arms[0].waypoints[k];
+    Waypoint& left = cell.arms[0].path().waypoints[k];
     left.position = Vector3d(0.68, 0.2, 1.05);
     left.orientation =
         Quaterniond(Eigen::AngleAxisd(k == 0 ? -turn : turn, Vector3d::UnitX())) * forward;
-    cell.arms[1].waypoints[k].position = Vector3d(0, -width, 0);
-    cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
+    cell.arms[1].path().waypoints[k].position = Vector3d(0, -width, 0);
+    cell.arms[1].path().waypoints[k].orientation = Quaterniond::Identity();
   }
-  cell.arms[1].path_frame = "left";
+  cell.arms[1].path().path_frame = "left";
   ASSERT_TRUE(cost_of(cell));
   SceneObject ball;
   ball.name = "ball";
@@ -335,14 +337,14 @@ TEST(AdviseWorkcell, LeavesAGivenMotionAsItIs) {
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     const WorkcellResult both = plan_workcell(cell, long_enough(1));
     if (both.status != PlanStatus::kSolved) continue;
-    WorkcellArm& left = cell.arms[0];
+    ArmTask& left = cell.arms[0];
     for (const TrajectoryRow& row : both.arms[0].trajectory) left.given.push_back(row.q);
-    left.waypoints.clear();
+    left.path().waypoints.clear();
     add_post(cell, random);
-    cell.arms[1].limits.joint_margin = random.uniform(0, 0.5);
+    cell.arms[1].path().limits.joint_margin = random.uniform(0, 0.5);
     WorkcellResult result;
     try {
       result = plan_workcell(cell, long_enough(1));
@@ -367,8 +369,8 @@ TEST(AdviseWorkcell, LeavesAGivenMotionAsItIs) {
 
 TEST(AdviseWorkcell, SaysNothingWithoutTimeAndWhereThereIsAPlan) {
   Random random(2);
-  Workcell cell = random_workcell(data_robot("sda10f"), random);
-  cell.arms[0].limits.clearance = cell.arms[1].limits.clearance = 0.2;
+  Problem cell = random_workcell(data_robot("sda10f"), random);
+  cell.arms[0].path().limits.clearance = cell.arms[1].path().limits.clearance = 0.2;
   const WorkcellResult result = plan_workcell(cell, long_enough(1));
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   PlanOptions none = long_enough(1);

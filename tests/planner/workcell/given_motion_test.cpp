@@ -12,7 +12,7 @@
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -31,8 +31,8 @@ std::vector<Config> joints_of(const std::vector<TrajectoryRow>& rows) {
 /// Returns a workcell in which the left arm's own answer is its given motion, and the right arm's
 /// path is in the world or, half of the time, on the left one's tool; nothing where the left arm
 /// has no answer.
-std::optional<Workcell> random_cell_with_given(const TestRobot& robot, Random& random) {
-  Workcell cell = random_workcell(robot, random);
+std::optional<Problem> random_cell_with_given(const TestRobot& robot, Random& random) {
+  Problem cell = random_workcell(robot, random);
   const PreparedWorkcell both(cell);
   const PlanResult left = Planner(both.problem(0)).plan(lazily());
   if (left.status != PlanStatus::kSolved) return std::nullopt;
@@ -40,14 +40,14 @@ std::optional<Workcell> random_cell_with_given(const TestRobot& robot, Random& r
     const Chain& chain = both.robot(0).arm().chain;
     for (std::size_t k = 0; k < 2; ++k) {
       const Pose tool = chain.tool((k == 0 ? left.trajectory.front() : left.trajectory.back()).q);
-      Waypoint& waypoint = cell.arms[1].waypoints[k];
+      Waypoint& waypoint = cell.arms[1].path().waypoints[k];
       waypoint.position = tool.inverse() * waypoint.position;
       waypoint.orientation = Quaterniond(tool.linear()).inverse() * waypoint.orientation;
     }
-    cell.arms[1].path_frame = "left";
+    cell.arms[1].path().path_frame = "left";
   }
   cell.arms[0].given = joints_of(left.trajectory);
-  cell.arms[0].waypoints.clear();
+  cell.arms[0].path().waypoints.clear();
   return cell;
 }
 
@@ -168,19 +168,20 @@ TEST(GivenMotion, HasLayersAtItsRowsWhereWaypointsAreAsked) {
   int cells = 0;
   const int count = trials(20);
   while (cells < count) {
-    std::optional<Workcell> cell = random_cell_with_given(robot, random);
+    std::optional<Problem> cell = random_cell_with_given(robot, random);
     if (!cell || cell->arms[0].given.size() < 6) continue;
     ++cells;
-    WorkcellArm& right = cell->arms[1];
-    right.path_frame = right.base_link;
+    ArmTask& right = cell->arms[1];
+    right.path().path_frame = right.base_link;
     for (std::size_t k = 0; k < 3; ++k) {
-      right.waypoints.resize(3);
-      right.waypoints[k].position = Vector3d(0.6, -0.5 + 0.08 * static_cast<double>(k * k), 1.0);
-      right.waypoints[k].orientation = Quaterniond::Identity();
+      right.path().waypoints.resize(3);
+      right.path().waypoints[k].position =
+          Vector3d(0.6, -0.5 + 0.08 * static_cast<double>(k * k), 1.0);
+      right.path().waypoints[k].orientation = Quaterniond::Identity();
     }
     const int rows = static_cast<int>(cell->arms[0].given.size()),
               middle = 1 + random.below(rows - 2);
-    right.steps = {middle, rows - 1 - middle};
+    right.path().steps = {middle, rows - 1 - middle};
     const PreparedWorkcell prepared(*cell);
     for (std::size_t k = 0; k < 2; ++k) {
       const ToolPath path = problem_path(prepared.problem(k), prepared.robot(k).arm().chain);
@@ -192,20 +193,22 @@ TEST(GivenMotion, HasLayersAtItsRowsWhereWaypointsAreAsked) {
                                                 cell->arms[0].given[static_cast<std::size_t>(row)]),
                                             1e-12));
       else
-        EXPECT_NEAR((path.layer(middle).tool.translation() - right.waypoints[1].position).norm(), 0,
-                    1e-12);
+        EXPECT_NEAR(
+            (path.layer(middle).tool.translation() - right.path().waypoints[1].position).norm(), 0,
+            1e-12);
     }
     // The steps are longer than the resolution says, and this is said.
-    right.resolution.ds = 0.005;
+    right.path().resolution.ds = 0.005;
     const std::vector<std::string> warnings = plan_workcell(*cell, lazily()).warnings;
     EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
       return warning.find("steps of 'right' are up to ") == 0;
     }));
-    right.steps.clear();
+    right.path().steps.clear();
     EXPECT_THROW(static_cast<void>(PreparedWorkcell(*cell)), InvalidArgument);
-    right.waypoints.assign(cell->arms[0].given.size(), right.waypoints[0]);  // one for each row
-    for (std::size_t k = 0; k < right.waypoints.size(); ++k)
-      right.waypoints[k].position.y() += 0.001 * static_cast<double>(k * k);
+    right.path().waypoints.assign(cell->arms[0].given.size(),
+                                  right.path().waypoints[0]);  // one for each row
+    for (std::size_t k = 0; k < right.path().waypoints.size(); ++k)
+      right.path().waypoints[k].position.y() += 0.001 * static_cast<double>(k * k);
     const PreparedWorkcell each(*cell);
     EXPECT_EQ(problem_path(each.problem(1), each.robot(1).arm().chain).size(), rows);
   }
@@ -238,11 +241,11 @@ TEST(GivenMotion, CheckRefusesOtherRows) {
 TEST(GivenMotion, IsRefusedWhereItDoesNotKeepTheLimits) {
   Random random(seed("GivenMotion.IsRefusedWhereItDoesNotKeepTheLimits"));
   const TestRobot robot = data_robot("sda10f");
-  std::optional<Workcell> good;
+  std::optional<Problem> good;
   while (!good || plan_workcell(*good, lazily()).status != PlanStatus::kSolved)
     good = random_cell_with_given(robot, random);
   const auto refuses = [&](const auto& spoil, const char* words) {
-    Workcell cell = *good;
+    Problem cell = *good;
     spoil(cell);
     try {
       static_cast<void>(plan_workcell(cell, lazily()));
@@ -252,7 +255,7 @@ TEST(GivenMotion, IsRefusedWhereItDoesNotKeepTheLimits) {
     }
   };
   refuses(
-      [](Workcell& c) {
+      [](Problem& c) {
         const PreparedWorkcell prepared(c);
         SceneObject ball;
         ball.name = "ball";
@@ -262,21 +265,21 @@ TEST(GivenMotion, IsRefusedWhereItDoesNotKeepTheLimits) {
         c.scene.push_back(ball);
       },
       "arm 'left': given motion: row ");
-  refuses([](Workcell& c) { c.arms[0].limits.joint_step = 1e-4; }, "given motion: ");
-  refuses([](Workcell& c) { c.arms[0].limits.joint_margin = 1; }, "is outside its limits");
-  refuses([](Workcell& c) { c.arms[0].given[1] = c.arms[0].given[0]; },
+  refuses([](Problem& c) { c.arms[0].path().limits.joint_step = 1e-4; }, "given motion: ");
+  refuses([](Problem& c) { c.arms[0].path().limits.joint_margin = 1; }, "is outside its limits");
+  refuses([](Problem& c) { c.arms[0].given[1] = c.arms[0].given[0]; },
           "given motion: row 1: the tool is where it is at the row before");
-  refuses([](Workcell& c) { c.arms[1].given = c.arms[0].given; }, "both motions are given");
-  refuses([](Workcell& c) { c.arms[0].given.resize(1); }, "allowed are two or more");
-  refuses([](Workcell& c) { c.arms[0].given[1][2] = kNone; }, "row 1: allowed are finite");
-  refuses([](Workcell& c) { c.arms[0].waypoints = c.arms[1].waypoints; }, "are none");
+  refuses([](Problem& c) { c.arms[1].given = c.arms[0].given; }, "both motions are given");
+  refuses([](Problem& c) { c.arms[0].given.resize(1); }, "allowed are two or more");
+  refuses([](Problem& c) { c.arms[0].given[1][2] = kNone; }, "row 1: allowed are finite");
+  refuses([](Problem& c) { c.arms[0].path().waypoints = c.arms[1].path().waypoints; }, "are none");
   refuses(
-      [](Workcell& c) {
-        c.arms[0].path_frame = "right";
-        c.arms[1].path_frame.clear();
+      [](Problem& c) {
+        c.arms[0].path().path_frame = "right";
+        c.arms[1].path().path_frame.clear();
       },
       "are none");
-  refuses([](Workcell& c) { c.arms[1].steps = {1}; }, "since the given motion ends then");
+  refuses([](Problem& c) { c.arms[1].path().steps = {1}; }, "since the given motion ends then");
 }
 
 /// Returns the pose of the flange's tool frame for six joints, whatever the roll beside them says.
@@ -287,9 +290,9 @@ Pose real_tool(const Chain& chain, const Config& q) {
 /// Returns a workcell whose left arm has six joints and its own answer with a free roll as given
 /// motion; the right arm's path is on the left one's real tool. Nothing where the left arm has no
 /// answer, or hardly rolls.
-std::optional<Workcell> random_cell_led_by_six_joints(const TestRobot& robot, Random& random) {
-  Workcell cell = random_workcell(robot, random);
-  for (WorkcellArm& arm : cell.arms) arm.hold["arm_left_joint_3_e"] = 0;
+std::optional<Problem> random_cell_led_by_six_joints(const TestRobot& robot, Random& random) {
+  Problem cell = random_workcell(robot, random);
+  for (ArmTask& arm : cell.arms) arm.hold["arm_left_joint_3_e"] = 0;
   cell.arms[0].roll = Roll{};
   const PreparedWorkcell both(cell);
   const PlanResult left = Planner(both.problem(0)).plan(lazily());
@@ -299,22 +302,22 @@ std::optional<Workcell> random_cell_led_by_six_joints(const TestRobot& robot, Ra
     return std::nullopt;
   for (std::size_t k = 0; k < 2; ++k) {
     const Pose tool = real_tool(both.robot(0).arm().chain, k == 0 ? rows.front() : rows.back());
-    Waypoint& waypoint = cell.arms[1].waypoints[k];
+    Waypoint& waypoint = cell.arms[1].path().waypoints[k];
     waypoint.position = tool.inverse() * waypoint.position;
     waypoint.orientation = Quaterniond(tool.linear()).inverse() * waypoint.orientation;
   }
-  cell.arms[1].path_frame = "left";
+  cell.arms[1].path().path_frame = "left";
   cell.arms[0].given = rows;
-  cell.arms[0].waypoints.clear();
+  cell.arms[0].path().waypoints.clear();
   return cell;
 }
 
 /// Returns how far, m and rad, the right tool is off its path on the real tool of the left arm.
-std::pair<double, double> off_real_tool(const Workcell& cell, const PreparedWorkcell& prepared,
+std::pair<double, double> off_real_tool(const Problem& cell, const PreparedWorkcell& prepared,
                                         const WorkcellResult& found) {
   double off = 0, turned = 0;
   const std::size_t rows = cell.arms[0].given.size();
-  const auto& waypoints = cell.arms[1].waypoints;
+  const auto& waypoints = cell.arms[1].path().waypoints;
   for (std::size_t row = 0; row < rows; ++row) {
     const double t = static_cast<double>(row) / static_cast<double>(rows - 1);
     const Pose on_tool =
@@ -351,7 +354,7 @@ TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
     const WorkcellCheckResult check = check_workcell(prepared, rows);
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     // What the file says of the roll does not matter: the joints say where the tool is.
-    Workcell without = *cell;
+    Problem without = *cell;
     for (Config& q : without.arms[0].given) q[kDof - 1] = 0;
     const PreparedWorkcell other(without);
     for (int layer = 0; layer < static_cast<int>(rows[0].size()); ++layer)
@@ -375,16 +378,16 @@ TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
   EXPECT_EQ(solved, count);
 }
 
-TEST(Workcell, RefusesALeaderWhoseToolIsNotWhereItsPathSays) {
+TEST(Problem, RefusesALeaderWhoseToolIsNotWhereItsPathSays) {
   Random random(seed("Workcell.RefusesALeaderWhoseToolIsNotWhereItsPathSays"));
   const TestRobot robot = data_robot("sda10f");
   for (int trial = 0; trial < 20; ++trial) {
-    Workcell cell = random_workcell(robot, random);
-    for (WorkcellArm& arm : cell.arms) arm.hold["arm_left_joint_3_e"] = 0;
+    Problem cell = random_workcell(robot, random);
+    for (ArmTask& arm : cell.arms) arm.hold["arm_left_joint_3_e"] = 0;
     cell.arms[0].roll = random.coin() ? Roll{} : Roll{-0.4, 0.4};
     EXPECT_NO_THROW(validate(cell));
-    cell.arms[1].path_frame = "left";
-    const auto refuses = [&](const Workcell& refused, const char* words) {
+    cell.arms[1].path().path_frame = "left";
+    const auto refuses = [&](const Problem& refused, const char* words) {
       try {
         validate(refused);
         ADD_FAILURE() << "not refused: " << words;
@@ -394,8 +397,8 @@ TEST(Workcell, RefusesALeaderWhoseToolIsNotWhereItsPathSays) {
     };
     refuses(cell, "roll: 'left' leads 'right', whose path would turn with its tool");
     cell.arms[0].roll.reset();
-    cell.arms[0].start.emplace(Config::Zero());
-    cell.arms[0].start_tolerance = 0.01;
+    cell.arms[0].path().start.emplace(Config::Zero());
+    cell.arms[0].path().start_tolerance = 0.01;
     refuses(cell, "start_at, start_tolerance: 'left' leads 'right'");
   }
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "swivel/io/problems/job.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -44,8 +44,8 @@ bool is_complete(const std::function<Diagnosis(const PlanOptions&)>& plan) {
 
 TEST(TimeLeft, AnArmOfAWorkcellIsDiagnosedInIt) {
   Random random(seed("TimeLeft.Workcell"));
-  Workcell cell = random_workcell(data_robot("sda10f"), random);
-  cell.arms[1].waypoints[1].position.x() += 0.6;  // out of reach
+  Problem cell = random_workcell(data_robot("sda10f"), random);
+  cell.arms[1].path().waypoints[1].position.x() += 0.6;  // out of reach
   const WorkcellResult whole = plan_workcell(cell);
   ASSERT_EQ(whole.status, PlanStatus::kInfeasible);
   ASSERT_TRUE(whole.arms[1].diagnosis.complete);
@@ -58,10 +58,10 @@ TEST(TimeLeft, AnArmOfAWorkcellIsDiagnosedInIt) {
 }
 
 TEST(TimeLeft, AStrokeIsDiagnosedInIt) {
-  Job job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
-  job.strokes.resize(1);
-  job.strokes[0].resolution = {.ds = 0.02, .dphi = 0.1};
-  job.strokes[0].waypoints.back().position.x() += 3;  // out of reach
+  Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
+  job.arm().strokes.resize(1);
+  job.arm().strokes[0].resolution = {.ds = 0.02, .dphi = 0.1};
+  job.arm().strokes[0].waypoints.back().position.x() += 3;  // out of reach
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   const auto diagnosis_of = [](const JobResult& result) {
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);

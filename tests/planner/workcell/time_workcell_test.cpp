@@ -32,12 +32,12 @@ enum class Kind { kTwoLines, kTwoPolylines, kFollower, kBar };
 
 /// Gives both arms of a random workcell one to three further waypoints, at other shares of their
 /// ways, so that the ratio of the tools' speeds changes there; some bend the paths as well.
-void add_waypoints(Workcell& cell, Random& random) {
+void add_waypoints(Problem& cell, Random& random) {
   const int more = 1 + random.below(3);
   const bool bends = random.coin();
-  for (WorkcellArm& arm : cell.arms) {
-    const Waypoint from = arm.waypoints.front(), to = arm.waypoints.back();
-    arm.waypoints.pop_back();
+  for (ArmTask& arm : cell.arms) {
+    const Waypoint from = arm.path().waypoints.front(), to = arm.path().waypoints.back();
+    arm.path().waypoints.pop_back();
     double share = 0;
     for (int k = 0; k < more; ++k) {
       share += random.uniform(0.1, 1.4) * (1 - share) / (more - k + 1);
@@ -45,60 +45,61 @@ void add_waypoints(Workcell& cell, Random& random) {
       Waypoint between = from;
       between.position += share * (to.position - from.position);
       if (bends) between.position += random_vector(random, random.uniform(0, 0.03));
-      arm.waypoints.push_back(between);
+      arm.path().waypoints.push_back(between);
     }
-    arm.waypoints.push_back(to);
+    arm.path().waypoints.push_back(to);
   }
 }
 
 /// Lets the right tool stand against a place beside the left one's and move a little about it.
-void follow(Workcell& cell, Random& random) {
-  WorkcellArm& right = cell.arms[1];
-  right.path_frame = "left";
-  for (std::size_t k = 0; k < right.waypoints.size(); ++k) {
-    right.waypoints[k].position =
+void follow(Problem& cell, Random& random) {
+  ArmTask& right = cell.arms[1];
+  right.path().path_frame = "left";
+  for (std::size_t k = 0; k < right.path().waypoints.size(); ++k) {
+    right.path().waypoints[k].position =
         Vector3d(random.uniform(-0.05, 0.05), random.uniform(0.17, 0.2), random.uniform(0, 0.04));
-    right.waypoints[k].orientation =
+    right.path().waypoints[k].orientation =
         Quaterniond(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitX()) *
                     Eigen::AngleAxisd(random.uniform(-0.2, 0.2), Vector3d::UnitZ()));
   }
 }
 
 /// Lets both hands point forward and keep their pose to each other along a random polyline.
-void carry_bar(Workcell& cell, Random& random) {
+void carry_bar(Problem& cell, Random& random) {
   const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
   const double width = random.uniform(0.2, 0.5);
   const Vector3d middle(random.uniform(0.66, 0.78), random.uniform(-0.1, 0.1),
                         random.uniform(0.9, 1.2));
-  for (std::size_t k = 0; k < cell.arms[0].waypoints.size(); ++k) {
-    Waypoint& waypoint = cell.arms[0].waypoints[k];
+  for (std::size_t k = 0; k < cell.arms[0].path().waypoints.size(); ++k) {
+    Waypoint& waypoint = cell.arms[0].path().waypoints[k];
     waypoint.position = middle + Vector3d(0, width / 2, 0) + random_vector(random, 0.12);
     waypoint.orientation =
         Quaterniond(Eigen::AngleAxisd(random.uniform(-0.2, 0.2), Vector3d::UnitX())) * forward;
-    cell.arms[1].waypoints[k].position = Vector3d(0, -width, 0);
-    cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
+    cell.arms[1].path().waypoints[k].position = Vector3d(0, -width, 0);
+    cell.arms[1].path().waypoints[k].orientation = Quaterniond::Identity();
   }
-  cell.arms[1].path_frame = "left";
+  cell.arms[1].path().path_frame = "left";
 }
 
 /// Returns a random workcell to be timed.
-Workcell workcell_to_time(const TestRobot& robot, Kind kind, Random& random) {
-  Workcell cell = random_workcell(robot, random);
+Problem workcell_to_time(const TestRobot& robot, Kind kind, Random& random) {
+  Problem cell = random_workcell(robot, random);
   if (kind != Kind::kTwoLines) add_waypoints(cell, random);
   if (kind == Kind::kFollower) follow(cell, random);
   if (kind == Kind::kBar) carry_bar(cell, random);
-  for (WorkcellArm& arm : cell.arms) {
-    arm.resolution.ds = kind == Kind::kBar ? 0.01 : 0.02;
-    arm.resolution.dphi = 0.1;
-    arm.limits.tool_path_error = kind == Kind::kBar ? 0.001 : 0.005;
+  for (ArmTask& arm : cell.arms) {
+    arm.path().resolution.ds = kind == Kind::kBar ? 0.01 : 0.02;
+    arm.path().resolution.dphi = 0.1;
+    arm.path().limits.tool_path_error = kind == Kind::kBar ? 0.001 : 0.005;
     std::array<double, kDof> acceleration, jerk;
     acceleration.fill(random.uniform(3, 15));
     jerk.fill(random.uniform(50, 300));
-    arm.limits.joint_acceleration = acceleration;
-    arm.limits.joint_jerk = jerk;
-    if (random.coin(0.3)) arm.limits.tool_speed = random.uniform(0.05, 0.5);
+    arm.path().limits.joint_acceleration = acceleration;
+    arm.path().limits.joint_jerk = jerk;
+    if (random.coin(0.3)) arm.path().limits.tool_speed = random.uniform(0.05, 0.5);
     // No corner is rounded, so both arms stop at each.
-    if (random.coin(0.15) && !(arm.path_frame == "left")) arm.smooth = PathSmoothing{0, 0};
+    if (random.coin(0.15) && !(arm.path().path_frame == "left"))
+      arm.path().smooth = PathSmoothing{0, 0};
   }
   return with_motion_defaults(std::move(cell));
 }
@@ -128,7 +129,7 @@ struct Worst {
 /// Measures the motion of a workcell: what its rows are, nothing of how they were found.
 class Measurement {
  public:
-  Measurement(const Workcell& cell, const PreparedWorkcell& prepared, const WorkcellMotion& motion,
+  Measurement(const Problem& cell, const PreparedWorkcell& prepared, const WorkcellMotion& motion,
               double speed, Worst& worst)
       : cell_(cell), prepared_(prepared), motion_(motion), speed_(speed), worst_(worst) {}
 
@@ -168,7 +169,7 @@ class Measurement {
     double& off = cell_.leader_of(k) < 0 ? worst_.off_path : worst_.off_leader;
     for (std::size_t row = 0; row < rows; ++row) {
       const Pose now = tool(k, row);
-      off = std::max(off, off_polyline(now.translation(), cell_.arms[k].waypoints));
+      off = std::max(off, off_polyline(now.translation(), cell_.arms[k].path().waypoints));
       if (row == 0) continue;
       const Pose before = tool(k, row - 1);
       const double speed = (now.translation() - before.translation()).norm() * motion_.rate;
@@ -178,26 +179,28 @@ class Measurement {
           chain.tool(q(k, row)).translation() - chain.tool(q(k, row - 1)).translation();
       worst_.speed = std::max(worst_.speed, moved.norm() * motion_.rate / *limits.tool_speed);
     }
-    EXPECT_NEAR((tool(k, 0).translation() - cell_.arms[k].waypoints.front().position).norm(), 0,
-                2e-4);
-    EXPECT_NEAR((tool(k, rows - 1).translation() - cell_.arms[k].waypoints.back().position).norm(),
+    EXPECT_NEAR((tool(k, 0).translation() - cell_.arms[k].path().waypoints.front().position).norm(),
                 0, 2e-4);
+    EXPECT_NEAR(
+        (tool(k, rows - 1).translation() - cell_.arms[k].path().waypoints.back().position).norm(),
+        0, 2e-4);
     measure_waypoints(k);
   }
   /// Measures how far the other tool is from its waypoint when that of arm k is nearest to its own.
   void measure_waypoints(std::size_t k) {
     if (cell_.leader_of(0) >= 0 || cell_.leader_of(1) >= 0) return;
     const std::size_t rows = motion_.arms[k].rows.size();
-    for (std::size_t w = 1; w + 1 < cell_.arms[k].waypoints.size(); ++w) {
+    for (std::size_t w = 1; w + 1 < cell_.arms[k].path().waypoints.size(); ++w) {
       std::size_t nearest = 0;
       double least = 1e9;
       for (std::size_t row = 0; row < rows; ++row) {
         const double off =
-            (tool(k, row).translation() - cell_.arms[k].waypoints[w].position).norm();
+            (tool(k, row).translation() - cell_.arms[k].path().waypoints[w].position).norm();
         if (off < least) least = off, nearest = row;
       }
       const double other =
-          (tool(1 - k, nearest).translation() - cell_.arms[1 - k].waypoints[w].position).norm();
+          (tool(1 - k, nearest).translation() - cell_.arms[1 - k].path().waypoints[w].position)
+              .norm();
       // Either is within half a sample of its waypoint, and the corner is rounded.
       worst_.at_waypoints = std::max(worst_.at_waypoints, other - speed_ / motion_.rate - 1.5e-4);
     }
@@ -218,7 +221,7 @@ class Measurement {
       }
   }
 
-  const Workcell& cell_;
+  const Problem& cell_;
   const PreparedWorkcell& prepared_;
   const WorkcellMotion& motion_;
   double speed_;
@@ -238,7 +241,7 @@ std::array<std::vector<TimedRow>, 2> rows_of(const WorkcellMotion& motion) {
 
 /// A workcell that was planned and timed.
 struct Timed {
-  Workcell cell;
+  Problem cell;
   std::optional<PreparedWorkcell> prepared;
   bool solved = false;
   double speed = 0;
@@ -371,22 +374,22 @@ TEST(WorkcellMotion, CheckRefusesSpoiltMotions) {
 
 /// Returns a workcell whose left tool runs after the right one to the right, side by side with it
 /// and as fast, and slows down at the waypoint in the middle.
-Workcell chase(double self_clearance) {
+Problem chase(double self_clearance) {
   Random random(1);
-  Workcell cell = random_workcell(data_robot("sda10f"), random);
+  Problem cell = random_workcell(data_robot("sda10f"), random);
   const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
   const std::array<std::array<double, 3>, 2> y{{{0.185, 0.065, 0.035}, {0.06, -0.06, -0.18}}};
   for (std::size_t k = 0; k < 2; ++k) {
-    WorkcellArm& arm = cell.arms[k];
-    arm.waypoints.resize(3);
+    ArmTask& arm = cell.arms[k];
+    arm.path().waypoints.resize(3);
     for (std::size_t w = 0; w < 3; ++w) {
-      arm.waypoints[w].position = Vector3d(0.65, y[k][w], 1.05);
-      arm.waypoints[w].orientation = forward;
+      arm.path().waypoints[w].position = Vector3d(0.65, y[k][w], 1.05);
+      arm.path().waypoints[w].orientation = forward;
     }
-    arm.resolution = {.ds = 0.01, .dphi = 0.1};
-    arm.limits.clearance = 0.001;
-    arm.limits.self_clearance = self_clearance;
-    arm.limits.edge_clearance = self_clearance;
+    arm.path().resolution = {.ds = 0.01, .dphi = 0.1};
+    arm.path().limits.clearance = 0.001;
+    arm.path().limits.self_clearance = self_clearance;
+    arm.path().limits.edge_clearance = self_clearance;
   }
   return with_motion_defaults(std::move(cell));
 }
@@ -434,7 +437,7 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     SCOPED_TRACE(trial);
     const auto kind = static_cast<Kind>(trial % 4);
     const TestRobot& robot = robots[kind == Kind::kBar || random.coin() ? 0 : 1];
-    const Workcell cell = workcell_to_time(robot, kind, random);
+    const Problem cell = workcell_to_time(robot, kind, random);
     std::optional<PreparedWorkcell> prepared;
     try {
       prepared.emplace(cell);
@@ -488,7 +491,7 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
   int solved = 0, timed = 0, cheaper = 0;
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    const Workcell cell = workcell_to_time(robot, static_cast<Kind>(trial % 4), random);
+    const Problem cell = workcell_to_time(robot, static_cast<Kind>(trial % 4), random);
     std::optional<PreparedWorkcell> prepared;
     try {
       prepared.emplace(cell);
@@ -546,8 +549,8 @@ TEST(RefineWorkcell, RefinesAndTimesRowsOfOtherPlans) {
   int solved = 0, timed = 0, cheaper = 0, too_near = 0;
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    Workcell sharp = workcell_to_time(robot, static_cast<Kind>(trial % 4), random);
-    for (WorkcellArm& arm : sharp.arms) arm.smooth.reset();
+    Problem sharp = workcell_to_time(robot, static_cast<Kind>(trial % 4), random);
+    for (ArmTask& arm : sharp.arms) arm.path().smooth.reset();
     std::optional<PreparedWorkcell> planned, prepared;
     try {
       planned.emplace(sharp);
@@ -588,7 +591,7 @@ TEST(RefineWorkcell, LeavesUnrefinedPlansAsTheyAre) {
   Random random(seed("RefineWorkcell.LeavesUnrefinedPlansAsTheyAre"));
   const TestRobot robot = data_robot("sda10f");
   for (int trial = 0; trial < trials(12); ++trial) {
-    const Workcell cell = random_workcell(robot, random);
+    const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
     const WorkcellResult plain = plan_workcell(prepared, lazily());
     const WorkcellMotionPlan plan = plan_workcell_motion(prepared, lazily(), false, std::nullopt);
@@ -604,7 +607,7 @@ TEST(RefineWorkcell, LeavesUnrefinedPlansAsTheyAre) {
 
 TEST(WorkcellMotion, RefusesWhatIsNoTiming) {
   Random random(seed("WorkcellMotion.RefusesWhatIsNoTiming"));
-  const Workcell cell = random_workcell(data_robot("sda10f"), random);
+  const Problem cell = random_workcell(data_robot("sda10f"), random);
   const std::array<std::vector<TrajectoryRow>, 2> none;
   const PreparedWorkcell completed(with_motion_defaults(cell));
   EXPECT_FALSE(check_workcell_motion(completed, {}).passed);

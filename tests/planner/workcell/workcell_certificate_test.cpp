@@ -201,20 +201,20 @@ std::vector<Forgery> forgeries_of_trees() {
 
 /// Returns a workcell, some of them with motions that conflict where no nodes do, some with a given
 /// motion of the left arm, its own answer; nothing where it has none.
-std::optional<Workcell> random_cell(const TestRobot& robot, Random& random) {
-  Workcell cell = random_workcell(robot, random);
-  if (random.coin(0.2)) cell.arms[1].limits.edges = EdgeMode::kNodes;
+std::optional<Problem> random_cell(const TestRobot& robot, Random& random) {
+  Problem cell = random_workcell(robot, random);
+  if (random.coin(0.2)) cell.arms[1].path().limits.edges = EdgeMode::kNodes;
   if (random.coin(0.3))  // motions conflict where no nodes do
-    for (WorkcellArm& arm : cell.arms) {
-      arm.limits.clearance = 0.002;
-      arm.limits.edge_clearance = 0.01;
-      arm.resolution.dphi = 0.5;
+    for (ArmTask& arm : cell.arms) {
+      arm.path().limits.clearance = 0.002;
+      arm.path().limits.edge_clearance = 0.01;
+      arm.path().resolution.dphi = 0.5;
     }
   if (random.coin(0.3)) {  // the left arm's own answer is given
     const PlanResult left = Planner(PreparedWorkcell(cell).problem(0)).plan(lazily());
     if (left.status != PlanStatus::kSolved) return std::nullopt;
     for (const TrajectoryRow& row : left.trajectory) cell.arms[0].given.push_back(row.q);
-    cell.arms[0].waypoints.clear();
+    cell.arms[0].path().waypoints.clear();
   }
   return cell;
 }
@@ -232,7 +232,7 @@ TEST(WorkcellCertificate, IsVerifiedAndForgedOnesAreRefused) {
     SCOPED_TRACE(verified);
     const auto drawn = random_cell(robots[random.coin() ? 0 : 1], random);
     if (!drawn) continue;
-    const Workcell& cell = *drawn;
+    const Problem& cell = *drawn;
     const PreparedWorkcell prepared(cell);
     const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kInfeasible) continue;
@@ -276,7 +276,7 @@ TEST(WorkcellCertificate, IsOfOneWorkcell) {
   int solved = 0, other = 0;
   const int count = trials(30);
   for (int trial = 0; trial < count; ++trial) {
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
     if (plan_workcell(prepared, lazily()).status == PlanStatus::kSolved) {
       EXPECT_THROW(static_cast<void>(prove_infeasible(prepared)), InvalidArgument);
@@ -284,7 +284,7 @@ TEST(WorkcellCertificate, IsOfOneWorkcell) {
       continue;
     }
     const WorkcellCertificate certificate = prove_infeasible(prepared);
-    cell.arms[0].resolution.dphi *= 0.9;
+    cell.arms[0].path().resolution.dphi *= 0.9;
     EXPECT_THROW(static_cast<void>(verify_certificate(PreparedWorkcell(cell), certificate)),
                  InputError);
     ++other;

@@ -147,7 +147,7 @@ SceneObject random_post(Random& random) {
   return post;
 }
 
-TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
+TEST(Problem, CostsAsMuchAsAPlainProgramOverPairs) {
   Random random(seed("Workcell.CostsAsMuchAsAPlainProgramOverPairs"));
   // The last two are not exactly S-R-S.
   const std::array<TestRobot, 4> robots{two_armed("sda10f"), two_armed("sda5f"),
@@ -158,7 +158,7 @@ TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
     const int which = random.below(3) == 0 ? 2 + random.below(2) : random.below(2);
-    Workcell cell = random_workcell(robots[static_cast<std::size_t>(which)], random);
+    Problem cell = random_workcell(robots[static_cast<std::size_t>(which)], random);
     if (random.coin()) cell.scene.push_back(random_post(random));
     const PreparedWorkcell prepared(cell);
     const WorkcellResult found = plan_workcell(prepared, lazily());
@@ -187,13 +187,13 @@ TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
   EXPECT_GE(solved, at_least(count / 8));
 }
 
-TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
+TEST(Problem, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
   Random random(seed("Workcell.IsTheAnswerOfEachArmWhereTheseDoNotMeet"));
   const TestRobot robot = two_armed("sda10f");
   int alone = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
-    const Workcell cell = random_workcell(robot, random);
+    const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
     const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.decided_by != WorkcellSearch::kArmsAlone || found.status != PlanStatus::kSolved)
@@ -207,12 +207,12 @@ TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
   EXPECT_GE(alone, at_least(count / 5));
 }
 
-TEST(Workcell, IsTheSameOnTwoThreads) {
+TEST(Problem, IsTheSameOnTwoThreads) {
   Random random(seed("Workcell.IsTheSameOnTwoThreads"));
   const TestRobot robot = two_armed("sda10f");
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
-    const Workcell cell = random_workcell(robot, random);
+    const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
     const WorkcellResult one = plan_workcell(prepared, lazily());
     PlanOptions parallel = lazily();
@@ -227,42 +227,43 @@ TEST(Workcell, IsTheSameOnTwoThreads) {
   }
 }
 
-TEST(Workcell, BeginsAndEndsInGivenPostures) {
+TEST(Problem, BeginsAndEndsInGivenPostures) {
   Random random(seed("Workcell.BeginsAndEndsInGivenPostures"));
   const TestRobot robot = two_armed("sda10f");
   int solved = 0;
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     const WorkcellResult free = plan_workcell(cell, lazily());
     if (free.status != PlanStatus::kSolved) continue;
-    cell.arms[0].end = free.arms[0].trajectory.back().q;
-    cell.arms[1].start = free.arms[1].trajectory.front().q;
+    cell.arms[0].path().end = free.arms[0].trajectory.back().q;
+    cell.arms[1].path().start = free.arms[1].trajectory.front().q;
     const PreparedWorkcell prepared(cell);
     const WorkcellResult given = plan_workcell(prepared, lazily());
     ASSERT_EQ(given.status, PlanStatus::kSolved);
     EXPECT_NEAR(given.cost, free.cost, 1e-6 * free.cost);
-    EXPECT_EQ(given.arms[0].trajectory.back().q, *cell.arms[0].end);
-    EXPECT_EQ(given.arms[1].trajectory.front().q, *cell.arms[1].start);
+    EXPECT_EQ(given.arms[0].trajectory.back().q, *cell.arms[0].path().end);
+    EXPECT_EQ(given.arms[1].trajectory.front().q, *cell.arms[1].path().start);
     ++solved;
   }
   EXPECT_GE(solved, at_least(count / 5));
 }
 
-TEST(Workcell, FollowsALeader) {
+TEST(Problem, FollowsALeader) {
   Random random(seed("Workcell.FollowsALeader"));
   const TestRobot robot = two_armed("sda10f");
   int solved = 0;
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     // The right tool stands against a place beside the left one's and moves a little about it.
-    WorkcellArm& right = cell.arms[1];
-    right.path_frame = "left";
+    ArmTask& right = cell.arms[1];
+    right.path().path_frame = "left";
     for (std::size_t k = 0; k < 2; ++k) {
-      right.waypoints[k].position = Vector3d(0.05 * static_cast<double>(k), 0.18, 0.02);
-      right.waypoints[k].orientation = Quaterniond(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitX()) *
-                                                   Eigen::AngleAxisd(0.1, Vector3d::UnitZ()));
+      right.path().waypoints[k].position = Vector3d(0.05 * static_cast<double>(k), 0.18, 0.02);
+      right.path().waypoints[k].orientation =
+          Quaterniond(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitX()) *
+                      Eigen::AngleAxisd(0.1, Vector3d::UnitZ()));
     }
     const PreparedWorkcell prepared(cell);
     const WorkcellResult found = plan_workcell(prepared, lazily());
@@ -282,14 +283,14 @@ TEST(Workcell, FollowsALeader) {
   EXPECT_GE(solved, at_least_among(1));
 }
 
-TEST(Workcell, CarriesABarWithTwoHands) {
+TEST(Problem, CarriesABarWithTwoHands) {
   Random random(seed("Workcell.CarriesABarWithTwoHands"));
   const TestRobot robot = two_armed("sda10f");
   int solved = 0;
   double at_rows = 0, on_moves = 0;
   const int count = trials(100);
   for (int trial = 0; trial < count; ++trial) {
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     // Both hands point forward and keep their pose to each other along a random line.
     const Quaterniond forward(Eigen::AngleAxisd(kPi / 2, Vector3d::UnitY()));
     const double width = random.uniform(0.2, 0.5);
@@ -297,15 +298,15 @@ TEST(Workcell, CarriesABarWithTwoHands) {
                           random.uniform(0.9, 1.2)),
         half(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.15, 0.15));
     for (std::size_t k = 0; k < 2; ++k) {
-      Waypoint& waypoint = cell.arms[0].waypoints[k];
+      Waypoint& waypoint = cell.arms[0].path().waypoints[k];
       waypoint.position = middle + Vector3d(0, width / 2, 0) + (k == 0 ? -1.0 : 1.0) * half;
       waypoint.orientation = forward;
-      cell.arms[1].waypoints[k].position = Vector3d(0, -width, 0);
-      cell.arms[1].waypoints[k].orientation = Quaterniond::Identity();
-      cell.arms[k].limits.tool_path_error = 0.001;
-      cell.arms[k].resolution = {.ds = 0.01, .dphi = 0.1};
+      cell.arms[1].path().waypoints[k].position = Vector3d(0, -width, 0);
+      cell.arms[1].path().waypoints[k].orientation = Quaterniond::Identity();
+      cell.arms[k].path().limits.tool_path_error = 0.001;
+      cell.arms[k].path().resolution = {.ds = 0.01, .dphi = 0.1};
     }
-    cell.arms[1].path_frame = "left";
+    cell.arms[1].path().path_frame = "left";
     const PreparedWorkcell prepared(cell);
     const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
@@ -330,13 +331,13 @@ TEST(Workcell, CarriesABarWithTwoHands) {
   EXPECT_LE(on_moves, 2 * 0.001);
 }
 
-TEST(Workcell, CheckRefusesSpoiltAnswers) {
+TEST(Problem, CheckRefusesSpoiltAnswers) {
   Random random(seed("Workcell.CheckRefusesSpoiltAnswers"));
   const TestRobot robot = two_armed("sda10f");
   int spoilt = 0, met = 0;
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
-    const Workcell cell = random_workcell(robot, random);
+    const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
     const WorkcellResult found = plan_workcell(prepared, lazily());
     if (found.status == PlanStatus::kSolved) {
@@ -417,14 +418,14 @@ void expect_meeting(const PreparedWorkcell& prepared, const WorkcellView& view,
   }
 }
 
-TEST(Workcell, ShowsWhatItFoundOut) {
+TEST(Problem, ShowsWhatItFoundOut) {
   Random random(seed("Workcell.ShowsWhatItFoundOut"));
   const TestRobot robot = two_armed("sda10f");
   int answers = 0, regions = 0, meetings = 0, without = 0;
   const int count = trials(100);
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
-    Workcell cell = random_workcell(robot, random);
+    Problem cell = random_workcell(robot, random);
     if (random.coin()) cell.scene.push_back(random_post(random));
     const PreparedWorkcell prepared(cell);
     WorkcellView view;
@@ -462,11 +463,11 @@ TEST(Workcell, ShowsWhatItFoundOut) {
   EXPECT_GE(without, at_least(count / 30));
 }
 
-TEST(Workcell, RefusesWhatMakesNoSense) {
+TEST(Problem, RefusesWhatMakesNoSense) {
   Random random(7);
-  const Workcell good = random_workcell(two_armed("sda10f"), random);
+  const Problem good = random_workcell(two_armed("sda10f"), random);
   const auto refuses = [&](const auto& spoil, const char* words) {
-    Workcell cell = good;
+    Problem cell = good;
     spoil(cell);
     try {
       static_cast<void>(PreparedWorkcell(cell));
@@ -475,26 +476,26 @@ TEST(Workcell, RefusesWhatMakesNoSense) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   };
-  refuses([](Workcell& c) { c.arms[1].name = "left"; }, "is taken");
-  refuses([](Workcell& c) { c.arms[0].name = "base_link"; }, "is taken by the base link");
-  refuses([](Workcell& c) { c.arms[1].waypoints.pop_back(); }, "same number");
+  refuses([](Problem& c) { c.arms[1].name = "left"; }, "is taken");
+  refuses([](Problem& c) { c.arms[0].name = "base_link"; }, "is taken by the base link");
+  refuses([](Problem& c) { c.arms[1].path().waypoints.pop_back(); }, "same number");
   refuses(
-      [](Workcell& c) {
-        c.arms[0].path_frame = "right";
-        c.arms[1].path_frame = "left";
+      [](Problem& c) {
+        c.arms[0].path().path_frame = "right";
+        c.arms[1].path().path_frame = "left";
       },
       "lead each other");
-  refuses([](Workcell& c) { c.arms[1].hold["torso_joint_b1"] = 0.1; }, "hold");
-  refuses([](Workcell& c) { c.arms[1].attached[0].name = "left_tool"; }, "is on both arms");
-  refuses([](Workcell& c) { c.arms[1].tip_link = c.arms[0].tip_link; }, "moves with both arms");
-  refuses([](Workcell& c) { c.arms[0].waypoints[1] = c.arms[0].waypoints[0]; },
+  refuses([](Problem& c) { c.arms[1].hold["torso_joint_b1"] = 0.1; }, "hold");
+  refuses([](Problem& c) { c.arms[1].attached[0].name = "left_tool"; }, "is on both arms");
+  refuses([](Problem& c) { c.arms[1].tip_link = c.arms[0].tip_link; }, "moves with both arms");
+  refuses([](Problem& c) { c.arms[0].path().waypoints[1] = c.arms[0].path().waypoints[0]; },
           "is where the one before it is");
-  refuses([](Workcell& c) { c.may_touch.push_back({"left_tool", "nobody"}); }, "'nobody'");
-  refuses([](Workcell& c) { c.arms[0].steps = {3}; }, "steps");
+  refuses([](Problem& c) { c.may_touch.push_back({"left_tool", "nobody"}); }, "'nobody'");
+  refuses([](Problem& c) { c.arms[0].path().steps = {3}; }, "steps");
   refuses(
-      [](Workcell& c) {
-        c.arms[1].path_frame = "left";
-        c.arms[1].smooth = PathSmoothing();
+      [](Problem& c) {
+        c.arms[1].path().path_frame = "left";
+        c.arms[1].path().smooth = PathSmoothing();
       },
       "smooth");
 }

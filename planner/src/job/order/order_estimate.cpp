@@ -77,17 +77,17 @@ double least_between(const std::vector<Gate>& ends, const std::vector<Gate>& beg
 
 }  // namespace
 
-OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, const ParallelFor& work,
-                                const Budget& budget) {
+OrderCosts estimate_order_costs(const PreparedRobot& robot, const Problem& job,
+                                const ParallelFor& work, const Budget& budget) {
   const TraceSpan span("order");
-  const std::size_t runs = 2 * job.strokes.size();
+  const std::size_t runs = 2 * job.arm().strokes.size();
   std::vector<Gates> gates(runs);
   // Part 2 r finds where run r begins; part 2 r + 1 where it ends, which is where its path, taken
   // from its end to its begin, would begin.
   work.for_each(static_cast<int>(2 * runs), [&](int part, int) {
     const auto run = static_cast<std::size_t>(part) / 2;
     const bool reversed = run % 2 == 1, of_ends = part % 2 == 1;
-    if (reversed && !job.strokes[run / 2].reversible) return;
+    if (reversed && !job.arm().strokes[run / 2].reversible) return;
     PathProblem problem = problem_of_run(job, {run / 2, reversed});
     if (of_ends) {
       std::reverse(problem.waypoints.begin(), problem.waypoints.end());
@@ -103,9 +103,9 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
   const PathProblem first = problem_of_run(job, {0, false});
   const ToolPath path = path_within_scale(first, robot.arm().chain, budget);
   const auto metric = make_lattice(robot.arm().chain, robot.arm_class(), path, first, budget);
-  const std::vector<Gate> home{Gate(job.home.value_or(Config::Zero()), 0)};
+  const std::vector<Gate> home{Gate(job.arm().home.value_or(Config::Zero()), 0)};
   OrderCosts costs;
-  costs.strokes = job.strokes.size();
+  costs.strokes = job.arm().strokes.size();
   costs.follow.assign(runs, std::vector<double>(runs, kNever));
   costs.first.assign(runs, kNever);
   costs.last.assign(runs, kNever);
@@ -113,8 +113,9 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job, cons
     const auto run = static_cast<std::size_t>(part);
     const Gates& here = gates[run];
     if (here.least == kNever) return;
-    costs.first[run] = here.least + (job.home ? least_between(home, here.begins, *metric) : 0.0);
-    costs.last[run] = job.home ? least_between(here.ends, home, *metric) : 0.0;
+    costs.first[run] =
+        here.least + (job.arm().home ? least_between(home, here.begins, *metric) : 0.0);
+    costs.last[run] = job.arm().home ? least_between(here.ends, home, *metric) : 0.0;
     for (std::size_t next = 0; next < runs; ++next)
       if (next / 2 != run / 2 && gates[next].least != kNever) {
         budget.poll();

@@ -10,7 +10,7 @@ namespace swivel {
 /// without obstacles: the least joint distance from where one run ends to where the next begins,
 /// plus what each of the two costs more than at its best if it ends or begins there. Throws
 /// InputError and Stopped.
-[[nodiscard]] OrderCosts estimate_order_costs(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] OrderCosts estimate_order_costs(const PreparedRobot& robot, const Problem& job,
                                               const ParallelFor& work, const Budget& budget);
 
 }  // namespace swivel

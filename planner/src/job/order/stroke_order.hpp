@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

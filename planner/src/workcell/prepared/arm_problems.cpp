@@ -15,8 +15,8 @@ namespace {
 
 /// Returns the models of both arms in the whole robot. Throws InputError where a joint or a link is
 /// of both.
-std::array<ArmModel, 2> arms_of(const Workcell& cell) {
-  const auto build = [](const WorkcellArm& arm) {
+std::array<ArmModel, 2> arms_of(const Problem& cell) {
+  const auto build = [](const ArmTask& arm) {
     return build_arm(*arm.model, arm.base_link, arm.tip_link, arm.hold, arm.tool, arm.roll);
   };
   std::array<ArmModel, 2> arms{build(cell.arms[0]), build(cell.arms[1])};
@@ -37,7 +37,7 @@ std::shared_ptr<const RobotModel> without_shapes_of(const RobotModel& model, con
 }
 
 /// Returns the scene without what it allows to bodies that the other arm carries or moves.
-std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm, const ArmModel& other) {
+std::vector<SceneObject> scene_of(const Problem& cell, std::size_t arm, const ArmModel& other) {
   std::vector<SceneObject> scene = cell.scene;
   const std::vector<AttachedBody>& carried = cell.arms[1 - arm].attached;
   for (SceneObject& object : scene)
@@ -51,10 +51,10 @@ std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm, const A
 }
 
 /// Returns the problem of an arm by itself, but for its path. `other` is the other arm.
-PathProblem problem_of(const Workcell& cell, std::size_t arm, const ArmModel& other) {
+PathProblem problem_of(const Problem& cell, std::size_t arm, const ArmModel& other) {
   PathProblem problem;
   static_cast<Robot&>(problem) = cell.arms[arm];
-  static_cast<Task&>(problem) = cell.arms[arm];
+  static_cast<Task&>(problem) = cell.arms[arm].path();
   problem.model = without_shapes_of(*cell.arms[arm].model, other);
   problem.scene = scene_of(cell, arm, other);
   problem.vary = cell.vary;
@@ -183,7 +183,7 @@ std::vector<Waypoint> waypoints_of_rows(const Chain& chain, const std::vector<Co
 
 /// Gives an arm the path that its given rows lead its tool along, with a layer at each row. Limits
 /// of the tool's path are those of a leader, whose follower keeps to it; else there is none.
-void lay_along_rows(PathProblem& problem, const WorkcellArm& arm, const Chain& chain, bool leads) {
+void lay_along_rows(PathProblem& problem, const ArmTask& arm, const Chain& chain, bool leads) {
   problem.waypoints = waypoints_of_rows(chain, arm.given, problem.source);
   problem.steps.assign(arm.given.size() - 1, 1);
   problem.path_frame = problem.base_link;
@@ -191,7 +191,7 @@ void lay_along_rows(PathProblem& problem, const WorkcellArm& arm, const Chain& c
 }
 
 /// Cuts the path of an arm beside a given motion into steps that end where those of the motion do.
-/// `steps` of the problem says how, or is empty (Workcell).
+/// `steps` of the problem says how, or is empty (Problem).
 void cut_along(std::size_t rows, PathProblem& planned) {
   if (!planned.steps.empty()) return;
   if (planned.waypoints.size() == rows)
@@ -230,7 +230,7 @@ Pose turned_tool(const Chain& chain, const Config& q) {
   return chain.roll ? rolled(tool, q[kDof - 1]) : tool;
 }
 
-ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget) {
+ArmProblems problems_of_arms(const Problem& cell, const Budget& budget) {
   const std::array<ArmModel, 2> arms = arms_of(cell);
   ArmProblems of_arms{{problem_of(cell, 0, arms[1]), problem_of(cell, 1, arms[0])}, {}};
   std::array<PathProblem, 2>& problems = of_arms.problems;

@@ -5,7 +5,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -17,7 +17,7 @@ struct ArmProblems {
 };
 /// Returns the problems of both arms. Throws InputError where the arms share a joint or a link, and
 /// as ToolPath does; Stopped.
-[[nodiscard]] ArmProblems problems_of_arms(const Workcell& cell, const Budget& budget);
+[[nodiscard]] ArmProblems problems_of_arms(const Problem& cell, const Budget& budget);
 /// Returns the pose of the tool in the base frame as the joints q, rad, have turned it: of an arm
 /// of six joints with the roll that Chain::tool() leaves out.
 [[nodiscard]] Pose turned_tool(const Chain& chain, const Config& q);

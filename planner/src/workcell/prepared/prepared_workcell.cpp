@@ -49,7 +49,7 @@ struct PreparedWorkcell::Impl {
   std::optional<std::size_t> given_arm;
   std::vector<TrajectoryRow> given_rows;
 
-  Impl(const Workcell& cell, const Budget& budget)
+  Impl(const Problem& cell, const Budget& budget)
       : names{cell.arms[0].name, cell.arms[1].name},
         follower(cell.leader_of(0) >= 0   ? 0
                  : cell.leader_of(1) >= 0 ? 1
@@ -82,14 +82,14 @@ struct PreparedWorkcell::Impl {
 
 namespace {
 
-const Workcell& checked(const Workcell& cell) {
+const Problem& checked(const Problem& cell) {
   validate(cell);
   return cell;
 }
 
 }  // namespace
 
-PreparedWorkcell::PreparedWorkcell(const Workcell& cell, const Budget& budget)
+PreparedWorkcell::PreparedWorkcell(const Problem& cell, const Budget& budget)
     : impl_(std::make_unique<const Impl>(checked(cell), budget)) {}
 PreparedWorkcell::~PreparedWorkcell() = default;
 PreparedWorkcell::PreparedWorkcell(PreparedWorkcell&&) noexcept = default;

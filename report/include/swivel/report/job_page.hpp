@@ -12,7 +12,7 @@ namespace swivel {
 /// A job that was planned, and what became of it.
 struct PlannedJob {
   const PreparedRobot& robot;
-  const Job& job;
+  const Problem& job;
   const JobResult& result;
   const JobView& view;
   const JobMotion* motion = nullptr;  ///< null where the job was not timed or has no motion

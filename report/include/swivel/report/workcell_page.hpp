@@ -13,7 +13,7 @@ namespace swivel {
 /// A workcell that was planned. `view`: of the plan of `prepared`, with both arms.
 struct PlannedWorkcell {
   const PreparedWorkcell& prepared;
-  const Workcell& cell;
+  const Problem& cell;
   const WorkcellResult& result;
   const WorkcellView& view;
   const WorkcellMotion* motion = nullptr;  ///< of the result's trajectories; null if there is none

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -28,7 +28,7 @@ struct JobPart {
 
 /// Returns for each row of a part of a job whether it lies on its stroke, rather than on the lines
 /// of approach and retract or in a transition. The stroke of the part must be one of the job's.
-[[nodiscard]] std::vector<bool> process_of_rows(const JobPart& part, const Job& job);
+[[nodiscard]] std::vector<bool> process_of_rows(const JobPart& part, const Problem& job);
 
 /// What a job's plan found out about one run.
 struct RunResult {
@@ -112,6 +112,6 @@ struct JobResult {
 };
 
 /// Returns the job of which the parts and runs of a result are: `job`, with the result's lift-offs.
-[[nodiscard]] Job executed_job(const Job& job, const JobResult& result);
+[[nodiscard]] Problem executed_job(const Problem& job, const JobResult& result);
 
 }  // namespace swivel

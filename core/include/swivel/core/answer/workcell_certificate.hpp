@@ -13,7 +13,7 @@ namespace swivel {
 /// is a tree of sets of pairs of paths. The root is the set of all pairs. A set is divided by a
 /// region of conflict, sides A and B of which no member of A is apart from any of B: pairs without
 /// conflict keep arm 0 away from A (the first child) or arm 1 away from B (the second). A set that
-/// is not divided has an arm without a path, which its cut proves. verify_certificate(Workcell)
+/// is not divided has an arm without a path, which its cut proves. verify_certificate(Problem)
 /// verifies it; docs/theory.md says why that is a proof.
 struct WorkcellCertificate {
   using Range = InfeasibilityCertificate::Range;

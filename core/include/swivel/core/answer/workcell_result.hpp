@@ -40,7 +40,7 @@ struct WorkcellResult {
   /// What each arm's path costs at least by itself; infinite where it has none.
   std::array<double, 2> least_costs{};
   std::array<std::string, 2> names;
-  /// The arm whose motion was given, if one was. Its rows are those of Workcell::arms, bit for bit.
+  /// The arm whose motion was given, if one was. Its rows are those of Problem::arms, bit for bit.
   std::optional<std::size_t> given_arm;
   /// The plans of both arms: solved with trajectories whose rows are simultaneous, row by row.
   /// Where there is no plan, an arm that has no path by itself says why in its diagnosis. Where

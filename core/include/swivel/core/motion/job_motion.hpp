@@ -13,7 +13,7 @@ namespace swivel {
 /// begin of a stroke, or at or after its end.
 struct ProcessEvent {
   double t = 0;            ///< s
-  std::size_t stroke = 0;  ///< index in Job::strokes
+  std::size_t stroke = 0;  ///< index in Problem::strokes
   double s = 0;            ///< m along the run's path, its approach included
   bool on = false;
 };

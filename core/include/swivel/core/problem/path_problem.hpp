@@ -215,7 +215,7 @@ struct Task {
 };
 
 /// Everything that a problem file says, with the files it names loaded. Poses are in base_link
-/// unless said otherwise. Source: io::load_problem.
+/// unless said otherwise. Source: io::load_path_problem.
 struct PathProblem : Robot, Task {
   std::string source;  ///< problem file, for messages
   std::vector<SceneObject> scene;

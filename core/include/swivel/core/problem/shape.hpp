@@ -71,4 +71,8 @@ struct Ball {
 /// it.
 [[nodiscard]] std::vector<Ball> bounding_balls(const Shape& shape);
 
+/// Returns a number for each vertex, from 0 on in order of first appearance, equal for vertices at
+/// equal positions. STL files store every corner of every triangle anew.
+[[nodiscard]] std::vector<int> vertex_numbers(const TriangleMesh& mesh);
+
 }  // namespace swivel

@@ -8,9 +8,8 @@
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
-#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/path_problem.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -31,11 +30,8 @@ struct Shard {
 /// `vary`, x y z roll pitch yaw: p' = p + d, R' = Rz Ry Rx R, about the object's origin.
 [[nodiscard]] PathProblem episode_problem(const PathProblem& problem, std::uint64_t seed,
                                           std::uint64_t episode);
-/// Returns the job of an episode under a seed: its objects are moved as those of a problem.
-[[nodiscard]] Job episode_job(const Job& job, std::uint64_t seed, std::uint64_t episode);
-/// Returns the workcell of an episode under a seed: its objects are moved as those of a problem.
-[[nodiscard]] Workcell episode_workcell(const Workcell& cell, std::uint64_t seed,
-                                        std::uint64_t episode);
+[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed,
+                                      std::uint64_t episode);
 
 /// Returns the names of the coordinates in which episodes differ, such as "door.x", in the order of
 /// `vary` and x y z roll pitch yaw.
@@ -71,11 +67,11 @@ struct EpisodeRow {
   /// Takes an episode's row from the result of its job, for which Evidence::tool_path_error must
   /// have been asked. Its plan_ms is the time that lattices, search and order took; its mean error
   /// is that of the strokes, weighted by their steps. `job` may be that of any episode.
-  EpisodeRow(std::uint64_t episode, const JobResult& result, const Job& job);
+  EpisodeRow(std::uint64_t episode, const JobResult& result, const Problem& job);
   /// Takes an episode's row from the result of its workcell, for which Evidence::tool_path_error
   /// must have been asked. Its plan_ms is the time that lattices and search took, its counters are
   /// those of both arms, its mean error is that of both paths. `cell` may be that of any episode.
-  EpisodeRow(std::uint64_t episode, const WorkcellResult& result, const Workcell& cell);
+  EpisodeRow(std::uint64_t episode, const WorkcellResult& result, const Problem& cell);
   /// Makes the row of an episode that ended with an internal error.
   EpisodeRow(std::uint64_t episode, std::string error_message);
 };

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/problem/job.hpp"
 #include "swivel/core/problem/path_problem.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -44,8 +43,8 @@ using HeldPositions = std::map<std::string, double>;
 /// that is unknown, fixed, planned or mimics another, for a position outside of its limits, and for
 /// a position that makes another joint a planned one; InputError as build_arm() does.
 void hold_joints(Robot& robot, const HeldPositions& positions);
-/// Does so for both arms of a workcell, whose robot is one.
-void hold_joints(Workcell& cell, const HeldPositions& positions);
+/// Does so for each arm of a problem, whose robot is one.
+void hold_joints(Problem& problem, const HeldPositions& positions);
 
 /// Returns the problem with one thing moved. Coordinates that do not change keep their bits. Those
 /// of objects that do are multiples of 1e-12 m, and of 1e-12 rad as roll, pitch and yaw, so that a
@@ -53,18 +52,14 @@ void hold_joints(Workcell& cell, const HeldPositions& positions);
 /// an offset of kNothing.
 [[nodiscard]] PathProblem placed_problem(const PathProblem& problem, const Movable& thing,
                                          const Offset& offset);
-/// Returns the job with one thing moved as by placed_problem(), for Movable::Kind::kPath the paths
-/// of all strokes. Its home stays as it is, seven joints. Throws InvalidArgument as
-/// placed_problem() does.
-[[nodiscard]] Job placed_job(const Job& job, const Movable& thing, const Offset& offset);
-/// Returns the workcell with one thing moved as by placed_problem(), for Movable::Kind::kPath the
-/// paths of both arms alike, or that of Movable::arm. Where both are moved, the path of a follower
-/// stays on its leader's tool; a given motion, starts and ends stay as they are, joints. Throws
-/// InvalidArgument for an unknown object or arm, for an offset of kNothing, for an arm whose motion
-/// is given, and, where both paths are moved, for that of a follower whose leader's motion is given
-/// and for paths that are turned alike and have frames with an origin each.
-[[nodiscard]] Workcell placed_workcell(const Workcell& cell, const Movable& thing,
-                                       const Offset& offset);
+/// Returns the problem with one thing moved alike, for Movable::Kind::kPath the paths of all
+/// strokes, or of both arms, or that of Movable::arm. The path of a follower stays on its leader's
+/// tool, and homes, given motions, starts and ends stay as they are, joints. Throws InvalidArgument
+/// as above, for an unknown arm, for an arm whose motion is given, and, where the paths of two arms
+/// are moved, for that of a follower whose leader's motion is given and for paths that are turned
+/// alike and have frames with an origin each.
+[[nodiscard]] Problem placed_problem(const Problem& problem, const Movable& thing,
+                                     const Offset& offset);
 
 /// Returns roll, pitch and yaw of a rotation as multiples of 1e-12 rad. For an object that
 /// placed_problem() has turned, a problem file with these angles gives its rotation bit for bit.

@@ -5,8 +5,7 @@
 
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
-#include "swivel/core/problem/job.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -32,9 +31,9 @@ struct StudyFailure {
 };
 /// Returns why the first stroke that has no path by itself has none, else why there is no
 /// transition. `result` is that of an infeasible `job`.
-[[nodiscard]] StudyFailure failure_of(const JobResult& result, const Job& job);
+[[nodiscard]] StudyFailure failure_of(const JobResult& result, const Problem& job);
 /// Returns why the first arm that has no path by itself has none, else where both arms bar each
 /// other. `result` is that of an infeasible `cell`.
-[[nodiscard]] StudyFailure failure_of(const WorkcellResult& result, const Workcell& cell);
+[[nodiscard]] StudyFailure failure_of(const WorkcellResult& result, const Problem& cell);
 
 }  // namespace swivel

@@ -15,7 +15,7 @@ namespace swivel::io {
 /// Returns TRAJ.csv of a job: the columns of a trajectory, then `stroke` and `process`. Rows of the
 /// parts follow each other, ends of transitions included, which are the rows beside them once more.
 /// It has the column `roll` if a row of a stroke has a roll.
-[[nodiscard]] std::string to_job_csv(const JobResult& result, const Job& job);
+[[nodiscard]] std::string to_job_csv(const JobResult& result, const Problem& job);
 
 /// A part of a job's trajectory as read from a file: a run of a stroke, or a transition.
 struct JobTrajectoryPart {
@@ -46,14 +46,14 @@ struct JobTrajectory {
 /// empty where it ends a transition; other rows of transitions have none. `process` is 1 from the
 /// event that switches it on to the row before the one that switches it off. Throws InputError if
 /// both events of a stroke are at the same row.
-[[nodiscard]] std::string to_job_motion_csv(const JobMotion& motion, const Job& job,
+[[nodiscard]] std::string to_job_motion_csv(const JobMotion& motion, const Problem& job,
                                             const JointNames& joint_names);
 /// Returns the motion of a job in the format of the file name's ending: .csv as
 /// to_job_motion_csv(), .json or .yaml as to_trajectory_json() and to_trajectory_yaml(), with the
 /// events of the process as the key `events`, .mcap as to_mcap(), with the events as messages in
 /// JSON on the topic /process. Each event says from when to when, and from where to where, the run
 /// of its stroke goes. Throws InputError for any other ending, and as to_job_motion_csv().
-[[nodiscard]] std::string job_motion_text(const JobMotion& motion, const Job& job,
+[[nodiscard]] std::string job_motion_text(const JobMotion& motion, const Problem& job,
                                           const JointNames& joint_names,
                                           const std::string& frame_id,
                                           const std::filesystem::path& file);
@@ -62,7 +62,7 @@ struct JobTrajectory {
 /// an event that it does not state is not a number.
 struct JobMotionFile {
   JobMotion motion;                  ///< its rows, parts, rate, duration, events and roll
-  std::vector<std::size_t> strokes;  ///< of its runs, in their order: indices in Job::strokes
+  std::vector<std::size_t> strokes;  ///< of its runs, in their order: indices in Problem::strokes
   Stated stated;                     ///< complete_job_motion() works out the rest
 };
 /// Loads the motion of a job, for the joints of its arm: all formats of job_motion_text(), CSV with
@@ -70,25 +70,25 @@ struct JobMotionFile {
 /// times that do not ascend, for strokes that the job does not have or that come twice, for strokes
 /// without a transition between them or, if the job has a home, from it or to it, for strokes whose
 /// `process` is nowhere 1 or at two places, and for a file without times.
-[[nodiscard]] JobMotionFile load_job_motion(const std::filesystem::path& file, const Job& job,
+[[nodiscard]] JobMotionFile load_job_motion(const std::filesystem::path& file, const Problem& job,
                                             const JointNames& joint_names);
 
 /// Rows of a job as read from a file, with the job of which they are: where the file has lift-offs,
 /// with_lift_offs() makes it of the problem's.
 struct ExecutedJobRows {
-  Job job;
+  Problem job;
   std::variant<JobTrajectory, JobMotionFile> rows;  ///< s begins at 0 in each run
 };
 /// Loads rows as load_job_rows() does. Where the job allows lift-offs, strokes may be in runs named
 /// "<stroke>/1", "<stroke>/2", ..., whose s is that of the whole stroke. Throws InputError, by row,
 /// for runs that are not in this order, that leave some of the stroke out, or that overlap by less
 /// than LiftOffs::overlap.
-[[nodiscard]] ExecutedJobRows load_executed_rows(const std::filesystem::path& file, const Job& job,
-                                                 const JointNames& joint_names);
+[[nodiscard]] ExecutedJobRows load_executed_rows(const std::filesystem::path& file,
+                                                 const Problem& job, const JointNames& joint_names);
 
 /// Loads a job's motion as load_job_motion() does if the file has times, else its trajectory as
 /// load_job_trajectory() does. It reads the file once, which may be a pipe. Throws InputError.
 [[nodiscard]] std::variant<JobTrajectory, JobMotionFile> load_job_rows(
-    const std::filesystem::path& file, const Job& job, const JointNames& joint_names);
+    const std::filesystem::path& file, const Problem& job, const JointNames& joint_names);
 
 }  // namespace swivel::io

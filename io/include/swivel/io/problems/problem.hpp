@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "swivel/core/problem/path_problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io {
 
@@ -13,9 +14,19 @@ namespace swivel::io {
 /// are turned about it is arbitrary. Throws InputError.
 [[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& file);
 
-/// Loads a problem file and the files that it names, docs/formats.md. Throws InputError; for an
-/// unknown key it names the nearest known key.
-[[nodiscard]] PathProblem load_problem(const std::filesystem::path& yaml);
+/// Loads a problem file and the files that it names, docs/formats.md: with `arms` two arms, with
+/// `strokes` or allowed lift-offs the strokes of one, else one path. It reads the file once, which
+/// may be a pipe. Throws InputError; for an unknown key it names the nearest known key.
+[[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
+/// Loads a problem file with `path` and without lift-offs as what its one path poses. Throws
+/// InputError as load_problem() does, and for any other problem file.
+[[nodiscard]] PathProblem load_path_problem(const std::filesystem::path& yaml);
+/// Loads a problem file with `path` or `strokes` as strokes: a path is a stroke named "path".
+/// Throws InputError as load_problem() does.
+[[nodiscard]] Problem load_job(const std::filesystem::path& yaml);
+/// Loads a problem file with `arms`. Throws InputError as load_problem() does, and for a file
+/// without them.
+[[nodiscard]] Problem load_workcell(const std::filesystem::path& yaml);
 
 /// Returns the text of a problem file that gives this problem when it is loaded as `file`:
 /// rotations to a rounding error, everything else bit for bit. Of a problem that was loaded from a
@@ -27,10 +38,13 @@ namespace swivel::io {
 /// cannot be read any more, and if `file` is one of those that it names.
 [[nodiscard]] std::string problem_text(const PathProblem& problem,
                                        const std::filesystem::path& file);
+/// Returns such a text of a problem of one arm with strokes. Throws alike.
+[[nodiscard]] std::string problem_text(const Problem& problem, const std::filesystem::path& file);
 
 /// Writes problem_text() to a file, which is replaced as a whole or left as it was. Throws as
 /// problem_text() does, and InputError if the file cannot be written.
 void save_problem(const PathProblem& problem, const std::filesystem::path& file);
+void save_problem(const Problem& problem, const std::filesystem::path& file);
 
 /// Turns waypoints of a tool that may turn freely about its z axis by half a turn about that axis
 /// where they would turn by 180 deg from the one before, about another axis: which way such a turn

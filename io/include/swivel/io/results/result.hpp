@@ -40,7 +40,7 @@ struct JobExtras {
 };
 /// Returns RESULT.json of a job as text, docs/formats.md "Result of a job". What describes the
 /// rows is null unless there are some, `motion` unless one was asked for.
-[[nodiscard]] std::string to_job_json(const JobResult& result, const Job& job,
+[[nodiscard]] std::string to_job_json(const JobResult& result, const Problem& job,
                                       const JobExtras& extras = {});
 /// What followed the plan of a workcell.
 struct WorkcellExtras {

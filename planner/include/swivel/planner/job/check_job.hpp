@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/answer/job_result.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
@@ -30,19 +30,19 @@ struct JobCheckResult {
 ///   one begins (1e-9 rad; the roll of a six-joint arm aside);
 /// - on transitions, where joints move straight from row to row, joints are within their limits
 ///   less joint_margin (1e-9 rad) and nothing comes nearer than the clearance of motions, by FCL.
-/// Throws InvalidArgument for what validate(Job) refuses and unless the robot was prepared for the
-/// job, InputError as plan_job() does, and Stopped.
-[[nodiscard]] JobCheckResult check_job(const PreparedRobot& robot, const Job& job,
+/// Throws InvalidArgument for what validate(Problem) refuses and unless the robot was prepared for
+/// the job, InputError as plan_job() does, and Stopped.
+[[nodiscard]] JobCheckResult check_job(const PreparedRobot& robot, const Problem& job,
                                        const std::vector<JobPart>& parts,
                                        const CheckOptions& options = {});
 
 /// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
 /// of parts, with runs judged as check_motion() judges them; the rates of transitions as
-/// check_motion() judges rates, with Job::rapid of the joints' speeds; that from sample to sample
-/// the tool is no faster (0.1 %) than the fastest of the speeds that are asked for there, as
+/// check_motion() judges rates, with Problem::rapid of the joints' speeds; that from sample to
+/// sample the tool is no faster (0.1 %) than the fastest of the speeds that are asked for there, as
 /// time_job() takes them from the job; and that events are at the first samples at or after the
 /// begin and the end of each stroke. Throws as check_job() does.
-[[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& job,
                                               const std::vector<StrokeRun>& order,
                                               const JobMotion& motion,
                                               const CheckOptions& options = {});
@@ -52,7 +52,7 @@ struct JobCheckResult {
 /// part that says nothing of it, and is not looked at for transitions and for strokes that the job
 /// does not have. Throws InvalidArgument unless it has an item for each part and, where not empty,
 /// one for each row of a run.
-void check_process(const Job& job, const std::vector<JobPart>& parts,
+void check_process(const Problem& job, const std::vector<JobPart>& parts,
                    const std::vector<std::vector<bool>>& process, JobCheckResult& result);
 
 /// Throws std::logic_error, with the first failure, if the result has not passed. For a program's
@@ -61,14 +61,14 @@ void require_passed(const JobCheckResult& result);
 
 /// Returns true if the tool begins at rows.front() nearer to the stroke's last waypoint than to its
 /// first, by position and then by angle.
-[[nodiscard]] bool begins_at_last_waypoint(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job,
                                            std::size_t stroke,
                                            const std::vector<TrajectoryRow>& rows);
 
 /// Returns the runs of which the samples of a job's motion are. `strokes` has the stroke of each
-/// run in their order, as indices in Job::strokes; one is run backwards if the tool begins at its
-/// last waypoint (begins_at_last_waypoint()).
-[[nodiscard]] std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Job& job,
+/// run in their order, as indices in Problem::strokes; one is run backwards if the tool begins at
+/// its last waypoint (begins_at_last_waypoint()).
+[[nodiscard]] std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Problem& job,
                                                     const std::vector<std::size_t>& strokes,
                                                     const JobMotion& motion);
 

@@ -6,7 +6,7 @@
 #include "swivel/core/answer/stated.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/job_motion.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -16,7 +16,7 @@ class PreparedRobot;
 /// complete_rows() does of one path, and returns the parts. The roll of a six-joint arm, where the
 /// file has none, turns in transitions as the other joints move, from run to run. Throws as
 /// complete_rows() does, with the name of the stroke.
-[[nodiscard]] std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Problem& job,
                                                   std::vector<JobPart> parts, const Stated& stated,
                                                   const Budget& budget = {});
 
@@ -24,7 +24,7 @@ class PreparedRobot;
 /// does of one path, for check_job_motion(), and returns the motion. `order` has its runs. The s of
 /// an event becomes that of its row, if it is not a number or differs by at most 1e-6 m. Throws as
 /// complete_motion() does, with the name of the stroke.
-[[nodiscard]] JobMotion complete_job_motion(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] JobMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
                                             const std::vector<StrokeRun>& order, JobMotion motion,
                                             const Stated& stated, const Budget& budget = {});
 
@@ -33,7 +33,7 @@ class PreparedRobot;
 /// transitions the corners alone, between which the joints of all samples move straight (1e-6 rad).
 /// `order` has the runs of the motion, whose rows state everything. Throws as rows_at_layers()
 /// does, with the name of the stroke.
-[[nodiscard]] std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Problem& job,
                                                    const std::vector<StrokeRun>& order,
                                                    const JobMotion& motion,
                                                    const Budget& budget = {});

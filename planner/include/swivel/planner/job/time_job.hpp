@@ -6,7 +6,7 @@
 #include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/job_motion.hpp"
-#include "swivel/core/problem/job.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
@@ -25,7 +25,7 @@ struct JobTimingOptions {
 };
 
 /// Throws InputError if a stroke has no speed at which time_job() could time it.
-void require_speeds(const Job& job, const JobTimingOptions& options);
+void require_speeds(const Problem& job, const JobTimingOptions& options);
 
 /// Times a planned job from rest to rest and proves its samples. Runs are timed by
 /// time_trajectory(): along a stroke at JobTimingOptions::speed, else the feed of the waypoint,
@@ -35,7 +35,7 @@ void require_speeds(const Job& job, const JobTimingOptions& options);
 /// completed by with_motion_defaults(). Throws InputError where a stroke has no speed or a joint no
 /// speed limit, InvalidArgument as plan_job() does and for parts that are not those of the job, and
 /// Stopped.
-[[nodiscard]] JobTimingResult time_job(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] JobTimingResult time_job(const PreparedRobot& robot, const Problem& job,
                                        const std::vector<JobPart>& parts,
                                        const JobTimingOptions& options, const Budget& budget = {});
 
@@ -50,7 +50,7 @@ struct JobMotionPlan {
 /// The time-out of `options` covers everything. Throws as plan_job() and time_job() do, InputError
 /// of a stroke without a speed before planning. `view`, if given, gets what was found out about the
 /// runs.
-[[nodiscard]] JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Job& job,
+[[nodiscard]] JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Problem& job,
                                             const PlanOptions& options,
                                             const JobTimingOptions& timing,
                                             JobView* view = nullptr);

@@ -34,15 +34,15 @@ struct CampaignOptions {
 void run_campaign(const PreparedRobot& robot, const PathProblem& problem,
                   const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
-/// Plans the episodes of a shard of a job's campaign, each as plan_job() does with one thread.
-/// Throws InvalidArgument and InputError as plan_job() does.
-void run_campaign(const PreparedRobot& robot, const Job& job, const CampaignOptions& options,
+/// Plans the episodes of a shard of a problem of one arm: strokes as plan_job() does with one
+/// thread. Throws InvalidArgument and InputError as that does.
+void run_campaign(const PreparedRobot& robot, const Problem& problem,
+                  const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
-
-/// Plans the episodes of a shard of a workcell's campaign, each as plan_workcell() does with one
-/// thread. An episode in which the given motion of an arm does not keep its limits is infeasible.
-/// Throws InvalidArgument and InputError as plan_workcell() does.
-void run_campaign(const Workcell& cell, const CampaignOptions& options,
+/// Plans the episodes of a shard of any problem: two arms as plan_workcell() does with one thread.
+/// An episode in which the given motion of an arm does not keep its limits is infeasible. Throws
+/// InvalidArgument and InputError as plan_workcell() does.
+void run_campaign(const Problem& problem, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 
 }  // namespace swivel

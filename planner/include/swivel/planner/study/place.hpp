@@ -38,15 +38,18 @@ class PlacementPlanner {
   /// an unknown object.
   PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem, Movable thing,
                    PlanOptions options);
-  /// Prepares to plan placements of `thing` in `job`, each in full as plan_job() does with one
-  /// thread. Clearances, margins and speeds of rows are those of the strokes.
-  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Job job, Movable thing,
+  /// Prepares to plan placements of `thing` in a problem of one arm. Strokes are planned in full
+  /// for each placement, as plan_job() does with one thread; clearances, margins and speeds of rows
+  /// are those of the strokes.
+  PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing,
                    PlanOptions options);
-  /// Prepares to plan placements of `thing` in `cell`, each in full as plan_workcell() does with
-  /// one thread. Costs of rows are of both paths together; clearances, margins and speeds are the
-  /// least of both arms, clearances also of what is between them. A placement at which the given
-  /// motion of an arm does not keep its limits is infeasible.
-  PlacementPlanner(Workcell cell, Movable thing, PlanOptions options);
+  /// Prepares to plan placements of `thing` in a problem. Two arms are planned in full for each
+  /// placement, as plan_workcell() does with one thread: costs of rows are of both paths together;
+  /// clearances, margins and speeds are the least of both arms, clearances also of what is between
+  /// them. A placement at which the given motion of an arm does not keep its limits is infeasible.
+  PlacementPlanner(Problem problem, Movable thing, PlanOptions options);
+  PlacementPlanner(PlacementPlanner&&) noexcept;
+  PlacementPlanner& operator=(PlacementPlanner&&) noexcept;
   ~PlacementPlanner();
 
   /// Plans the cells and returns their rows in the order of `cells`, without those that were not
@@ -58,7 +61,7 @@ class PlacementPlanner {
                                  const std::function<void(const PlacementRow&)>& done = {});
   /// Plans the cells again and returns their trajectories, which rows do not hold, in the order of
   /// `cells`, without those that have no path or were not answered in time. Returns none for a job
-  /// or a workcell, of which plan_job() of placed_job() and plan_workcell() of placed_workcell()
+  /// or a workcell, of which plan_job() of placed_problem() and plan_workcell() of placed_problem()
   /// give the rows of a cell.
   [[nodiscard]] std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells);
   /// Plans the cells again and calls `found` after each that was answered, with its result and what

@@ -9,7 +9,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/workcell_certificate.hpp"
 #include "swivel/core/motion/timed_path.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 
@@ -36,7 +36,7 @@ struct WorkcellCheckResult {
     const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
     const CheckOptions& options = {});
 [[nodiscard]] WorkcellCheckResult check_workcell(
-    const Workcell& cell, const std::array<std::vector<TrajectoryRow>, 2>& rows,
+    const Problem& cell, const std::array<std::vector<TrajectoryRow>, 2>& rows,
     const CheckOptions& options = {});
 /// Proves a timed motion of two arms from the workcell alone, or tells what is wrong with it. The
 /// workcell is one with_motion_defaults(). Each arm passes check_motion() by itself; rows are at

@@ -2,7 +2,7 @@
 #pragma once
 #include "swivel/core/answer/workcell_certificate.hpp"
 #include "swivel/core/answer/workcell_result.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 #include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 
@@ -18,7 +18,7 @@ struct WorkcellView;
 /// plan() does of either arm and for a given motion that does not pass check_trajectory() by
 /// itself,
 /// std::logic_error if options.check finds an answer invalid.
-[[nodiscard]] WorkcellResult plan_workcell(const Workcell& cell, const PlanOptions& options = {});
+[[nodiscard]] WorkcellResult plan_workcell(const Problem& cell, const PlanOptions& options = {});
 /// Plans a workcell that was prepared before. `view`: filled with what was found out, or null.
 [[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared,
                                            const PlanOptions& options = {},

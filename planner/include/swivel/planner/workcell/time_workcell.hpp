@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/motion/workcell_motion.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"

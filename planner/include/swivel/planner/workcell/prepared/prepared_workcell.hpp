@@ -9,7 +9,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/problem/workcell.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
@@ -21,11 +21,11 @@ class PreparedRobot;
 /// and safe to share between threads.
 class PreparedWorkcell {
  public:
-  /// Prepares both arms. Throws InvalidArgument for what validate(Workcell) refuses, InputError for
+  /// Prepares both arms. Throws InvalidArgument for what validate(Problem) refuses, InputError for
   /// what PreparedRobot refuses of either arm, arms that share a joint or a link, a follower whose
   /// tool stands still in the base frame on a step, a given motion whose tool stands still on one,
   /// and a roll that is chosen besides the arm angle; Stopped.
-  explicit PreparedWorkcell(const Workcell& cell, const Budget& budget = {});
+  explicit PreparedWorkcell(const Problem& cell, const Budget& budget = {});
   ~PreparedWorkcell();
   PreparedWorkcell(PreparedWorkcell&&) noexcept;
   PreparedWorkcell& operator=(PreparedWorkcell&&) noexcept;
@@ -39,7 +39,7 @@ class PreparedWorkcell {
   [[nodiscard]] const InterArmWorld& between() const;
   /// Returns the number of the arm whose motion is given, if one is.
   [[nodiscard]] std::optional<std::size_t> given_arm() const;
-  /// Returns the rows of the given motion: the joints of Workcell::given, bit for bit, with the
+  /// Returns the rows of the given motion: the joints of Problem::given, bit for bit, with the
   /// path length, arm angle and branch that follow from them. Empty where no motion is given.
   [[nodiscard]] const std::vector<TrajectoryRow>& given_rows() const;
   /// Returns the bodies of both arms with what they keep at and between the samples of timed

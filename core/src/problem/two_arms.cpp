@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/problem/workcell.hpp"
+#include "problem/two_arms.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -16,9 +16,9 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw InvalidArgument("arms: " + what);
 }
 
-void validate_names(const Workcell& cell) {
+void validate_names(const Problem& cell) {
   for (std::size_t k = 0; k < 2; ++k) {
-    const WorkcellArm& arm = cell.arms[k];
+    const ArmTask& arm = cell.arms[k];
     require(!arm.name.empty(), "name: allowed are non-empty names");
     require(arm.name != arm.base_link &&
                 std::none_of(cell.scene.begin(), cell.scene.end(),
@@ -35,7 +35,7 @@ void validate_names(const Workcell& cell) {
 }
 
 /// Returns the scene without what it allows to bodies that are attached to the other arm.
-std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm) {
+std::vector<SceneObject> scene_of(const Problem& cell, std::size_t arm) {
   std::vector<SceneObject> scene = cell.scene;
   const std::vector<AttachedBody>& others = cell.arms[1 - arm].attached;
   for (SceneObject& object : scene)
@@ -46,21 +46,21 @@ std::vector<SceneObject> scene_of(const Workcell& cell, std::size_t arm) {
   return scene;
 }
 
-void validate_given(const Workcell& cell, std::size_t number) {
-  const WorkcellArm &arm = cell.arms[number], &other = cell.arms[1 - number];
+void validate_given(const Problem& cell, std::size_t number) {
+  const ArmTask &arm = cell.arms[number], &other = cell.arms[1 - number];
   require(other.given.empty(), "given: both motions are given: allowed is one");
   require(arm.given.size() >= 2, "given: 1 row: allowed are two or more");
   for (std::size_t row = 0; row < arm.given.size(); ++row)
     require(arm.given[row].allFinite(),
             "given: row " + std::to_string(row) + ": allowed are finite joints");
-  require(
-      arm.waypoints.empty() && !arm.start && !arm.end && !arm.smooth && cell.leader_of(number) < 0,
-      "waypoints, start, end, smooth, path_frame: allowed for an arm whose motion is given are "
-      "none");
+  require(arm.path().waypoints.empty() && !arm.path().start && !arm.path().end &&
+              !arm.path().smooth && cell.leader_of(number) < 0,
+          "waypoints, start, end, smooth, path_frame: allowed for an arm whose motion is given are "
+          "none");
   require(!arm.roll || arm.roll->circle(),
           "roll: allowed for an arm whose motion is given is a whole turn, of six joints, or none");
-  const std::size_t last = arm.given.size() - 1, waypoints = other.waypoints.size();
-  if (other.steps.empty()) {
+  const std::size_t last = arm.given.size() - 1, waypoints = other.path().waypoints.size();
+  if (other.path().steps.empty()) {
     require(waypoints == 2 || waypoints == arm.given.size(),
             "waypoints: " + std::to_string(waypoints) + ", and the given motion has " +
                 std::to_string(arm.given.size()) +
@@ -68,7 +68,8 @@ void validate_given(const Workcell& cell, std::size_t number) {
                 "are");
     return;
   }
-  const auto sum = std::accumulate(other.steps.begin(), other.steps.end(), std::int64_t{0});
+  const auto sum =
+      std::accumulate(other.path().steps.begin(), other.path().steps.end(), std::int64_t{0});
   require(sum == static_cast<std::int64_t>(last), "steps: together " + std::to_string(sum) +
                                                       ": allowed are " + std::to_string(last) +
                                                       ", since the given motion ends then");
@@ -76,36 +77,38 @@ void validate_given(const Workcell& cell, std::size_t number) {
 
 /// Refuses a leader whose tool would not be where its path says: nobody knows then where its
 /// follower must go before the leader is planned.
-void validate_leader(const WorkcellArm& leader, const std::string& follower) {
+void validate_leader(const ArmTask& leader, const std::string& follower) {
   require(!leader.roll, "roll: '" + leader.name + "' leads '" + follower +
                             "', whose path would turn with its tool: allowed for a leader is no "
                             "roll, or a motion that is given");
-  require(!leader.start_at && leader.start_tolerance <= Task().start_tolerance,
+  require(!leader.path().start_at && leader.path().start_tolerance <= Task().start_tolerance,
           "start_at, start_tolerance: '" + leader.name + "' leads '" + follower +
               "': allowed for a leader are the start of its path and the default tolerance");
 }
 
 /// Returns the problem of an arm by itself, for its validation. An arm whose motion is given takes
 /// the other arm's waypoints for this.
-PathProblem alone(const Workcell& cell, std::size_t number) {
-  const WorkcellArm& arm = cell.arms[number];
+PathProblem alone(const Problem& cell, std::size_t number) {
+  const ArmTask& arm = cell.arms[number];
   PathProblem problem;
   static_cast<Robot&>(problem) = arm;
-  static_cast<Task&>(problem) = arm;
+  static_cast<Task&>(problem) = arm.path();
   problem.scene = scene_of(cell, number);
   problem.vary = cell.vary;
   problem.source =
       cell.source.empty() ? "arm '" + arm.name + "'" : cell.source + ": arm '" + arm.name + "'";
-  if (!arm.given.empty()) problem.waypoints = cell.arms[1 - number].waypoints;
+  if (!arm.given.empty()) problem.waypoints = cell.arms[1 - number].path().waypoints;
   if (cell.leader_of(number) >= 0) problem.path_frame.clear();
   return problem;
 }
 
 }  // namespace
 
-void validate(const Workcell& cell) {
+void validate_two_arms(const Problem& cell) {
+  for (const ArmTask& arm : cell.arms)
+    require(is_path_alone(arm), "strokes: allowed is one path for each of two arms");
   validate_names(cell);
-  const WorkcellArm &first = cell.arms[0], &second = cell.arms[1];
+  const ArmTask &first = cell.arms[0], &second = cell.arms[1];
   require(first.model == second.model, "model: allowed is one model for both arms");
   require(first.base_link == second.base_link, "base_link: allowed is one for both arms");
   require(first.hold == second.hold, "hold: allowed is one for both arms");
@@ -113,18 +116,18 @@ void validate(const Workcell& cell) {
           "path_frame: the arms lead each other: allowed is one leader");
   const auto given = cell.given_arm();
   if (given) validate_given(cell, *given);
-  require(given || first.waypoints.size() == second.waypoints.size(),
-          "waypoints: " + std::to_string(first.waypoints.size()) + " and " +
-              std::to_string(second.waypoints.size()) +
+  require(given || first.path().waypoints.size() == second.path().waypoints.size(),
+          "waypoints: " + std::to_string(first.path().waypoints.size()) + " and " +
+              std::to_string(second.path().waypoints.size()) +
               ": allowed is the same number for both arms, since they are at them at one time");
   for (std::size_t k = 0; k < 2; ++k) {
-    const WorkcellArm& arm = cell.arms[k];
+    const ArmTask& arm = cell.arms[k];
     if (cell.leader_of(k) >= 0 && given != 1 - k) validate_leader(cell.arms[1 - k], arm.name);
-    require(!arm.smooth || cell.leader_of(k) < 0,
+    require(!arm.path().smooth || cell.leader_of(k) < 0,
             "smooth: allowed for a follower is none: it keeps to the leader's curve");
-    require(arm.rolls.empty() && (arm.steps.empty() || given == 1 - k),
+    require(arm.path().rolls.empty() && (arm.path().steps.empty() || given == 1 - k),
             "rolls, steps: allowed are none");
-    for (const Waypoint& waypoint : arm.waypoints)
+    for (const Waypoint& waypoint : arm.path().waypoints)
       require(!waypoint.roll,
               "waypoints: roll: allowed in a workcell is the roll of the whole path");
     validate(alone(cell, k));

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options/chosen_problem.hpp"
+
+#include <algorithm>
+
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/input_error.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+/// Returns what the guide calls such problems.
+std::string words_of_kind(const Problem& problem) {
+  return problem.arms.size() == 2 ? "workcells" : "jobs";
+}
+
+}  // namespace
+
+Problem chosen_problem(const Problem& problem, const LatticeOptions& lattice,
+                       const EpisodeChoice& episode) {
+  Problem chosen = episode.apply(problem);
+  for (ArmTask& arm : chosen.arms)
+    for (Stroke& stroke : arm.strokes) lattice.apply(stroke);
+  if (!lattice.dphi && !lattice.arcs.value_or(false)) return chosen;
+  std::vector<UnusedKey> unused = unused_keys_of(chosen.arm(), chosen.source);
+  if (chosen.arms.size() == 2)
+    unused = unused_by_both(unused, unused_keys_of(chosen.arms[1], chosen.source));
+  lattice.require_used(unused);
+  return chosen;
+}
+
+void refuse_options(const Problem& problem, const std::string& file,
+                    const std::vector<std::pair<bool, const char*>>& options) {
+  for (const auto& [given, name] : options)
+    if (given)
+      throw InputError(std::string(name) + ": is not supported yet for " + words_of_kind(problem) +
+                       ", as " + file + " is one: allowed are problems with one path");
+}
+
+void require_planner_of(const Problem& problem, const SearchOptions& search) {
+  if (is_path(problem)) return;
+  const PlannerKind planner = search.plan_options().planner;
+  if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
+    throw InputError("--planner: " + search.planner + " is not supported for " +
+                     words_of_kind(problem) + ": allowed are lazy, parallel");
+}
+
+PathProblem problem_of_arm(const Problem& problem, std::size_t arm) {
+  PathProblem alone;
+  static_cast<Robot&>(alone) = problem.arms[arm];
+  static_cast<Task&>(alone) = problem.arms[arm].path();
+  alone.scene = problem.scene;
+  alone.vary = problem.vary;
+  alone.source = problem.source;
+  return alone;
+}
+
+PathProblem first_path(const Problem& problem) {
+  return problem.arms.size() == 2 ? problem_of_arm(problem, 0)
+                                  : problem_of_run(problem, {0, false});
+}
+
+std::vector<HeldJoint> held_joints(const Problem& problem) {
+  std::vector<HeldJoint> held;
+  for (const ArmTask& arm : problem.arms)
+    for (const HeldJoint& joint :
+         build_arm(*arm.model, arm.base_link, arm.tip_link, arm.hold, arm.tool, arm.roll).held)
+      if (std::none_of(held.begin(), held.end(),
+                       [&](const HeldJoint& known) { return known.name == joint.name; }))
+        held.push_back(joint);
+  return held;
+}
+
+}  // namespace swivel::cli
