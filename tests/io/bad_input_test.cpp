@@ -279,6 +279,18 @@ const Case kCases[] = {
      "limits",
      "{tool_angle_error: 5}",
      {"limits.tool_angle_error", "is 5 rad: are these degrees?", "at most 3.14"}},
+    {"JointStepOfDegrees",
+     "limits",
+     "{joint_step: 30}",
+     {"limits.joint_step", "is 30 rad: are these degrees?", "at most 6.28"}},
+    {"OrientationOfDegrees",
+     "path",
+     "{waypoints: [{xyz: [0.5, 0, 0.5]}, {xyz: [0.6, 0, 0.5],\n  rpy: [0, -90, 0]}]}",
+     {"problem.yaml:2: path.waypoints[1].rpy", "is -90 rad: are these degrees?", "a turn"}},
+    {"RollOfDegrees",
+     "path",
+     "{roll: [-30, 30], waypoints: [{xyz: [0.5, 0, 0.5]}, {xyz: [0.6, 0, 0.5]}]}",
+     {"path.roll", "is -30 rad: are these degrees?"}},
     {"SelfMotionOfAnArmAngle",
      "resolution",
      "{ds: 0.01,\n  arc: 0.1}",
@@ -377,11 +389,15 @@ const Case kCases[] = {
 INSTANTIATE_TEST_SUITE_P(Io, BadProblem, testing::ValuesIn(kCases),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST(BadProblemFile, NegativeHalfWidth) {
+TEST(BadProblemFile, HalfWidths) {
   const ProblemFolder folder;
-  const fs::path file =
-      folder.write({{"scene", object("sphere: 1")}, {"vary", "[{object: a, rpy: [0, -1, 0]}]"}});
-  expect_message(input_error([&] { (void)load_path_problem(file); }), {"vary[0].rpy[1]", ">= 0"});
+  const auto refusal = [&](const std::string& vary) {
+    const fs::path file = folder.write({{"scene", object("sphere: 1")}, {"vary", vary}});
+    return input_error([&] { (void)load_path_problem(file); });
+  };
+  expect_message(refusal("[{object: a, rpy: [0, -1, 0]}]"), {"vary[0].rpy[1]", ">= 0"});
+  expect_message(refusal("[{object: a, rpy: [0, 0, 15]}]"),
+                 {"vary[0].rpy", "is 15 rad: are these degrees?"});
 }
 
 TEST(BadProblemFile, ObjectNamedLikeAnAttachedBody) {

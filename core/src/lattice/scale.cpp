@@ -174,6 +174,7 @@ std::vector<LargeLength> large_lengths(const Chain& chain, const PathProblem& pr
     if (value && *value > most)
       found.push_back({"limits", key, formatted("is %.4g ", *value) + unit + kAskDegrees, most});
   };
+  look_at_turn("joint_step", limits.joint_step, kTwoPi, "rad");
   look_at_turn("tool_angle_error", limits.tool_angle_error, kPi, "rad");
   look_at_turn("tool_turn_speed", limits.tool_turn_speed, kMostTurnSpeed, "rad/s");
   for (std::size_t k = 0; limits.joint_speed && k < kDof; ++k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "files/bad_input.hpp"
@@ -59,13 +60,29 @@ Vector3d vector3_or_zero(const YamlSection& section, const std::string& key) {
   return value ? value->vector3() : Vector3d::Zero();
 }
 
+/// Throws InputError for angles beyond a turn, which are likely to be in degrees.
+void require_radians(const YamlValue& value, std::initializer_list<double> angles) {
+  for (const double angle : angles)
+    if (std::abs(angle) > kTwoPi + 1e-6)
+      value.fail(
+          formatted("is %.6g rad", angle) + ": are these degrees? Angles are read as radians",
+          formatted("-%.6g to %.6g, a turn", kTwoPi, kTwoPi));
+}
+
+/// Returns roll, pitch and yaw. Throws InputError as require_radians() does.
+Vector3d rpy_of(const YamlValue& value) {
+  const Vector3d rpy = value.vector3();
+  require_radians(value, {rpy.x(), rpy.y(), rpy.z()});
+  return rpy;
+}
+
 /// Returns the orientation of a section by its `quat` or `rpy`; the identity if it has neither. A
 /// quaternion is returned as written: not zero, but perhaps not of unit length.
 Quaterniond orientation(const YamlSection& section) {
   const auto given = section.chosen("quat");
   if (!given) return Quaterniond::Identity();
   const auto& [key, value] = *given;
-  if (key == "rpy") return from_rpy(value.vector3());
+  if (key == "rpy") return from_rpy(rpy_of(value));
   const std::vector<double> q = value.numbers();
   const Quaterniond result(q[0], q[1], q[2], q[3]);
   if (!(result.norm() > 1e-9) || !std::isfinite(result.norm()))
@@ -515,6 +532,7 @@ void ProblemReader::read_roll(const YamlValue& value) {
   const std::vector<double> ends = value.numbers();
   problem_.roll = Roll{ends[0], ends[1]};
   if (!(ends[0] < ends[1])) value.fail("is empty", "[lower, upper] with lower < upper");
+  require_radians(value, {ends[0], ends[1]});
 }
 
 void ProblemReader::read_smooth(const YamlValue& value) {
@@ -744,8 +762,9 @@ void ProblemReader::read_vary() {
     if (!is_object(object.text()))
       object.fail("unknown object '" + object.text() + "'",
                   "the name of a scene object in the frame of `base_link`");
-    problem_.vary.push_back(
-        {object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
+    const auto rpy = section.find_filled("rpy");
+    problem_.vary.push_back({object.text(), vector3_or_zero(section, "xyz"),
+                             rpy ? rpy_of(*rpy) : Vector3d(Vector3d::Zero())});
   }
 }
 

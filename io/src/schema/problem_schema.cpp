@@ -35,7 +35,7 @@ Keys pose_keys(Presence position = otherwise("[0, 0, 0]")) {
                                "position; a waypoint must have it"},
                               {"rpy", numbers(3, kFinite), "rad", optional(),
                                "roll, pitch, yaw about the fixed axes x, y, z, as in a URDF: R = "
-                               "Rz(yaw) Ry(pitch) Rx(roll)"},
+                               "Rz(yaw) Ry(pitch) Rx(roll); each within a turn"},
                               {"quat", numbers(4, kFinite), "", optional(),
                                "instead of `rpy`: `[w, x, y, z]`, w first; in a waypoint of length "
                                "1 within 1e-3, elsewhere of any length but 0"},

@@ -44,8 +44,8 @@ void require_tool_speed(const Chain& chain, double speed, const std::string& wha
 /// A length of `limits` or `path.smooth` that is suspected to be in millimetres: a clearance of
 /// more than the arm's reach, a tolerance of more than a quarter of it, or a tool speed of more
 /// than 10 times the reach in a second. Likewise an angle of `limits` that is suspected to be in
-/// degrees: a speed of joints that turn, or of the tool's turn, of more than 50 rad/s, or a
-/// tolerance of more than half a turn.
+/// degrees: a speed of joints that turn, or of the tool's turn, of more than 50 rad/s, a tolerance
+/// of more than half a turn, or a step of joints of more than a turn.
 struct LargeLength {
   std::string section, key;  ///< such as "limits" and "clearance"
   /// Such as "is 5 m, and the arm reaches 1.31 m: are these millimetres? Lengths are read as
