@@ -24,62 +24,6 @@
 
 namespace swivel {
 
-template <class A>
-void serialize(A& archive, InfeasibilityCertificate::Range& x) {
-  auto& [first, last] = x;
-  archive(first, last);
-}
-template <class A>
-void serialize(A& archive, InfeasibilityCertificate::Nodes& x) {
-  auto& [slots, witness] = x;
-  archive(slots, witness);
-}
-template <class A>
-void serialize(A& archive, InfeasibilityCertificate::Edges& x) {
-  auto& [tails, heads, witness, count] = x;
-  archive(tails, heads, witness, count);
-}
-template <class A>
-void serialize(A& archive, InfeasibilityCertificate::Layer& x) {
-  auto& [slots, reached, removed, edges] = x;
-  archive(slots, reached, removed, edges);
-}
-template <class A>
-void serialize(A& archive, InfeasibilityCertificate& x) {
-  auto& [stroke, reversed, resolution, edges, windings, layers, first_layer, band, witnesses] = x;
-  archive(stroke, reversed, resolution, edges, windings, layers, first_layer, band, witnesses);
-}
-template <class A>
-void serialize(A& archive, WorkcellCertificate::Move& x) {
-  auto& [from, to] = x;
-  archive(from, to);
-}
-template <class A>
-void serialize(A& archive, WorkcellCertificate::Region& x) {
-  auto& [layer, bodies, slots, moves] = x;
-  archive(layer, bodies, slots, moves);
-}
-template <class A>
-void serialize(A& archive, WorkcellCertificate::Branch& x) {
-  auto& [parent, arm, region, arm_without_path, cut] = x;
-  archive(parent, arm, region, arm_without_path, cut);
-}
-template <class A>
-void serialize(A& archive, WorkcellCertificate& x) {
-  auto& [windings, resolution, edges, layers, tree] = x;
-  archive(windings, resolution, edges, layers, tree);
-}
-template <class A>
-void serialize(A& archive, WorkcellCertificateCheck& x) {
-  auto& [passed, failure, complete, regions, cuts, pairs, nodes, edges] = x;
-  archive(passed, failure, complete, regions, cuts, pairs, nodes, edges);
-}
-template <class A>
-void serialize(A& archive, CertificateCheck& x) {
-  auto& [passed, failure, s, complete, nodes, edges] = x;
-  archive(passed, failure, s, complete, nodes, edges);
-}
-
 namespace python {
 
 namespace {
