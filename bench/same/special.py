@@ -53,7 +53,7 @@ def stopped():
         )
     for problem, seconds in (
         ("iiwa14_ring_job", 0.3),
-        ("experiment_c_20k", 0.02),
+        ("experiment_c_20k", 0.005),
         ("torch_door", 0.05),
         ("door_job", 0.02),
         ("iiwa14_bench_job", 0.02),
